@@ -40,7 +40,7 @@ def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
         raise InputError(f"{name!r} is ambiguous: it may be {_students_text(found)}; use one of these ids")
     guess = ""
     # Names that differ in accents: Muller and Mueller are similar to Müller.
-    if similar := [students[index] for index in sorted(_with_words(people, name, _without_accents))]:
+    if similar := [students[index] for index in sorted(_with_words(people, name, without_accents))]:
         guess = f"; did you mean {'' if len(similar) == 1 else 'one of '}{_students_text(similar)}?"
     some = students[:_MAX_SUGGESTED_FROM]
     guess = guess or did_you_mean(name, {word for one in some for word in (one.key, one.login, one.name)})
@@ -67,7 +67,7 @@ def _with_words(people: People, name: str, spellings: Callable[[str], Iterable[s
     return found
 
 
-def _without_accents(word: str) -> tuple[str, ...]:
+def without_accents(word: str) -> tuple[str, ...]:
     """Return a normalised word without accents, and with an umlaut as two letters: muller and mueller."""
     composed = unicodedata.normalize("NFC", word)
     written_out = (composed.translate(_LETTERS), composed.translate(_UMLAUTS).translate(_LETTERS))

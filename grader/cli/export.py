@@ -40,11 +40,11 @@ def export(
 ) -> int:
     """Export the grades for a spreadsheet, an LMS or a browser.
 
-    A grade is the final mark, else the sum of automatic points and manual marks minus the late penalty. For Canvas,
-    Moodle, Blackboard and Brightspace, give the file that the LMS exported with --into. Only the grade cells (and
-    Moodle's feedback) change. Rows without a grade are omitted, so that the import overwrites no other grade. The
-    maximum in the file must be the rubric's. Exits 1 if --strict finds an unmatched row or student, or a grade that the
-    LMS would refuse.
+    A grade is the final mark of `grader mark STUDENT total`, else the sum of automatic points and manual marks minus
+    the late penalty. For Canvas, Moodle, Blackboard and Brightspace, give the file that the LMS exported with --into.
+    Only the grade cells (and Moodle's feedback) change. Rows without a grade are omitted, so that the import overwrites
+    no other grade. The maximum in the file must be the rubric's. Exits 1 if --strict finds an unmatched row or student,
+    or a grade that the LMS would refuse.
 
     With html, the folder contains a page for each student, and the class's page index.html, which is for graders only.
 

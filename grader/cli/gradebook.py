@@ -25,10 +25,10 @@ def stats(
 ) -> str:
     """Show statistics of a class: grades, criteria, mistakes, fixes.
 
-    Manual marks are included, late penalties are not; only the totals of the students in --format json include them.
-    The share of a criterion is the mean share of its points that students earned; its discrimination is the correlation
-    of its points with the rest of the grade. An edit is shown with the number of students who need it: it was tried on
-    one of their robots.
+    Manual marks are included, late penalties are not; only the grades of the students in --format json include them.
+    The share of a criterion is the mean share of its points that students earned. Its discrimination says whether
+    students who earned the rest of the grade earned them, too: a correlation from -1 to 1. An edit is shown with the
+    number of students who need it: it was tried on one of their robots.
 
     With --by, the output compares the sections or markers of the roster instead: students, grades, late submissions,
     and the criteria that differ most. JSON has both.

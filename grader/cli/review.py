@@ -14,12 +14,10 @@ from grader.usecases.writing import write_stdout
 
 
 def mark(
-    student: Annotated[str, typer.Argument(metavar="STUDENT", help="The student's key, login, email address or name.")],
+    student: Annotated[str, typer.Argument(metavar="STUDENT", help="The student's id, login, email address or name.")],
     criterion: Annotated[
         str,
-        typer.Argument(
-            metavar="CRITERION|total", help="The id of the criterion, such as answer-floating-link, or total."
-        ),
+        typer.Argument(metavar="CRITERION|total", help="The id of the criterion, or total: the whole submission."),
     ],
     gradebook: GradebookOption,
     points: Annotated[
@@ -38,9 +36,9 @@ def mark(
 ) -> str:
     """Give a manual mark for a criterion or the whole submission.
 
-    Use it for criteria that need manual grading, or to override a check. `total` gives a final mark, also without a
-    submission. A comment without POINTS changes no points. Later runs keep the mark. A later mark replaces it; the
-    gradebook keeps both.
+    Use it for criteria that need manual grading, or to override a check. `total` gives a final mark, which is the whole
+    grade, also without a submission. A comment without POINTS changes no points. Later runs keep the mark. A later mark
+    replaces it; the gradebook keeps both.
 
     Examples:
 
@@ -76,7 +74,7 @@ def review(
     second: Annotated[
         bool, typer.Option("--second", help="Give second opinions, which change no grade; needs --by.")
     ] = False,
-    anonymous: Annotated[bool, typer.Option("--anonymous", help="Show no names, keys or paths of students.")] = False,
+    anonymous: Annotated[bool, typer.Option("--anonymous", help="Show no names, ids or paths of students.")] = False,
     by: ByOption = "",
     pictures: Annotated[
         Path | None, typer.Option(metavar="DIR", help="First write all pictures into this folder.")

@@ -67,7 +67,7 @@ class Sample:
         return next((words for kind, words in _WORDS.items() if name in getattr(self, kind)), "passes")
 
 
-_WORDS = {"lost": "loses its points", "carried": "is carried forward", "pending": "needs manual grading"}
+_WORDS = {"lost": "loses its points", "carried": "fails without a deduction", "pending": "needs manual grading"}
 
 
 def read_samples(folder: Path) -> list[Sample]:

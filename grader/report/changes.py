@@ -10,6 +10,7 @@ from rich.text import Text
 
 from grader.classroom.gradebook.changes import Change, PointsChange
 from grader.classroom.gradebook.gradebook import Run
+from grader.classroom.gradebook.lateness import time_text
 from grader.grading.criterion import Adjustment
 from grader.grading.rubric_changes import RubricChange
 from grader.report.console import wrapped
@@ -98,7 +99,7 @@ def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Co
 
     Students with the same reason are listed together.
     """
-    before, after = (f"run {run.id} of {run.started}" for run in runs)
+    before, after = (f"run {run.id} of {time_text(run.started)}" for run in runs)
     wrapped(console, Text(printable(f"From {before} to {after}"), style="dim"), 0)
     if not changes:
         wrapped(console, Text("nothing changed"), 0)

@@ -23,6 +23,7 @@ from grader.report.class_words import (
     MAX_GROUPS,
     MAX_LISTED,
     MAX_NAMED,
+    NOT_DEDUCTED_NOTE,
     adjusted_lines,
     counts_line,
     criterion_name,
@@ -174,7 +175,7 @@ def _print_criteria(criteria: Iterable[CriterionStatistics], adjusted: Sequence[
     console.print()
     asked = [row for row in criteria if row.of]
     has_marks, has_carried = any(row.manual_marks for row in asked), any(row.carried for row in asked)
-    more = [*(["carried"] if has_carried else []), *(["manual"] if has_marks else [])]
+    more = [*(["not\ndeducted"] if has_carried else []), *(["manual\nmarks"] if has_marks else [])]
     # With both, ids of 26 letters fit on 80 columns.
     table = Table(box=None, pad_edge=False, padding=(0, 0, 0, 1) if len(more) > 1 else (0, 1), header_style="bold")
     table.add_column("criterion", no_wrap=True)
@@ -192,7 +193,7 @@ def _print_criteria(criteria: Iterable[CriterionStatistics], adjusted: Sequence[
             _discrimination_text(row.discrimination),
         )
     console.print(table)
-    wrapped(console, Text(CRITERIA_NOTE, style="dim"), 0)
+    wrapped(console, Text(f"{CRITERIA_NOTE}{f' {NOT_DEDUCTED_NOTE}' if has_carried else ''}", style="dim"), 0)
     for line in adjusted:
         wrapped(console, Text(line), 0)
 

@@ -21,13 +21,17 @@ VERDICTS = {
     "missing": "without a submission",
 }
 CRITERIA_NOTE = (
-    "share: mean share of the points earned; discrimination: correlation with the rest of the grade, from -1 to 1"
+    "Share: the mean share of the points that students earned. Discrimination: whether students who earned the rest of"
+    " the grade earned these points, too (a correlation from -1 to 1). Below 0.2 a criterion hardly separates strong"
+    " from weak submissions; below 0 it may be wrong."
 )
+NOT_DEDUCTED_NOTE = "Not deducted: failed because of an earlier mistake alone, or corrected after grading."
 FIXES_NOTE = "Each edit was tested: the listed criteria pass, and no other criterion fails."
 IDENTICAL_NOTE = (
     "These robots differ in names, order, comments and the spelling of numbers at most. This is no verdict: students"
     " who follow the handout and make the same mistake have the same robot."
 )
+DECIDED = " (scaled up from the points that need no manual grading)"
 ATTENTION_NOTE = "--verbose lists all students."
 MAX_DETAILS = 5  # students with details who need attention for one reason
 MAX_LISTED = 10  # mistakes, and edits
@@ -35,6 +39,7 @@ MAX_GROUPS = 20  # of identical work
 _LOW_DISCRIMINATION = 0.2
 MAX_NAMED = 12
 _TOTALS = ("earned", "lost", "need manual grading")
+_FINAL = "which a person gave instead of the sum of the criteria"
 _MAX_EDITS, _MAX_LINES, _MAX_CRITERIA = 4, 6, 4
 _MAX_WIDTH = 200  # characters of a line of a student's file
 
@@ -56,7 +61,7 @@ def final_line(statistics: ClassStatistics) -> str:
     final, excused = statistics.final, statistics.excused
     others = final - statistics.final_graded
     parts = (
-        (final, f"{counted(final, 'student')} {'has' if final == 1 else 'have'} a final mark"),
+        (final, f"{counted(final, 'student')} {'has' if final == 1 else 'have'} a final mark, {_FINAL}"),
         (others, f"{others} of them without a graded submission: not in these statistics"),
         (excused, f"{counted(excused, 'student')} {'is' if excused == 1 else 'are'} excused: not in these statistics"),
     )
@@ -69,23 +74,23 @@ def criterion_name(criterion: Criterion) -> str:
 
 
 def adjusted_lines(rubric: Rubric) -> list[str]:
-    """Return the criteria that the rubric adjusts, each with the reason."""
+    """Return the criteria that the rubric adjusts, each with what it changes and the reason."""
     adjusted = ((row.id, row.adjustment) for row in rubric.criteria if row.adjustment is not None)
     return [f"{printable(name)}: {sentence(adjustment.message)}" for name, adjustment in adjusted]
 
 
 def mark_lines(statistics: ClassStatistics) -> Iterator[str]:
-    """Yield the grades in one line, then what is not decided yet, and why."""
+    """Yield the grades in one line, then what needs manual grading, and why."""
     maximum, earned = format_points(statistics.out_of), statistics.points
     if statistics.graded > statistics.undecided:
         yield (
-            f"Grades{' on decided points,' if earned.pending else ''} out of {maximum}: mean {_mean(statistics)}, "
+            f"Grades out of {maximum}{DECIDED if earned.pending else ''}: mean {_mean(statistics)}, "
             f"standard deviation {statistics.deviation:.1f}, lowest {_grade(statistics.lowest, statistics)}, "
             f"median {_grade(statistics.median, statistics)}, highest {_grade(statistics.highest, statistics)}"
         )
     if statistics.undecided:
-        verb = "is" if statistics.undecided == 1 else "are"
-        yield f"{counted(statistics.undecided, 'submission')} {verb} undecided for the most part: not in these grades"
+        most = "because most of the automatic points need manual grading"
+        yield f"Not in these grades: {counted(statistics.undecided, 'submission')}, {most}"
     if not earned.pending:
         return
     shares = [f"{points / statistics.graded:.1f} {what}" for points, what in zip(earned, _TOTALS, strict=True)]
@@ -94,7 +99,7 @@ def mark_lines(statistics: ClassStatistics) -> Iterator[str]:
     if statistics.reasons:
         (reason, count), *others = statistics.reasons
         more = f"; {sum(number for _, number in others)} for other reasons" if others else ""
-        yield printable(f"Could not be decided: {counted(count, 'submission')}: {reason}{more}")
+        yield printable(f"Checks without a result: {counted(count, 'submission')}: {reason}{more}")
 
 
 def span(statistics: ClassStatistics, tenth: int) -> str:
@@ -176,7 +181,7 @@ def late_line(summary: ClassSummary) -> str:
 
 
 def _grade(points: Decimal, statistics: ClassStatistics) -> str:
-    """Return a grade exactly, or to two decimals if it is a share of decided points."""
+    """Return a grade exactly, or to two decimals if some points need manual grading."""
     is_share = statistics.points.pending > 0
     return format_points(points.quantize(Decimal("0.01"), ROUND_FLOOR) if is_share else points)
 

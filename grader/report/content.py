@@ -18,6 +18,7 @@ _VERDICTS = {
 }
 _MAX_LISTED, _MAX_FILES, _MAX_MISSING = 12, 2, 2
 _STATUSES = ("passed", "failed", "skipped", "pending", "errored", "adjusted", "marked manually")
+_WORDS = {"pending": ("needs manual grading", "need manual grading"), "adjusted": ("corrected after grading",) * 2}
 
 
 def score_text(report: Report) -> str:
@@ -80,7 +81,8 @@ def verdict_and_counts(report: Report) -> str:
         "marked manually" if one.manual_mark else "adjusted" if one.is_adjusted else one.outcome.status
         for one in report.results
     ]
-    counts = (f"{statuses.count(status)} {status}" for status in _STATUSES if status in statuses)
+    found = ((statuses.count(status), _WORDS.get(status, (status, status))) for status in _STATUSES)
+    counts = (f"{count} {words[count > 1]}" for count, words in found if count)
     return f"{urdf}; {', '.join(counts)}"
 
 

@@ -3,6 +3,8 @@
 from collections.abc import Iterable
 from typing import NamedTuple
 
+from grader.checks.outcome import Outcome
+from grader.grading.criterion import Criterion
 from grader.grading.report import Hint, Report, Result
 from grader.report.locations import excerpt_lines, location_text
 from grader.report.order import FailedCriterion, alike, failures, is_failure, is_manual, points_of, status_of
@@ -19,7 +21,6 @@ SYMBOLS = {
     "partial": "~",
 }  # of each status
 _MAX_FILES, _MAX_CRITERIA = 2, 3
-_WITHOUT_LINES = (".pdf", ".docx")  # the message names the page or the heading
 
 
 class Details(NamedTuple):
@@ -59,8 +60,8 @@ def result_details(result: Result, report: Report) -> Details:
     has_subject = report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot")
     return Details(
         _sentences(result),
-        _lines(outcome.measured) if is_asked else (),
-        _lines(criterion.answer) if is_asked else (),
+        _printable(answer_lines(outcome)) if is_asked else (),
+        _printable(model_lines(criterion)) if is_asked else (),
         outcome.location if has_failed else None,
         _one_line(criterion.feedback) if is_mistake and has_subject else "",
         # The title of a criterion is never stated alone, because it would read as a fact.
@@ -97,9 +98,34 @@ def _one_line(text: str) -> str:
     return printable(" ".join(text.split()))
 
 
-def _lines(text: object) -> tuple[str, ...]:
-    """Return the lines of an answer; none of the value of a criterion that is not a question."""
-    return tuple(printable(line) for line in text.splitlines() if line.strip()) if isinstance(text, str) else ()
+def answer_lines(outcome: Outcome) -> list[str]:
+    """Return the lines of the answer that a check found, as plain text; none if it is not about a question."""
+    text = outcome.measured
+    if not isinstance(text, str):
+        return []
+    is_markup = outcome.location is None or counts_lines(outcome.location)
+    return _plain_lines(text) if is_markup else text.strip("\n").splitlines()
+
+
+def model_lines(criterion: Criterion) -> list[str]:
+    """Return the lines of the model answer, as plain text; none if the criterion has no answer or is loaded without."""
+    return _plain_lines(criterion.answer) if criterion.answer else []
+
+
+def _plain_lines(markdown: str) -> list[str]:
+    from grader.report.answers import plain_lines  # late: few reports have answers
+
+    return plain_lines(markdown)
+
+
+def counts_lines(location: Location) -> bool:
+    """Return whether editors count the lines of a file; of a PDF or Word file, a message names the page or heading."""
+    return not location.path.lower().endswith((".pdf", ".docx"))
+
+
+def _printable(lines: Iterable[str]) -> tuple[str, ...]:
+    """Return the lines that are not blank."""
+    return tuple(printable(line) for line in lines if line.strip())
 
 
 def sentence(message: str) -> str:
@@ -152,8 +178,8 @@ def pending_reason(result: Result) -> str:
     if isinstance(outcome.measured, tuple):
         where = enumerated(list(map(str, outcome.measured)), _MAX_FILES)
     elif outcome.location is not None:
-        path = outcome.location.path
-        where = path if path.lower().endswith(_WITHOUT_LINES) else f"{path}:{outcome.location.line}"
+        at = outcome.location
+        where = f"{at.path}:{at.line}" if counts_lines(at) else at.path
     doubt = outcome.problem or ("" if where else "not found")
     return printable(f"{where} ({doubt})" if where and doubt else where or doubt)
 

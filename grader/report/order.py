@@ -109,7 +109,11 @@ class Order(NamedTuple):
     @property
     def remarks(self) -> tuple[tuple[str, tuple[Result, ...]], ...]:
         """The criteria with a mark, an adjustment or a comment that are not failures, each group with its heading."""
-        found = (("Marked manually", self.marked), ("Adjusted", self.adjusted), ("Comments", self.commented))
+        found = (
+            ("Marked manually", self.marked),
+            ("Corrected after grading", self.adjusted),
+            ("Comments", self.commented),
+        )
         return tuple((title, results) for title, results in found if results)
 
     @property

@@ -7,16 +7,17 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.checks.manual import MANUAL_CHECKS, answered
+from grader.classroom.gradebook.lateness import time_text
 from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.classroom.gradebook.marks import Mark
 from grader.grading.criterion import Criterion
 from grader.grading.pictures import evidence_files
 from grader.report.console import wrapped
+from grader.report.details import answer_lines, counts_lines, model_lines
 from grader.report.order import status_of
 from grader.text import counted, counted_points, format_points, printable
 
 _INDENT = 2
-_WITHOUT_LINES = (".pdf", ".docx")  # the message names the page or the heading
 
 
 def render_item(
@@ -36,10 +37,10 @@ def render_item(
         wrapped(console, Text(message_text(item)), 0)
     if marked := marked_text(item):
         wrapped(console, Text(f"Marked: {marked}", style="bold"), 0)
-    _print_block("Found", answer_lines(item), console)
+    _print_block("Found", [] if item.is_empty_group else answer_lines(item.result.outcome), console)
     _print_block("Look at", files_text(item), console)
     _print_block("Pictures", pictures, console)
-    _print_block("Model answer", criterion.answer.splitlines(), console)
+    _print_block("Model answer", model_lines(criterion), console)
     if place := place_text(item):
         wrapped(console, Text(f"in {place}", "dim"), 0)
     deductions = (f"d{number} {words}" for number, words in enumerate(choice_words(criterion), 1))
@@ -54,12 +55,6 @@ def who(item: QueuedResult) -> str:
     if item.number is not None:
         return f"submission {item.number}"
     return printable(f"{student.name} ({student.key})" if student.name else student.key)
-
-
-def answer_lines(item: QueuedResult) -> list[str]:
-    """Return the lines of a written answer without empty ones at its beginning and end; none of several students."""
-    answer = item.result.outcome.measured
-    return answer.strip("\n").splitlines() if isinstance(answer, str) and not item.is_empty_group else []
 
 
 def who_together(item: QueuedResult) -> str:
@@ -109,7 +104,7 @@ def marked_text(item: QueuedResult) -> str:
 def mark_text(mark: Mark) -> str:
     """Return a mark in one printable line: points, name, time, comment."""
     points = counted_points(mark.points) if mark.points is not None else mark.entry.kind
-    parts = [points, f"by {mark.by}" if mark.by else "by an unnamed person", f"at {mark.at}"]
+    parts = [points, f"by {mark.by}" if mark.by else "by an unnamed person", f"at {time_text(mark.at)}"]
     comment = " ".join(mark.comment.split())
     return printable(f"{' '.join(parts)}: {comment}" if comment else " ".join(parts))
 
@@ -130,7 +125,7 @@ def place_text(item: QueuedResult) -> str:
     if location is None:
         submitted = (str(Path(item.grade.files.root, path)) for path in item.grade.files.paths)
         return "" if evidence_files(item.result) else printable(", ".join(submitted))
-    line = "" if location.path.lower().endswith(_WITHOUT_LINES) else f", line {location.line}"
+    line = f", line {location.line}" if counts_lines(location) else ""
     return printable(f"{_where(item, location.path)}{line}")
 
 

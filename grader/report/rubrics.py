@@ -12,7 +12,7 @@ from grader.grading.rubric import Rubric
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.problems import Kind
-from grader.report.details import sentence
+from grader.report.details import model_lines, sentence
 from grader.report.markdown import code, escape
 from grader.robot.catalogue import CATALOGUE
 from grader.text import enumerated, format_points, printable
@@ -43,7 +43,8 @@ def rubric_overview(rubric: Rubric) -> str:
             if criterion.adjustment is not None:
                 lines.append(textwrap.indent(_fill(sentence(criterion.adjustment.message)), "    "))
             if criterion.answer:
-                lines.append(textwrap.indent(_fill(f"Model answer: {printable(criterion.answer)}"), "    "))
+                answer = printable(" ".join(model_lines(criterion)))
+                lines.append(textwrap.indent(_fill(f"Model answer: {answer}"), "    "))
     return "\n".join(lines) + "\n"
 
 

@@ -5,13 +5,11 @@ from rich.table import Table
 from rich.text import Text
 
 from grader.classroom.gradebook.sections import Section, SectionComparison
-from grader.report.class_words import percent
+from grader.report.class_words import DECIDED, percent
 from grader.report.console import wrapped
 from grader.text import format_points, printable
 
-_NOTE = (
-    "Means and medians are over decided points, without late penalties, which are subtracted when grades are exported."
-)
+_NOTE = "Means and medians do not include late penalties, which are subtracted when grades are exported."
 
 
 def render_sections(comparison: SectionComparison, console: Console) -> None:
@@ -26,7 +24,7 @@ def render_sections(comparison: SectionComparison, console: Console) -> None:
             str(section.late),
             format_points(section.late_points),
         )
-    wrapped(console, Text(f"Grades on decided points, out of {format_points(comparison.out_of)}", style="bold"), 0)
+    wrapped(console, Text(f"Grades out of {format_points(comparison.out_of)}{DECIDED}", style="bold"), 0)
     console.print(table)
     wrapped(console, Text(_NOTE, style="dim"), 0)
     if comparison.differing:

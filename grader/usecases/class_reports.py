@@ -54,7 +54,7 @@ def report_of(grades: Grades, grade: StudentGrade, *, feedback: bool = False) ->
     note = grade.late.reason
     if grade.late.points:
         penalty = format_points(-grade.late.points)
-        note += f": the late penalty is {penalty} points, the total is {format_points(grade.total)}"
+        note += f": the late penalty is {penalty} points, the grade is {format_points(grade.total)}"
     remarks = remarks_of(grades, grade)
     graded = remarks.graded if feedback or remarks.graders.is_manual else []
     is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)

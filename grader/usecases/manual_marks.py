@@ -28,7 +28,7 @@ from grader.report.review import mark_text
 from grader.text import counted_points, enumerated, format_points, printable
 from grader.usecases.terminal import Warn
 
-_NOT_COUNTED = "the rubric adjusts {}: its manual marks do not count"
+_NOT_COUNTED = "{} is corrected after grading, by [adjust] in the rubric: its manual marks do not count"
 _MAX_NAMED = 10
 # The students whose newest submission has the same files in the same class.
 _SAME_SUBMISSION = """

@@ -1,5 +1,6 @@
 """The class's page in a browser: sort, search, show a group, and go to a student's page and back."""
 
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -10,8 +11,9 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.summary import summary_of
 from grader.report.pages.class_page import render_class_page
 from tests.browser.conftest import OpenPage
-from tests.classroom.gradebooks import batch, graded_as, lab, make_class, record_run
+from tests.classroom.gradebooks import batch, graded_as, lab, lab_text, make_class, record_run
 from tests.report.hostile_class import CORPUS, export_hostile_class
+from tests.samples import ROOT
 
 pytestmark = pytest.mark.exhaustive
 Open = Callable[..., OpenPage]
@@ -38,15 +40,15 @@ def test_sort_search_and_groups(open_page: Open, pages: Path) -> None:
     page = opened.page
     everybody = ["Anna Ek", "Ben Oh", "Ben Oh", "Cleo Ray", "Dora Fi"]
     assert names(opened) == everybody
-    score = page.locator("#students th[data-column=score]")
-    score.get_by_role("button").click()
-    assert (names(opened)[0], names(opened)[-1], score.get_attribute("aria-sort")) == (
+    grade = page.locator("#students th[data-column=grade]")
+    grade.get_by_role("button").click()
+    assert (names(opened)[0], names(opened)[-1], grade.get_attribute("aria-sort")) == (
         "Cleo Ray",
         "Dora Fi",
         "ascending",
     )
-    score.get_by_role("button").press("Enter")
-    assert (names(opened)[0], names(opened)[-1], score.get_attribute("aria-sort")) == (
+    grade.get_by_role("button").press("Enter")
+    assert (names(opened)[0], names(opened)[-1], grade.get_attribute("aria-sort")) == (
         "Anna Ek",
         "Dora Fi",
         "descending",
@@ -58,6 +60,8 @@ def test_sort_search_and_groups(open_page: Open, pages: Path) -> None:
     assert page.get_by_role("status").inner_text() == "2 of 5 students"
     page.locator("#find").fill("tall oh")
     assert names(opened) == ["Ben Oh"]
+    page.keyboard.press("Escape")
+    assert (names(opened), page.evaluate("document.activeElement.id")) == (["Ben Oh"], "shown")
     page.keyboard.press("Escape")
     assert (len(names(opened)), page.locator("#find").input_value()) == (5, "")
     bar = page.locator("[data-group=grade-5] button")
@@ -82,6 +86,54 @@ def test_sort_search_and_groups(open_page: Open, pages: Path) -> None:
     assert all(request.startswith(pages.as_uri()) for request in opened.requests)
 
 
+# Each is what a grader types, and the names that it finds.
+SEARCHES = {
+    "weiss": ["Weiß, Karl"],
+    "Weiß": ["Weiß, Karl"],
+    "mueller": ["Mueller, Bo", "Müller, Anna"],
+    "Müller": ["Mueller, Bo", "Müller, Anna"],
+    "muller": ["Müller, Anna"],
+    "oneil": ["O'Neil, Sean"],
+    "o’neil": ["O'Neil, Sean"],
+    "lukas": ["Łukasiewicz, Ewa"],
+    "soren": ["Sørensen, Åse"],
+    "samuel ng": ["Nguyễn, Samuel"],
+    "late": ["Müller, Anna", "Weiß, Karl"],
+    "ROBOT-a": ["O'Neil, Sean"],
+}
+
+
+def test_names_are_found_as_they_are_typed(open_page: Open, tmp_path: Path) -> None:
+    """Without accents, apostrophes and umlauts, or with two letters for one; `late` finds the late."""
+    people = (
+        "Müller, Anna",
+        "Mueller, Bo",
+        "Weiß, Karl",
+        "O'Neil, Sean",
+        "Łukasiewicz, Ewa",
+        "Sørensen, Åse",
+        "Nguyễn, Samuel",
+    )
+    rows = [f'robot-{"hgfaedc"[number]},"{name}",{int(name in SEARCHES["late"])}' for number, name in enumerate(people)]
+    (tmp_path / "roster.csv").write_text("\n".join(("id,name,late", *rows)), encoding="utf-8")
+    (tmp_path / "small.toml").write_text(lab_text("percent_per_day = 10\n"), encoding="utf-8")
+    for row in rows:
+        folder = tmp_path / "class" / row.partition(",")[0]
+        folder.mkdir(parents=True)
+        shutil.copy(ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf", folder)
+    assert batch(tmp_path, "--reports", tmp_path / "pages", "--report-format", "html").returncode == 0
+    opened = open_page(tmp_path / "pages" / "index.html")
+    assert names(opened)[:3] == ["Łukasiewicz, Ewa", "Mueller, Bo", "Müller, Anna"]
+    found = {}
+    for typed in SEARCHES:
+        opened.page.keyboard.press("/")
+        opened.page.keyboard.press("Control+A")
+        opened.page.keyboard.type(typed)
+        found[typed] = names(opened)
+        opened.page.keyboard.press("Escape")
+    assert found == SEARCHES
+
+
 def test_markup_of_students_stays_text(open_page: Open, tmp_path: Path) -> None:
     """Whatever students write: nothing runs, nothing is loaded, the console is empty, and a search finds it as text."""
     folder = export_hostile_class(tmp_path)
@@ -95,6 +147,33 @@ def test_markup_of_students_stays_text(open_page: Open, tmp_path: Path) -> None:
     opened.page.get_by_role("link", name=CORPUS[0]).first.click()
     opened.page.wait_for_url("**-*.html")
     assert opened.page.title() != "run"
+
+
+@pytest.mark.parametrize("width", [1366, 1000, 683, 400])
+def test_every_part_fits(open_page: Open, tmp_path: Path, width: int) -> None:
+    """A long file name breaks, no code is cut off, and name and grade of a student are in view, below the headings."""
+    make_class(tmp_path)
+    (tmp_path / "class/finn").mkdir()
+    (tmp_path / "class/finn" / f"{'unbreakable_file_name' * 8}.rar").write_bytes(b"Rar!")
+    wrong = f'<robot name="r"><link name="base"/><link name="{"a_long_name_" * 9}"/></robot>'
+    for key in ("gina", "hugo"):
+        (tmp_path / f"class/{key}.urdf").write_text(wrong, encoding="utf-8")
+    done = batch(tmp_path, "--add", "--reports", tmp_path / "pages", "--report-format", "html")
+    assert done.returncode == 0, done.stderr
+    page = open_page(tmp_path / "pages" / "index.html", viewport={"width": width, "height": 700}).page
+    page.evaluate("for (const one of document.querySelectorAll('details')) one.open = true")
+    assert page.evaluate("document.documentElement.scrollWidth") == width
+    cut = "[...document.querySelectorAll('pre, th, td, p, li')].filter((one) => one.scrollWidth > one.clientWidth + 1)"
+    assert page.evaluate(f"{cut}.map((one) => one.textContent)") == []
+    page.locator("#students tbody tr").last.scroll_into_view_if_needed()
+    head, last = page.locator("#students thead th").first.bounding_box(), page.locator("#students tbody tr").last
+    assert head is not None
+    assert head["y"] < 60
+    grade = last.locator("td.grade").bounding_box()
+    assert grade is not None
+    assert grade["x"] + grade["width"] <= width
+    rows = page.locator("#criteria tbody tr").evaluate_all("rows => rows.map((row) => row.offsetHeight)")
+    assert max(rows) < 130
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
@@ -128,7 +207,7 @@ def test_a_class_of_a_thousand(open_page: Open, tmp_path: Path) -> None:
     (tmp_path / "index.html").write_text(page, encoding="utf-8")
     opened = open_page(tmp_path / "index.html")
     assert len(names(opened)) == 200
-    opened.page.locator("#students th[data-column=score] button").click()
+    opened.page.locator("#students th[data-column=grade] button").click()
     assert names(opened)[:3] == ["s0002", "s0006", "s0010"]
     opened.page.locator("#find").fill("99 loads")
     assert names(opened) == ["s0990", "s0994", "s0998"]

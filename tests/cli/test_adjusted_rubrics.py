@@ -196,15 +196,19 @@ def test_final_marks_and_excuses_are_counted_in_words(top: Path) -> None:
     assert sum(data["tenths"]) == 2
     shown = " ".join(grader("stats", "--gradebook", top / "book.db").stdout.split())
     assert (
-        "2 students have a final mark; 1 of them without a graded submission: not in these statistics; "
+        "2 students have a final mark, which a person gave instead of the sum of the criteria; 1 of them without a graded submission: not in these statistics; "
         "1 student is excused: not in these statistics"
     ) in shown
     assert "2 graded, 1 could not be graded, 1 without a submission" in shown
     assert grader("export", "html", "--gradebook", top / "book.db", "--output", top / "pages").returncode == 0
     page = ClassPageReader(top / "pages" / "index.html")
-    assert page.members("final") == ["Dora Fi", "Ben Oh"]
+    assert page.members("final") == ["Ben Oh", "Dora Fi"]
     assert page.members("excused") == ["Anna Ek"]
-    assert [row["total"] for row in page.table("students")] == ["", "", "10", "", "0"]
+    assert [row["grade"] for row in page.table("students")] == ["excused", "6", "10", "0", "0"]
+    assert [row["status"] for row in page.table("students") if "final" in row["status"]] == [
+        "graded; final mark instead of 3 points",
+        "without a submission; final mark",
+    ]
 
 
 # --- Late penalties, rubrics, bundles --------------------------------------------------------------------------------------

@@ -27,7 +27,7 @@ def diff(top: Path, *more: object) -> str:
     done = grader("diff", top / "book.db", *more)
     assert (done.returncode, done.stderr) == (0, "")
     first, rest = done.stdout.split("\nrun 2", 1)[0], done.stdout
-    assert re.match(r"From run \d+ of 20\S+ to run \d+ of 20\S+\n", rest), first
+    assert re.match(r"From run \d+ of 20\S+ \S+ \(UTC\S*\) to run \d+ of 20\S+ \S+ \(UTC\S*\)\n", rest), first
     return rest.partition("\n")[2]
 
 

@@ -326,4 +326,4 @@ def test_lab6_asks_for_no_manual_grading_by_default() -> None:
     """The shipped rubric leaves the decision to the course."""
     assert LAB6.without_urdf == ""
     text = grade(ROOT / "submissions" / "pictures-only")
-    assert "2 failed, 42 skipped, 3 pending" in text
+    assert "2 failed, 42 skipped, 3 need manual grading" in text

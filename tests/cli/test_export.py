@@ -190,13 +190,13 @@ def test_the_late_penalty_is_a_line_of_its_own(tmp_path: Path) -> None:
         ("3", "2.5", "0.5", "4", "1")
     }
     reported = {student["id"]: student for student in json.loads(export(tmp_path, "json").stdout)["students"]}
-    words = "2 days late: submitted 2026-09-12T10:00:00Z, deadline 2026-09-10T12:00+00:00"
+    words = "2 days late: submitted 2026-09-12 10:00 (UTC), deadline 2026-09-10 12:00 (UTC)"
     assert reported["anna"]["late"] == {"days": 2, "points": -2.2, "reason": words}
     assert (reported["anna"]["score"], reported["anna"]["total"]) == (11, 8.8)
     report = json.loads((tmp_path / "reports" / "anna.json").read_text())
     jsonschema.validate(report, json.loads(grader("schema", "report").stdout))
     assert report["score"] == 6
-    late_note = f"{words}: the late penalty is 1.6 points, the total is 4.4"  # not below the floor
+    late_note = f"{words}: the late penalty is 1.6 points, the grade is 4.4"  # not below the floor
     assert report["notes"] == [late_note]
     assert f"Note: {late_note}" in " ".join((tmp_path / "reports" / "anna.txt").read_text().split())
     later = table(export(tmp_path, "csv", "--due", "2026-09-11T12:00:00Z").stdout)
@@ -474,7 +474,7 @@ def test_feedback_in_moodle(tmp_path: Path) -> None:
     assert items[0].startswith("About box: 0 of 2.5. &#x27;base&#x27; shows a box 1 1 2 m")
     assert items[2].startswith("About essay: 2 of 4. &lt;b&gt;Why&lt;/b&gt; not\\x1b[31m".replace("\\", "&#92;"))
     assert items[3] == "About picture: 1 of 1. nice"
-    assert items[4] == "Late penalty: -1.6. 2 days late, from the roster"
+    assert items[4] == "Late penalty: -1.6. 2 days late, as recorded by the instructor"
     assert not set(feedback) & set("\x1b\u202e")
     assert feedback.startswith("<p>Graded automatically, and manually: 4.4 of 11 points.</p>")
 

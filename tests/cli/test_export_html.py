@@ -46,7 +46,7 @@ def test_pages_of_a_class(top: Path) -> None:
         "cleo": "could not be graded: cleo.zip cannot be read as an archive: File is not a zip file",
         "dora": "nothing was submitted",
     }
-    assert {row["key"]: (row["score"], row["pending"], row["lost"]) for row in rows} == {
+    assert {row["key"]: (row["grade"], row["pending"], row["lost"]) for row in rows} == {
         "anna": ("6", "5", ""),
         "ben": ("6", "5", ""),
         "cleo": ("0", "11", ""),
@@ -99,14 +99,14 @@ def test_batch_writes_the_same(top: Path) -> None:
 
 
 def test_late_penalties_have_columns(top: Path) -> None:
-    """Days and totals are in the table only if somebody is late; the order is by name."""
+    """The days and the penalty are in the table only if somebody is late; the grade is what remains."""
     (top / "roster.csv").write_text("id,name,late\nanna,Anna Ek,\nben,Ben Oh,2\n")
     (top / "small.toml").write_text(lab_text("percent_per_day = 10\n"))
     assert batch(top).returncode == 0
     export(top)
     rows = {row["key"]: row for row in ClassPageReader(top / "pages/index.html").table("students")}
-    assert (rows["ben"]["late"], rows["ben"]["total"]) == ("2 days", "3.8")
-    assert (rows["anna"]["late"], rows["anna"]["total"]) == ("", "")
+    assert (rows["ben"]["late"], rows["ben"]["grade"]) == ("2 days, -2.2", "3.8")
+    assert (rows["anna"]["late"], rows["anna"]["grade"]) == ("", "6")
 
 
 def test_submissions_that_are_gone_or_changed(top: Path) -> None:

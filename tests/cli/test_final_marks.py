@@ -201,7 +201,10 @@ def test_a_mark_of_an_adjusted_criterion_is_reported(top: Path) -> None:
     (top / "adjusted.toml").write_text(text)
     assert batch(top, rubric=top / "adjusted.toml").returncode == 0
     done = mark(top, "anna", "essay", "1")
-    assert done.stderr == "grader: the rubric adjusts essay: its manual marks do not count\n"
+    assert (
+        done.stderr
+        == "grader: essay is corrected after grading, by [adjust] in the rubric: its manual marks do not count\n"
+    )
     assert done.stdout == "anna: 10 of 11 points; needs manual grading: 1 point\n"
 
 
@@ -211,7 +214,7 @@ def test_points_of_a_dropped_criterion_are_refused(top: Path) -> None:
     text = lab_text() + '\n[adjust.essay]\naction = "drop"\nreason = "the question was unclear"\n'
     (top / "adjusted.toml").write_text(text)
     assert batch(top, rubric=top / "adjusted.toml").returncode == 0
-    why = "the rubric adjusts essay: its manual marks do not count"
+    why = "essay is corrected after grading, by [adjust] in the rubric: its manual marks do not count"
     assert refusal(mark(top, "anna", "essay", "3")) == why
     assert refusal(mark(top, "anna", "essay", "0", "--second", "--by", "Lee")) == why
     assert mark(top, "anna", "essay", "-").returncode == 0

@@ -16,6 +16,7 @@ import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.lateness import time_text
 from grader.classroom.gradebook.marks import Entry, Mark, insert_mark, newest_second
 from grader.classroom.gradebook.run_writer import save_student
 from grader.classroom.students import Student
@@ -132,8 +133,8 @@ def test_a_conflict_without_a_decision_is_listed(top: Path, typed: str) -> None:
         f"1 entry of 1 student merged into {top}/a.db\n"
         "not merged, because both gradebooks have new marks (--keep first or --keep second decides): 1\n"
         "  ash, essay:\n"
-        f"    {top}/a.db: 2 points by Kim at 2026-11-20T12:02:00+00:00: my mark\n"
-        f"    {top}/b.db: withdrawn by Lee at 2026-11-20T12:03:00+00:00\n"
+        f"    {top}/a.db: 2 points by Kim at {time_text('2026-11-20T12:02:00+00:00')}: my mark\n"
+        f"    {top}/b.db: withdrawn by Lee at {time_text('2026-11-20T12:03:00+00:00')}\n"
     )
     assert [row[:3] for row in entries(top / "a.db")] == [
         ("essay", "points", 1.0), ("essay", "points", 2.0), ("picture", "points", 1.0),

@@ -216,7 +216,7 @@ def test_a_comment_without_points_is_shown(top: Path) -> None:
     command = ("mark", "u7701", "essay", "--comment", "read again", "--by", "Kim", "--gradebook", top / "book.db")
     assert grader(*command).returncode == 0
     done = review(top, "q\n", "--criterion", "essay")
-    assert re.search(r"\nMarked: comment by Kim at \S+: read again\n", done.stdout)
+    assert re.search(r"\nMarked: comment by Kim at \S+ \S+ \(UTC\S*\): read again\n", done.stdout)
     assert "1 of 3" in done.stdout
     with running(top / "book.db", "essay") as served:
         assert '"comment": "read again"' in served.get("1").text.replace('":"', '": "')
@@ -229,8 +229,8 @@ def test_a_port_needs_a_page(top: Path) -> None:
 
 def test_partial_points_are_shown_as_partial(top: Path, scoped_class: Path) -> None:
     """A sign of its own in the terminal, in Markdown and HTML, and in the review; JSON keeps the status."""
-    marked = review(top, "3\nb\nq\n", "--by", "Kim")
-    assert re.search(r"Marked: 3 points by Kim at \S+ \(partial points\)\n", marked.stdout)
+    marked = review(top, "3\nb\nq\n", "--by", "Kim", TZ="Asia/Tokyo")
+    assert re.search(r"Marked: 3 points by Kim at \S+ \d\d:\S+ \(UTC\+09:00\) \(partial points\)\n", marked.stdout)
     shutil.copytree(scoped_class, top / "again")
     mark(top / "again", "u7701", "essay", "3")
     mark(top / "again", "u7701", "picture", "0")

@@ -37,10 +37,12 @@ def test_at_a_glance(top: Path) -> None:
     text = stats(top / "book.db")
     assert text.startswith(
         "A small lab\n3 graded, 1 could not be graded, 1 without a submission\n\n"
-        "Grades on decided points, out of 11: mean 8.1, standard deviation 2.5, lowest\n4.95, median 8.25, highest 11\n"
+        "Grades out of 11 (scaled up from the points that need no manual grading): mean\n8.1, standard deviation 2.5, "
+        "lowest 4.95, median 8.25, highest 11\n"
         "Points on average: 6.0 earned, 2.7 lost, 2.3 need manual grading; 3 submissions\nneed manual grading\n"
     )
-    assert "criterion  points  passed  manual  of  share  discrimination\n" in text
+    assert "criterion  points  passed   marks  of  share  discrimination\n" in text
+    assert "whether students who earned the rest of the" in text
     assert "box           2.5       2       0   3    67%           -0.19\n" in text
     assert "essay           4       0       2   3    38%                \n" in text
     assert "     1  box: 'base' shows a box 1 1 2 m; it should be 1 1 1 m (x, y, z)\n" in text
@@ -93,9 +95,10 @@ def test_few_or_none(signs: dict[str, str], tmp_path: Path) -> None:
     text = stats(tmp_path / "book.db")
     data = as_json(tmp_path / "book.db")
     assert len(data["students"]) == len(signs)
-    assert ("Grades on decided points, out of 11: mean 8.6, standard deviation 0.0" in text) == (
-        "pps?f" in signs.values()
+    grades = (
+        "Grades out of 11 (scaled up from the points that need no manual grading): mean 8.6, standard deviation 0.0"
     )
+    assert (grades in " ".join(text.split())) == ("pps?f" in signs.values())
     assert ("no students" in text) == (not signs)
     assert grader("export", "csv", "--gradebook", tmp_path / "book.db").stdout.count("\n") == 1 + len(signs)
 
@@ -154,11 +157,11 @@ def sections(path: Path) -> None:
 
 
 def test_sections_side_by_side(tmp_path: Path) -> None:
-    """Students, grades on decided points, lateness, and the criteria that differ most between named sections."""
+    """Students, grades, lateness, and the criteria that differ most between named sections."""
     sections(tmp_path / "book.db")
     lines = stats(tmp_path / "book.db", "--by", "section").splitlines()
     assert lines[:5] == [
-        "Grades on decided points, out of 11",
+        "Grades out of 11 (scaled up from the points that need no manual grading)",
         "section       students  graded  mean  median  late  late penalty",
         "(no section)         1       1   0.0     0.0     0             0",
         "A                    2       2   9.5     9.5     1           2.2",
@@ -204,13 +207,14 @@ def test_sections_in_json(tmp_path: Path) -> None:
 
 
 def test_the_table_of_criteria_fits_on_80_columns(tmp_path: Path) -> None:
-    """With carried and manual criteria, no header and no id is cut."""
+    """With criteria that are not deducted, or marked, no header and no id is cut."""
     shutil.copytree(ROOT / "submissions" / "wheel-too-small", tmp_path / "class" / "ash")
     book = ("--gradebook", tmp_path / "book.db")
     assert grader("batch", tmp_path / "class", *book, "--jobs", 1).returncode == 0
     assert grader("mark", "ash", "answer-floating-link", "1", *book).returncode == 0
     lines = stats(tmp_path / "book.db").splitlines()
     header = next(line for line in lines if line.startswith("criterion"))
-    assert header.split() == ["criterion", "points", "passed", "carried", "manual", "of", "share", "discrimination"]
+    assert header.split() == ["criterion", "points", "passed", "deducted", "marks", "of", "share", "discrimination"]
+    assert lines[lines.index(header) - 1].split() == ["not", "manual"]
     ids = {line.split()[0] for line in lines[lines.index(header) :] if line}
     assert {criterion.id for criterion in LAB6.criteria if criterion.part == "task1"} <= ids

@@ -72,7 +72,7 @@ def test_the_score_may_exceed_the_maximum() -> None:
     assert "55/92 IRP Lab 6" in text
     assert "Extra credit: 3 of 8 points, in addition to the maximum." in text
     assert "flat-base 0/5 bonus" in text
-    assert "5 adjusted" in text
+    assert "5 corrected after grading" in text
     full = report_of(*(result for result in REPORT.results if result.points >= result.criterion.points))
     assert full.score == full.max_score + 3
     assert f"{full.score}/{full.max_score} IRP" in shown(Format.TERMINAL, full)

@@ -1,11 +1,17 @@
 """The class's page keeps its structure, whatever students are called and write."""
 
+from dataclasses import replace
 from pathlib import Path
+from random import Random
 from urllib.parse import unquote
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.run_writer import save_student
+from grader.classroom.gradebook.stored import Enrolment
 from grader.classroom.gradebook.summary import summary_of
+from grader.classroom.students import Student
+from grader.grading.rubric import load_rubric
 from grader.report.pages.class_page import render_class_page
 from grader.text import without_commands
 from tests.classroom.class_runs import grader
@@ -62,7 +68,7 @@ def test_grades_of_an_earlier_rubric(tmp_path: Path) -> None:
     page = ClassPageReader(tmp_path / "index.html")
     rows = {row["name"]: row for row in page.table("students")}
     assert "graded with an earlier version of the rubric" in rows["birch"]["status"]
-    assert (rows["ash"]["score"], rows["birch"]["score"]) == ("9", "4.5 of 11")
+    assert (rows["ash"]["grade"], rows["birch"]["grade"]) == ("9", "4.5 of 11")
     assert page.members("attention") == ["birch"]
     assert [name for name in page.groups if "birch" in page.members(name)] == ["status-errored", "attention"]
     assert page.links() == ["birch.html"]
@@ -81,3 +87,21 @@ def test_a_picture_shows_the_robot_with_the_fewest_other_mistakes(tmp_path: Path
     assert page.members("edit-0") == ["ash", "birch"]
     assert {path.get("fill") for path in lidar.iter("path")} >= {"#009900"}
     assert "#0000ff" not in {path.get("fill") for path in lidar.iter("path")}
+
+
+def test_a_thousand_students_of_lab6_take_half_a_megabyte(tmp_path: Path) -> None:
+    """With names, ids, links, late penalties, and mistakes in every criterion."""
+    dice = Random(1).random
+    rubric = replace(load_rubric("lab6"), late=lab("percent_per_day = 10\n").late)
+    keys = [f"student{number:06}" for number in range(1000)]
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        signs = ["".join("f" if dice() < 0.2 else "p" for _ in rubric.criteria[:-3]) + "???" for _ in range(40)]
+        record_run(book, rubric, [graded_as(rubric, key, signs[number % 40]) for number, key in enumerate(keys)])
+        with book.transaction():
+            for number, key in enumerate(keys):
+                name = f"Fernández-García {number}, María José"
+                save_student(book, Student(key, name), Enrolment(number, days_late=number % 3))
+        grades = Grades(book)
+        text = render_class_page(summary_of(grades, with_fixes=True), grades, {key: f"{key}.html" for key in keys}, {})
+    assert text.count("María José</a>") >= 1000
+    assert len(text.encode()) <= 500_000

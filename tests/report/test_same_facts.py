@@ -91,7 +91,8 @@ def _of_criterion(result: Result, report: Report) -> Iterator[Fact]:
         return
     yield Fact("message of pending" if is_open else "message", (printable(outcome.message),), name)
     if is_open and isinstance(outcome.measured, str):
-        yield from (Fact("found", (printable(line),), name) for line in outcome.measured.splitlines() if line.strip())
+        lines = (line for line in map(printable, outcome.measured.splitlines()) if line.strip())
+        yield from (Fact("found", (line, line.lstrip("# ").replace("`", "")), name) for line in lines)
     if status == "failed" and outcome.location is not None:
         yield Fact("place", (f"{outcome.location.path}:{outcome.location.line}",), name)
     if result.carried:

@@ -3,7 +3,8 @@
 As in Canvas (app/models/late_policy.rb): a percentage of the maximum for each day begun, and never below the floor.
 """
 
-from datetime import date, datetime, time, timedelta
+from contextlib import suppress
+from datetime import date, datetime, time, timedelta, tzinfo
 from decimal import Decimal
 from math import ceil
 
@@ -62,13 +63,28 @@ def read_time(text: str) -> datetime:
         raise InputError(f"{text!r} is not a date or time: write it as 2026-11-20T23:59+01:00") from None
 
 
+def time_text(when: datetime | str, zone: tzinfo | None = None) -> str:
+    """Return a time in a time zone, by default that of this machine, with its offset: 2026-11-20 23:59 (UTC+01:00).
+
+    A time without an offset is returned without one.
+    """
+    moment = datetime.fromisoformat(when) if isinstance(when, str) else when
+    if moment.tzinfo is not None:
+        with suppress(OverflowError):  # in the year 1 or 9999
+            moment = moment.astimezone(zone)
+    plain = moment.replace(tzinfo=None)
+    offset = moment.isoformat().removeprefix(plain.isoformat())
+    shown = plain.isoformat(" ", "seconds" if plain.second and not plain.microsecond else "minutes")
+    return f"{shown} (UTC{offset.replace('+00:00', '')})" if offset else shown
+
+
 def _days_late(times: SubmissionTimes, policy: Late | None, deadline: datetime | None) -> tuple[int, str]:
     grace = timedelta(minutes=float(policy.grace_minutes) if policy is not None else 0)
     if times.days_late is not None:
         # A whole number is what a person has decided; a fraction is a time, which Moodle has measured.
         late = times.days_late - grace / _DAY if times.days_late % 1 else times.days_late
         days = max(0, ceil(late))
-        return days, f"{counted(days, 'day')} late, from the roster" if days else ""
+        return days, f"{counted(days, 'day')} late, as recorded by the instructor" if days else ""
     of_class = deadline or (policy.due if policy is not None else None)
     due = read_time(times.deadline) if times.deadline else of_class
     if not times.submitted or due is None:
@@ -82,7 +98,8 @@ def _days_late(times: SubmissionTimes, policy: Late | None, deadline: datetime |
     if not days:
         return 0, ""
     extension = f", {_extension(times)}" if times.extension else ""
-    shown = f"submitted {times.submitted}, deadline {due.isoformat(timespec='minutes')}{extension}"
+    zone = due.tzinfo
+    shown = f"submitted {time_text(submitted, zone)}, deadline {time_text(due, zone)}{extension}"
     return days, f"{counted(days, 'day')} late: {shown}"
 
 
@@ -95,7 +112,7 @@ def _of_flag(times: SubmissionTimes, of_class: datetime | None) -> tuple[int, st
     if own is not None and of_class is not None:
         own = own.replace(tzinfo=own.tzinfo or of_class.tzinfo)
         if own > of_class.replace(tzinfo=of_class.tzinfo or own.tzinfo):
-            return 0, f"late for the LMS, on time with the student's own deadline {own.isoformat(timespec='minutes')}"
+            return 0, f"late for the LMS, on time with the student's own deadline {time_text(own, own.tzinfo)}"
     if times.extension > 0:
         return 0, f"late for the LMS, on time with the {_extension(times)}"
     return 1, "late by an unknown time, which counts as 1 day"

@@ -1,6 +1,6 @@
 """The class's page: statistics, common edits with small pictures of a robot, and a table of students with links."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -23,6 +23,7 @@ from grader.report.class_words import (
     FIXES_NOTE,
     IDENTICAL_NOTE,
     MAX_LISTED,
+    NOT_DEDUCTED_NOTE,
     VERDICTS,
     adjusted_lines,
     earlier_line,
@@ -37,11 +38,11 @@ from grader.report.class_words import (
     span,
 )
 from grader.report.drawing import thumbnail_element
-from grader.report.pages.class_rows import Group, StudentRow, row_groups, student_rows
+from grader.report.pages.class_rows import columns, group_data, row_groups, student_rows
 from grader.report.pages.robot import RULES
 from grader.report.pages.shell import Assets, render_page
 from grader.robot.transforms import Vector, dot
-from grader.text import counted, format_points, printable
+from grader.text import counted, format_points
 
 _SAME_WAY = 0.9  # cosine
 
@@ -97,6 +98,13 @@ def _travels(scene: Scene) -> dict[str, Vector]:
 MAX_DRAWINGS = MAX_LISTED
 _MAX_ATTENTION = 100  # students for one reason
 _ELEMENTS = {"-": "del", "+": "ins"}  # of a line of an edit, by its sign
+_COUNTS = {
+    **{f"status-{verdict}": words for verdict, words in VERDICTS.items()},
+    "pending": "with points that need manual grading",
+    "late": "late",
+    "final": "with a final mark",
+    "excused": "excused",
+}  # in the head of the page, by group
 
 
 def render_class_page(
@@ -118,13 +126,7 @@ def render_class_page(
         "version": __version__,
         "title": summary.rubric.title,
         "rubric": summary.rubric,
-        "counts": [(f"status-{verdict}", words) for verdict, words in VERDICTS.items()],
-        "others": [
-            ("pending", "to grade manually"),
-            ("late", "late"),
-            ("final", "with a final mark"),
-            ("excused", "excused"),
-        ],
+        "counts": [(name, f"{len(found[name].keys)} {words}") for name, words in _COUNTS.items() if name in found],
         "notes": [*filter(None, (final_line(summary.statistics), earlier_line(summary.statistics)))],
         "adjusted": adjusted_lines(summary.rubric),
         "lines": list(mark_lines(summary.statistics)) if summary.statistics.graded else [],
@@ -133,6 +135,7 @@ def render_class_page(
         "out_of": format_points(summary.statistics.out_of),
         "criteria": _criteria(summary.statistics),
         "criteria_note": CRITERIA_NOTE,
+        "not_deducted_note": NOT_DEDUCTED_NOTE,
         "failures": summary.statistics.failures if summary.statistics.graded else (),
         "fixes": [_fix(fix, drawings) for fix in summary.fixes[:MAX_LISTED]],
         "fixes_note": FIXES_NOTE,
@@ -143,35 +146,10 @@ def render_class_page(
         "evidence": evidence_lines(summary),
         "people": {row.key: row for row in rows},
         "rows": rows,
-        "columns": _columns(rows),
+        "columns": columns(rows, summary.statistics),
         "groups": found,
     }
-    return render_page("class.html", values, _data(rows, found), Assets("class.css", "class.js", RULES))
-
-
-def _data(rows: Sequence[StudentRow], found: Mapping[str, Group]) -> dict[str, Any]:
-    """Return the data of the script: for each group its label, its search word, and the numbers of its rows."""
-    numbers = {row.key: number for number, row in enumerate(rows)}
-    return {
-        "groups": {
-            name: [printable(label), word, [numbers[key] for key in keys]]
-            for name, (label, keys, word) in found.items()
-        }
-    }
-
-
-def _columns(rows: Sequence[StudentRow]) -> list[tuple[str, str, str]]:
-    """Return the columns of the table that are not empty: the field of a row, the heading, the class of its cells."""
-    columns = (
-        ("status", "status", ""),
-        ("score", "score", "number"),
-        ("pending", "needs manual grading", "number"),
-        ("late", "late", "number"),
-        ("total", "final mark, or total after the late penalty", "number"),
-    )
-    has_names = any(row.name != row.key for row in rows)
-    names = [("key", "id", "")] if has_names else []
-    return [*names, *(column for column in columns if any(getattr(row, column[0]) for row in rows))]
+    return render_page("class.html", values, group_data(rows, found), Assets("class.css", "class.js", RULES))
 
 
 def _bars(statistics: ClassStatistics) -> list[dict[str, Any]]:

@@ -1,16 +1,18 @@
 """The table of students on the class's page, and the groups of students that it can show."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 from grader.classroom.gradebook.statistics import ClassStatistics, Member
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.gradebook.summary import ClassSummary
+from grader.classroom.typed_names import without_accents
 from grader.grading.criterion import Criterion
 from grader.report.class_words import VERDICTS, span
-from grader.text import counted, enumerated, format_points
+from grader.text import counted, enumerated, format_points, printable
 
-_MAX_LOST = 3  # criteria in a row
+_MAX_LOST = 2  # criteria in a row
 
 
 class StudentRow(NamedTuple):
@@ -20,11 +22,10 @@ class StudentRow(NamedTuple):
     name: str
     link: str
     verdict: str
+    grade: str
     status: str
-    score: str
     pending: str
     late: str
-    total: str
     lost: str
 
 
@@ -39,27 +40,29 @@ class Group(NamedTuple):
 def student_rows(
     grades: Sequence[StudentGrade], summary: ClassSummary, members: Mapping[str, Member], links: Mapping[str, str]
 ) -> list[StudentRow]:
-    """Return a row for each student, sorted by name."""
+    """Return a row for each student, sorted by name, letters with accents as those without."""
     rows = [_row(grade, summary, members.get(grade.student.key), links) for grade in grades]
-    return sorted(rows, key=lambda row: (row.name.casefold(), row.key))
+    return sorted(rows, key=lambda row: (without_accents(row.name.casefold())[0], row.key))
 
 
 def _row(grade: StudentGrade, summary: ClassSummary, member: Member | None, links: Mapping[str, str]) -> StudentRow:
     key, is_graded = grade.student.key, grade.result is not None
-    status = grade.why_attention or ("excused" if grade.is_excused else VERDICTS[grade.verdict])
-    about = key, grade.student.name or key, links.get(key, ""), grade.verdict, status
-    total = format_points(grade.total) if grade.late.points or grade.final is not None else ""
-    if not is_graded:
-        return StudentRow(*about, "", "", "", total, "")
-    maximum = "" if grade.out_of == summary.statistics.out_of else f" of {format_points(grade.out_of)}"
-    lost = _costliest(summary, member)
+    points = format_points(grade.total) if is_graded or grade.final is not None else ""
+    maximum = "" if not is_graded or grade.out_of == summary.statistics.out_of else f" of {format_points(grade.out_of)}"
+    status = grade.why_attention or VERDICTS[grade.verdict]
+    if grade.final is not None:
+        status += f"; final mark{f' instead of {format_points(grade.score)} points' if is_graded else ''}"
+    penalty = f", {format_points(grade.late.points)}" if grade.late.points else ""
     return StudentRow(
-        *about,
-        f"{format_points(grade.score)}{maximum}",
+        key,
+        grade.student.name or key,
+        links.get(key, ""),
+        grade.verdict,
+        "excused" if grade.is_excused else f"{points}{maximum}",
+        status,
         format_points(grade.pending) if grade.pending else "",
-        counted(grade.late.days, "day") if grade.late.days else "",
-        total,
-        enumerated([criterion.id for criterion in lost], _MAX_LOST),
+        f"{counted(grade.late.days, 'day')}{penalty}" if is_graded and grade.late.days else "",
+        enumerated([criterion.id for criterion in _costliest(summary, member)], _MAX_LOST),
     )
 
 
@@ -87,7 +90,7 @@ def row_groups(
         keys = [one.student.key for one in grades if one.verdict == verdict and not one.is_excused]
         yield f"status-{verdict}", Group(words, keys)
     for name, words, is_in in _STATES:
-        yield name, Group(words, [one.student.key for one in grades if is_in(one)])
+        yield name, Group(words, [one.student.key for one in grades if is_in(one)], words)
     pending = {one.student.key for one in grades if one.pending}
     yield "pending", Group("need manual grading", [key for key in members if key in pending])
     yield from _by_figure(statistics, members)
@@ -109,3 +112,31 @@ def _by_figure(statistics: ClassStatistics, members: Mapping[str, Member]) -> It
     for number, failure in enumerate(statistics.failures):
         keys = [key for key, member in members.items() if number in member.mistakes]
         yield f"mistake-{number}", Group(f"{failure.criterion.id}: {failure.message}", keys)
+
+
+def group_data(rows: Sequence[StudentRow], found: Mapping[str, Group]) -> dict[str, Any]:
+    """Return the data of the script: for each group its label, its search word, and the numbers of its rows.
+
+    Of each number but the first, it is the difference to the one before: a large class has many of them.
+    """
+    numbers = {row.key: number for number, row in enumerate(rows)}
+    return {
+        "groups": {
+            name: [printable(label), word, [after - before for before, after in pairwise((0, *shown))]]
+            for name, (label, keys, word) in found.items()
+            for shown in [sorted(numbers[key] for key in keys)]
+        }
+    }
+
+
+def columns(rows: Sequence[StudentRow], statistics: ClassStatistics) -> list[tuple[str, str, str]]:
+    """Return the columns of the table that are not empty: the field of a row, the heading, the class of its cells."""
+    found = (
+        ("grade", f"grade of {format_points(statistics.out_of)}", "number"),
+        ("key", "id" if any(row.name != row.key for row in rows) else "", ""),
+        ("status", "status", ""),
+        ("pending", "needs manual grading", "number"),
+        ("late", "late", "number"),
+        ("lost", "lost points in", "text"),
+    )
+    return [column for column in found if column[1] and any(getattr(row, column[0]) for row in rows)]

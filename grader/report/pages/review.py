@@ -10,9 +10,9 @@ from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.files.reading import sha256_of
 from grader.grading.criterion import Criterion
+from grader.report.details import answer_lines, model_lines
 from grader.report.pages.shell import Assets, render_page
 from grader.report.review import (
-    answer_lines,
     choice_words,
     files_text,
     marked_text,
@@ -61,8 +61,8 @@ def item_page(
         "maximum": format_points(criterion.points),
         "score": "" if item.is_second or item.others else _grade(item.grade),
         "message": "" if item.is_empty_group else message_text(item),
-        "answer": answer_lines(item),
-        "model": criterion.answer.strip("\n").splitlines(),
+        "answer": [] if item.is_empty_group else answer_lines(item.result.outcome),
+        "model": model_lines(criterion),
         "places": [*files_text(item), *filter(None, [place_text(item)])],
         "pictures": [*_pictures(found, place.address)],
         "not_shown": [(one.where, one.reason) for one in found if isinstance(one, NotShown)],

@@ -1,6 +1,6 @@
 """Late penalties: grace period, days begun, the floor, whose deadline counts, and times with and without an offset."""
 
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta, timezone
 from decimal import Decimal
 from typing import Any
 from zoneinfo import ZoneInfo
@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
+from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time, time_text
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
 from tests.classroom.gradebooks import lab
@@ -103,7 +103,9 @@ def test_a_date_alone_ends_with_the_day() -> None:
 def test_days_in_the_roster_take_precedence() -> None:
     """They are rounded up to whole days; 0 is not late, whatever the LMS has flagged."""
     late = SubmissionTimes(is_late=True, submitted="2026-10-10T12:00:00Z", days_late=1.2)
-    assert lateness(LAB, late, Decimal(11)) == Lateness(2, Decimal("-2.2"), "2 days late, from the roster")
+    assert lateness(LAB, late, Decimal(11)) == Lateness(
+        2, Decimal("-2.2"), "2 days late, as recorded by the instructor"
+    )
     assert days("", is_late=True, days_late=0.0) == 0
 
 
@@ -124,9 +126,12 @@ def test_without_a_policy_there_is_no_penalty() -> None:
 
 
 def test_the_reason_names_the_deadline() -> None:
-    """The reason shows the offset that was used, so that a wrong one is noticed."""
+    """Both times are in the zone of the deadline, with its offset, so that a wrong one is noticed."""
+    stored = SubmissionTimes(submitted="2026-09-11T22:30:00Z")
+    words = "2 days late: submitted 2026-09-12 00:30 (UTC+02:00), deadline 2026-09-10 12:00 (UTC+02:00)"
+    assert lateness(LAB, stored, Decimal(11)).reason == words
     late = SubmissionTimes(submitted="2026-09-12T12:00:00Z", deadline="2026-09-10T23:59", extension=1.0)
-    words = "1 day late: submitted 2026-09-12T12:00:00Z, deadline 2026-09-10T23:59+00:00, extension 1 day"
+    words = "1 day late: submitted 2026-09-12 12:00 (UTC), deadline 2026-09-10 23:59 (UTC), extension 1 day"
     assert lateness(LAB, late, Decimal(11)).reason == words
 
 
@@ -187,11 +192,11 @@ def test_days_by_time(seconds: int, grace: int) -> None:
         ({"extension": 0.5}, "late for the LMS, on time with the extension 0.5 days"),
         (
             {"deadline": "2026-09-10T12:01+02:00"},
-            "late for the LMS, on time with the student's own deadline 2026-09-10T12:01+02:00",
+            "late for the LMS, on time with the student's own deadline 2026-09-10 12:01 (UTC+02:00)",
         ),
         (
             {"deadline": "2026-09-10"},
-            "late for the LMS, on time with the student's own deadline 2026-09-10T23:59+02:00",
+            "late for the LMS, on time with the student's own deadline 2026-09-10 23:59 (UTC+02:00)",
         ),
         ({"deadline": "2026-09-10T12:00+02:00"}, "late by an unknown time, which counts as 1 day"),
         ({"deadline": "2026-09-09"}, "late by an unknown time, which counts as 1 day"),
@@ -222,3 +227,13 @@ def test_the_grace_period_applies_to_fractions_of_days() -> None:
         for days in (0.007, 1.007, 1.03, 1.0, 2.0)
     }
     assert late == {0.007: 0, 1.007: 1, 1.03: 2, 1.0: 1, 2.0: 2}
+
+
+def test_times_are_written_for_people() -> None:
+    """To the minute unless seconds count, with the offset; without one if none is known, or the zone has no such time."""
+    vienna = timezone(timedelta(hours=1))
+    assert time_text("2026-11-20T22:59:00Z", vienna) == "2026-11-20 23:59 (UTC+01:00)"
+    assert time_text("2026-11-20T22:59:30+00:00", vienna) == "2026-11-20 23:59:30 (UTC+01:00)"
+    assert time_text("2026-11-20T23:59:00+01:00", UTC) == "2026-11-20 22:59 (UTC)"
+    assert time_text(read_time("2026-11-20")) == "2026-11-20 23:59"
+    assert time_text("9999-12-31T23:59:00-12:00", vienna) == "9999-12-31 23:59 (UTC-12:00)"

@@ -226,7 +226,7 @@ def test_moodle_gives_each_student_the_report(kind: str, book: Path, tmp_path: P
             f"Note: Graded {'manually by Kim' if one.final is not None else 'automatically, and manually by '}" in text
         )
         assert ("Excused by Kim" in text) == one.is_excused
-        assert (" late, from the roster" in text) == (bool(one.days_late) and not one.is_missing)
+        assert (" late, as recorded by the instructor" in text) == (bool(one.days_late) and not one.is_missing)
         assert "Because of the roots" not in text  # the model answer
     if kind == "markdown":
         (tmp_path / "lms.csv").write_bytes(moodle_file({one.key: "" for one in CLASS[:60]}, {}))

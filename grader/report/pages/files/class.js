@@ -2,13 +2,20 @@
 // The table of students: sort, search, filter by group. The state is in the address, so that "back" restores it.
 (() => {
   const { groups } = JSON.parse(document.getElementById("data").textContent);
+  for (const group of Object.values(groups)) {
+    let row = 0;
+    group[2] = group[2].map((more) => (row += more));
+  }
   const place = document.getElementById("class");
   if (!place) return;
   const find = document.getElementById("find"), shown = document.getElementById("shown");
   const body = document.getElementById("students").tBodies[0], rows = [...body.rows];
   const tables = [...document.querySelectorAll("table.sortable")];
   const compare = new Intl.Collator("en", { numeric: true, sensitivity: "base" }).compare;
-  const plain = (text) => text.normalize("NFD").replace(/\p{M}/gu, "").toLowerCase();
+  const letters = { ß: "ss", æ: "ae", œ: "oe", ø: "o", ł: "l", đ: "d", ð: "d", þ: "th", ı: "i" };
+  const plain = (text) => text.toLowerCase().normalize("NFD").replace(/[\p{M}'’‘ʼ\-]/gu, "").replace(/[ßæœøłđðþı]/g, (letter) => letters[letter]);
+  // Müller is found as Muller and as Mueller.
+  const spellings = (text) => [plain(text), plain(text.normalize("NFC").replace(/[äöüø]/gi, "$&e"))];
   const more = document.getElementById("more");
   let words = null, state = new URLSearchParams(), most = 200; // rows: a browser needs 1 ms for ten
 
@@ -17,7 +24,7 @@
     for (const [, word, numbers] of Object.values(groups)) {
       if (word) for (const number of numbers) found[number].push(word);
     }
-    return found.map((texts) => plain(texts.join(" ")));
+    return found.map((texts) => spellings(texts.join(" ")).join(" "));
   }
 
   function group() {
@@ -26,10 +33,10 @@
   }
 
   function filter() {
-    const wanted = plain(state.get("find") ?? "").split(/\s+/).filter(Boolean), chosen = group();
+    const wanted = (state.get("find") ?? "").split(/\s+/).filter(plain).map(spellings), chosen = group();
     if (wanted.length) words ??= wordsOfRows();
     const members = new Set(chosen ? chosen[2] : rows.keys());
-    const found = new Set(rows.filter((row, number) => members.has(number) && wanted.every((word) => words[number].includes(word))));
+    const found = new Set(rows.filter((row, number) => members.has(number) && wanted.every((word) => word.some((spelling) => words[number].includes(spelling)))));
     let count = 0;
     for (const row of body.rows) row.hidden = !found.has(row) || ++count > most;
     const all = `${rows.length} student${rows.length === 1 ? "" : "s"}`;
@@ -121,6 +128,9 @@
     if (event.key === "/" && event.target !== find) {
       event.preventDefault();
       find.focus();
+    } else if (event.key === "Escape" && event.target === find) {
+      event.preventDefault(); // the browser would empty the box
+      shown.focus();
     } else if (event.key === "Escape") {
       showAll();
     }
@@ -129,8 +139,12 @@
     most = Infinity;
     filter();
   }
+  function openForPrint() {
+    showAllRows();
+    for (const one of document.querySelectorAll("details")) one.open = true;
+  }
   more.addEventListener("click", showAllRows);
-  addEventListener("beforeprint", showAllRows);
+  addEventListener("beforeprint", openForPrint);
   addEventListener("hashchange", read);
   read();
   if (state.has("show")) place.scrollIntoView();
