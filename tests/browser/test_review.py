@@ -141,7 +141,7 @@ def test_ten_items_by_keys_alone(open_page: Open, review: Review, book: Path) ->
     for number in (8, 9, 10):
         press(page, "1 Enter", str(number))
     press(page, "0 c 'a script' Enter", "end")
-    assert page.locator("h1").inner_text() == "Nothing needs manual grading"
+    assert page.locator("h1").inner_text() == "Manual grading complete"
     assert marks(book) == [
         ("ash", "essay", 3.5, "the roots are missing"), ("birch", "essay", 4, ""), ("cedar", "essay", 2, "half of it"),
         ("dogwood", "essay", 0, "half of it"), ("elm", "essay", 4, "the roots are missing half of it"),

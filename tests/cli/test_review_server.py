@@ -169,7 +169,7 @@ def test_the_end(review: Review, book: Path) -> None:
         last = review.mark(str(number), "1")
     assert last == {"go": "end"}
     page = review.get("end").text
-    assert "<h1>Nothing needs manual grading</h1>" in page
+    assert "<h1>Manual grading complete</h1>" in page
     assert "6 marks given in this review." in page
     assert f"grader export csv --gradebook {book}" in page
 

@@ -108,7 +108,7 @@ def _grade(grade: StudentGrade) -> str:
 def end_page(marked: int, left: int, place: Place, gradebook: str, notice: str) -> str:
     """Return the page after the last item: the numbers of marked and remaining items, and the next command."""
     values = {
-        "title": "Nothing needs manual grading" if not left else f"{counted(left, 'mark')} left",
+        "title": "Manual grading complete" if not left else f"{counted(left, 'mark')} left",
         "summary": f"{counted(marked, 'mark')} given in this review.",
         "left": left,
         "place": place,
