@@ -1,5 +1,6 @@
 """Print parts of a report on a rich console: source excerpts, lists of problems, wrapped text."""
 
+import re
 from collections.abc import Callable
 
 from rich.console import Console
@@ -12,6 +13,7 @@ from grader.text import first_lines, printable
 
 SEVERITY_STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
 _MAX_PROBLEMS = 30
+_LAST_WORD, _LAST_NUMBER = re.compile(r"\s+\S*$"), re.compile(r"\s+[-+.\d]+$")  # a number keeps its unit
 
 
 def wrapped(console: Console, text: Text, indent: int, head: Text | None = None) -> None:
@@ -27,7 +29,9 @@ def block(console: Console, text: Text, indent: int, head: Text | None = None, m
     kept = lines[:most]
     if len(kept) < len(lines):
         ellipsis = symbol(console, "\u2026", "...")
-        kept[-1].truncate(max(8, console.width - indent) - len(ellipsis))
+        room = max(8, console.width - indent) - len(ellipsis)
+        words = kept[-1].plain if kept[-1].cell_len <= room else _LAST_WORD.sub("", kept[-1].plain)
+        kept[-1].truncate(min(room, len(_LAST_NUMBER.sub("", words))))
         kept[-1].append(ellipsis)
     return (Text(" " * indent) if head is None else head) + Text("\n" + " " * indent).join(kept)
 

@@ -8,11 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
+from rich.text import Text
 
 from grader.grading.grade import grade
 from grader.grading.report import ManualMark, Report
 from grader.grading.rubric import load_rubric
-from grader.report.console import excerpt_block, put
+from grader.report.console import block, excerpt_block, put
 from grader.report.inspection import Inspection, inspection_terminal, main_root
 from grader.report.order import FailedCriterion, earned_text, groups, in_order
 from grader.report.terminal import render_terminal
@@ -280,3 +281,16 @@ def test_a_tree_of_thousands_of_links_is_limited() -> None:
     assert "l499" in text
     assert "l500" not in text
     assert text.count("  ... and 2500 more (--format json lists all)\n") == 2
+
+
+@pytest.mark.parametrize(
+    ("width", "shown"),
+    [
+        (26, "the lowest point is at"), (29, "the lowest point is at"), (30, "the lowest point is at"),
+        (31, "the lowest point is at 50 mm"), (40, "the lowest point is at 50 mm below the"),
+    ],
+)  # fmt: skip
+def test_a_number_and_its_unit_are_not_cut(width: int, shown: str) -> None:
+    """The text ends before a number whose unit has no room."""
+    text = Text("the lowest point is at 50 mm below the ground, and more")
+    assert block(Console(width=width), text, 0, most=1).plain.rstrip("\u2026.") == shown
