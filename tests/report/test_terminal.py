@@ -140,14 +140,14 @@ def test_failures_come_first_and_the_costliest_first(name: str) -> None:
         if report.submission.package is not None or report.rubric.part(failure.result.criterion.part).needs != "package"
     ]
     assert ranks == sorted(ranks)
-    blocks = shown(report).split("\n\u2717 ")[1:]
-    for number, (failure, block) in enumerate(zip(costs(report), blocks, strict=False)):
+    cards = shown(report).split("\n\u2717 ")[1:]
+    for number, (failure, card) in enumerate(zip(costs(report), cards, strict=False)):
         where = failure.result.outcome.location
-        words = " ".join(block.split())
+        words = " ".join(card.split())
         assert words.startswith(f"{failure.result.criterion.id} -{failure.lost} point")
         assert ("skipped" in words) >= bool(failure.skipped)
         if where is not None:
-            assert f"{where.path}:{where.line}:{where.column}" in block
+            assert f"{where.path}:{where.line}:{where.column}" in card
             source = report.submission.source(where.path)
             is_seen = source is not None and source.line(where.line).strip() != ""
             assert (f"\n  {where.line} \u2502 " in block) == (is_seen and number < 3)
@@ -286,8 +286,8 @@ def test_a_tree_of_thousands_of_links_is_limited() -> None:
 @pytest.mark.parametrize(
     ("width", "shown"),
     [
-        (26, "the lowest point is at"), (29, "the lowest point is at"), (30, "the lowest point is at"),
-        (31, "the lowest point is at 50 mm"), (40, "the lowest point is at 50 mm below the"),
+        (26, "the lowest point is at"), (28, "the lowest point is at"), (29, "the lowest point is at 50 mm"),
+        (40, "the lowest point is at 50 mm below the"),
     ],
 )  # fmt: skip
 def test_a_number_and_its_unit_are_not_cut(width: int, shown: str) -> None:
