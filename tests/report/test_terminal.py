@@ -150,7 +150,7 @@ def test_failures_come_first_and_the_costliest_first(name: str) -> None:
             assert f"{where.path}:{where.line}:{where.column}" in card
             source = report.submission.source(where.path)
             is_seen = source is not None and source.line(where.line).strip() != ""
-            assert (f"\n  {where.line} \u2502 " in block) == (is_seen and number < 3)
+            assert (f"\n  {where.line} \u2502 " in card) == (is_seen and number < 3)
 
 
 @pytest.mark.parametrize("name", ["lidar-buried", "cylinder-height", "sensors-nothing-included"])
