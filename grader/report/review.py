@@ -11,7 +11,7 @@ from grader.classroom.gradebook.marks import Mark
 from grader.grading.pictures import evidence_files
 from grader.report.console import wrapped
 from grader.report.order import status_of
-from grader.text import counted, counted_points, printable
+from grader.text import counted, counted_points, named, printable
 
 _INDENT = 2
 _WITHOUT_LINES = (".pdf", ".docx")  # the message names the page or the heading
@@ -51,7 +51,7 @@ def who(item: QueuedResult) -> str:
     student = item.grade.student
     if item.number is not None:
         return f"submission {item.number}"
-    return printable(f"{student.name} ({student.key})" if student.name else student.key)
+    return printable(named(student.key, student.name))
 
 
 def message_text(item: QueuedResult) -> str:

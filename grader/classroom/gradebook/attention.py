@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import Reason
+from grader.text import named
 
 _MAY_NEED_ATTENTION = (
     "((verdict <> 'graded' OR faults OR rubric <> ? OR removed_marks <> '') AND final IS NULL AND NOT is_excused)"
@@ -22,7 +23,7 @@ class AttentionItem(NamedTuple):
     @property
     def who(self) -> str:
         """The name and the key, or the key alone."""
-        return f"{self.name} ({self.key})" if self.name and self.name != self.key else self.key
+        return named(self.key, self.name)
 
 
 class AttentionGroup(NamedTuple):
