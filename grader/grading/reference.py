@@ -1,5 +1,7 @@
 """The reference solution of a rubric."""
 
+import os
+from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
 
@@ -9,17 +11,23 @@ from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading, find_xacro, read_urdf
 from grader.submission.opening import open_submission
 from grader.submission.submission import Lab, Submission
+from grader.text import printable_path
 
 
 class ReferenceSolution:
-    """A rubric's own solution; no more is read than is needed. Properties raise InputError where it cannot be read."""
+    """A rubric's own solution; no more is read than is needed. `missing` says that it does not exist.
 
-    def __init__(self, path: Path, lab: Lab) -> None:
-        self._path, self._lab = path, lab
+    Properties raise InputError where it cannot be read.
+    """
+
+    def __init__(self, path: Path, lab: Lab, missing: Callable[[str], str]) -> None:
+        self._path, self._lab, self._missing = path, lab, missing
 
     @cached_property
     def submission(self) -> Submission:
         """The solution as a submission."""
+        if not os.path.lexists(self._path):
+            raise InputError(self._missing(printable_path(self._path)))
         return open_submission(str(self._path), self._lab)
 
     @cached_property
