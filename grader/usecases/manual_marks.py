@@ -49,6 +49,7 @@ class MarkRequest(NamedTuple):
     undo: bool = False
     second: bool = False
     comments: bool = False
+    missing: bool = False
 
     @property
     def is_total(self) -> bool:
@@ -66,6 +67,10 @@ class MarkRequest(NamedTuple):
         has_entry = bool(has_points or self.comment or self.excused or self.second)
         rules = (
             (self.comments and (has_entry or self.undo), "--comments lists comments and records nothing: use it alone"),
+            (not (self.submission or self.missing) or not self.criterion, "name a STUDENT and a CRITERION"),
+            (self.missing and (self.undo or self.excused or self.comments), "--missing gives POINTS, and a --comment"),
+            (self.missing and not self.is_total, f"--missing is for the whole submission: --missing {TOTAL} POINTS"),
+            (self.missing and not self.is_points, "--missing needs POINTS, such as 0"),
             (self.undo and has_entry, "--undo takes no POINTS and no other option but --by"),
             (self.excused and has_points, "--excused has no POINTS"),
             (self.excused and self.second, "--second cannot be used with --excused"),
@@ -86,13 +91,9 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
     with Gradebook(gradebook) as book:
         grades = Grades(book)
         grade = grades.find(request.submission)
-        rubric = grades.rubric(grade.rubric) if grade.rubric else grades.newest_rubric()
-        criterion = None if request.is_total else criterion_of(rubric, request.criterion)
+        criterion, most = marked_criterion(grades, grade, request)
         if request.comments:
             return _comment_lines(numbered_comments(book, request.criterion))
-        most = criterion.points if criterion else sum((row.points for row in grades.criteria), Decimal(0))
-        if request.is_points and criterion is not None and criterion.adjustment is not None and not criterion.points:
-            raise InputError(_NOT_COUNTED.format(criterion.id))
         before = _record(book, grade, request, most, warn)
         now = grades.find(grade.student.key)
         whole = sum((row.maximum for row in grades.criteria), Decimal(0))
@@ -103,7 +104,17 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
     text = _grade_text(now, whole)
     if request.second:
         text = f"second opinion on {request.criterion}; the grade stays the same"
-    return printable(f"{_who(now.student, request.submission)}: {text}") + "\n"
+    return printable(f"{key_and_name(now.student)}: {text}") + "\n"
+
+
+def marked_criterion(grades: Grades, grade: StudentGrade, request: MarkRequest) -> tuple[Criterion | None, Decimal]:
+    """Return the criterion to mark, None for the whole submission, and the most points. Raises InputError."""
+    if request.is_total:
+        return None, sum((row.points for row in grades.criteria), Decimal(0))
+    criterion = criterion_of(grades.rubric(grade.rubric) if grade.rubric else grades.newest_rubric(), request.criterion)
+    if request.is_points and criterion.adjustment is not None and not criterion.points:
+        raise InputError(_NOT_COUNTED.format(criterion.id))
+    return criterion, criterion.points
 
 
 def _unmarked_members(book: Gradebook, grade: StudentGrade, criterion: str) -> Iterator[str]:
@@ -115,9 +126,9 @@ def _unmarked_members(book: Gradebook, grade: StudentGrade, criterion: str) -> I
             yield printable(key)
 
 
-def _who(student: Student, typed: str) -> str:
-    """Return the key that was typed, else also the name, to see who was found."""
-    return student.key if typed == student.key or not student.name else f"{student.name} ({student.key})"
+def key_and_name(student: Student) -> str:
+    """Return who was found: "12280, Doe, Jane"."""
+    return student.key if student.name in ("", student.key) else f"{student.key}, {student.name}"
 
 
 def _record(book: Gradebook, grade: StudentGrade, request: MarkRequest, most: Decimal, warn: Warn) -> Mark | None:
@@ -130,11 +141,12 @@ def _record(book: Gradebook, grade: StudentGrade, request: MarkRequest, most: De
     if request.second:
         _refuse_own_opinion(newest_mark(book, grade.id, request.criterion), request)
     comment = _comment(book, request, warn)
-    entry = _entry(request, lambda text: read_points(text, request.criterion, most))
+    entry = entry_of(request, lambda text: read_points(text, request.criterion, most))
     return add_mark(book, grade, request.criterion, entry._replace(comment=comment), request.by).before
 
 
-def _entry(request: MarkRequest, read: Callable[[str], Decimal]) -> Entry:
+def entry_of(request: MarkRequest, read: Callable[[str], Decimal]) -> Entry:
+    """Return the entry of a request, without its comment unless that is all; `read` reads points."""
     match request:
         case MarkRequest(excused=True):
             return Entry("excused")

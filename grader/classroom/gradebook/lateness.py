@@ -3,6 +3,7 @@
 As in Canvas (app/models/late_policy.rb): a percentage of the maximum for each day begun, and never below the floor.
 """
 
+from dataclasses import replace
 from datetime import date, datetime, time, timedelta
 from decimal import Decimal
 from math import ceil
@@ -34,6 +35,14 @@ class SubmissionTimes:
     deadline: str = ""
     extension: float = 0.0
     days_late: float | None = None
+
+    def extended(self, deadline: str) -> "SubmissionTimes":
+        """Return the times with a deadline from `grader extend`, empty for none, in place of what the roster says.
+
+        If it is not known when something was submitted, the days late of the roster count.
+        """
+        days = None if self.submitted and self.days_late else self.days_late
+        return replace(self, deadline=deadline, extension=0.0, days_late=days) if deadline else self
 
 
 def lateness(rubric: Rubric, times: SubmissionTimes, score: Decimal, deadline: datetime | None = None) -> Lateness:

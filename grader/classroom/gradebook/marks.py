@@ -13,6 +13,7 @@ from grader.errors import InputError
 from grader.grading.criterion import TOTAL
 
 TAKE_BACK = "-"  # in place of points: the automatic result counts again
+EXTENSION = "new deadline"  # in place of a criterion's id, which is one word: its comment is the student's own deadline
 
 Kind = Literal["points", "withdrawn", "comment", "excused", "second"]
 
@@ -82,17 +83,27 @@ def add_mark(
     grader, and the result that they were given for; the audit names who commented. Raises InputError for a criterion of
     a student without a submission.
     """
-    if grade.result is None and criterion != TOTAL:
+    refuse_unsubmitted(grade, criterion)
+    with writing(book):
+        before = _newest_if_shown(book, grade, criterion, entry, by, shown)
+        mark = mark_after(before, entry, by, grade.result)
+        return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account()), before)
+
+
+def refuse_unsubmitted(grade: StudentGrade, criterion: str) -> None:
+    """Raise InputError for a criterion of a student without a submission."""
+    if grade.result is None and criterion not in (TOTAL, EXTENSION):
         key = grade.student.key
         raise InputError(
             f"{key} has submitted nothing that could be marked; `grader mark {key} {TOTAL} POINTS` gives a final mark"
         )
-    with _writing(book):
-        before = _newest_if_shown(book, grade, criterion, entry, by, shown)
-        mark = Mark(entry, by, result=grade.result)
-        if entry.kind == "comment" and before is not None and before.entry.kind in ("points", "excused"):
-            mark = before._replace(entry=before.entry._replace(comment=entry.comment), at="")
-        return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account()), before)
+
+
+def mark_after(before: Mark | None, entry: Entry, by: str, result: int | None) -> Mark:
+    """Return the mark that an entry gives: a comment alone keeps the points of the mark before."""
+    if entry.kind == "comment" and before is not None and before.entry.kind in ("points", "excused"):
+        return before._replace(entry=before.entry._replace(comment=entry.comment), at="")
+    return Mark(entry, by, result=result)
 
 
 def restore_mark(
@@ -103,7 +114,7 @@ def restore_mark(
     The audit names the person who restores it. Raises NewerMarkError like `add_mark`.
     """
     mark = Mark(mark, by, result=grade.result) if isinstance(mark, Entry) else mark._replace(at="")
-    with _writing(book):
+    with writing(book):
         before = _newest_if_shown(book, grade, criterion, mark.entry, by, shown)
         return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account()), before)
 
@@ -121,7 +132,7 @@ def undo_mark(book: Gradebook, grade: StudentGrade, criterion: str, by: str) -> 
 
 
 @contextmanager
-def _writing(book: Gradebook) -> Iterator[None]:
+def writing(book: Gradebook) -> Iterator[None]:
     """Commit what is written inside, so that it survives a power failure."""
     with book.input_errors():
         book.connection.execute("PRAGMA synchronous = FULL")
