@@ -1,6 +1,6 @@
 """The summary of a class on a terminal: grades, criteria, common mistakes, who needs attention."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from rich.console import Console
 from rich.table import Table
@@ -59,8 +59,8 @@ def render_class(summary: ClassSummary, console: Console, *, verbose: bool = Fal
         _print_criteria(statistics.criteria, adjusted_lines(summary.rubric), console)
         _print_failures(statistics.failures[:MAX_LISTED], console)
     _print_fixes(summary.fixes[:MAX_LISTED], console)
-    _print_agreement(summary.agreement, console)
-    _print_identical(summary.identical, console)
+    _print_agreement(summary.agreement, summary.names, console)
+    _print_identical(summary.identical, summary.names, console)
     _print_attention(summary.attention, console, verbose=verbose)
     for line in filter(None, (*evidence_lines(summary), late_line(summary))):
         console.print()
@@ -99,7 +99,7 @@ def _print_fixes(fixes: Sequence[CommonFix], console: Console) -> None:
         wrapped(console, Text(gain(fix), style="dim"), _INDENT)
 
 
-def _print_agreement(agreement: Agreement, console: Console) -> None:
+def _print_agreement(agreement: Agreement, names: Mapping[str, str], console: Console) -> None:
     if not agreement.items:
         return
     _print_heading("Agreement of two graders", console)
@@ -109,16 +109,16 @@ def _print_agreement(agreement: Agreement, console: Console) -> None:
         points = (
             f"{format_points(item.first)} and {format_points(item.second)} of {format_points(item.max_points)} points"
         )
-        lines.append(f"{item.key}, {item.criterion}: {points}")
+        lines.append(f"{names[item.key]}, {item.criterion}: {points}")
     for line in lines:
         wrapped(console, Text(printable(line)), 4, Text("  "))
 
 
-def _print_identical(identical: Sequence[IdenticalWork], console: Console) -> None:
+def _print_identical(identical: Sequence[IdenticalWork], names: Mapping[str, str], console: Console) -> None:
     if identical:
         _print_heading("Identical work", console, IDENTICAL_NOTE)
     for work in identical[:MAX_GROUPS]:
-        wrapped(console, Text(printable(identical_line(work))), 4, Text("  "))
+        wrapped(console, Text(printable(identical_line(work, names))), 4, Text("  "))
     _print_rest(len(identical) - MAX_GROUPS, console)
 
 

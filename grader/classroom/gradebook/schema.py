@@ -86,7 +86,8 @@ CREATE TABLE result (
     dictionary TEXT REFERENCES dictionary,
     record BLOB NOT NULL,          -- the report as compressed JSON, see grading/record.py
     urdf TEXT NOT NULL,            -- the hash of the URDF
-    robot TEXT NOT NULL            -- the hash of its normal form, empty if there is no robot
+    robot TEXT NOT NULL,           -- the hash of its normal form, empty if there is no robot
+    forms TEXT NOT NULL            -- other forms of the work, as JSON, see gradebook/identical.py
 );
 CREATE INDEX result_of_student ON result (student);
 

@@ -2,6 +2,7 @@
 
 import json
 from collections import Counter
+from collections.abc import Mapping
 from decimal import Decimal
 from typing import NamedTuple
 
@@ -15,6 +16,7 @@ from grader.classroom.gradebook.statistics import ClassStatistics, statistics
 from grader.files.names import ROBOT_ENDINGS
 from grader.grading.record import graded_submission_from
 from grader.grading.rubric import Rubric
+from grader.text import named
 
 _QUERY = "SELECT result, urdf, files FROM grade WHERE verdict = 'graded' AND rubric = ? AND NOT is_gone"
 
@@ -80,7 +82,7 @@ class ClassSummary(NamedTuple):
     """The figures of a class under the newest rubric.
 
     `fixes` is empty unless requested. `evidence_only` counts the submissions with pictures or documents, but no `URDF`,
-    or no `package`.
+    or no `package`. `names` has the name and key of each student, by key.
     """
 
     rubric: Rubric
@@ -91,6 +93,7 @@ class ClassSummary(NamedTuple):
     evidence_only: Counter[str]
     agreement: Agreement
     late: LateTotals
+    names: Mapping[str, str]
 
 
 def summary_of(grades: Grades, *, with_fixes: bool) -> ClassSummary:
@@ -108,4 +111,5 @@ def summary_of(grades: Grades, *, with_fixes: bool) -> ClassSummary:
         count_evidence_only(book, rubric),
         agreement(book, rubric),
         late_totals(grades),
+        {student.key: named(student.key, student.name) for student in book.students()},
     )
