@@ -104,10 +104,7 @@ def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Tabl
 
 
 def rows_with_lines(data: bytes, shown: str) -> Iterator[tuple[int, list[str]]]:
-    """Yield the line where each row of a person's file begins that is not empty, and its cells with spaces normalised.
-
-    Raises InputError like `read_table`.
-    """
+    """Yield the line where each row of a person's file begins, unless it is empty, and its cells, spaces normalised."""
     line = 1
     for row in read_table(data, shown, is_from_person=True).rows:
         cells = [" ".join(_AS_TEXT.sub(r"\1", cell.value.strip()).split()) for cell in row.cells]

@@ -15,9 +15,7 @@ from grader.usecases.writing import write_stdout
 
 def mark(
     gradebook: GradebookOption,
-    student: Annotated[
-        str, typer.Argument(metavar="STUDENT", help="The student's key, login, email address or name.")
-    ] = "",
+    student: Annotated[str, typer.Argument(metavar="STUDENT", help="The key, login, email address or name.")] = "",
     criterion: Annotated[
         str,
         typer.Argument(
@@ -36,12 +34,8 @@ def mark(
         bool, typer.Option("--second", help="Record a second opinion, which changes no grade; needs --by.")
     ] = False,
     comments: Annotated[bool, typer.Option("--comments", help="List the earlier comments of the criterion.")] = False,
-    missing: Annotated[
-        bool, typer.Option("--missing", help="Instead of STUDENT: all on the roster who submitted nothing.")
-    ] = False,
-    file: Annotated[
-        Path | None, typer.Option("--import", metavar="CSV", help="Marks: columns student, criterion, points, comment.")
-    ] = None,
+    missing: Annotated[bool, typer.Option("--missing", help="All who submitted nothing, not STUDENT.")] = False,
+    file: Annotated[Path | None, typer.Option("--import", metavar="CSV", help="The marks of many students.")] = None,
     by: ByOption = "",
 ) -> str:
     """Give a manual mark for a criterion or the whole submission.
@@ -60,11 +54,7 @@ def mark(
 
       grader mark alice lidar-frame --undo --gradebook lab6.db
 
-      grader mark bob total 0 --gradebook lab6.db --comment "no submission"
-
       grader mark carol total --excused --gradebook lab6.db --comment "ill"
-
-      grader mark alice total --gradebook lab6.db --comment "see me in the lab"
 
       grader mark alice lidar-frame 3 --gradebook lab6.db --second --by Lee
 
@@ -76,9 +66,7 @@ def mark(
     from grader.usecases.manual_marks import MarkRequest, give_mark
 
     if missing:  # in place of the student
-        if points is not None:
-            raise InputError("--missing takes no STUDENT")
-        student, criterion, points = "", student, criterion or None
+        student, criterion, points = "", student, points or criterion or None
     request = MarkRequest(student, criterion, points, comment, by, excused, undo, second, comments, missing)
     if file is not None:
         if request != MarkRequest("", "", by=by):
@@ -88,7 +76,7 @@ def mark(
 
 
 def extend(
-    student: Annotated[str, typer.Argument(metavar="STUDENT", help="The student's key, login, email address or name.")],
+    student: Annotated[str, typer.Argument(metavar="STUDENT", help="The key, login, email address or name.")],
     time: Annotated[str, typer.Argument(metavar="TIME", help="The new deadline, as 2026-11-25; - withdraws it.")],
     gradebook: GradebookOption,
     by: ByOption = "",

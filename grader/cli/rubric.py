@@ -112,9 +112,7 @@ def copy_rubric(
     name: Annotated[str, typer.Argument(metavar="ID", help="A rubric of the grader.", autocompletion=rubric_ids)],
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="The folder to write into.")],
 ) -> str:
-    """Copy a rubric with its reference and model answers, to change it.
-
-    No file is overwritten.
+    """Copy a rubric with its files, to change it.
 
     Examples:
 

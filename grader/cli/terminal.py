@@ -95,7 +95,6 @@ def show_class(work: str) -> Iterator[Callable[["Progress"], None]]:
             bar.update(
                 task,
                 total=progress.total,
-                description=progress.work or work,
                 completed=progress.done,
                 rate=rate,
                 found=", ".join(_faults(progress)),

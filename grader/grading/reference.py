@@ -1,6 +1,5 @@
 """The reference solution of a rubric."""
 
-import os
 from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
@@ -11,7 +10,6 @@ from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading, find_xacro, read_urdf
 from grader.submission.opening import open_submission
 from grader.submission.submission import Lab, Submission
-from grader.text import printable_path
 
 
 class ReferenceSolution:
@@ -20,14 +18,14 @@ class ReferenceSolution:
     Properties raise InputError where it cannot be read.
     """
 
-    def __init__(self, path: Path, lab: Lab, missing: Callable[[str], str]) -> None:
+    def __init__(self, path: Path, lab: Lab, missing: Callable[[], str]) -> None:
         self._path, self._lab, self._missing = path, lab, missing
 
     @cached_property
     def submission(self) -> Submission:
         """The solution as a submission."""
-        if not os.path.lexists(self._path):
-            raise InputError(self._missing(printable_path(self._path)))
+        if not self._path.exists():
+            raise InputError(self._missing())
         return open_submission(str(self._path), self._lab)
 
     @cached_property

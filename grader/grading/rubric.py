@@ -189,10 +189,10 @@ def _solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSolution | N
     place, package = path.parent / rubric["reference"], rubric.get("package", "")
     lab = Lab(rubric.get("urdf", _URDF), package, rubric.get("folders", ()))
 
-    def missing(reference: str) -> str:
+    def missing() -> str:
         line, name = key_lines(data.decode())["reference",], rubric["id"]
         copy = f" (`grader rubric copy {name} FOLDER` copies a rubric with its reference)" * (name in shipped_rubrics())
-        return f"{printable_path(path)}:{line}: the reference {reference} does not exist{copy}"
+        return f"{printable_path(path)}:{line}: the reference {printable_path(place)} does not exist{copy}"
 
     return ReferenceSolution(place, lab, missing)
 

@@ -130,9 +130,8 @@ def _groups(changes: Sequence[Change], key: Callable[[Change], K]) -> list[tuple
 def _show_students(steps: Steps, changes: Sequence[Change], console: Console) -> None:
     """Print students with the same changes: for one student the name first, for several the changes first."""
     lines = [Text(printable(line)) for line in _lines(steps)]
-    students = [
-        Text(printable(f"{named(change.key, change.name)}: {_total(change)}"), style="bold") for change in changes
-    ]
+    totals = [f"{named(change.key, change.name)}: {_total(change)}" for change in changes]
+    students = [Text(printable(total), style="bold") for total in totals]
     first, then = (students, lines) if len(changes) == 1 or not steps else (lines, students)
     for text in first:
         wrapped(console, text, 2)

@@ -139,16 +139,13 @@ def what_is_same(work: IdenticalWork, names: Mapping[str, str]) -> str:
     """Return what is the same for all of the students, and who of them has the same file."""
     if work.students in work.same_file:
         return "the same file"
-    return "; ".join([work.equal, *(f"the same file: {_names(keys, names)}" for keys in work.same_file)])
+    files = (people_text([names[key] for key in keys], MAX_NAMED) for keys in work.same_file)
+    return "; ".join([work.equal, *(f"the same file: {who}" for who in files)])
 
 
 def identical_line(work: IdenticalWork, names: Mapping[str, str]) -> str:
     """Return the students of one group of identical work, by `names`."""
-    return f"{_names(work.students, names)}: {what_is_same(work, names)}"
-
-
-def _names(keys: Sequence[str], names: Mapping[str, str]) -> str:
-    return people_text([names[key] for key in keys], MAX_NAMED)
+    return f"{people_text([names[key] for key in work.students], MAX_NAMED)}: {what_is_same(work, names)}"
 
 
 def evidence_lines(summary: ClassSummary) -> list[str]:

@@ -75,11 +75,8 @@ def _roster_changes(roster: Roster, earlier: Roster | None, book: Gradebook) -> 
     """Yield that a roster has fewer students than the earlier one, and whose deadline in it does not count."""
     missing = [one.key for one in (earlier.students if earlier is not None else ()) if roster.entry(one.key) is None]
     if earlier is not None and missing and len(roster.entries) < len(earlier.entries):
-        yield (
-            f"the roster has {counted(len(roster.entries), 'student')}, "
-            f"but the gradebook's roster has {len(earlier.entries)}."
-            f" Missing on the new one: {enumerated(missing, _MAX_NAMED)}"
-        )
+        count = f"the roster has {counted(len(roster.entries), 'student')}, but the gradebook's roster has"
+        yield f"{count} {len(earlier.entries)}. Missing on the new one: {enumerated(missing, _MAX_NAMED)}"
     extended = {key for (key,) in book.rows(_EXTENDED, EXTENSION)}
     own = (one.student for one in roster.entries if (one.due or one.extension_days) and one.student.key in extended)
     if names := [named(one.key, one.name) for one in own]:

@@ -16,13 +16,12 @@ from grader.classroom.typed_names import read_points
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import TOTAL
-from grader.text import counted, counted_points, enumerated, first_lines, printable, printable_path
-from grader.usecases.manual_marks import MarkRequest, entry_of, key_and_name, marked_criterion
+from grader.text import counted, enumerated, first_lines, printable, printable_path
+from grader.usecases.manual_marks import MarkRequest, entry_of, give_mark, key_and_name, marked_criterion
 from grader.usecases.terminal import Warn
 
 _COLUMNS = ("student", "criterion", "points", "comment")
 _MAX_NAMED = 10
-
 _NewMark = tuple[StudentGrade, str, marks.Entry]
 
 
@@ -53,7 +52,7 @@ def _new_marks(grades: Grades, requests: Iterator[tuple[int, MarkRequest]], show
     """Return the marks of all rows; raises InputError with a line for each kind of mistake."""
     find = cache(grades.find)
     wrong: dict[str, list[tuple[int, str]]] = {}
-    found: dict[tuple[int, str], _NewMark] = {}
+    rows: dict[tuple[int, str], _NewMark] = {}
     for line, request in requests:
         kind = "student"
         try:
@@ -64,29 +63,27 @@ def _new_marks(grades: Grades, requests: Iterator[tuple[int, MarkRequest]], show
             kind = "points"
             entry = entry_of(request, partial(read_points, name=request.criterion, most=most))
             new = grade, request.criterion, entry._replace(comment=request.comment)
-            if found.setdefault((grade.id, request.criterion), new) is not new:
+            if rows.setdefault((grade.id, request.criterion), new) is not new:
                 message = f"{key_and_name(grade.student)} has {request.criterion} twice"
                 wrong.setdefault("mark", []).append((line, message))
         except InputError as error:
             wrong.setdefault(kind, []).append((line, str(error)))
-    complaints = [
-        f"{shown}: wrong {kind} in line {enumerated([str(line) for line, _ in lines], _MAX_NAMED)}: {lines[0][1]}"
-        for kind, lines in wrong.items()
-    ]
-    if complaints:
-        raise InputError("\n".join(map(printable, complaints)))
-    return [*found.values()]
+    if wrong:
+        where = {kind: enumerated([str(line) for line, _ in lines], _MAX_NAMED) for kind, lines in wrong.items()}
+        lines = [f"{shown}: wrong {kind} in line {where[kind]}: {found[0][1]}" for kind, found in wrong.items()]
+        raise InputError("\n".join(map(printable, lines)))
+    return [*rows.values()]
 
 
 def _record(book: Gradebook, new: _NewMark, by: str) -> bool:
-    """Add a mark unless it is the newest one already; return whether it was added."""
+    """Add a mark unless the newest one says the same; return whether it was added."""
     grade, criterion, entry = new
     before = marks.newest_mark(book, grade.id, criterion)
-    mark = marks.mark_after(before, entry, by, grade.result)
-    is_new = mark.entry != (before.entry if before is not None else marks.WITHDRAWN)
-    if is_new:
-        marks.insert_mark(book, grade.id, criterion, mark, by or marks.account())
-    return is_new
+    counting = before.entry if before is not None else marks.WITHDRAWN
+    is_same = entry == (counting._replace(kind="comment", points=None) if entry.kind == "comment" else counting)
+    if not is_same:
+        marks.add_mark(book, grade, criterion, entry, by)
+    return not is_same
 
 
 def mark_missing(gradebook: Path, request: MarkRequest) -> str:
@@ -99,26 +96,15 @@ def mark_missing(gradebook: Path, request: MarkRequest) -> str:
         for grade in list(grades.where("is_on_roster = 1 AND result IS NULL AND final IS NULL AND NOT is_excused")):
             before = marks.newest_mark(book, grade.id, TOTAL)
             comment = request.comment or (before.comment if before is not None else "")
-            _record(book, (grade, TOTAL, entry._replace(comment=comment)), request.by)
+            marks.add_mark(book, grade, TOTAL, entry._replace(comment=comment), request.by)
             given.append(f"  {key_and_name(grade.student)}")
     head = f"final mark {request.points} for {counted(len(given), 'student')} on the roster without a submission"
     return "".join(f"{printable(line)}\n" for line in (head, *first_lines(given, _MAX_NAMED)))
 
 
 def extend_deadline(gradebook: Path, student: str, time: str, by: str, warn: Warn) -> str:
-    """Record a student's own deadline, or withdraw it; return how late the submission is with it."""
-    is_withdrawn = time.strip() == marks.TAKE_BACK
-    entry = marks.WITHDRAWN if is_withdrawn else marks.Entry("comment", comment=time.strip())
-    if not is_withdrawn:
-        read_time(time)  # raises InputError
-    with Gradebook(gradebook) as book:
-        grades = Grades(book)
-        grade = grades.find(student)
-        before = marks.add_mark(book, grade, marks.EXTENSION, entry, by).before
-        now = grades.find(grade.student.key)
-    if before is not None and before.comment:
-        warn(f"this replaces the deadline {before.comment}")
-    late = now.late.reason or ("not late" if now.result is not None else "nothing is submitted yet")
-    lost = f", {counted_points(-now.late.points)} lost" if now.late.points else ""
-    deadline = "no deadline of their own" if is_withdrawn else f"deadline {entry.comment}"
-    return printable(f"{key_and_name(now.student)}: {deadline}; {late}{lost}") + "\n"
+    """Record a student's own deadline, or withdraw it; return what counts for the student now."""
+    if time.strip() == marks.TAKE_BACK:
+        return give_mark(gradebook, MarkRequest(student, marks.EXTENSION, marks.TAKE_BACK, by=by), warn)
+    read_time(time)  # raises InputError
+    return give_mark(gradebook, MarkRequest(student, marks.EXTENSION, comment=time.strip(), by=by), warn)

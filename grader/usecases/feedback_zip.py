@@ -26,8 +26,6 @@ from grader.usecases.report_names import file_names, report_names
 from grader.usecases.terminal import Terminal
 from grader.values import dataclass
 
-_MAX_NAMED = 10
-
 
 @dataclass(frozen=True, slots=True)
 class Feedback:
@@ -62,7 +60,7 @@ def feedback_zip(grades: Grades, request: FeedbackRequest, terminal: Terminal) -
         raise InputError(f"no student would get a report in {lms.title()}: {why}")
     names = {student.key: named(student.key, student.name) for student in grades.book.students()}
     without = (RowNote(0, names[key], why) for key, why in feedback.without.items())
-    for line in by_reason("no feedback for", without, _MAX_NAMED):
+    for line in by_reason("no feedback for", without, most=10):
         warn(line)
     given = [grade for grade, _ in feedback.reports if grade.student.key not in feedback.without]
     if count := sum(bool(grade.why_not_final) and not grade.is_excused for grade in given):

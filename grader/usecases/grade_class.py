@@ -3,7 +3,7 @@
 import gc
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from datetime import datetime
 from math import isfinite
 from pathlib import Path
@@ -29,6 +29,7 @@ from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_inp
 from grader.values import dataclass
 
 _MAX_LINES = 10
+_PASSES = ("grading", "searching hints", "writing reports")
 _UNREADABLE = "SELECT count(*) FROM grade WHERE verdict = 'unreadable' AND NOT is_gone AND source = ?"
 
 
@@ -98,9 +99,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     )
     with Gradebook(request.gradebook, create=True) as book:
         warn_of_parts(book, request.part, rubric, warn)
-        with_hints = request.reports is not None or request.output_format is OutputFormat.JSON
-        passes = ("grading", "searching hints", "writing reports")[: 1 + with_hints + (request.reports is not None)]
-        with one_total(terminal, passes, len(intake)) as one:
+        with one_total(terminal, _PASSES, len(intake)) if request.reports else nullcontext(terminal) as one:
             with _executor(request) as (executor, workers), one.show_class("grading") as show:
                 batch = Batch(book, rubric, settings, executor, workers, show)
                 done = _run(batch, intake, warn)

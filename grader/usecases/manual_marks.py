@@ -9,6 +9,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import COMMENT_NUMBER, numbered_comments
 from grader.classroom.gradebook.marks import (
+    EXTENSION,
     TAKE_BACK,
     WITHDRAWN,
     WITHDRAWN_SECOND,
@@ -68,9 +69,7 @@ class MarkRequest(NamedTuple):
         rules = (
             (self.comments and (has_entry or self.undo), "--comments lists comments and records nothing: use it alone"),
             (not (self.submission or self.missing) or not self.criterion, "name a STUDENT and a CRITERION"),
-            (self.missing and (self.undo or self.excused or self.comments), "--missing gives POINTS, and a --comment"),
-            (self.missing and not self.is_total, f"--missing is for the whole submission: --missing {TOTAL} POINTS"),
-            (self.missing and not self.is_points, "--missing needs POINTS, such as 0"),
+            (self.missing and not (self.is_total and self.is_points), f"write it as --missing {TOTAL} POINTS"),
             (self.undo and has_entry, "--undo takes no POINTS and no other option but --by"),
             (self.excused and has_points, "--excused has no POINTS"),
             (self.excused and self.second, "--second cannot be used with --excused"),
@@ -104,12 +103,15 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
     text = _grade_text(now, whole)
     if request.second:
         text = f"second opinion on {request.criterion}; the grade stays the same"
+    elif request.criterion == EXTENSION:
+        deadline = f"deadline {request.comment}" if request.comment else "no deadline of their own"
+        text = "; ".join(filter(None, (deadline, now.late.reason, text)))
     return printable(f"{key_and_name(now.student)}: {text}") + "\n"
 
 
 def marked_criterion(grades: Grades, grade: StudentGrade, request: MarkRequest) -> tuple[Criterion | None, Decimal]:
     """Return the criterion to mark, None for the whole submission, and the most points. Raises InputError."""
-    if request.is_total:
+    if request.criterion in (TOTAL, EXTENSION):
         return None, sum((row.points for row in grades.criteria), Decimal(0))
     criterion = criterion_of(grades.rubric(grade.rubric) if grade.rubric else grades.newest_rubric(), request.criterion)
     if request.is_points and criterion.adjustment is not None and not criterion.points:
@@ -184,7 +186,8 @@ def _report_replaced(before: Mark | None, criterion: Criterion | None, request: 
     is_withdrawn = before is None or before.entry.kind == "withdrawn" or before.entry == WITHDRAWN_SECOND
     if before is not None and not is_withdrawn:
         what = "second opinion" if request.second else "comment" if before.entry.kind == "comment" else "mark"
-        warn(f"this {'undoes' if request.undo else 'replaces'} the newest {what} of {name}: {mark_text(before)}")
+        newest = f"newest {what} of {name}: {mark_text(before)}" if name != EXTENSION else f"deadline {before.comment}"
+        warn(f"this {'undoes' if request.undo else 'replaces'} the {newest}")
     if criterion is not None and criterion.adjustment is not None:
         warn(_NOT_COUNTED.format(name))
 

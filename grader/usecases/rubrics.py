@@ -83,10 +83,10 @@ def copy(name: str, folder: Path) -> str:
     """Copy the files of a shipped rubric; return what was written, and the next step. Raises GraderError."""
     from shutil import copyfile, copytree
 
-    from grader.grading.rubric import find_rubric, shipped_rubrics
+    from grader.grading.rubric import shipped_rubrics
 
-    file = find_rubric(name)
-    if name not in shipped_rubrics():
+    file = shipped_rubrics().get(name)
+    if file is None:
         raise GraderError(f"{printable_path(name)} is not a rubric of the grader: {', '.join(shipped_rubrics())}")
     copies = {source: folder / source.relative_to(file.parent) for source in files_of(name) if source.exists()}
     for target in copies.values():

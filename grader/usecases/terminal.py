@@ -1,6 +1,6 @@
 """What a use case prints with, and reads a line: the command passes it."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
@@ -32,12 +32,12 @@ class Terminal(NamedTuple):
 
 
 @contextmanager
-def one_total(terminal: Terminal, passes: Sequence[str], size: int) -> Iterator[Terminal]:
+def one_total(terminal: Terminal, passes: tuple[str, ...], size: int) -> Iterator[Terminal]:
     """Yield a terminal that shows these passes over a class of some size as one; a pass that is not needed is done."""
     with terminal.show_class(passes[0]) as show:
 
         def part(work: str) -> AbstractContextManager[Callable[["Progress"], None]]:
             end, total = size * (passes.index(work) + 1), size * len(passes)
-            return nullcontext(lambda one: show(replace(one, total=total, before=end - one.total, work=work)))
+            return nullcontext(lambda one: show(replace(one, total=total, graded=one.graded + end - one.total)))
 
         yield terminal._replace(show_class=part)

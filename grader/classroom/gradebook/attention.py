@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import Reason
-from grader.text import named
 
 _MAY_NEED_ATTENTION = (
     "((verdict <> 'graded' OR faults OR rubric <> ? OR removed_marks <> '') AND final IS NULL AND NOT is_excused)"
@@ -19,11 +18,6 @@ class AttentionItem(NamedTuple):
     key: str
     name: str
     detail: str
-
-    @property
-    def who(self) -> str:
-        """The name and the key, or the key alone."""
-        return named(self.key, self.name)
 
 
 class AttentionGroup(NamedTuple):

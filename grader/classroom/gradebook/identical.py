@@ -14,8 +14,7 @@ from grader.text import counted, enumerated
 _SUBMISSIONS = """
 SELECT key, urdf, robot, forms, source, files FROM grade WHERE result IS NOT NULL AND NOT is_gone ORDER BY key
 """
-# What more students have in common comes from the handout: so many, or so large a share of the class.
-_MAX_SHARING, _MAX_SHARE = 4, 0.1
+_MAX_SHARING = 4  # students, or a tenth of the class: what more have in common comes from the handout
 
 
 class IdenticalWork(NamedTuple):
@@ -27,10 +26,7 @@ class IdenticalWork(NamedTuple):
 
 
 class _Work(NamedTuple):
-    """The hashes of a submission.
-
-    `forms` has the hash of the robot as it is `written` and the lines of its `others`, and those of its `package`.
-    """
+    """The hashes of a submission: `forms` are those of the robot as `written`, of lines of `others`, of `package`."""
 
     key: str
     urdf: str
@@ -64,7 +60,7 @@ def _same_robots(works: list[_Work]) -> list[IdenticalWork]:
 
 def _same_parts(works: list[_Work], handed_out: set[str]) -> Iterator[IdenticalWork]:
     """Yield the students with the same links, joints and materials, and those with two equal kinds of package files."""
-    most = max(_MAX_SHARING, int(len(works) * _MAX_SHARE))
+    most = max(_MAX_SHARING, len(works) // 10)
     written = _groups_of_several((work.forms.get("written", ""), work) for work in works)
     for sha256, group in written.items():
         if sha256 and sha256 not in handed_out and len(group) <= most and len({work.robot for work in group}) > 1:

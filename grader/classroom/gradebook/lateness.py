@@ -37,11 +37,8 @@ class SubmissionTimes:
     days_late: float | None = None
 
     def extended(self, deadline: str) -> "SubmissionTimes":
-        """Return the times with a deadline from `grader extend`, empty for none, in place of what the roster says.
-
-        If it is not known when something was submitted, the days late of the roster count.
-        """
-        days = None if self.submitted and self.days_late else self.days_late
+        """Return the times with the deadline of `grader extend`, empty for none, in place of the roster's."""
+        days = None if self.submitted and self.days_late else self.days_late  # without a time no days can be counted
         return replace(self, deadline=deadline, extension=0.0, days_late=days) if deadline else self
 
 

@@ -86,7 +86,9 @@ def add_mark(
     refuse_unsubmitted(grade, criterion)
     with writing(book):
         before = _newest_if_shown(book, grade, criterion, entry, by, shown)
-        mark = mark_after(before, entry, by, grade.result)
+        mark = Mark(entry, by, result=grade.result)
+        if entry.kind == "comment" and before is not None and before.entry.kind in ("points", "excused"):
+            mark = before._replace(entry=before.entry._replace(comment=entry.comment), at="")
         return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account()), before)
 
 
@@ -97,13 +99,6 @@ def refuse_unsubmitted(grade: StudentGrade, criterion: str) -> None:
         raise InputError(
             f"{key} has submitted nothing that could be marked; `grader mark {key} {TOTAL} POINTS` gives a final mark"
         )
-
-
-def mark_after(before: Mark | None, entry: Entry, by: str, result: int | None) -> Mark:
-    """Return the mark that an entry gives: a comment alone keeps the points of the mark before."""
-    if entry.kind == "comment" and before is not None and before.entry.kind in ("points", "excused"):
-        return before._replace(entry=before.entry._replace(comment=entry.comment), at="")
-    return Mark(entry, by, result=result)
 
 
 def restore_mark(
@@ -133,7 +128,10 @@ def undo_mark(book: Gradebook, grade: StudentGrade, criterion: str, by: str) -> 
 
 @contextmanager
 def writing(book: Gradebook) -> Iterator[None]:
-    """Commit what is written inside, so that it survives a power failure."""
+    """Commit what is written inside, so that it survives a power failure; inside of another one, with that."""
+    if book.connection.in_transaction:
+        yield
+        return
     with book.input_errors():
         book.connection.execute("PRAGMA synchronous = FULL")
     with book.transaction():

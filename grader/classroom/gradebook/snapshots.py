@@ -16,9 +16,9 @@ from grader.text import shell_quoted
 
 _STATES = f"""
 SELECT student.id, student.key, student.name, result.id, result.verdict, result.parts, result.digest, result.rubric,
-    result.version, (SELECT comment FROM mark WHERE student = student.id AND criterion = '{EXTENSION}' AND id <= ?2
-    ORDER BY id DESC LIMIT 1), submission.is_late, submission.submitted, student.deadline, student.extension,
-    student.days_late
+    result.version, coalesce((SELECT comment FROM mark WHERE student = student.id AND criterion = '{EXTENSION}'
+    AND id <= ?2 ORDER BY id DESC LIMIT 1), ''), submission.is_late, submission.submitted,
+    student.deadline, student.extension, student.days_late
 FROM student LEFT JOIN submission ON submission.student = student.id AND submission.run =
     (SELECT max(run) FROM submission AS newer WHERE newer.student = student.id AND newer.run <= ?1)
 LEFT JOIN result ON result.id = submission.result ORDER BY student.key
@@ -143,8 +143,6 @@ def states_of(snapshot: Snapshot) -> dict[str, StudentState]:
         given = {name: points for name, points in own.items() if points is not None}
         points = criterion_points(rubric, snapshot.book.outcomes(result), given)
         is_late, submitted, due, extension, days = times
-        found = SubmissionTimes(bool(is_late), submitted or "", due, float(extension or 0), days).extended(
-            extended or ""
-        )
+        found = SubmissionTimes(bool(is_late), submitted or "", due, float(extension or 0), days).extended(extended)
         states[key] = StudentState(name, verdict, digest, sha256, rubric, version, points, parts, own, found, deadline)
     return states

@@ -7,23 +7,18 @@ from grader.values import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """The progress of a run. `errored` and `unreadable` count submissions that were graded in this run.
-
-    `before` is what the passes before this `work` have done.
-    """
+    """The progress of a run. `errored` and `unreadable` count submissions that were graded in this run."""
 
     total: int
     graded: int = 0
     unchanged: int = 0
     unreadable: int = 0
     errored: int = 0
-    before: int = 0
-    work: str = ""
 
     @property
     def done(self) -> int:
-        """The number of submissions that have a result, and of those in the passes before."""
-        return self.before + self.graded + self.unchanged
+        """The number of submissions that have a result."""
+        return self.graded + self.unchanged
 
     def with_result(self, verdict: str) -> "Progress":
         """Return the progress after one more result."""

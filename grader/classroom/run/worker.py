@@ -1,8 +1,9 @@
 """The work of a worker process: grade submissions one by one. All data is plain and can be sent to any process."""
 
 import json
+import re
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
@@ -22,13 +23,14 @@ from grader.grading.missing_work import is_another_robot, robot_of
 from grader.grading.record import to_record
 from grader.grading.report import Report, Result, without_gifts
 from grader.grading.rubric import Rubric, read_rubric
-from grader.package.normal_form import package_forms
+from grader.package.package import PYTHON_LIMIT, SETUP, Package
 from grader.robot.normal_form import robot_hash, written_form
 from grader.submission.submission import Submission
 from grader.submission.urdf import Absent, Read, Unreadable
 from grader.text import enumerated
 
 _MAX_NAMED = 10  # students in a message
+_IGNORED = re.compile(rb"^(?:[ \t]*+#.*|(?:Panels|Window Geometry):.*\n(?:[ \t-].*(?:\n|\Z))*)", re.MULTILINE)
 
 
 class ClassContext(NamedTuple):
@@ -123,8 +125,19 @@ def _forms(submission: Submission, *, is_handed_out: bool = False) -> dict[str, 
     """Return what two students may have in common besides the robot: see gradebook/identical.py."""
     root = submission.urdf.reading.elements if isinstance(submission.urdf, Read) else None
     written, others = written_form(root, is_handed_out=is_handed_out)
-    package = dict(package_forms(submission.package)) if submission.package is not None else {}
+    package = dict(_package_forms(submission.package)) if submission.package is not None else {}
     return {"written": written, "others": others, "package": package} if written or package else {}
+
+
+def _package_forms(package: Package) -> Iterator[tuple[str, str]]:
+    """Yield kinds of files, each with the hash of what they are apart from comments, white space, quotes, windows."""
+    kinds = {"setup.py": (SETUP,), "launch files": package.launch_files, "RViz files": package.rviz_files}
+    for kind, paths in kinds.items():
+        with suppress(InputError):
+            files = [package.tree.files[path].read(PYTHON_LIMIT) for path in paths if path in package.tree.files]
+            forms = sorted(_IGNORED.sub(b"", data).replace(b"'", b'"').split() for data in files)
+            if any(forms):
+                yield kind, sha256_of(repr((kind, forms)).encode())
 
 
 def work_hashes(submission: Submission) -> tuple[str, ...]:
