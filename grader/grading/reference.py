@@ -13,10 +13,7 @@ from grader.submission.submission import Lab, Submission
 
 
 class ReferenceSolution:
-    """A rubric's own solution; no more is read than is needed. `missing` says that it does not exist.
-
-    Properties raise InputError where it cannot be read.
-    """
+    """A rubric's own solution; no more is read than is needed. Properties raise InputError where it cannot be read."""
 
     def __init__(self, path: Path, lab: Lab, missing: Callable[[], str]) -> None:
         self._path, self._lab, self._missing = path, lab, missing

@@ -89,9 +89,8 @@ def copy(name: str, folder: Path) -> str:
     if file is None:
         raise GraderError(f"{printable_path(name)} is not a rubric of the grader: {', '.join(shipped_rubrics())}")
     copies = {source: folder / source.relative_to(file.parent) for source in files_of(name) if source.exists()}
-    for target in copies.values():
-        if os.path.lexists(target):
-            raise GraderError(f"{printable_path(target)} exists already: nothing was copied")
+    if there := [*filter(os.path.lexists, copies.values())]:
+        raise GraderError(f"{printable_path(there[0])} exists already: nothing was copied")
     for source, target in copies.items():
         make_folder(target.parent)
         (copytree if source.is_dir() else copyfile)(source, target)

@@ -2,18 +2,17 @@
 
 import json
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import reduce
 from itertools import combinations
 from operator import and_
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.text import counted, enumerated
 
-_SUBMISSIONS = """
-SELECT key, urdf, robot, forms, source, files FROM grade WHERE result IS NOT NULL AND NOT is_gone ORDER BY key
-"""
+_SUBMISSIONS = "SELECT key, urdf, robot, forms, source, files FROM grade WHERE NOT is_gone ORDER BY key"
 _MAX_SHARING = 4  # students, or a tenth of the class: what more have in common comes from the handout
 
 
@@ -26,13 +25,15 @@ class IdenticalWork(NamedTuple):
 
 
 class _Work(NamedTuple):
-    """The hashes of a submission: `forms` are those of the robot as `written`, of lines of `others`, of `package`."""
+    """The hashes of a submission: of the robot as `written`, of lines of `others`, of kinds of files of `package`."""
 
     key: str
+    place: tuple[str, str]  # several students of a team may have one submission
     urdf: str
     robot: str
-    forms: dict[str, Any]
-    place: tuple[str, str]  # several students of a team may have one submission
+    written: str = ""
+    others: Sequence[str] = ()
+    package: Mapping[str, str] = MappingProxyType({})
 
 
 def identical_work(book: Gradebook) -> list[IdenticalWork]:
@@ -42,7 +43,7 @@ def identical_work(book: Gradebook) -> list[IdenticalWork]:
     """
     handed_out = {sha256 for (sha256,) in book.rows("SELECT sha256 FROM handed_out")}
     works = [
-        _Work(key, urdf, robot, json.loads(forms or "{}"), (source, files))
+        _Work(key, (source, files), urdf, robot, **json.loads(forms or "{}"))
         for key, urdf, robot, forms, source, files in book.rows(_SUBMISSIONS)
     ]
     robots = [work for work in works if work.urdf and handed_out.isdisjoint((work.urdf, work.robot))]
@@ -61,17 +62,13 @@ def _same_robots(works: list[_Work]) -> list[IdenticalWork]:
 def _same_parts(works: list[_Work], handed_out: set[str]) -> Iterator[IdenticalWork]:
     """Yield the students with the same links, joints and materials, and those with two equal kinds of package files."""
     most = max(_MAX_SHARING, len(works) // 10)
-    written = _groups_of_several((work.forms.get("written", ""), work) for work in works)
-    for sha256, group in written.items():
-        if sha256 and sha256 not in handed_out and len(group) <= most and len({work.robot for work in group}) > 1:
+    written = _groups_of_several((one.written, one) for one in works if one.written and one.written not in handed_out)
+    for group in written.values():
+        if len(group) <= most and len({work.robot for work in group}) > 1:
             yield IdenticalWork(_keys(group), equal=f"the same links, joints and materials; {_difference(group)}")
-    files = [(tuple(form), work) for work in works for form in work.forms.get("package", {}).items()]
-    known = {form for form, count in Counter(form for form, _ in files).items() if count > most}
-    rare: dict[str, list[tuple[str, str]]] = {}
-    for form, work in files:
-        if form not in known and form[1] not in handed_out:
-            rare.setdefault(work.key, []).append(form)
-    pairs = ((pair, work) for work in works for pair in combinations(rare.get(work.key, ()), 2))
+    counts = Counter(file for work in works for file in work.package.items())
+    own = {file for file, count in counts.items() if count <= most and file[1] not in handed_out}
+    pairs = ((pair, work) for work in works for pair in combinations(filter(own.__contains__, work.package.items()), 2))
     kinds: dict[tuple[str, ...], dict[str, None]] = {}
     for pair, group in _groups_of_several(pairs).items():
         kinds.setdefault(_keys(group), {}).update(dict.fromkeys(kind for kind, _ in pair))
@@ -81,7 +78,7 @@ def _same_parts(works: list[_Work], handed_out: set[str]) -> Iterator[IdenticalW
 
 def _difference(group: list[_Work]) -> str:
     """Return how many lines of the other elements are not the same in all: "5 lines of <gazebo> differ"."""
-    lines = [Counter(work.forms["others"]) for work in group]
+    lines = [Counter(work.others) for work in group]
     apart = [own - reduce(and_, lines) for own in lines]
     tags = sorted({f"<{line.partition(' ')[2]}>" for own in apart for line in own})
     count = max(own.total() for own in apart)
