@@ -29,7 +29,6 @@ from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_inp
 from grader.values import dataclass
 
 _MAX_LINES = 10
-_PASSES = ("grading", "searching hints", "writing reports")
 _UNREADABLE = "SELECT count(*) FROM grade WHERE verdict = 'unreadable' AND NOT is_gone AND source = ?"
 
 
@@ -99,7 +98,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     )
     with Gradebook(request.gradebook, create=True) as book:
         warn_of_parts(book, request.part, rubric, warn)
-        with one_total(terminal, _PASSES, len(intake)) if request.reports else nullcontext(terminal) as one:
+        with one_total(terminal, len(intake)) if request.reports else nullcontext(terminal) as one:
             with _executor(request) as (executor, workers), one.show_class("grading") as show:
                 batch = Batch(book, rubric, settings, executor, workers, show)
                 done = _run(batch, intake, warn)

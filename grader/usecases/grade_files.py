@@ -74,7 +74,7 @@ FILLERS: dict[str, Callable[[bytes, Sequence[LmsGrade], FillOptions], Filled]] =
 _WITH_FEEDBACK = ("moodle",)
 _WITH_EXCUSES = ("canvas",)
 _NEXT_STEP = "`grader mark STUDENT total POINTS` gives a final mark; `grader review` grades what is open"
-_MAX_NAMED, _MAX_LINES = 3, 10
+_MAX_NAMED, _MAX_LINES, _MAX_REASONS = 3, 10, 50
 
 
 def fill_lms_file(lms: str, file: Path, grades: Grades, options: FillOptions, *, pending_as_zero: bool) -> Filled:
@@ -127,7 +127,7 @@ def _whole(remarks: Remarks) -> Iterator[FeedbackItem]:
 
 
 def preflight_lines(found: Preflight) -> Iterator[str]:
-    """Yield what filling in an LMS file changes, line by line, at most 10 lines of each kind."""
+    """Yield what filling in an LMS file changes, line by line, at most 50 lines of each kind."""
     yield f"column {found.column!r}: {found.filled} filled in, {found.unchanged} already the same"
     if found.excused:
         yield printable(f"excused (EX): {len(found.excused)} ({people_text(found.excused, _MAX_NAMED)})")
@@ -154,4 +154,4 @@ def by_reason(kind: str, rows: Iterable[RowNote], most: int = _MAX_NAMED) -> Ite
     for row in rows:
         names.setdefault(row.why, []).append(f"row {row.row}, {row.who}" if row.row else row.who)
     several = {why: f"{len(who)} ({people_text(who, most)})" if who[1:] else who[0] for why, who in names.items()}
-    yield from map(printable, first_lines([f"{kind} {who}: {why}" for why, who in several.items()], _MAX_LINES))
+    yield from map(printable, first_lines([f"{kind} {who}: {why}" for why, who in several.items()], _MAX_REASONS))

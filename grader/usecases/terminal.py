@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from grader.classroom.run.progress import Progress
 
 Warn = Callable[[str], None]
+_PASSES = ("grading", "searching hints", "writing reports")
 ShowFile = Callable[[str], None]  # shows the file that is being read, and nothing for an empty path
 # Shows the progress of a pass over a class, whose work is named.
 ShowClass = Callable[[str], AbstractContextManager[Callable[["Progress"], None]]]
@@ -32,12 +33,12 @@ class Terminal(NamedTuple):
 
 
 @contextmanager
-def one_total(terminal: Terminal, passes: tuple[str, ...], size: int) -> Iterator[Terminal]:
-    """Yield a terminal that shows these passes over a class of some size as one; a pass that is not needed is done."""
-    with terminal.show_class(passes[0]) as show:
+def one_total(terminal: Terminal, size: int) -> Iterator[Terminal]:
+    """Yield a terminal that shows the passes over a class of some size as one; a pass that is not needed is done."""
+    with terminal.show_class("grading and reports") as show:
 
         def part(work: str) -> AbstractContextManager[Callable[["Progress"], None]]:
-            end, total = size * (passes.index(work) + 1), size * len(passes)
+            end, total = size * (_PASSES.index(work) + 1), size * len(_PASSES)
             return nullcontext(lambda one: show(replace(one, total=total, graded=one.graded + end - one.total)))
 
         yield terminal._replace(show_class=part)
