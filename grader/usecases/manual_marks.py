@@ -26,14 +26,14 @@ from grader.classroom.typed_names import criterion_of, read_points
 from grader.errors import InputError
 from grader.grading.criterion import TOTAL, Criterion
 from grader.report.review import mark_text
-from grader.text import counted_points, enumerated, format_points, printable
+from grader.text import counted_points, format_points, named, people_text, printable
 from grader.usecases.terminal import Warn
 
 _NOT_COUNTED = "the rubric adjusts {}: its manual marks do not count"
 _MAX_NAMED = 10
 # The students whose newest submission has the same files in the same class.
 _SAME_SUBMISSION = """
-SELECT id, key FROM grade WHERE id <> ? AND result IS NOT NULL AND (source, json_extract(files, '$[0]')) =
+SELECT id, key, name FROM grade WHERE id <> ? AND result IS NOT NULL AND (source, json_extract(files, '$[0]')) =
     (SELECT source, json_extract(files, '$[0]') FROM grade WHERE id = ?) ORDER BY key
 """
 
@@ -99,7 +99,7 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
         others = [] if request.second or request.is_total else list(_unmarked_members(book, now, request.criterion))
     _report_replaced(before, criterion, request, warn)
     if others:
-        warn(f"the same submission counts for {enumerated(others, _MAX_NAMED)}: mark them as well")
+        warn(f"the same submission counts for {people_text(others, _MAX_NAMED)}: mark them as well")
     text = _grade_text(now, whole)
     if request.second:
         text = f"second opinion on {request.criterion}; the grade stays the same"
@@ -120,12 +120,12 @@ def marked_criterion(grades: Grades, grade: StudentGrade, request: MarkRequest) 
 
 
 def _unmarked_members(book: Gradebook, grade: StudentGrade, criterion: str) -> Iterator[str]:
-    """Yield the keys of the other members of a team whose newest mark of a criterion is not the same."""
+    """Yield the other members of a team whose newest mark of a criterion is not the same."""
     mark = newest_mark(book, grade.id, criterion)
-    for student, key in list(book.rows(_SAME_SUBMISSION, grade.id, grade.id)):
+    for student, key, name in list(book.rows(_SAME_SUBMISSION, grade.id, grade.id)):
         other = newest_mark(book, student, criterion)
         if mark is not None and (WITHDRAWN if other is None else other.entry) != mark.entry:
-            yield printable(key)
+            yield printable(named(key, name))
 
 
 def key_and_name(student: Student) -> str:

@@ -222,3 +222,22 @@ def test_the_grace_period_applies_to_fractions_of_days() -> None:
         for days in (0.007, 1.007, 1.03, 1.0, 2.0)
     }
     assert late == {0.007: 0, 1.007: 1, 1.03: 2, 1.0: 1, 2.0: 2}
+
+
+@pytest.mark.parametrize(
+    ("times", "days"),
+    [
+        (SubmissionTimes(submitted="2026-09-12T10:00+02:00"), 0),
+        (SubmissionTimes(submitted="2026-09-12T13:00+02:00"), 1),
+        (SubmissionTimes(submitted="2026-09-13T10:00+02:00", deadline="2026-09-30", extension=9), 1),
+        (SubmissionTimes(submitted="2026-09-12T10:00+02:00", days_late=3), 0),
+        (SubmissionTimes(submitted="2026-09-30T10:00+02:00", days_late=0), 0),
+        (SubmissionTimes(days_late=3), 3),
+        (SubmissionTimes(is_late=True), 0),
+        (SubmissionTimes(), 0),
+    ],
+)
+def test_an_extension_of_a_person(times: SubmissionTimes, days: int) -> None:
+    """It replaces the roster's deadline and extension, and a number of days if the time is known; a waiver stays."""
+    assert times.extended("") is times
+    assert lateness(LAB, times.extended("2026-09-12T12:00+02:00"), Decimal(11)).days == days
