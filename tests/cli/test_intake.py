@@ -261,9 +261,11 @@ def test_a_mark_of_one_member_names_the_others(tmp_path: Path) -> None:
         assert done.returncode == 0, done.stderr
         return done.stderr.removeprefix("grader: ")
 
-    assert said("birch", "box", "1") == "the same submission counts for cedar: mark them as well\n"
+    assert said("birch", "box", "1") == "the same submission counts for Cal Cedar (cedar): mark them as well\n"
     assert said("cedar", "box", "1") == ""
-    assert said("birch", "box", "-").endswith("grader: the same submission counts for cedar: mark them as well\n")
+    assert said("birch", "box", "-").endswith(
+        "grader: the same submission counts for Cal Cedar (cedar): mark them as well\n"
+    )
     assert said("cedar", "total", "1") == ""
     assert said("ash", "box", "1") == ""
 
