@@ -26,7 +26,7 @@ CRITERIA_NOTE = (
 FIXES_NOTE = "Each edit was tested: the listed criteria pass, and no other criterion fails."
 IDENTICAL_NOTE = (
     "The same robot may differ in names, order, comments and the spelling of numbers. This is no verdict: students who"
-    " follow the handout and make the same mistake have the same robot."
+    " follow the handout and make the same mistake have the same robot or files."
 )
 ATTENTION_NOTE = "--verbose lists all students."
 MAX_DETAILS = 5  # students with details who need attention for one reason

@@ -126,7 +126,7 @@ CREATE TABLE submission (
 CREATE TABLE mark (
     id INTEGER PRIMARY KEY,
     student INTEGER NOT NULL REFERENCES student,
-    criterion TEXT NOT NULL,       -- `total` for the whole submission: a final mark, an excuse, a comment
+    criterion TEXT NOT NULL,       -- `total`: a final mark, an excuse, a comment; `new deadline`: the time as comment
     -- A second opinion without points is withdrawn.
     points INTEGER CHECK (iif(points IS NULL, kind <> 'points', kind IN ('points', 'second'))),
     comment TEXT NOT NULL,
