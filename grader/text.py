@@ -61,13 +61,23 @@ def cut(text: str, most: int) -> str:
     return text if len(text) <= most else f"{text[: most - 3]}..."
 
 
-def enumerated(items: Collection[str], most: int | None = None, word: str = "and") -> str:
+def named(key: str, name: str) -> str:
+    """Return a student's name with the key, or the key alone: "Jane Doe (12280)"."""
+    return f"{name} ({key})" if name not in ("", key) else key
+
+
+def enumerated(items: Collection[str], most: int | None = None, word: str = "and", separator: str = ", ") -> str:
     """Return "a, b and c"; of more than `most` items the first ones: "a, b and 3 more"."""
     names = list(items)
     if most is not None and len(names) > most:
         names[most:] = [f"{len(names) - most} more"]
     *first, last = names or [""]
-    return f"{', '.join(first)} {word} {last}" if first else last
+    return f"{separator.join(first)} {word} {last}" if first else last
+
+
+def people_text(names: Collection[str], most: int) -> str:
+    """Return the names of people like `enumerated`: "Doe, Jane; Roe, Al and 3 more"."""
+    return enumerated(names, most, separator="; " if any(", " in name for name in names) else ", ")
 
 
 def first_lines(lines: Sequence[str], most: int) -> list[str]:

@@ -13,7 +13,7 @@ import codecs
 import csv
 import io
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from decimal import Decimal
 
@@ -26,6 +26,8 @@ SIZE_LIMIT = 16 * 1024 * 1024  # bytes
 ROW_LIMIT = 100_000
 CELL_LIMIT = 1_000_000
 DELIMITERS = ",;\t"
+_AS_TEXT = re.compile(r'\A="(.*)"\Z', re.DOTALL)  # keeps a spreadsheet from reading a text as a number
+_SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")  # the first bytes of .xlsx and .ods, and of .xls
 _BOMS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
 
 
@@ -90,6 +92,8 @@ def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Tabl
     title. Raises InputError for a file that is too large or not CSV.
     """
     capped(data, SIZE_LIMIT, shown, "")
+    if data.startswith(_SPREADSHEETS):
+        raise InputError(f"{shown} is a spreadsheet, not a CSV file: open it and save it as CSV (UTF-8)")
     bom, encoding, text = _decode(data, shown)
     if "\0" in text:
         raise InputError(f"{shown} is not a CSV file: it contains a NUL character")
@@ -97,6 +101,21 @@ def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Tabl
     found = re.findall(f"[{DELIMITERS}]", re.sub(r'"[^"]*"', "", header[1] if header else "")) or [","]
     delimiter = max(found, key=found.count) if is_from_person else found[0]
     return Table(_rows(text, delimiter, shown), delimiter, encoding, bom)
+
+
+def rows_with_lines(data: bytes, shown: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield the line where each row of a person's file begins, unless it is empty, and its cells, spaces normalised."""
+    line = 1
+    for row in read_table(data, shown, is_from_person=True).rows:
+        cells = [" ".join(_AS_TEXT.sub(r"\1", cell.value.strip()).split()) for cell in row.cells]
+        if any(cells) and cells != ["sep=", ""]:  # by which Excel recognises the separator
+            yield line, cells
+        line += 1 + sum(len(cell.raw.splitlines()) - 1 for cell in row.cells if cell.raw)
+
+
+def plain_title(title: str) -> str:
+    """Return the letters and digits of a column's title, in lower case."""
+    return "".join(letter for letter in title.casefold() if letter.isalnum())
 
 
 def _decode(data: bytes, shown: str) -> tuple[bytes, str, str]:

@@ -9,6 +9,7 @@ import unicodedata
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from decimal import Decimal, InvalidOperation
+from functools import lru_cache
 
 from grader.classroom.matching import LMS_IDS, Clue, People, claims_of, clues_of, plain_name
 from grader.classroom.students import Student
@@ -32,7 +33,7 @@ def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
 
     Raises InputError: if several students match, it lists them; else similar names; else it ends with `advice`.
     """
-    people = People(clues_of(one if one.name else replace(one, name=one.key)) for one in students)
+    people = _people(tuple(students))
     found = [students[index] for index in _find_people(people, name)]
     if len(found) == 1:
         return found[0]
@@ -45,6 +46,11 @@ def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
     some = students[:_MAX_SUGGESTED_FROM]
     guess = guess or did_you_mean(name, {word for one in some for word in (one.key, one.login, one.name)})
     raise InputError(f"there is no student {name!r} in the gradebook{guess or advice}")
+
+
+@lru_cache(maxsize=1)  # a file of marks names many
+def _people(students: tuple[Student, ...]) -> People:
+    return People(clues_of(one if one.name else replace(one, name=one.key)) for one in students)
 
 
 def _find_people(people: People, name: str) -> list[int]:

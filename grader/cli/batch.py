@@ -25,7 +25,7 @@ Layout = Literal["auto", "folders", "canvas", "moodle", "teams", "nbgrader"]
 _PATH = "A folder with an entry for each student, or the zip of an LMS."
 _ADD = "Add to the gradebook even if its class, assignment, roster or rubric is another one."
 _RUBRIC = "The rubric: an id or a .toml file; default: that of the last run into the gradebook, else lab6."
-_IGNORE = "A robot that the course handed out: not identical work; repeatable."
+_IGNORE = "A robot or package that the course handed out: not identical work; repeatable."
 _TIMEOUT = "Time limit for each submission."
 
 
@@ -78,7 +78,7 @@ def batch(
 
       Resubmissions, a rubric fix, an interruption: rerun the same command.
 
-      Late submissions: [late] in the rubric, --due, and columns due and extension in the roster.
+      Late submissions: [late] in the rubric, --due, grader extend, or columns due and extension in the roster.
 
       Unmatched submissions: add the student's login, email address or LMS number to the roster, and rerun with
       --roster.

@@ -14,12 +14,12 @@ from grader.usecases.writing import write_stdout
 
 
 def mark(
-    student: Annotated[str, typer.Argument(metavar="STUDENT", help="The student's id, login, email address or name.")],
+    gradebook: GradebookOption,
+    student: Annotated[str, typer.Argument(metavar="STUDENT", help="The id, login, email address or name.")] = "",
     criterion: Annotated[
         str,
         typer.Argument(metavar="CRITERION|total", help="The id of the criterion, or total: the whole submission."),
-    ],
-    gradebook: GradebookOption,
+    ] = "",
     points: Annotated[
         str | None, typer.Argument(metavar="[POINTS]", help="The points, or - to withdraw a mark.")
     ] = None,
@@ -32,6 +32,8 @@ def mark(
         bool, typer.Option("--second", help="Record a second opinion, which changes no grade; needs --by.")
     ] = False,
     comments: Annotated[bool, typer.Option("--comments", help="List the earlier comments of the criterion.")] = False,
+    missing: Annotated[bool, typer.Option("--missing", help="All who submitted nothing, not STUDENT.")] = False,
+    file: Annotated[Path | None, typer.Option("--import", metavar="CSV", help="The marks of many students.")] = None,
     by: ByOption = "",
 ) -> str:
     """Give a manual mark for a criterion or the whole submission.
@@ -50,18 +52,47 @@ def mark(
 
       grader mark alice lidar-frame --undo --gradebook lab6.db
 
-      grader mark bob total 0 --gradebook lab6.db --comment "no submission"
-
       grader mark carol total --excused --gradebook lab6.db --comment "ill"
 
-      grader mark alice total --gradebook lab6.db --comment "see me in the lab"
-
       grader mark alice lidar-frame 3 --gradebook lab6.db --second --by Lee
+
+      grader mark --missing total 0 --gradebook lab6.db
+
+      grader mark --import marks.csv --gradebook lab6.db
     """
+    from grader.usecases.class_marks import import_marks, mark_missing
     from grader.usecases.manual_marks import MarkRequest, give_mark
 
-    request = MarkRequest(student, criterion, points, comment, by, excused, undo, second, comments)
-    return give_mark(gradebook, request, warn)
+    if missing:  # in place of the student
+        student, criterion, points = "", student, points or criterion or None
+    request = MarkRequest(student, criterion, points, comment, by, excused, undo, second, comments, missing)
+    if file is not None:
+        if request != MarkRequest("", "", by=by):
+            raise InputError("--import takes no argument and no other option but --by")
+        return import_marks(gradebook, file, by)
+    return mark_missing(gradebook, request) if missing else give_mark(gradebook, request, warn)
+
+
+def extend(
+    student: Annotated[str, typer.Argument(metavar="STUDENT", help="The key, login, email address or name.")],
+    time: Annotated[str, typer.Argument(metavar="TIME", help="The new deadline, as 2026-11-25; - withdraws it.")],
+    gradebook: GradebookOption,
+    by: ByOption = "",
+) -> str:
+    """Give a student another deadline.
+
+    It counts instead of `due` and `extension` in the roster, in later runs too, until it is withdrawn. A date alone is
+    the end of that day.
+
+    Examples:
+
+      grader extend alice 2026-11-25 --gradebook lab6.db
+
+      grader extend alice - --gradebook lab6.db
+    """
+    from grader.usecases.class_marks import extend_deadline
+
+    return extend_deadline(gradebook, student, time, by, warn)
 
 
 def review(

@@ -107,6 +107,20 @@ def new_rubric(
     return write_rubric(file, reference, warn, force=force)
 
 
+@rubric.command("copy")
+def copy_rubric(
+    name: Annotated[str, typer.Argument(metavar="ID", help="A rubric of the grader.", autocompletion=rubric_ids)],
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="The folder to write into.")],
+) -> str:
+    """Copy a rubric with its files, to change it.
+
+    Examples:
+
+      grader rubric copy lab6 rubrics
+    """
+    return rubrics.copy(name, folder)
+
+
 @rubric.command("check")
 def check_rubric(file: RubricArgument) -> int:
     """Check a rubric and its reference solution.

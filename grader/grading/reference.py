@@ -1,5 +1,6 @@
 """The reference solution of a rubric."""
 
+from collections.abc import Callable
 from functools import cached_property
 from pathlib import Path
 
@@ -14,12 +15,14 @@ from grader.submission.submission import Lab, Submission
 class ReferenceSolution:
     """A rubric's own solution; no more is read than is needed. Properties raise InputError where it cannot be read."""
 
-    def __init__(self, path: Path, lab: Lab) -> None:
-        self._path, self._lab = path, lab
+    def __init__(self, path: Path, lab: Lab, missing: Callable[[], str]) -> None:
+        self._path, self._lab, self._missing = path, lab, missing
 
     @cached_property
     def submission(self) -> Submission:
         """The solution as a submission."""
+        if not self._path.exists():
+            raise InputError(self._missing())
         return open_submission(str(self._path), self._lab)
 
     @cached_property

@@ -15,7 +15,7 @@ from grader.files.reading import read_capped, sha256_of
 from grader.grading.criterion import Adjustment, Carried, Criterion, Evidence, Ignored, Late, Part
 from grader.grading.levels import HintLevel
 from grader.grading.reference import ReferenceSolution
-from grader.grading.toml_file import complain_of, read_toml
+from grader.grading.toml_file import complain_of, key_lines, read_toml
 from grader.grading.toml_rows import TomlRow
 from grader.grading.validation import BoundCarried, BoundCheck, Validation
 from grader.names import did_you_mean
@@ -162,7 +162,7 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         without_package=rubric.get("without_package", ""),
         hints=rubric.get("hints", "cause"),
         ignored=tuple(Ignored(**row) for row in valid.ignored),
-        solution=_solution(rubric, path),
+        solution=_solution(rubric, path, data),
         links=frozenset(_links(arguments for _, arguments in valid.bound)),
     )
 
@@ -183,11 +183,18 @@ def _links(arguments: Iterable[Mapping[str, Any]]) -> Iterator[str]:
         yield from (name for name in names if name and not is_selector(name))
 
 
-def _solution(rubric: TomlRow, path: Path) -> ReferenceSolution | None:
+def _solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSolution | None:
     if not rubric.get("reference"):
         return None
     place, package = path.parent / rubric["reference"], rubric.get("package", "")
-    return ReferenceSolution(place, Lab(rubric.get("urdf", _URDF), package, rubric.get("folders", ())))
+    lab = Lab(rubric.get("urdf", _URDF), package, rubric.get("folders", ()))
+
+    def missing() -> str:
+        line, name = key_lines(data.decode())["reference",], rubric["id"]
+        copy = f" (`grader rubric copy {name} FOLDER` copies a rubric with its reference)" * (name in shipped_rubrics())
+        return f"{printable_path(path)}:{line}: the reference {printable_path(place)} does not exist{copy}"
+
+    return ReferenceSolution(place, lab, missing)
 
 
 def _criterion(

@@ -33,7 +33,7 @@ from grader.report.json_data import (
     to_json,
 )
 from grader.report.rubrics import toml_text
-from grader.text import counted, enumerated, format_points, printable, signed_points
+from grader.text import counted, enumerated, format_points, named, printable, signed_points
 
 _MAX_NAMED, _MAX_LINES = 3, 12
 K = TypeVar("K", bound=Hashable)
@@ -131,7 +131,8 @@ def _groups(changes: Sequence[Change], key: Callable[[Change], K]) -> list[tuple
 def _show_students(steps: Steps, changes: Sequence[Change], console: Console) -> None:
     """Print students with the same changes: for one student the name first, for several the changes first."""
     lines = [Text(printable(line)) for line in _lines(steps)]
-    students = [Text(printable(f"{_who(change)}: {_total(change)}"), style="bold") for change in changes]
+    totals = [f"{named(change.key, change.name)}: {_total(change)}" for change in changes]
+    students = [Text(printable(total), style="bold") for total in totals]
     first, then = (students, lines) if len(changes) == 1 or not steps else (lines, students)
     for text in first:
         wrapped(console, text, 2)
@@ -162,10 +163,6 @@ def _value(value: object) -> str:
     if isinstance(value, Decimal):
         return format_points(value)
     return "none" if value is None else toml_text(value)
-
-
-def _who(change: Change) -> str:
-    return f"{change.name} ({change.key})" if change.name not in ("", change.key) else change.key
 
 
 def _total(change: Change) -> str:

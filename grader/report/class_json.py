@@ -152,7 +152,7 @@ CLASS = Record(
         "statistics": (_STATISTICS, "summary.statistics"),
         "fixes": (Many(_FIX), "summary.fixes"),
         "identical": (
-            Many(Record({"students": array(TEXT), "same_file": array(array(TEXT))})),
+            Many(Record({"students": array(TEXT), "same_file": array(array(TEXT)), "equal": TEXT})),
             "summary.identical",
         ),
         "agreement": (_AGREEMENT, "summary.agreement"),

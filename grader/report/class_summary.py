@@ -1,6 +1,6 @@
 """The summary of a class on a terminal: grades, criteria, common mistakes, who needs attention."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from rich.console import Console
 from rich.table import Table
@@ -40,7 +40,7 @@ from grader.report.class_words import (
     span,
 )
 from grader.report.console import wrapped
-from grader.text import counted, format_points, printable
+from grader.text import counted, format_points, people_text, printable
 
 _BAR_WIDTH = 40
 _INDENT = 8
@@ -62,9 +62,9 @@ def render_class(summary: ClassSummary, console: Console, *, verbose: bool = Fal
         _print_failures(statistics.failures[:MAX_LISTED], console)
     _print_fixes(summary.fixes[:MAX_LISTED], console)
     _print_choices(summary.choices, console)
-    _print_agreement(summary.agreement, console)
-    _print_identical(summary.identical, console)
-    _print_attention(summary.attention, console, verbose=verbose)
+    _print_agreement(summary.agreement, summary.names, console)
+    _print_identical(summary.identical, summary.names, console)
+    _print_attention(summary.attention, summary.names, console, verbose=verbose)
     for line in filter(None, (*evidence_lines(summary), late_line(summary))):
         console.print()
         wrapped(console, Text(line), 0)
@@ -111,7 +111,7 @@ def _print_choices(choices: Sequence[ChoiceCount], console: Console) -> None:
             wrapped(console, Text(printable(words)), 8, Text(f"{count:>6}  ", style="bold"))
 
 
-def _print_agreement(agreement: Agreement, console: Console) -> None:
+def _print_agreement(agreement: Agreement, names: Mapping[str, str], console: Console) -> None:
     if not agreement.items:
         return
     _print_heading("Agreement of two graders", console)
@@ -121,20 +121,20 @@ def _print_agreement(agreement: Agreement, console: Console) -> None:
         points = (
             f"{format_points(item.first)} and {format_points(item.second)} of {format_points(item.max_points)} points"
         )
-        lines.append(f"{item.key}, {item.criterion}: {points}")
+        lines.append(f"{names[item.key]}, {item.criterion}: {points}")
     for line in lines:
         wrapped(console, Text(printable(line)), 4, Text("  "))
 
 
-def _print_identical(identical: Sequence[IdenticalWork], console: Console) -> None:
+def _print_identical(identical: Sequence[IdenticalWork], names: Mapping[str, str], console: Console) -> None:
     if identical:
         _print_heading("Identical work", console, IDENTICAL_NOTE)
     for work in identical[:MAX_GROUPS]:
-        wrapped(console, Text(printable(identical_line(work))), 4, Text("  "))
+        wrapped(console, Text(printable(identical_line(work, names))), 4, Text("  "))
     _print_rest(len(identical) - MAX_GROUPS, console)
 
 
-def _print_attention(attention: Attention, console: Console, *, verbose: bool) -> None:
+def _print_attention(attention: Attention, names: Mapping[str, str], console: Console, *, verbose: bool) -> None:
     """Print each reason with its students: names side by side, or one line each if there are details."""
     is_cut = False
     if attention.total:
@@ -144,17 +144,15 @@ def _print_attention(attention: Attention, console: Console, *, verbose: bool) -
         most = len(group.items) if verbose else MAX_DETAILS if has_details else MAX_NAMED
         head, rest = Text(f"{group.reason} ({len(group.items)})", style="bold"), len(group.items) - most
         is_cut = is_cut or rest > 0
-        shown = [item.who for item in group.items[:most]]
         if has_details:
             wrapped(console, head, 4, Text("  "))
-            lines = [f"{item.who}: {item.detail}" if item.detail else item.who for item in group.items[:most]]
-            for line in lines:
+            for item in group.items[:most]:
+                line = f"{names[item.key]}: {item.detail}" if item.detail else names[item.key]
                 wrapped(console, Text(printable(line)), 6, Text("    "))
             _print_rest(rest, console)
         else:
-            more = [f"... and {rest} more"] if rest > 0 else []
-            separator = "; " if any("," in name for name in shown) else ", "  # some systems write Doe, Jane
-            wrapped(console, head + Text(printable(f": {separator.join([*shown, *more])}"), "not bold"), 4, Text("  "))
+            who = people_text([names[item.key] for item in group.items], most)
+            wrapped(console, head + Text(printable(f": {who}"), "not bold"), 4, Text("  "))
     if is_cut:
         wrapped(console, Text(ATTENTION_NOTE, style="dim"), 2)
 

@@ -1,6 +1,6 @@
 """The sentences about a class in every format for people: counts, grades, criteria, edits, identical work."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import ROUND_FLOOR, Decimal
 from textwrap import dedent
 
@@ -12,7 +12,7 @@ from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 from grader.report.details import sentence
 from grader.source import Edit
-from grader.text import counted, counted_points, cut, enumerated, format_points, printable
+from grader.text import counted, counted_points, cut, enumerated, format_points, people_text, printable
 
 VERDICTS = {
     "graded": "graded",
@@ -28,8 +28,8 @@ CRITERIA_NOTE = (
 NOT_DEDUCTED_NOTE = "Not deducted: failed because of an earlier mistake alone, or corrected after grading."
 FIXES_NOTE = "Each edit was tested: the listed criteria pass, and no other criterion fails."
 IDENTICAL_NOTE = (
-    "These robots differ in names, order, comments and the spelling of numbers at most. This is no verdict: students"
-    " who follow the handout and make the same mistake have the same robot."
+    "The same robot may differ in names, order, comments and the spelling of numbers. This is no verdict: students who"
+    " follow the handout and make the same mistake have the same robot or files."
 )
 DECIDED = " (scaled up from the points that need no manual grading)"
 ATTENTION_NOTE = "--verbose lists all students."
@@ -140,17 +140,17 @@ def edit_lines(edits: Sequence[Edit]) -> Iterator[tuple[str, str]]:
         yield " ", f"... {counted(len(edits) - _MAX_EDITS, 'more edit')}"
 
 
-def same_file(work: IdenticalWork) -> str:
-    """Return which of the students with the same robot have the same file; empty if none have."""
+def what_is_same(work: IdenticalWork, names: Mapping[str, str]) -> str:
+    """Return what is the same for all of the students, and who of them has the same file."""
     if work.students in work.same_file:
         return "the same file"
-    return "; ".join(f"the same file: {enumerated(keys, MAX_NAMED)}" for keys in work.same_file)
+    files = (people_text([names[key] for key in keys], MAX_NAMED) for keys in work.same_file)
+    return "; ".join([work.equal, *(f"the same file: {who}" for who in files)])
 
 
-def identical_line(work: IdenticalWork) -> str:
-    """Return the students of one group of identical work."""
-    same = same_file(work)
-    return f"{enumerated(work.students, MAX_NAMED)}{f' ({same})' if same else ''}"
+def identical_line(work: IdenticalWork, names: Mapping[str, str]) -> str:
+    """Return the students of one group of identical work, by `names`."""
+    return f"{people_text([names[key] for key in work.students], MAX_NAMED)}: {what_is_same(work, names)}"
 
 
 def evidence_lines(summary: ClassSummary) -> list[str]:

@@ -15,7 +15,7 @@ from grader.grading.pictures import evidence_files
 from grader.report.console import wrapped
 from grader.report.details import answer_lines, counts_lines, model_lines
 from grader.report.order import status_of
-from grader.text import counted, counted_points, format_points, printable
+from grader.text import counted, counted_points, format_points, named, printable
 
 _INDENT = 2
 
@@ -54,7 +54,7 @@ def who(item: QueuedResult) -> str:
     student = item.grade.student
     if item.number is not None:
         return f"submission {item.number}"
-    return printable(f"{student.name} ({student.key})" if student.name else student.key)
+    return printable(named(student.key, student.name))
 
 
 def who_together(item: QueuedResult) -> str:

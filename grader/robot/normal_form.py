@@ -11,6 +11,8 @@ from grader.robot.model import Collision, Joint, Link, Robot, Visual
 from grader.robot.reader import Reading
 from grader.xml.parsing import Element
 
+_MODEL = ("link", "joint", "material")
+_SHORT, _MAX_LINES = 8, 1000  # digits of the hash of a line, lines of a robot
 _NAMES = ("name", "material_name")  # of materials: nothing outside of the file refers to them
 
 
@@ -37,12 +39,29 @@ def robot_hash(reading: Reading) -> str:
         return ""
     problems = sorted((problem.code, problem.message) for problem in reading.problems)
     content = problems, normal_form(reading.robot), _extensions(reading.elements)
+    return _hash(content)
+
+
+def written_form(root: Element | None, *, is_handed_out: bool = False) -> tuple[str, list[str]]:
+    """Return the hash of the links, joints and materials as they are written, and each line of the other elements.
+
+    Comments and white space do not count; names, order and the spelling of numbers do. A line is an element in a
+    `<gazebo>`, for example: a hash and this tag. Without any the hash is empty: `robot_hash` says who has the same.
+    """
+    children = list(root) if root is not None else []
+    others = (child for child in children if child.tag not in _MODEL)
+    lines = [f"{_hash(line)[:_SHORT]} {child.tag}" for child in others for line in _content(child)]
+    model = [_content(child) for child in children if child.tag in _MODEL] if lines or is_handed_out else []
+    return _hash(model) if model else "", lines[:_MAX_LINES]
+
+
+def _hash(content: object) -> str:
     return sha256(repr(content).encode("utf-8", "backslashreplace")).hexdigest()
 
 
 def _extensions(root: Element | None) -> list[tuple[Any, ...]]:
     """Return what the robot has besides links, joints and materials, such as <gazebo>, sorted."""
-    others = (child for child in root if child.tag not in ("link", "joint", "material")) if root is not None else ()
+    others = (child for child in root if child.tag not in _MODEL) if root is not None else ()
     return sorted(map(_content, others), key=repr)
 
 

@@ -16,6 +16,7 @@ STANDARD_INPUT = "-"
 _NO_URDFS = frozenset(
     {".py", ".md", ".rviz", ".yaml", ".yml", ".toml", ".cfg", ".json", ".png", ".jpg", ".jpeg", ".gif", ".pdf", ".docx"}
 )
+_TABLES = frozenset({".csv", ".tsv", ".xlsx", ".xls", ".ods"})
 _EXPECTED = "give a .urdf file, or the folder or archive that was submitted"
 
 
@@ -40,6 +41,8 @@ def open_submission(path: str, lab: Lab, opening: Opening = DEFAULTS, *, with_ne
     if not path:
         raise InputError(f"the path is empty: {_EXPECTED}")
     place = Path(path)
+    if place.suffix.lower() in _TABLES and place.is_file():
+        raise InputError(f"{printable_path(place)} is a table, not a submission: {_EXPECTED}")
     tree = open_tree(place, partial(_is_lab, lab))
     shown = printable_path(place)
     if tree is not None:

@@ -5,27 +5,29 @@ from pathlib import Path
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.marks import EXTENSION
 from grader.classroom.intake.roster import Roster, roster_from_json
 from grader.classroom.intake.roster_file import read_roster
-from grader.classroom.run.worker import robot_hashes
+from grader.classroom.run.worker import work_hashes
 from grader.errors import InputError
 from grader.grading.answers import load_with_answers
 from grader.grading.rubric import Rubric
 from grader.submission.opening import open_submission
-from grader.text import counted, enumerated, printable_path, shell_quoted
+from grader.text import counted, enumerated, named, people_text, printable, printable_path, shell_quoted
 from grader.usecases.rubrics import DEFAULT_RUBRIC
 from grader.usecases.terminal import Warn
 
 _MAX_NAMED = 5
+_EXTENDED = "SELECT key FROM current_mark JOIN student ON student.id = student WHERE criterion = ?"
 
 
 def handed_out_hashes(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
-    """Yield the hashes of the robots that the course handed out. Raises InputError for a file without a robot."""
+    """Yield the hashes of the work that the course handed out. Raises InputError for a file without any."""
     for path in files:
-        hashes = robot_hashes(open_submission(str(path), rubric.lab))
-        if not any(hashes):
-            raise InputError(f"--ignore-file {printable_path(path)}: there is no URDF in it")
-        yield from filter(None, hashes)
+        hashes = work_hashes(open_submission(str(path), rubric.lab))
+        if not hashes:
+            raise InputError(f"--ignore-file {printable_path(path)}: there is no URDF and no package in it")
+        yield from hashes
 
 
 def rubric_of(name: str | None, gradebook: Path, warn: Warn) -> Rubric:
@@ -57,25 +59,25 @@ def warn_of_parts(book: Gradebook, wanted: tuple[str, ...], rubric: Rubric, warn
 
 
 def roster_of(file: Path | None, gradebook: Path, warn: Warn) -> Roster | None:
-    """Return the roster, or that of an earlier run into the gradebook, with the LMS ids that the gradebook knows.
-
-    Say so if the roster has fewer students than that of the earlier run.
-    """
+    """Return the roster, or that of an earlier run into the gradebook, with the LMS ids that the gradebook knows."""
     roster = read_roster(file) if file is not None else None
     if not gradebook.exists():
         return roster
     with Gradebook(gradebook) as book:
         earlier = roster_from_json(book.roster_entries())
-        missing = (
-            []
-            if roster is None or earlier is None
-            else [student.key for student in earlier.students if roster.entry(student.key) is None]
-        )
-        if missing and roster is not None and earlier is not None and len(roster.entries) < len(earlier.entries):
-            warn(
-                f"the roster has {counted(len(roster.entries), 'student')}, "
-                f"but the gradebook's roster has {len(earlier.entries)}."
-                f" Missing on the new one: {enumerated(missing, _MAX_NAMED)}"
-            )
+        for line in _roster_changes(roster, earlier, book) if roster is not None else ():
+            warn(printable(line))
         roster = roster or earlier
         return roster.with_lms_numbers(book.students()) if roster is not None else None
+
+
+def _roster_changes(roster: Roster, earlier: Roster | None, book: Gradebook) -> Iterator[str]:
+    """Yield that a roster has fewer students than the earlier one, and whose deadline in it does not count."""
+    missing = [one.key for one in (earlier.students if earlier is not None else ()) if roster.entry(one.key) is None]
+    if earlier is not None and missing and len(roster.entries) < len(earlier.entries):
+        count = f"the roster has {counted(len(roster.entries), 'student')}, but the gradebook's roster has"
+        yield f"{count} {len(earlier.entries)}. Missing on the new one: {enumerated(missing, _MAX_NAMED)}"
+    extended = {key for (key,) in book.rows(_EXTENDED, EXTENSION)}
+    own = (one.student for one in roster.entries if (one.due or one.extension_days) and one.student.key in extended)
+    if names := [named(one.key, one.name) for one in own]:
+        yield f"the deadline of `grader extend` counts, not that of the roster: {people_text(names, _MAX_NAMED)}"

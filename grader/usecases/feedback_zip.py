@@ -13,19 +13,18 @@ from grader.classroom.lms.feedback_names import ARCHIVES, canvas_upload_name, mo
 from grader.classroom.lms.filling import FillOptions, match_rows
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import read_worksheet, students_of
-from grader.classroom.lms.preflight import Preflight
+from grader.classroom.lms.preflight import Preflight, RowNote
 from grader.classroom.run.pool import Processes, processors
 from grader.errors import InputError
 from grader.files.zip_writing import tar_gz_of, zip_of
 from grader.report.formats import Format
-from grader.text import counted, first_lines, printable
+from grader.text import counted, named
 from grader.usecases.class_hints import HintOptions, search_class_hints
 from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, render_reports
+from grader.usecases.grade_files import by_reason
 from grader.usecases.report_names import file_names, report_names
 from grader.usecases.terminal import Terminal
 from grader.values import dataclass
-
-_MAX_LISTED = 50  # students without a file
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +58,10 @@ def feedback_zip(grades: Grades, request: FeedbackRequest, terminal: Terminal) -
     if not files:
         why = next(iter(feedback.without.values()), "no student has a result, a final mark or an excuse")
         raise InputError(f"no student would get a report in {lms.title()}: {why}")
-    for line in first_lines([f"no feedback for {key}: {why}" for key, why in feedback.without.items()], _MAX_LISTED):
-        warn(printable(line))
+    names = {student.key: named(student.key, student.name) for student in grades.book.students()}
+    without = (RowNote(0, names[key], why) for key, why in feedback.without.items())
+    for line in by_reason("no feedback for", without, most=10):
+        warn(line)
     given = [grade for grade, _ in feedback.reports if grade.student.key not in feedback.without]
     if count := sum(bool(grade.why_not_final) and not grade.is_excused for grade in given):
         warn(f"reports of grades that are not final yet: {count}")

@@ -3,7 +3,7 @@
 import gc
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from datetime import datetime
 from math import isfinite
 from pathlib import Path
@@ -24,11 +24,12 @@ from grader.usecases.class_hints import HintOptions, search_class_hints
 from grader.usecases.class_inputs import handed_out_hashes, roster_of, rubric_of, warn_of_parts
 from grader.usecases.class_summary import SummaryRequest, class_summary, read_deadline, warn_of_due
 from grader.usecases.rubrics import files_of
-from grader.usecases.terminal import Terminal, Warn
+from grader.usecases.terminal import Terminal, Warn, one_total
 from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_inputs, refuse_symlinks, save
 from grader.values import dataclass
 
 _MAX_LINES = 10
+_UNREADABLE = "SELECT count(*) FROM grade WHERE verdict = 'unreadable' AND NOT is_gone AND source = ?"
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,14 +98,17 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     )
     with Gradebook(request.gradebook, create=True) as book:
         warn_of_parts(book, request.part, rubric, warn)
-        with _executor(request) as (executor, workers), terminal.show_class("grading") as show:
-            batch = Batch(book, rubric, settings, executor, workers, show)
-            done = _run(batch, intake, warn)
-        _warn_lines(batch.notes, warn)
-        errored = f" ({done.errored} errored)" if done.errored else ""
-        warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged")
-        with_fixes = _search_hints(request, book, terminal)
-        _write_files(request, book, deadline, terminal)
+        with one_total(terminal, len(intake)) if request.reports else nullcontext(terminal) as one:
+            with _executor(request) as (executor, workers), one.show_class("grading") as show:
+                batch = Batch(book, rubric, settings, executor, workers, show)
+                done = _run(batch, intake, warn)
+            _warn_lines(batch.notes, warn)
+            errored = f" ({done.errored} errored)" if done.errored else ""
+            ((unread,),) = book.rows(_UNREADABLE, str(request.root))
+            unread = f" ({unread} could not be graded)" if unread and done.unchanged else ""
+            warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged{unread}")
+            with_fixes = _search_hints(request, book, one)
+            _write_files(request, book, deadline, one)
         summary = SummaryRequest(request.output_format, with_fixes, request.verbose)
         return class_summary(Grades(book, deadline), summary, terminal.screen(), done)
 

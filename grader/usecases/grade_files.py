@@ -1,6 +1,6 @@
 """Write the current grades as CSV, or into a file that an LMS exported, and say what importing it changes."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from functools import partial
@@ -19,7 +19,7 @@ from grader.classroom.lms.preflight import Filled, Preflight, RowNote
 from grader.classroom.tables import SIZE_LIMIT, CellValue, write_table
 from grader.files.reading import read_capped
 from grader.grading.criterion import Criterion
-from grader.text import counted, printable
+from grader.text import first_lines, people_text, printable
 
 _STUDENT_COLUMNS = (
     "id", "name", "email", "login", "sis", "status", "score", "max_score", "pending", "late_days", "late_points",
@@ -74,7 +74,7 @@ FILLERS: dict[str, Callable[[bytes, Sequence[LmsGrade], FillOptions], Filled]] =
 _WITH_FEEDBACK = ("moodle",)
 _WITH_EXCUSES = ("canvas",)
 _NEXT_STEP = "`grader mark STUDENT total POINTS` gives a final mark; `grader review` grades what is open"
-_MAX_NAMED, _MAX_LINES = 3, 50
+_MAX_NAMED, _MAX_LINES, _MAX_REASONS = 3, 10, 50
 
 
 def fill_lms_file(lms: str, file: Path, grades: Grades, options: FillOptions, *, pending_as_zero: bool) -> Filled:
@@ -129,49 +129,29 @@ def _whole(remarks: Remarks) -> Iterator[FeedbackItem]:
 def preflight_lines(found: Preflight) -> Iterator[str]:
     """Yield what filling in an LMS file changes, line by line, at most 50 lines of each kind."""
     yield f"column {found.column!r}: {found.filled} filled in, {found.unchanged} already the same"
-    yield from map(
-        printable, [f"excused (EX): {len(found.excused)} ({_names_text(found.excused)})"] if found.excused else []
-    )
-    for kind in ("final mark", "excuse"):
-        older = [one.who for one in found.older if one.why == kind]
-        verb = "is" if len(older) == 1 else "are"
-        text = f"{counted(len(older), kind)} {verb} from before the newest submission: {_names_text(older)}"
-        yield from map(printable, [text] if older else [])
-    yield from _first_lines_of(
-        "grades that change",
-        [f"row {row.row}, {row.who}: was {row.was}, becomes {row.becomes}" for row in found.conflicts],
-    )
-    yield from _first_lines_of("without a grade", _by_reason("without a grade", found.ungraded))
-    if any(row.why != "excused" for row in found.ungraded):
-        yield _NEXT_STEP
+    if found.excused:
+        yield printable(f"excused (EX): {len(found.excused)} ({people_text(found.excused, _MAX_NAMED)})")
+    changed = [f"row {row.row}, {row.who}: was {row.was}, becomes {row.becomes}" for row in found.conflicts]
+    yield from map(printable, first_lines(changed, _MAX_LINES))
     for kind, rows in (
-        ("the LMS would refuse the grade", found.refused),
-        ("in the file, but not in the gradebook", found.unknown),
-        ("in the gradebook, but not in the file", found.missing),
-        ("ambiguous", found.ambiguous),
-        ("kept the comment that a person wrote", found.kept_feedback),
+        ("given before the newest submission:", [row._replace(row=0) for row in found.older]),
+        ("without a grade:", [row._replace(row=0) for row in found.ungraded]),
+        ("the LMS would refuse the grade:", found.refused),
+        ("in the file, but not in the gradebook:", found.unknown),
+        ("in the gradebook, but not in the file:", found.missing),
+        ("ambiguous:", found.ambiguous),
+        ("kept the comment that a person wrote:", found.kept_feedback),
     ):
-        yield from _first_lines_of(
-            kind, [f"{kind}: {f'row {row.row}, ' if row.row else ''}{row.who}: {row.why}" for row in rows]
-        )
+        yield from by_reason(kind, rows)
+        if kind == "without a grade:" and any(row.why != "excused" for row in rows):
+            yield _NEXT_STEP
     yield from map(printable, found.warnings)
 
 
-def _by_reason(kind: str, rows: Sequence[RowNote]) -> list[str]:
-    """Return a line for each reason, in the order of the rows: how many have it, and the first of them."""
+def by_reason(kind: str, rows: Iterable[RowNote], most: int = _MAX_NAMED) -> Iterator[str]:
+    """Yield a line for each reason, in the order of the rows: who has it, of several how many and the first of them."""
     names: dict[str, list[str]] = {}
     for row in rows:
-        names.setdefault(row.why, []).append(row.who)
-    return [f"{kind}, {reason}: {len(students)} ({_names_text(students)})" for reason, students in names.items()]
-
-
-def _names_text(names: Sequence[str]) -> str:
-    shown = list(names[:_MAX_NAMED])
-    more = [f"... and {len(names) - len(shown)} more"] if len(names) > len(shown) else []
-    return ("; " if any("," in name for name in shown) else ", ").join([*shown, *more])
-
-
-def _first_lines_of(kind: str, lines: Sequence[str]) -> Iterator[str]:
-    yield from map(printable, lines[:_MAX_LINES])
-    if len(lines) > _MAX_LINES:
-        yield f"{kind}: and {len(lines) - _MAX_LINES} more"
+        names.setdefault(row.why, []).append(f"row {row.row}, {row.who}" if row.row else row.who)
+    several = {why: f"{len(who)} ({people_text(who, most)})" if who[1:] else who[0] for why, who in names.items()}
+    yield from map(printable, first_lines([f"{kind} {who}: {why}" for why, who in several.items()], _MAX_REASONS))

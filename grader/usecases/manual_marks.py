@@ -9,6 +9,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import COMMENT_NUMBER, numbered_comments
 from grader.classroom.gradebook.marks import (
+    EXTENSION,
     TAKE_BACK,
     WITHDRAWN,
     WITHDRAWN_SECOND,
@@ -25,14 +26,14 @@ from grader.classroom.typed_names import criterion_of, read_points
 from grader.errors import InputError
 from grader.grading.criterion import TOTAL, Criterion
 from grader.report.review import mark_text
-from grader.text import counted_points, enumerated, format_points, printable
+from grader.text import counted_points, format_points, named, people_text, printable
 from grader.usecases.terminal import Warn
 
 _NOT_COUNTED = "{} is corrected after grading, by [adjust] in the rubric: its manual marks do not count"
 _MAX_NAMED = 10
 # The students whose newest submission has the same files in the same class.
 _SAME_SUBMISSION = """
-SELECT id, key FROM grade WHERE id <> ? AND result IS NOT NULL AND (source, json_extract(files, '$[0]')) =
+SELECT id, key, name FROM grade WHERE id <> ? AND result IS NOT NULL AND (source, json_extract(files, '$[0]')) =
     (SELECT source, json_extract(files, '$[0]') FROM grade WHERE id = ?) ORDER BY key
 """
 
@@ -49,6 +50,7 @@ class MarkRequest(NamedTuple):
     undo: bool = False
     second: bool = False
     comments: bool = False
+    missing: bool = False
 
     @property
     def is_total(self) -> bool:
@@ -66,6 +68,8 @@ class MarkRequest(NamedTuple):
         has_entry = bool(has_points or self.comment or self.excused or self.second)
         rules = (
             (self.comments and (has_entry or self.undo), "--comments lists comments and records nothing: use it alone"),
+            (not (self.submission or self.missing) or not self.criterion, "name a STUDENT and a CRITERION"),
+            (self.missing and not (self.is_total and self.is_points), f"write it as --missing {TOTAL} POINTS"),
             (self.undo and has_entry, "--undo takes no POINTS and no other option but --by"),
             (self.excused and has_points, "--excused has no POINTS"),
             (self.excused and self.second, "--second cannot be used with --excused"),
@@ -86,38 +90,47 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
     with Gradebook(gradebook) as book:
         grades = Grades(book)
         grade = grades.find(request.submission)
-        rubric = grades.rubric(grade.rubric) if grade.rubric else grades.newest_rubric()
-        criterion = None if request.is_total else criterion_of(rubric, request.criterion)
+        criterion, most = marked_criterion(grades, grade, request)
         if request.comments:
             return _comment_lines(numbered_comments(book, request.criterion))
-        most = criterion.points if criterion else sum((row.points for row in grades.criteria), Decimal(0))
-        if request.is_points and criterion is not None and criterion.adjustment is not None and not criterion.points:
-            raise InputError(_NOT_COUNTED.format(criterion.id))
         before = _record(book, grade, request, most, warn)
         now = grades.find(grade.student.key)
         whole = sum((row.maximum for row in grades.criteria), Decimal(0))
         others = [] if request.second or request.is_total else list(_unmarked_members(book, now, request.criterion))
     _report_replaced(before, criterion, request, warn)
     if others:
-        warn(f"the same submission counts for {enumerated(others, _MAX_NAMED)}: mark them as well")
+        warn(f"the same submission counts for {people_text(others, _MAX_NAMED)}: mark them as well")
     text = _grade_text(now, whole)
     if request.second:
         text = f"second opinion on {request.criterion}; the grade stays the same"
-    return printable(f"{_who(now.student, request.submission)}: {text}") + "\n"
+    elif request.criterion == EXTENSION:
+        deadline = f"deadline {request.comment}" if request.comment else "no deadline of their own"
+        text = "; ".join(filter(None, (deadline, now.late.reason, text)))
+    return printable(f"{key_and_name(now.student)}: {text}") + "\n"
+
+
+def marked_criterion(grades: Grades, grade: StudentGrade, request: MarkRequest) -> tuple[Criterion | None, Decimal]:
+    """Return the criterion to mark, None for the whole submission, and the most points. Raises InputError."""
+    if request.criterion in (TOTAL, EXTENSION):
+        return None, sum((row.points for row in grades.criteria), Decimal(0))
+    criterion = criterion_of(grades.rubric(grade.rubric) if grade.rubric else grades.newest_rubric(), request.criterion)
+    if request.is_points and criterion.adjustment is not None and not criterion.points:
+        raise InputError(_NOT_COUNTED.format(criterion.id))
+    return criterion, criterion.points
 
 
 def _unmarked_members(book: Gradebook, grade: StudentGrade, criterion: str) -> Iterator[str]:
-    """Yield the keys of the other members of a team whose newest mark of a criterion is not the same."""
+    """Yield the other members of a team whose newest mark of a criterion is not the same."""
     mark = newest_mark(book, grade.id, criterion)
-    for student, key in list(book.rows(_SAME_SUBMISSION, grade.id, grade.id)):
+    for student, key, name in list(book.rows(_SAME_SUBMISSION, grade.id, grade.id)):
         other = newest_mark(book, student, criterion)
         if mark is not None and (WITHDRAWN if other is None else other.entry) != mark.entry:
-            yield printable(key)
+            yield printable(named(key, name))
 
 
-def _who(student: Student, typed: str) -> str:
-    """Return the key that was typed, else also the name, to see who was found."""
-    return student.key if typed == student.key or not student.name else f"{student.name} ({student.key})"
+def key_and_name(student: Student) -> str:
+    """Return who was found: "12280, Doe, Jane"."""
+    return student.key if student.name in ("", student.key) else f"{student.key}, {student.name}"
 
 
 def _record(book: Gradebook, grade: StudentGrade, request: MarkRequest, most: Decimal, warn: Warn) -> Mark | None:
@@ -130,11 +143,12 @@ def _record(book: Gradebook, grade: StudentGrade, request: MarkRequest, most: De
     if request.second:
         _refuse_own_opinion(newest_mark(book, grade.id, request.criterion), request)
     comment = _comment(book, request, warn)
-    entry = _entry(request, lambda text: read_points(text, request.criterion, most))
+    entry = entry_of(request, lambda text: read_points(text, request.criterion, most))
     return add_mark(book, grade, request.criterion, entry._replace(comment=comment), request.by).before
 
 
-def _entry(request: MarkRequest, read: Callable[[str], Decimal]) -> Entry:
+def entry_of(request: MarkRequest, read: Callable[[str], Decimal]) -> Entry:
+    """Return the entry of a request, without its comment unless that is all; `read` reads points."""
     match request:
         case MarkRequest(excused=True):
             return Entry("excused")
@@ -172,7 +186,8 @@ def _report_replaced(before: Mark | None, criterion: Criterion | None, request: 
     is_withdrawn = before is None or before.entry.kind == "withdrawn" or before.entry == WITHDRAWN_SECOND
     if before is not None and not is_withdrawn:
         what = "second opinion" if request.second else "comment" if before.entry.kind == "comment" else "mark"
-        warn(f"this {'undoes' if request.undo else 'replaces'} the newest {what} of {name}: {mark_text(before)}")
+        newest = f"newest {what} of {name}: {mark_text(before)}" if name != EXTENSION else f"deadline {before.comment}"
+        warn(f"this {'undoes' if request.undo else 'replaces'} the {newest}")
     if criterion is not None and criterion.adjustment is not None:
         warn(_NOT_COUNTED.format(name))
 

@@ -1,14 +1,16 @@
 """Load, list and check rubrics."""
 
+import os
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import GraderError, MissingElement, NotDecided, RubricError
-from grader.text import counted, printable
+from grader.text import counted, printable, printable_path, shell_quoted
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.terminal import Warn
+from grader.usecases.writing import make_folder
 
 if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
@@ -75,6 +77,25 @@ def files_of(name: str) -> list[Path]:
             place = file.parent / rubric.reference
             found.append(place / rubric.urdf if place.resolve() in file.resolve().parents else place)
     return found
+
+
+def copy(name: str, folder: Path) -> str:
+    """Copy the files of a shipped rubric; return what was written, and the next step. Raises GraderError."""
+    from shutil import copyfile, copytree
+
+    from grader.grading.rubric import shipped_rubrics
+
+    file = shipped_rubrics().get(name)
+    if file is None:
+        raise GraderError(f"{printable_path(name)} is not a rubric of the grader: {', '.join(shipped_rubrics())}")
+    copies = {source: folder / source.relative_to(file.parent) for source in files_of(name) if source.exists()}
+    if there := [*filter(os.path.lexists, copies.values())]:
+        raise GraderError(f"{printable_path(there[0])} exists already: nothing was copied")
+    for source, target in copies.items():
+        make_folder(target.parent)
+        (copytree if source.is_dir() else copyfile)(source, target)
+    lines = [*map(str, copies.values()), f"next: change it, then `grader rubric check {shell_quoted(copies[file])}`"]
+    return "".join(f"{printable(line)}\n" for line in lines)
 
 
 def check(name: str, warn: Warn) -> tuple[str, ExitCode]:

@@ -119,7 +119,7 @@ class _Solution(ReferenceSolution):
     """A reference solution without a file: the arm."""
 
     def __init__(self) -> None:
-        super().__init__(Path(), Lab(""))
+        super().__init__(Path(), Lab(""), str)
 
     @property
     def robot(self) -> Configuration:

@@ -3,6 +3,7 @@
 import atexit
 import io
 import os
+import re
 import shutil
 import signal
 import sqlite3
@@ -131,9 +132,9 @@ def is_sound(gradebook: Path) -> bool:
 
 
 def counted(done: Done) -> str:
-    """Return the line in which a run reports how many submissions it has graded."""
-    (line,) = (line for line in done.stderr.splitlines() if line.endswith(" unchanged"))
-    return line.removeprefix("grader: ")
+    """Return the line in which a run reports how many submissions it has graded, without the unchanged unreadable ones."""
+    (line,) = (line for line in done.stderr.splitlines() if re.search(r" unchanged( \(|$)", line))
+    return line.removeprefix("grader: ").partition(" unchanged")[0] + " unchanged"
 
 
 def contents(folder: Path) -> dict[str, bytes]:

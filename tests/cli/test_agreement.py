@@ -48,8 +48,8 @@ def test_agreement(top: Path) -> None:
     assert (
         "Agreement of two graders\n"
         "  3 items marked twice, 1 with the same points, mean difference 33.3 % of the\n    maximum\n"
-        "  anna, essay: 3 and 0 of 4 points\n"
-        "  anna, essay: 3 and 2 of 4 points\n"
+        "  Anna Ek (anna), essay: 3 and 0 of 4 points\n"
+        "  Anna Ek (anna), essay: 3 and 2 of 4 points\n"
     ) in text
 
 

@@ -96,6 +96,19 @@ class TestPaths:
         refuse(command, str(tmp_path / "\x1b[31m\nred.urdf"), words="\\x1b[31m\\x0ared.urdf")
 
 
+@pytest.mark.parametrize("name", ["grades.csv", "Grades.XLSX", "grades.ods"])
+def test_a_table_is_no_submission(name: str, tmp_path: Path) -> None:
+    """An export of grades is refused before it is read, also by `inspect`."""
+    (tmp_path / name).write_bytes(b"id,total\n")
+    for command in ("grade", "inspect"):
+        done = run([command, tmp_path / name])
+        expected = (
+            f"grader: {tmp_path / name} is a table, not a submission: give a .urdf file, or the folder or archive"
+        )
+        assert (done.returncode, done.stdout) == (2, b"")
+        assert done.stderr.decode().startswith(expected)
+
+
 def test_a_folder_without_a_urdf_is_graded_and_cannot_be_inspected(tmp_path: Path) -> None:
     """A submission without a URDF gets a report that says so; there is nothing to inspect."""
     (tmp_path / "build").mkdir()

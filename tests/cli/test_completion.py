@@ -43,7 +43,7 @@ def in_bash(line: str) -> list[str]:
         ("grader ", list(COMMANDS)),
         ("grader gr", ["grade", "gradebook"]),
         ("grader --v", ["--version"]),
-        ("grader rubric ", ["list", "show", "checks", "new", "check", "test"]),
+        ("grader rubric ", ["list", "show", "checks", "new", "copy", "check", "test"]),
         ("grader grade x --fa", ["--fail-under"]),
         ("grader grade x --rubric ", RUBRICS),
         ("grader batch x --rubric l", rubrics("l")),

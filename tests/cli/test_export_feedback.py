@@ -212,7 +212,10 @@ def test_the_feedback_of_real_submissions(top: Path) -> None:
     assert "Because of the roots" not in anna  # the model answer
     assert "Note: Final mark: 0 points, given by Lee instead of the sum of the criteria. never came" in dora
     assert "Not graded, because nothing was submitted: loads, box, tall, essay and picture (11 points)." in dora
-    assert "no feedback for emil: matches no row of the worksheet, or several" in done.stderr
+    assert (
+        "no feedback for 3 (Ben Oh (ben), Cleo Ray (cleo) and Ben Oh (emil)): matches no row of the worksheet, or several"
+        in done.stderr
+    )
     assert "reports of grades that are not final yet: 1\n" in done.stderr  # of anna
     assert "2 files for 2 students" in done.stderr
 
@@ -228,7 +231,7 @@ def test_a_file_name_that_is_not_utf_8(tmp_path: Path) -> None:
     done = export(tmp_path, "canvas", "--comments", tmp_path / "feedback.zip")
     assert done.returncode == 0, done.stderr
     why = "Canvas would find another student, or none, by the name 'bob_102_556_ro\\udcffbot.urdf'"
-    assert f"no feedback for ben: {why}\n" in done.stderr
+    assert f"no feedback for Ben Oh (ben): {why}\n" in done.stderr
     with zipfile.ZipFile(tmp_path / "feedback.zip") as archive:
         assert archive.namelist() == ["anna_101_555_robot.urdf"]
 

@@ -35,15 +35,15 @@ def total(top: Path, key: str) -> tuple[Decimal, bool, str]:
 def test_a_final_mark_with_and_without_a_submission(top: Path) -> None:
     """It replaces the total of anyone in the gradebook; `-` withdraws it."""
     missing = mark(top, "dora", "total", "0", "--comment", "nothing submitted")
-    assert (missing.returncode, missing.stdout, missing.stderr) == (0, "dora: final mark 0 of 11 points\n", "")
+    assert (missing.returncode, missing.stdout, missing.stderr) == (0, "dora, Dora Fi: final mark 0 of 11 points\n", "")
     assert total(top, "dora") == (Decimal(0), False, "")
     given = mark(top, "Anna Ek", "total", "7,5")
-    assert given.stdout == "Anna Ek (anna): final mark 7.5 of 11 points; the criteria give 6 of 11 points\n"
+    assert given.stdout == "anna, Anna Ek: final mark 7.5 of 11 points; the criteria give 6 of 11 points\n"
     assert total(top, "anna") == (Decimal("7.5"), False, "")
     withdrawn = mark(top, "anna", "total", "-")
-    assert withdrawn.stdout == "anna: 6 of 11 points; needs manual grading: 5 points\n"
+    assert withdrawn.stdout == "anna, Anna Ek: 6 of 11 points; needs manual grading: 5 points\n"
     assert withdrawn.stderr.startswith("grader: this replaces the newest mark of total: 7.5 points by an unnamed")
-    assert mark(top, "dora", "total", "-").stdout == "dora: no submission\n"
+    assert mark(top, "dora", "total", "-").stdout == "dora, Dora Fi: no submission\n"
 
 
 def test_extra_credit_is_part_of_a_final_mark(top: Path) -> None:
@@ -51,17 +51,19 @@ def test_extra_credit_is_part_of_a_final_mark(top: Path) -> None:
     text = lab_text(extra="2").replace('id = "extra"', 'id = "extra"\nbonus = true')
     (top / "bonus.toml").write_text(text)
     assert batch(top, rubric=top / "bonus.toml").returncode == 0
-    assert mark(top, "dora", "total", "13").stdout == "dora: final mark 13 of 11 points\n"
+    assert mark(top, "dora", "total", "13").stdout == "dora, Dora Fi: final mark 13 of 11 points\n"
     assert refusal(mark(top, "dora", "total", "13.5")) == "total is worth 0 to 13 points, not 13.5"
 
 
 def test_an_excuse(top: Path) -> None:
     """A student with or without a submission is excused; a later final mark replaces the excuse."""
-    assert mark(top, "dora", "total", "--excused", "--comment", "ill", "--by", "Kim").stdout == "dora: excused\n"
+    assert (
+        mark(top, "dora", "total", "--excused", "--comment", "ill", "--by", "Kim").stdout == "dora, Dora Fi: excused\n"
+    )
     assert total(top, "dora") == (Decimal(0), True, "excused")
-    assert mark(top, "anna", "total", "--excused").stdout == "anna: excused\n"
+    assert mark(top, "anna", "total", "--excused").stdout == "anna, Anna Ek: excused\n"
     again = mark(top, "dora", "total", "4")
-    assert again.stdout == "dora: final mark 4 of 11 points\n"
+    assert again.stdout == "dora, Dora Fi: final mark 4 of 11 points\n"
     assert again.stderr.startswith("grader: this replaces the newest mark of total: excused by Kim at 20")
     assert again.stderr.endswith(": ill\n")
 
@@ -69,11 +71,11 @@ def test_an_excuse(top: Path) -> None:
 def test_a_comment_without_points(top: Path) -> None:
     """It changes no points, on a criterion or on the whole submission; on a mark it keeps the points."""
     alone = mark(top, "anna", "box", "--comment", "well named", "--by", "Kim")
-    assert (alone.stdout, alone.stderr) == ("anna: 6 of 11 points; needs manual grading: 5 points\n", "")
+    assert (alone.stdout, alone.stderr) == ("anna, Anna Ek: 6 of 11 points; needs manual grading: 5 points\n", "")
     assert mark(top, "anna", "total", "--comment", "well done").stdout == alone.stdout
     assert mark(top, "anna", "essay", "3").returncode == 0
     kept = mark(top, "anna", "essay", "--comment", "the roots")
-    assert kept.stdout == "anna: 9 of 11 points; needs manual grading: 1 point\n"
+    assert kept.stdout == "anna, Anna Ek: 9 of 11 points; needs manual grading: 1 point\n"
     assert entries(top)[-1] == ("points", 30_000, "the roots", "")
     report = batch(top, "--reports", top / "out", "--report-format", "markdown")
     assert report.returncode == 0, report.stderr
@@ -86,9 +88,11 @@ def test_undo(top: Path) -> None:
     mark(top, "anna", "essay", "--comment", "read again", "--by", "Kim")
     mark(top, "anna", "essay", "3", "--by", "Lee")
     undone = mark(top, "anna", "essay", "--undo", "--by", "Max")
-    assert undone.stdout == "anna: 6 of 11 points; needs manual grading: 5 points\n"
+    assert undone.stdout == "anna, Anna Ek: 6 of 11 points; needs manual grading: 5 points\n"
     assert undone.stderr.startswith("grader: this undoes the newest mark of essay: 3 points by Lee at 20")
-    assert mark(top, "anna", "essay", "--undo").stdout == "anna: 9 of 11 points; needs manual grading: 1 point\n"
+    assert (
+        mark(top, "anna", "essay", "--undo").stdout == "anna, Anna Ek: 9 of 11 points; needs manual grading: 1 point\n"
+    )
     comment, points = ("comment", None, "read again", "Kim"), ("points", 30_000, "", "Lee")
     assert entries(top) == [comment, points, comment, points]
     with Gradebook(top / "book.db") as book:
@@ -117,7 +121,7 @@ def test_undo_of_the_only_mark(top: Path) -> None:
     """It is withdrawn; without a mark there is nothing to undo."""
     assert refusal(mark(top, "dora", "total", "--undo")) == "there is no mark of total to undo for dora"
     mark(top, "dora", "total", "0")
-    assert mark(top, "dora", "total", "--undo").stdout == "dora: no submission\n"
+    assert mark(top, "dora", "total", "--undo").stdout == "dora, Dora Fi: no submission\n"
     assert [kind for kind, *_ in entries(top)] == ["points", "withdrawn"]
 
 
@@ -137,14 +141,16 @@ def test_a_second_opinion_changes_no_grade(top: Path) -> None:
     mark(top, "anna", "essay", "3", "--by", "Kim")
     before = total(top, "anna")
     second = mark(top, "anna", "essay", "1", "--second", "--by", "Lee", "--comment", "two roots")
-    assert (second.stdout, second.stderr) == ("anna: second opinion on essay; the grade stays the same\n", "")
+    assert (second.stdout, second.stderr) == ("anna, Anna Ek: second opinion on essay; the grade stays the same\n", "")
     again = mark(top, "anna", "essay", "-", "--second", "--by", "Lee")
     assert again.stderr.startswith("grader: this replaces the newest second opinion of essay: 1 point by Lee at 20")
     assert mark(top, "anna", "essay", "2", "--second", "--by", "Lee").stderr == ""
     assert total(top, "anna") == before
     own = refusal(mark(top, "anna", "essay", "2", "--second", "--by", "Kim"))
     assert own == "the mark of essay is by Kim: a second opinion must be given by another person"
-    assert mark(top, "anna", "essay", "--undo").stdout == "anna: 6 of 11 points; needs manual grading: 5 points\n"
+    assert (
+        mark(top, "anna", "essay", "--undo").stdout == "anna, Anna Ek: 6 of 11 points; needs manual grading: 5 points\n"
+    )
 
 
 def test_comments_are_numbered(top: Path) -> None:
@@ -205,7 +211,7 @@ def test_a_mark_of_an_adjusted_criterion_is_reported(top: Path) -> None:
         done.stderr
         == "grader: essay is corrected after grading, by [adjust] in the rubric: its manual marks do not count\n"
     )
-    assert done.stdout == "anna: 10 of 11 points; needs manual grading: 1 point\n"
+    assert done.stdout == "anna, Anna Ek: 10 of 11 points; needs manual grading: 1 point\n"
 
 
 def test_points_of_a_dropped_criterion_are_refused(top: Path) -> None:

@@ -60,11 +60,10 @@ def marks(top: Path) -> list[tuple[Any, ...]]:
 
 @pytest.mark.parametrize("name", ["anna", "ae1", "anna@example.org", "101", "Anna Ek"])
 def test_who_is_marked(name: str, top: Path) -> None:
-    """A student is found by key, login, address, number or name; one line gives the new score, and the name unless the key was typed."""
+    """A student is found by key, login, address, number or name; one line gives the new score, key and name."""
     done = mark(top, name, "essay", "3,5", "--comment", "the roots are missing", "--by", "Kim")
     assert (done.returncode, done.stderr) == (0, "")
-    who = name if name == "anna" else "Anna Ek (anna)"
-    assert done.stdout == f"{who}: 9.5 of 11 points; needs manual grading: 1 point\n"
+    assert done.stdout == "anna, Anna Ek: 9.5 of 11 points; needs manual grading: 1 point\n"
     ((criterion, points, comment, author, at, _),) = marks(top)
     assert (criterion, points, comment, author) == ("essay", 35_000, "the roots are missing", "Kim")
     assert at.startswith("20")
@@ -279,7 +278,7 @@ def test_a_replaced_mark_is_reported(top: Path) -> None:
     """There is no question, and a removed mark is not reported as replaced."""
     assert mark(top, "anna", "essay", "3", "--by", "Kim", "--comment", "no\nroots").stderr == ""
     second = mark(top, "anna", "essay", "1")
-    assert second.stdout == "anna: 7 of 11 points; needs manual grading: 1 point\n"
+    assert second.stdout == "anna, Anna Ek: 7 of 11 points; needs manual grading: 1 point\n"
     assert second.stderr.startswith("grader: this replaces the newest mark of essay: 3 points by Kim at 20")
     assert second.stderr.endswith(": no roots\n")
     third = mark(top, "anna", "essay", "-")
@@ -319,3 +318,9 @@ def test_no_report_names_an_account(top: Path) -> None:
     assert "Marked manually: fine." in (out / "anna.md").read_text(encoding="utf-8")
     assert "Marked by Kim." in (out / "emil.md").read_text(encoding="utf-8")
     assert [row[3] for row in marks(top)] == ["jdoe47", "Kim", "jdoe47"]
+
+
+def test_a_rerun_counts_what_could_not_be_graded(top: Path) -> None:
+    """Unchanged submissions that cannot be read are not hidden among the others."""
+    assert "grader: 4 graded, 0 unchanged\n" in batch(top, "--force").stderr
+    assert "grader: 0 graded, 4 unchanged (1 could not be graded)\n" in batch(top).stderr

@@ -12,14 +12,15 @@ TREES = ("ash", "birch", "cedar")
 @pytest.mark.parametrize(
     ("same_file", "line"),
     [
-        ((), "ash, birch and cedar"),
-        ((TREES,), "ash, birch and cedar (the same file)"),
-        ((("ash", "cedar"),), "ash, birch and cedar (the same file: ash and cedar)"),
+        ((), "Ash (ash), birch and cedar: the same robot"),
+        ((TREES,), "Ash (ash), birch and cedar: the same file"),
+        ((("ash", "cedar"),), "Ash (ash), birch and cedar: the same robot; the same file: Ash (ash) and cedar"),
     ],
 )
 def test_identical_work_in_a_line(same_file: tuple[tuple[str, ...], ...], line: str) -> None:
     """It says who of them has the same file."""
-    assert identical_line(IdenticalWork(TREES, same_file)) == line
+    names = {"ash": "Ash (ash)", "birch": "birch", "cedar": "cedar"}
+    assert identical_line(IdenticalWork(TREES, same_file), names) == line
 
 
 @pytest.mark.parametrize(("share", "words"), [(0, "0%"), (0.001, "1%"), (0.5, "50%"), (0.999, "99%"), (1, "100%")])

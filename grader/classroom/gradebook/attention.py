@@ -19,11 +19,6 @@ class AttentionItem(NamedTuple):
     name: str
     detail: str
 
-    @property
-    def who(self) -> str:
-        """The name and the key, or the key alone."""
-        return f"{self.name} ({self.key})" if self.name and self.name != self.key else self.key
-
 
 class AttentionGroup(NamedTuple):
     """The students who need attention for one reason, in the order of their keys."""

@@ -10,6 +10,7 @@ from typing import Any
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
+from grader.classroom.gradebook.marks import EXTENSION
 from grader.classroom.gradebook.result import criterion_points, points_from_units, storable
 from grader.classroom.gradebook.stored import STUDENT_COLUMNS
 from grader.classroom.gradebook.student_grade import DoubtfulMarks, StudentGrade
@@ -28,6 +29,7 @@ from grader.text import shell_quoted
 _PLAIN = ("id", "run", "result", "faults", "marks", "rubric", "verdict", "reason", "submitted", "section", "marker")
 _POINTS = ("score", "out_of", "pending")
 _TRUTHS = ("is_gone", "is_excused", "final_is_older")
+_EXTENDED = f"SELECT comment FROM current_mark WHERE student = grade.id AND criterion = '{EXTENSION}'"
 
 
 class Grades:
@@ -136,7 +138,7 @@ class Grades:
         return {name: ManualComment(comment, by) for name, comment, by in self.book.rows(query, grade.id)}
 
     def _select(self, condition: str, *values: Any) -> Iterator[StudentGrade]:
-        for row in self.book.records(f"SELECT * FROM grade {condition}", *values):
+        for row in self.book.records(f"SELECT *, ({_EXTENDED}) AS extended FROM grade {condition}", *values):
             yield self._grade(row)
 
     def _grade(self, row: dict[str, Any]) -> StudentGrade:
@@ -169,6 +171,7 @@ class Grades:
         times = SubmissionTimes(
             bool(row["is_late"]), row["submitted"], row["deadline"], row["extension"], row["days_late"]
         )
+        times = times.extended(row["extended"] or "")
         late = lateness(self.rubric(row["rubric"]), times, score, self._deadline)
         return replace(late, points=Decimal(0)) if row["final"] is not None or row["is_excused"] else late
 

@@ -4,6 +4,7 @@ As in Canvas (app/models/late_policy.rb): a percentage of the maximum for each d
 """
 
 from contextlib import suppress
+from dataclasses import replace
 from datetime import date, datetime, time, timedelta, tzinfo
 from decimal import Decimal
 from math import ceil
@@ -35,6 +36,11 @@ class SubmissionTimes:
     deadline: str = ""
     extension: float = 0.0
     days_late: float | None = None
+
+    def extended(self, deadline: str) -> "SubmissionTimes":
+        """Return the times with the deadline of `grader extend`, empty for none, in place of the roster's."""
+        days = None if self.submitted and self.days_late else self.days_late  # without a time no days can be counted
+        return replace(self, deadline=deadline, extension=0.0, days_late=days) if deadline else self
 
 
 def lateness(rubric: Rubric, times: SubmissionTimes, score: Decimal, deadline: datetime | None = None) -> Lateness:

@@ -1,6 +1,6 @@
 """Manual marks of criteria and of whole submissions, stored in addition to the automatic points."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from decimal import Decimal
@@ -13,6 +13,7 @@ from grader.errors import InputError
 from grader.grading.criterion import TOTAL
 
 TAKE_BACK = "-"  # in place of points: the automatic result counts again
+EXTENSION = "new deadline"  # in place of a criterion's id, which is one word: its comment is the student's own deadline
 
 Kind = Literal["points", "withdrawn", "comment", "excused", "second"]
 
@@ -75,42 +76,29 @@ class NewerMarkError(Exception):
 def add_mark(
     book: Gradebook, grade: StudentGrade, criterion: str, entry: Entry, by: str, *, shown: int | None = None
 ) -> AddedMark:
-    """Add a mark like `add_marks` to one student's result."""
-    return add_marks(book, [grade], criterion, entry, by, shown=shown)[0]
+    """Add a mark for a criterion, or for the whole submission (TOTAL), to a student's newest result.
 
-
-def add_marks(
-    book: Gradebook,
-    grades: Sequence[StudentGrade],
-    criterion: str,
-    entry: Entry,
-    by: str,
-    *,
-    shown: int | None = None,
-) -> list[AddedMark]:
-    """Add a mark for a criterion, or for a whole submission (TOTAL), to the newest results of students, all or none.
-
-    `by` is the name that reports show. `shown` is the id of the newest mark that the person has seen, 0 for none. If a
-    student has a newer mark, nothing is written and NewerMarkError holds it. A comment on a mark keeps its points,
-    their grader, and the result that they were given for; the audit names who commented. Raises InputError for a
-    criterion of a student without a submission.
+    `by` is the name that reports show. `shown` is the id of the newest mark that the person has seen, 0 for none. If
+    there is a newer mark, nothing is written and NewerMarkError holds it. A comment on a mark keeps its points, their
+    grader, and the result that they were given for; the audit names who commented. Raises InputError for a criterion of
+    a student without a submission.
     """
-    for grade in grades:
-        if grade.result is None and criterion != TOTAL:
-            key = grade.student.key
-            raise InputError(
-                f"{key} has submitted nothing that could be marked; "
-                f"`grader mark {key} {TOTAL} POINTS` gives a final mark"
-            )
-    added = []
-    with _writing(book):
-        for grade in grades:
-            before = _newest_if_shown(book, grade, criterion, entry, by, shown)
-            mark = Mark(entry, by, result=grade.result)
-            if entry.kind == "comment" and before is not None and before.entry.kind in ("points", "excused"):
-                mark = before._replace(entry=before.entry._replace(comment=entry.comment), at="")
-            added.append(AddedMark(insert_mark(book, grade.id, criterion, mark, by or account()), before))
-    return added
+    refuse_unsubmitted(grade, criterion)
+    with writing(book):
+        before = _newest_if_shown(book, grade, criterion, entry, by, shown)
+        mark = Mark(entry, by, result=grade.result)
+        if entry.kind == "comment" and before is not None and before.entry.kind in ("points", "excused"):
+            mark = before._replace(entry=before.entry._replace(comment=entry.comment), at="")
+        return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account()), before)
+
+
+def refuse_unsubmitted(grade: StudentGrade, criterion: str) -> None:
+    """Raise InputError for a criterion of a student without a submission."""
+    if grade.result is None and criterion not in (TOTAL, EXTENSION):
+        key = grade.student.key
+        raise InputError(
+            f"{key} has submitted nothing that could be marked; `grader mark {key} {TOTAL} POINTS` gives a final mark"
+        )
 
 
 def restore_mark(
@@ -121,7 +109,7 @@ def restore_mark(
     The audit names the person who restores it. Raises NewerMarkError like `add_mark`.
     """
     mark = Mark(mark, by, result=grade.result) if isinstance(mark, Entry) else mark._replace(at="")
-    with _writing(book):
+    with writing(book):
         before = _newest_if_shown(book, grade, criterion, mark.entry, by, shown)
         return AddedMark(insert_mark(book, grade.id, criterion, mark, by or account()), before)
 
@@ -139,8 +127,11 @@ def undo_mark(book: Gradebook, grade: StudentGrade, criterion: str, by: str) -> 
 
 
 @contextmanager
-def _writing(book: Gradebook) -> Iterator[None]:
-    """Commit what is written inside, so that it survives a power failure."""
+def writing(book: Gradebook) -> Iterator[None]:
+    """Commit what is written inside, so that it survives a power failure; inside of another one, with that."""
+    if book.connection.in_transaction:
+        yield
+        return
     with book.input_errors():
         book.connection.execute("PRAGMA synchronous = FULL")
     with book.transaction():

@@ -38,7 +38,7 @@ class GradingResult(NamedTuple):
     """The result of one submission; points are in ten-thousandths. `outcomes` lacks the criteria that passed.
 
     `outcomes` are plain tuples, which are sent to another process much faster. `parts` are ids between spaces. `urdf`
-    and `robot` are the hashes of the URDF and of its normal form.
+    and `robot` are the hashes of the URDF and of its normal form, `forms` other forms of the work as JSON.
     """
 
     key: str
@@ -54,6 +54,7 @@ class GradingResult(NamedTuple):
     reason: str = ""
     urdf: str = ""
     robot: str = ""
+    forms: str = ""
 
     def with_report(self, report: Report, dictionary: bytes) -> "GradingResult":
         """Return the result with the points and outcomes of a report, which is compressed with a dictionary."""

@@ -16,7 +16,7 @@ from grader.grading.rubric import Rubric
 _FIND = f"SELECT id, {', '.join(PROFILE_COLUMNS)} FROM student WHERE key = ?"
 _UPDATE = f"UPDATE student SET {', '.join(f'{name} = ?' for name in PROFILE_COLUMNS)} WHERE id = ?"
 _NEWEST = """
-SELECT id, rubric, version, digest, dictionary, record, urdf, robot FROM result WHERE student = ?
+SELECT id, rubric, version, digest, dictionary, record, urdf, robot, forms FROM result WHERE student = ?
 ORDER BY id DESC LIMIT 1
 """
 
@@ -61,12 +61,12 @@ class RunWriter:
     def add_result(self, student: int, result: GradingResult) -> int:
         """Add a result, unless the student's newest one is the same; return its id."""
         newest = self._book.connection.execute(_NEWEST, (student,)).fetchone()
-        hashes = result.urdf, result.robot
+        hashes = result.urdf, result.robot, result.forms
         same = (self._rubric, __version__, result.digest, self._dictionary, result.record, *hashes)
         if newest is not None and newest[1:] == same:
             return int(newest[0])
         row = {"student": student, "rubric": self._rubric, "version": __version__, "dictionary": self._dictionary}
-        columns = ("digest", "verdict", "parts", "score", "out_of", "pending", "record", "urdf", "robot")
+        columns = ("digest", "verdict", "parts", "score", "out_of", "pending", "record", "urdf", "robot", "forms")
         values = {name: getattr(result, name) for name in columns}
         number = self._book.insert("result", row | values | {"reason": storable(result.reason)})
         rows = [(number, *outcome) for outcome in result.outcomes]

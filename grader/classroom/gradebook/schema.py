@@ -86,7 +86,8 @@ CREATE TABLE result (
     dictionary TEXT REFERENCES dictionary,
     record BLOB NOT NULL,          -- the report as compressed JSON, see grading/record.py
     urdf TEXT NOT NULL,            -- the hash of the URDF
-    robot TEXT NOT NULL            -- the hash of its normal form, empty if there is no robot
+    robot TEXT NOT NULL,           -- the hash of its normal form, empty if there is no robot
+    forms TEXT NOT NULL            -- other forms of the work, as JSON, see gradebook/identical.py
 );
 CREATE INDEX result_of_student ON result (student);
 
@@ -125,7 +126,7 @@ CREATE TABLE submission (
 CREATE TABLE mark (
     id INTEGER PRIMARY KEY,
     student INTEGER NOT NULL REFERENCES student,
-    criterion TEXT NOT NULL,       -- `total` for the whole submission: a final mark, an excuse, a comment
+    criterion TEXT NOT NULL,       -- `total`: a final mark, an excuse, a comment; `new deadline`: the time as comment
     -- A second opinion without points is withdrawn.
     points INTEGER CHECK (iif(points IS NULL, kind <> 'points', kind IN ('points', 'second'))),
     comment TEXT NOT NULL,

@@ -7,17 +7,20 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook, Run
 from grader.classroom.gradebook.lateness import SubmissionTimes, lateness, read_time
+from grader.classroom.gradebook.marks import EXTENSION
 from grader.classroom.gradebook.result import criterion_points, points_from_units
 from grader.errors import InputError
 from grader.grading.criterion import TOTAL
 from grader.grading.rubric import Rubric
 from grader.text import shell_quoted
 
-_STATES = """
+_STATES = f"""
 SELECT student.id, student.key, student.name, result.id, result.verdict, result.parts, result.digest, result.rubric,
-    result.version, submission.is_late, submission.submitted, student.deadline, student.extension, student.days_late
+    result.version, coalesce((SELECT comment FROM mark WHERE student = student.id AND criterion = '{EXTENSION}'
+    AND id <= ?2 ORDER BY id DESC LIMIT 1), ''), submission.is_late, submission.submitted,
+    student.deadline, student.extension, student.days_late
 FROM student LEFT JOIN submission ON submission.student = student.id AND submission.run =
-    (SELECT max(run) FROM submission AS newer WHERE newer.student = student.id AND newer.run <= ?)
+    (SELECT max(run) FROM submission AS newer WHERE newer.student = student.id AND newer.run <= ?1)
 LEFT JOIN result ON result.id = submission.result ORDER BY student.key
 """
 
@@ -129,8 +132,8 @@ def states_of(snapshot: Snapshot) -> dict[str, StudentState]:
         marks.setdefault(student, {})[criterion] = None if units is None else points_from_units(units)
     rubric_of, deadline = cache(snapshot.book.rubric), snapshot.newest_run.deadline
     states: dict[str, StudentState] = {}
-    for student, key, name, result, verdict, parts, digest, sha256, version, *times in snapshot.book.rows(
-        _STATES, snapshot.run
+    for student, key, name, result, verdict, parts, digest, sha256, version, extended, *times in snapshot.book.rows(
+        _STATES, snapshot.run, snapshot.last_mark
     ):
         own = marks.get(student, {})
         if verdict is None:
@@ -140,6 +143,6 @@ def states_of(snapshot: Snapshot) -> dict[str, StudentState]:
         given = {name: points for name, points in own.items() if points is not None}
         points = criterion_points(rubric, snapshot.book.outcomes(result), given)
         is_late, submitted, due, extension, days = times
-        found = SubmissionTimes(bool(is_late), submitted or "", due, float(extension or 0), days)
+        found = SubmissionTimes(bool(is_late), submitted or "", due, float(extension or 0), days).extended(extended)
         states[key] = StudentState(name, verdict, digest, sha256, rubric, version, points, parts, own, found, deadline)
     return states

@@ -2,6 +2,7 @@
 
 import json
 from collections import Counter
+from collections.abc import Mapping
 from decimal import Decimal
 from typing import NamedTuple
 
@@ -16,6 +17,7 @@ from grader.classroom.gradebook.statistics import ClassStatistics, statistics
 from grader.files.names import ROBOT_ENDINGS
 from grader.grading.record import graded_submission_from
 from grader.grading.rubric import Rubric
+from grader.text import named
 
 _QUERY = "SELECT result, urdf, files FROM grade WHERE verdict = 'graded' AND rubric = ? AND NOT is_gone"
 
@@ -81,7 +83,7 @@ class ClassSummary(NamedTuple):
     """The figures of a class under the newest rubric.
 
     `fixes` is empty unless requested. `evidence_only` counts the submissions with pictures or documents, but no `URDF`,
-    or no `package`.
+    or no `package`. `names` has the name and key of each student, by key.
     """
 
     rubric: Rubric
@@ -93,6 +95,7 @@ class ClassSummary(NamedTuple):
     agreement: Agreement
     late: LateTotals
     choices: tuple[ChoiceCount, ...]
+    names: Mapping[str, str]
 
 
 def summary_of(grades: Grades, *, with_fixes: bool) -> ClassSummary:
@@ -111,4 +114,5 @@ def summary_of(grades: Grades, *, with_fixes: bool) -> ClassSummary:
         agreement(book, rubric),
         late_totals(grades),
         choice_counts(book, rubric),
+        {student.key: named(student.key, student.name) for student in book.students()},
     )

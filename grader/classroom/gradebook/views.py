@@ -76,7 +76,7 @@ SELECT student.*, newest.run, newest.result, coalesce(result.rubric, '') AS rubr
     coalesce(whole.kind IN ('points', 'excused') AND whole.result IS NOT newest.result
         AND (SELECT nullif(digest, '') FROM result AS marked WHERE marked.id = whole.result) IS NOT result.digest, 0)
         AS final_is_older,
-    coalesce(newest.is_gone, 0) AS is_gone, result.urdf, result.robot,
+    coalesce(newest.is_gone, 0) AS is_gone, result.urdf, result.robot, result.forms,
     coalesce(newest.files, '[[], [], 0, []]') AS files, coalesce(newest.fingerprint, '') AS fingerprint,
     coalesce(newest.is_late, 0) AS is_late, coalesce(newest.submitted, '') AS submitted,
     coalesce(run.source, '') AS source, coalesce(run.max_size, 0) AS max_size

@@ -9,7 +9,7 @@ from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.intake.roster_values import RowReader
 from grader.classroom.matching import plain_word
 from grader.classroom.students import CANVAS_TEST_STUDENT
-from grader.classroom.tables import SIZE_LIMIT, read_table
+from grader.classroom.tables import SIZE_LIMIT, plain_title, rows_with_lines
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.text import counted, first_lines, printable_path
@@ -44,7 +44,6 @@ _ALIASES = {
 _FIELD_OF = {alias: field for field, aliases in _ALIASES.items() for alias in aliases.split()}
 _WHO = frozenset({"id", "sis", "login", "github", "email", "name", "last", "canvas", "moodle", "identifier"})
 _ASSIGNMENT = re.compile(r".+ \((\d+)\)", re.DOTALL)  # Canvas' column of an assignment: Lab 6 (98765)
-_AS_TEXT = re.compile(r'\A="(.*)"\Z', re.DOTALL)  # keeps a spreadsheet from reading a text as a number
 _MAX_MISTAKES = 20
 _UNIQUE = {
     "key": "id",
@@ -64,7 +63,7 @@ def read_roster(path: Path) -> Roster:
     in the file.
     """
     shown = printable_path(path)
-    rows = _rows(read_capped(path, SIZE_LIMIT, advice=""), shown)
+    rows = rows_with_lines(read_capped(path, SIZE_LIMIT, advice=""), shown)
     _, header = next(rows, (1, []))
     fields = _fields(header, shown) if header else []
     mistakes: list[tuple[int, str]] = []
@@ -104,7 +103,7 @@ def _by_field(
 
 
 def _is_from_canvas(header: list[str], fields: list[str]) -> bool:
-    return {"student", "id"} <= set(map(_plain, header)) and not {"sis", "login"}.isdisjoint(fields)
+    return {"student", "id"} <= set(map(plain_title, header)) and not {"sis", "login"}.isdisjoint(fields)
 
 
 def _duplicates(entries: Iterable[tuple[int, RosterEntry]], shown: str) -> list[str]:
@@ -131,24 +130,10 @@ def _notes(reader: RowReader, shown: str) -> Iterator[str]:
         )
 
 
-def _rows(data: bytes, shown: str) -> Iterator[tuple[int, list[str]]]:
-    """Yield the line where each row begins that is not empty, and its cells with spaces normalised."""
-    line = 1
-    for row in read_table(data, shown, is_from_person=True).rows:
-        cells = [" ".join(_AS_TEXT.sub(r"\1", cell.value.strip()).split()) for cell in row.cells]
-        if any(cells) and cells != ["sep=", ""]:  # by which Excel recognises the separator
-            yield line, cells
-        line += 1 + sum(len(cell.raw.splitlines()) - 1 for cell in row.cells if cell.raw)
-
-
 def _fields(header: list[str], shown: str) -> list[str]:
     """Return the field of each column, empty for an unknown column."""
-    fields = [_FIELD_OF.get(_plain(cell), "") for cell in header]
+    fields = [_FIELD_OF.get(plain_title(cell), "") for cell in header]
     if _WHO.isdisjoint(fields):
         named = ", ".join(cell for cell in header if cell)[:200]
         raise InputError(f"{shown} has no column for an id, login, name or email in its first line, only: {named}")
     return fields
-
-
-def _plain(header: str) -> str:
-    return "".join(letter for letter in header.casefold() if letter.isalnum())

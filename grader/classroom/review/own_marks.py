@@ -12,8 +12,9 @@ from grader.classroom.gradebook.marks import (
     Entry,
     Mark,
     NewerMarkError,
-    add_marks,
+    add_mark,
     restore_mark,
+    writing,
 )
 
 
@@ -47,13 +48,13 @@ class OwnMarks:
         shown = item.newest if shown is None else shown
         criterion, by = item.result.criterion.id, self._scope.by
         entry = Entry("second" if self._scope.second else "points", points, comment)
-        grades = []
-        for one in item.members:
-            newest = newest_of(self._book, one.grade, criterion, self._scope)
-            if newest is None or newest.id > shown or newest.entry != entry:
-                grades.append(one.grade)
-        added = add_marks(self._book, grades, criterion, entry, by, shown=shown)
-        marks = {grade.student.key: mark for grade, mark in zip(grades, added, strict=True)}
+        marks = {}
+        with writing(self._book):
+            for one in item.members:
+                newest = newest_of(self._book, one.grade, criterion, self._scope)
+                if newest is None or newest.id > shown or newest.entry != entry:
+                    mark = add_mark(self._book, one.grade, criterion, entry, by, shown=shown)
+                    marks[one.grade.student.key] = mark
         if marks:
             before = {key: mark.before for key, mark in marks.items()}
             self._given.append(GivenMark(position, criterion, before))

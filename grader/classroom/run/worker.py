@@ -1,11 +1,13 @@
 """The work of a worker process: grade submissions one by one. All data is plain and can be sent to any process."""
 
+import json
+import re
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from grader.checks.outcome import Outcome, Status
 from grader.classroom.gradebook.result import GradingResult, GradingVerdict
@@ -21,12 +23,14 @@ from grader.grading.missing_work import is_another_robot, robot_of
 from grader.grading.record import to_record
 from grader.grading.report import Report, Result, without_gifts
 from grader.grading.rubric import Rubric, read_rubric
-from grader.robot.normal_form import robot_hash
+from grader.package.package import PYTHON_LIMIT, SETUP, Package
+from grader.robot.normal_form import robot_hash, written_form
 from grader.submission.submission import Submission
 from grader.submission.urdf import Absent, Read, Unreadable
 from grader.text import enumerated
 
 _MAX_NAMED = 10  # students in a message
+_IGNORED = re.compile(rb"^(?:[ \t]*+#.*|(?:Panels|Window Geometry):.*\n(?:[ \t-].*(?:\n|\Z))*)", re.MULTILINE)
 
 
 class ClassContext(NamedTuple):
@@ -91,11 +95,11 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
     if is_another_robot(rubric, robot_of(submission.urdf)):
         return graded  # what the course handed out for the lab before is no identical work
     urdf, robot = robot_hashes(submission)
-    return graded._replace(urdf=urdf, robot=robot)
+    return graded._replace(urdf=urdf, robot=robot, forms=json.dumps(_forms(submission)))
 
 
 def reference_record(data: bytes, path: str) -> tuple[bytes, tuple[str, ...]]:
-    """Return the record of a rubric's reference solution, which most records resemble, and the hashes of its robot.
+    """Return the record of a rubric's reference solution, which most records resemble, and the hashes of its work.
 
     Both are empty if it cannot be graded. Raises InputError if nothing can be graded without it.
     """
@@ -105,7 +109,7 @@ def reference_record(data: bytes, path: str) -> tuple[bytes, tuple[str, ...]]:
     with suppress(InputError):
         if rubric.solution is not None:
             reference = rubric.solution.submission
-            return to_record(grade(rubric, reference)).encode(), tuple(filter(None, robot_hashes(reference)))
+            return to_record(grade(rubric, reference)).encode(), work_hashes(reference)
     return b"", ()
 
 
@@ -115,6 +119,31 @@ def robot_hashes(submission: Submission) -> tuple[str, str]:
     if not isinstance(urdf, Read) or not urdf.data.strip():
         return "", ""
     return sha256_of(urdf.data), robot_hash(urdf.reading)
+
+
+def _forms(submission: Submission, *, is_handed_out: bool = False) -> dict[str, Any]:
+    """Return what two students may have in common besides the robot: see gradebook/identical.py."""
+    root = submission.urdf.reading.elements if isinstance(submission.urdf, Read) else None
+    written, others = written_form(root, is_handed_out=is_handed_out)
+    package = dict(_package_forms(submission.package)) if submission.package is not None else {}
+    return {"written": written, "others": others, "package": package} if written or package else {}
+
+
+def _package_forms(package: Package) -> Iterator[tuple[str, str]]:
+    """Yield kinds of files, each with the hash of what they are apart from comments, white space, quotes, windows."""
+    kinds = {"setup.py": (SETUP,), "launch files": package.launch_files, "RViz files": package.rviz_files}
+    for kind, paths in kinds.items():
+        with suppress(InputError):
+            files = [package.tree.files[path].read(PYTHON_LIMIT) for path in paths if path in package.tree.files]
+            forms = sorted(_IGNORED.sub(b"", data).replace(b"'", b'"').split() for data in files)
+            if any(forms):
+                yield kind, sha256_of(repr((kind, forms)).encode())
+
+
+def work_hashes(submission: Submission) -> tuple[str, ...]:
+    """Return the hashes of the robot and the package, which are no identical work if the course handed them out."""
+    forms = _forms(submission, is_handed_out=True)
+    return tuple(filter(None, (*robot_hashes(submission), forms.get("written"), *forms.get("package", {}).values())))
 
 
 def _why_unreadable(submission: Submission) -> str:

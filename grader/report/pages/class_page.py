@@ -34,8 +34,8 @@ from grader.report.class_words import (
     is_low,
     mark_lines,
     percent,
-    same_file,
     span,
+    what_is_same,
 )
 from grader.report.drawing import thumbnail_element
 from grader.report.pages.class_rows import columns, group_data, row_groups, student_rows
@@ -139,7 +139,7 @@ def render_class_page(
         "failures": summary.statistics.failures if summary.statistics.graded else (),
         "fixes": [_fix(fix, drawings) for fix in summary.fixes[:MAX_LISTED]],
         "fixes_note": FIXES_NOTE,
-        "identical": [_identical(work) for work in summary.identical],
+        "identical": [_identical(work, summary.names) for work in summary.identical],
         "identical_note": IDENTICAL_NOTE,
         "attention": summary.attention,
         "max_attention": _MAX_ATTENTION,
@@ -194,5 +194,5 @@ def _fix(fix: CommonFix, drawings: Mapping[str, str]) -> dict[str, Any]:
     }
 
 
-def _identical(work: IdenticalWork) -> dict[str, Any]:
-    return {"students": work.students, "same_file": same_file(work)}
+def _identical(work: IdenticalWork, names: Mapping[str, str]) -> dict[str, Any]:
+    return {"students": work.students, "same_file": what_is_same(work, names)}

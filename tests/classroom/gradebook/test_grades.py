@@ -64,7 +64,7 @@ def test_who_needs_attention(tmp_path: Path) -> None:
             "fay": "not on the roster",
         }
         found = attention(Grades(book))
-        assert [(group.reason, [item.who for item in group.items]) for group in found.groups] == [
+        assert [(group.reason, [item.name or item.key for item in group.items]) for group in found.groups] == [
             ("the grader failed", ["ben"]),
             ("could not be graded", ["cleo"]),
             ("nothing was submitted", ["dora"]),

@@ -237,3 +237,22 @@ def test_times_are_written_for_people() -> None:
     assert time_text("2026-11-20T23:59:00+01:00", UTC) == "2026-11-20 22:59 (UTC)"
     assert time_text(read_time("2026-11-20")) == "2026-11-20 23:59"
     assert time_text("9999-12-31T23:59:00-12:00", vienna) == "9999-12-31 23:59 (UTC-12:00)"
+
+
+@pytest.mark.parametrize(
+    ("times", "days"),
+    [
+        (SubmissionTimes(submitted="2026-09-12T10:00+02:00"), 0),
+        (SubmissionTimes(submitted="2026-09-12T13:00+02:00"), 1),
+        (SubmissionTimes(submitted="2026-09-13T10:00+02:00", deadline="2026-09-30", extension=9), 1),
+        (SubmissionTimes(submitted="2026-09-12T10:00+02:00", days_late=3), 0),
+        (SubmissionTimes(submitted="2026-09-30T10:00+02:00", days_late=0), 0),
+        (SubmissionTimes(days_late=3), 3),
+        (SubmissionTimes(is_late=True), 0),
+        (SubmissionTimes(), 0),
+    ],
+)
+def test_an_extension_of_a_person(times: SubmissionTimes, days: int) -> None:
+    """It replaces the roster's deadline and extension, and a number of days if the time is known; a waiver stays."""
+    assert times.extended("") is times
+    assert lateness(LAB, times.extended("2026-09-12T12:00+02:00"), Decimal(11)).days == days

@@ -125,6 +125,8 @@ def test_other_files_are_refused() -> None:
     for data, words in [
         (b'a,b\n1,"2', "row 2 is never closed"),
         (b"a,b\n\0,2", "NUL"),
+        (b"PK\x03\x04 a spreadsheet", "is a spreadsheet, not a CSV file: open it and save it as CSV"),
+        (b"\xd0\xcf\x11\xe0 an older one", "is a spreadsheet, not a CSV file"),
         ("a,b".encode("utf-32"), "NUL"),
         (b"\xff\xfea", "not text in utf-16-le"),
         (b"a,\x81", "not text in UTF-8 or Windows-1252"),

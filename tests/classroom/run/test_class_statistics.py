@@ -170,9 +170,14 @@ def test_a_report_from_the_gradebook_names_the_cause(top: Path) -> None:
 
 def test_identical_work_is_listed(top: Path) -> None:
     """Who shares with whom, and which of them the same file; the reference and what was handed out are exempt."""
-    assert data(top)["identical"] == [{"students": ["ash", "birch", "cedar"], "same_file": [["ash", "cedar"]]}]
+    assert data(top)["identical"] == [
+        {"students": ["ash", "birch", "cedar"], "same_file": [["ash", "cedar"]], "equal": "the same robot"}
+    ]
     words = text(top)
-    assert "ash, birch and cedar (the same file: ash and cedar)" in words
+    assert (
+        "Ash Tree (ash), Birch Tree (birch) and Cedar Tree (cedar): the same robot; the same file: Ash Tree (ash) and"
+        " Cedar Tree (cedar)"
+    ) in words
     assert "This is no verdict" in words
     assert "hazel and holly" not in words
 
@@ -190,7 +195,9 @@ def test_handed_out_files_are_remembered(top: Path) -> None:
     assert [group["students"] for group in found["identical"]] == [["ash", "birch", "cedar"]]
 
 
-@pytest.mark.parametrize(("name", "reason"), [("nowhere.urdf", "does not exist"), ("empty", "there is no URDF in it")])
+@pytest.mark.parametrize(
+    ("name", "reason"), [("nowhere.urdf", "does not exist"), ("empty", "there is no URDF and no package in it")]
+)
 def test_a_wrong_ignore_file_is_refused(top: Path, name: str, reason: str) -> None:
     """Before anything is graded, in one line."""
     (top / "empty").mkdir(exist_ok=True)
@@ -299,8 +306,9 @@ def test_the_page_shows_edits_and_identical_work(top: Path) -> None:
     assert page.members("edit-0") == ["Ash Tree", "Birch Tree", "Cedar Tree"]
     (lidar,) = page.root.xpath("//article[1]//*[local-name()='svg']")
     assert [path.get("class") for path in lidar.iter("path")].count("reference") == 1
+    same = "the same file: Ash Tree (ash) and Cedar Tree (cedar)"
     assert page.texts("//section[@id='identical']//li") == [
-        "3 students: Ash Tree ash, Birch Tree birch, Cedar Tree cedar (the same file: ash and cedar)"
+        f"3 students: Ash Tree ash, Birch Tree birch, Cedar Tree cedar (the same robot; {same})"
     ]
     assert page.root.xpath("//section[@id='identical']//a/@href") == ["ash.html", "birch.html", "cedar.html"]
     assert page.texts("//section[@id='identical']/p")[0] in printed
