@@ -158,7 +158,7 @@ def evidence_lines(summary: ClassSummary) -> list[str]:
     keys = {"URDF": summary.rubric.without_urdf, "package": summary.rubric.without_package}
     return [
         f"{counted(count, 'submission')} {'has' if count == 1 else 'have'} pictures or documents, "
-        f"but no {kind} of this lab: the criteria of the {kind} are failed. "
+        f"but no {kind} of this lab: the criteria of the {kind} fail. "
         f'Set `without_{kind.lower()} = "manual"` in the rubric to grade them manually, or "failed" to keep this'
         for kind, key in keys.items()
         if (count := summary.evidence_only[kind]) and not key

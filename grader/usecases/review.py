@@ -21,10 +21,17 @@ from grader.usecases.review_pictures import PictureFolder, write_all_pictures
 from grader.usecases.terminal import Terminal
 
 NOTHING = "nothing needs manual grading\n"
-_HELP = (
-    "points and a comment (#2 for comment 2; d1 for deduction 1, instead of points), s to skip, b to go back, "
-    "u to undo, /NAME for a student, o for one student after the other, q to stop (all marks are kept), ? for this help"
-)
+_HELP = """\
+3.5 a comment   points, and a comment for the student
+3.5 #2          points, and comment 2 again
+d1 d3 a comment usual deductions, instead of points
+s or Enter      skip
+b               go back
+u               undo
+o               the students of this item one by one
+/NAME           go to a student
+q               stop: all marks are kept
+"""
 _AT_END = "u to undo, b to go back, Enter to end"
 _END = f"end of the queue: {_AT_END}: "
 _DEDUCTION = re.compile(r"d([1-9])(?:\s+|$)", re.IGNORECASE)
@@ -143,7 +150,7 @@ def _back(session: ReviewSession, terminal: Terminal) -> bool:
 def _split(session: ReviewSession, terminal: Terminal) -> bool:
     if session.split():
         return True
-    terminal.warn("this item is of one student")
+    terminal.warn("this item has one student only")
     return False
 
 
@@ -158,7 +165,7 @@ def _undo(session: ReviewSession, terminal: Terminal) -> bool:
 
 
 def _help(_: ReviewSession, terminal: Terminal) -> bool:
-    terminal.warn(_HELP)
+    terminal.print(f"\n{_HELP}")
     return False
 
 
@@ -187,7 +194,8 @@ def undo(session: ReviewSession) -> str:
         before = session.undo()
     except NewerMarkError as error:
         return f"not undone: somebody has marked this since: {mark_text(error.mark)}"
-    return f"undone; the mark before it counts again: {mark_text(before)}" if before else "undone"
+    is_given = before is not None and before.entry.kind != "withdrawn"
+    return f"undone; the mark before it counts again: {mark_text(before)}" if before and is_given else "undone"
 
 
 def _mark(session: ReviewSession, points: Decimal, comment: str, terminal: Terminal) -> bool:

@@ -18,6 +18,7 @@ WAYS = {
     "=": ("the equals sign is missing", "write = before the value"),
     " ": ("a space in a tag is missing", "add the space"),
     "name": ("the name of an attribute is missing", "name the attribute"),
+    "value": ("a value without a name", "remove the value"),
     "less": ("an extra character in a tag", "remove the character"),
     "twice": ("a duplicate attribute", "rename or remove one of the two attributes"),
     "open empty": ("the / of a tag without content is missing", "end the tag with />"),
@@ -40,6 +41,7 @@ WAYS = {
     "comma": ("a comma between attributes", "separate the attributes with spaces"),
 }
 _MAX_NEAR = 20  # tags before an error
+_NAMELESS = re.compile(r"""<[\w:.-]+(\s*=\s*(?:"[^"]*"|'[^']*'))""")  # <origin="0 0 1"/>
 
 
 # What is replaced by what in a malformed tag: <- base --> for "comment", <link name=base> and <link name="base> for the
@@ -115,6 +117,8 @@ class Operations:
                 yield "less", at, at + 1, ""
             for name in free if old in "=\"'" else ():
                 yield from (("name", at, at, new) for new in (name, f" {name}", f"{name}="))
+        if value := _NAMELESS.match(body):
+            yield "value", *value.span(1), ""
 
     def _tag(self, piece: TextPiece, form: str, name: str = "") -> Operation:
         """Return a tag in another form, without one removed, or with another name."""

@@ -25,11 +25,6 @@ from tests.classroom.gradebooks import ENVIRONMENT, batch, grade_without, grader
 from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
-HELP = (
-    "points and a comment (#2 for comment 2; d1 for deduction 1, instead of points), s to skip, b to go back, u to undo, "
-    "/NAME for a student, o for one student after the other, q to stop (all marks are kept), ? for this help"
-)
-
 
 @pytest.fixture
 def top(top: Path) -> Path:
@@ -95,7 +90,6 @@ def test_stopping_and_resuming(top: Path) -> None:
 @pytest.mark.parametrize(
     ("typed", "why"),
     [
-        ("?", HELP),
         ("-", "points are a number from 0 to 4, with at most 4 decimals, not '-'"),
         ("good", "points are a number from 0 to 4, with at most 4 decimals, not 'good'"),
         ("4.5 very good", "essay is worth 0 to 4 points, not 4.5"),
@@ -110,6 +104,14 @@ def test_invalid_input_is_asked_again(typed: str, why: str, top: Path) -> None:
     assert done.stderr == f"grader: {why}\n"
     assert done.stdout.endswith("1 marked, 3 left\n")
     assert marks(top) == [("anna", "essay", 2.0, "fine")]
+
+
+def test_help(top: Path) -> None:
+    """`?` lists what can be typed, each in a line, and asks again."""
+    done = review(top, "?\nq\n")
+    lines = done.stdout.split("(? for help): ")[1].splitlines()
+    typed = ["3.5 a comment", "3.5 #2", "d1 d3 a comment", "s or Enter", "b", "u", "o", "/NAME", "q"]
+    assert [line[:16].strip() for line in lines[1:10]] == typed
 
 
 @pytest.mark.parametrize("typed", ["", "\n\n", "S\n", "Q\n", "skip\nQUIT\n", "???"])
@@ -332,7 +334,7 @@ def test_several_students_at_once(top: Path) -> None:
     done = review(top, "/cleo\no\no\ns\n1\n/ben\nq\n", COLUMNS="200")
     assert "6 of 7  2 students: About essay (4 points)\nNo answer:\n  Ben Oh (ben); Cleo Ray (cleo)\n" in done.stdout
     assert "points for all 2 students, 0 to 4 (? for help): " in done.stdout
-    assert done.stderr == "grader: this item is of one student\n"
+    assert done.stderr == "grader: this item has one student only\n"
     assert marks(top)[-1][:3] == ("cleo", "essay", 1)
     together = review(top, "0\n0\n0\n0\n", "--criterion", "essay")
     assert together.stdout.endswith("4 marked, 0 left\n"), together.stdout[-300:]

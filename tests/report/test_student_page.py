@@ -320,3 +320,16 @@ def test_only_continuous_joints_of_their_own_are_driven(
     data = json.loads(read(page).get_element_by_id("data").text_content())
     assert [wheel["free"] for wheel in data["robot"]["wheels"]] == free
     assert ('data-part="drive"' in page) is has_button
+
+
+def test_an_answer_keeps_its_lines() -> None:
+    """Each line of a written answer is a line of its own."""
+    page = read(run(("grade", "submissions/reference", "--format", "html")).stdout)
+    first = page.find_class("answer")[0].text_content()
+    assert len(first.strip().splitlines()) > 2 and "\\x0a" not in first
+
+
+def test_what_is_not_deducted_says_so() -> None:
+    """A criterion that fails only because of an earlier mistake is no plain failure."""
+    page = read(run(("grade", "submissions/broken-tag-origin", "--format", "html")).stdout)
+    assert "Failed, but not deducted:" in page.get_element_by_id("criterion-lidar-on-top").find("h3").text_content()

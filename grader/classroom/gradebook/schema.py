@@ -1,7 +1,7 @@
 """The tables of a gradebook. Points are whole numbers of ten-thousandths."""
 
 APPLICATION_ID = 0x47524452  # "GRDR": the type of the file in its SQLite header
-VERSION = 1
+VERSION = 2
 
 TABLES = """
 CREATE TABLE rubric (

@@ -84,7 +84,10 @@ class ReviewSession:
     def _is_listed(self, position: int) -> bool:
         item, wanted = self.queue[position], self.filter
         is_there = position not in self._split if item.whole is None else item.whole in self._split
-        return is_there and wanted.criterion in ("", item.criterion) and bool(self._keys(item))
+        keys = self._keys(item)
+        is_own = any((item.criterion, key) in self.own.newest for key in keys)
+        is_in = ITEM_STATES[wanted.state][1](item.content, is_own)
+        return is_there and is_in and wanted.criterion in ("", item.criterion) and bool(keys)
 
     def _keys(self, item: QueuedItem) -> list[str]:
         """Return the students of an item in the section of the filter."""
@@ -152,7 +155,7 @@ class ReviewSession:
         if not self._is_listed(position):
             return False
         self.go(position)
-        return self.item is not None and ITEM_STATES[self.filter.state][1](self.item, self.is_own)
+        return self.item is not None and (self.item.is_open or self.is_own)
 
     def split(self) -> bool:
         """Show the students of the current item one by one, from the first; return whether it has several."""
@@ -174,7 +177,8 @@ class ReviewSession:
         here = self.queue[self.position].criterion if self.item is not None else ""
         found = [position for position in self.listed() if key in self._keys(self.queue[position])]
         if not found:
-            raise InputError(f"no item {'of this filter ' if any(self.filter) else ''}is of {name!r}")
+            where = " under this filter" if any(self.filter) else ""
+            raise InputError(f"there is nothing to grade for {name!r}{where}")
         self.go(min(found, key=lambda at: (not self.queue[at].content, self.queue[at].criterion != here, at)))
 
     def mark(self, points: Decimal, comment: str, shown: int | None = None) -> None:
@@ -215,6 +219,8 @@ class ReviewSession:
         """
         criterion = self.queue[self.position].criterion
         found = reusable_comments(self._grades.book, criterion, MAX_COMMENTS, second=self.scope.second)
+        choices = {text for row in self.criteria if row.id == criterion for text in row.choices}  # have their own keys
+        found = [comment for comment in found if comment not in choices]
         before = self._comments.get(criterion, [])
         new = iter([comment for comment in found if comment not in before])
         places = [comment if comment in found else next(new, "") for comment in before]

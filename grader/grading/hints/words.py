@@ -9,7 +9,7 @@ from grader.source import Edit, Location
 from grader.submission.editing import content, creates
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
-from grader.text import enumerated
+from grader.text import counted, enumerated
 
 _MAX_NAMED = 4  # criteria and edits that are named
 _MAX_LINES = 6
@@ -24,7 +24,7 @@ def message(found: FoundHint, level: HintLevel, submission: Submission, entry: C
         return f"Make {earlier}."
     if level == "edit":
         changes = _moves(own, submission) or [_change(edit, submission) for edit in own[:_MAX_NAMED]]
-        changes += [f"{len(own) - _MAX_NAMED} more edits"] * (len(own) > _MAX_NAMED)
+        changes += [counted(len(own) - _MAX_NAMED, "more edit")] * (len(own) > _MAX_NAMED)
         source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
         text = enumerated(changes, _MAX_NAMED + 1)
         text += _calls(own, source, submission.path) if isinstance(source, Expanded) else ""

@@ -60,7 +60,7 @@ def _row(grade: StudentGrade, summary: ClassSummary, member: Member | None, link
         grade.verdict,
         "excused" if grade.is_excused else f"{points}{maximum}",
         status,
-        format_points(grade.pending) if grade.pending else "",
+        format_points(grade.pending) if _needs_marks(grade) else "",
         f"{counted(grade.late.days, 'day')}{penalty}" if is_graded and grade.late.days else "",
         enumerated([criterion.id for criterion in _costliest(summary, member)], _MAX_LOST),
     )
@@ -72,9 +72,14 @@ def _costliest(summary: ClassSummary, member: Member | None) -> list[Criterion]:
     return sorted((row for row in lost if not row.bonus), key=lambda criterion: -criterion.points)
 
 
+def _needs_marks(grade: StudentGrade) -> bool:
+    return bool(grade.pending) and not grade.has_final
+
+
 # Groups of students by a state of their grade: the id, the words, whether a student is in it.
 _STATES: tuple[tuple[str, str, Callable[[StudentGrade], bool]], ...] = (
     ("attention", "need attention", lambda one: bool(one.why_attention)),
+    ("pending", "need manual grading", _needs_marks),
     ("late", "late", lambda one: bool(one.late.days)),
     ("final", "a final mark", lambda one: one.final is not None),
     ("excused", "excused", lambda one: one.is_excused),
@@ -91,8 +96,6 @@ def row_groups(
         yield f"status-{verdict}", Group(words, keys)
     for name, words, is_in in _STATES:
         yield name, Group(words, [one.student.key for one in grades if is_in(one)], words)
-    pending = {one.student.key for one in grades if one.pending}
-    yield "pending", Group("need manual grading", [key for key in members if key in pending])
     yield from _by_figure(statistics, members)
     for number, fix in enumerate(summary.fixes):
         yield f"edit-{number}", Group(f"need the edit: {fix.action}", fix.students)

@@ -175,7 +175,7 @@ def test_who_is_not_found(book: Gradebook) -> None:
     anonymous = ReviewSession(Grades(book), ReviewScope(anonymous=True))
     for one, name, why in (
         (session, "nobody", "there is no student 'nobody' in the gradebook"),
-        (session, "birch", "no item of this filter is of 'birch'"),
+        (session, "birch", "there is nothing to grade for 'birch' under this filter"),
         (anonymous, "ash", "there is no submission 'ash': type the number of one"),
     ):
         with pytest.raises(InputError, match=why):

@@ -10,10 +10,11 @@
 
   async function send(action, more = {}) {
     if (busy) return;
+    if (action === "mark" && !points.value.trim()) { refuse("Enter the points first."); return; }
     const lost = form && JSON.stringify([action, more, points.value, comment.value]);  // each text has its own warning
     if (action !== "mark" && isChanged() && leaving !== lost) {
       leaving = lost;
-      say(`Not saved. Press the same key again to leave without saving (${action}).`);
+      say("Not saved. Do the same again to leave without saving.");
       for (const list of document.querySelectorAll("[data-filter]")) list.value = list.querySelector("[selected]").value;
       return;
     }
