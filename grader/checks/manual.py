@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from grader.documents.evidence_files import EvidenceFile
 
 _DOCUMENTS = ("*.md", "*.txt", "*.docx", "*.pdf", "*.rst", "*.doc", "*.odt", "*.rtf", "*.pages", "*.ipynb")
+_MAY_HOLD_PICTURES = frozenset({".docx", ".doc", ".odt", ".pages", ".ipynb", ".pptx", ".odp", ".rtf", ".rar", ".7z"})
 _MAX_LISTED = 6  # files in one message
 _NOT_FOUND, _ONLY_QUESTION = "not found", "only the question is there"
 NO_ANSWER = (_NOT_FOUND, _ONLY_QUESTION)  # the problems of questions without an answer, if every document was read
@@ -37,13 +38,13 @@ def answered(
         return pending(message, problem=f"the documents cannot be read: {submission.opening.no_documents}")
     found = find_answer(submission.documents, files, places, question)
     unread = f" (not read: {'; '.join(found.unread[:4])})" if found.unread else ""
+    doubts = ["not every document was read"] if found.unread else []
     passage = found.passage
     if passage is None:
         searched = f" in {enumerated(found.read, _MAX_LISTED)}" if found.read else ""
         labels = enumerated([repr(label) for label in places[:3]], word="or")
         message = f"{question} No answer was found under {labels}{searched}; needs manual grading{unread}"
-        doubt = ", but not every document was read" if found.unread else ""
-        return pending(message, problem=_NOT_FOUND + doubt)
+        return pending(message, problem=", but ".join([_NOT_FOUND, *doubts]))
     how = f" ({passage.how})" if passage.how else ""
     problem = ""
     if passage.is_empty:
@@ -55,7 +56,7 @@ def answered(
         problem = "perhaps"
         message = f"Perhaps the answer {passage.where}{how}; needs manual grading"
     outcome = Outcome("pending", f"{question} {message}{unread}", passage.text, location=passage.location)
-    return outcome._replace(problem=problem)
+    return outcome._replace(problem=", but ".join([problem, *doubts] if problem else doubts))
 
 
 def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
@@ -78,7 +79,8 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
     paths = [labelled.file.path for labelled in submission.labelled_files]
     others = enumerated(paths, _MAX_LISTED) or "no pictures"
     message = f"no picture or PDF is named {labels}; the submission has {others}; needs manual grading"
-    return pending(message, problem=_NOT_FOUND)
+    has_documents = any(file.suffix in _MAY_HOLD_PICTURES for file in submission.tree.files.values())
+    return pending(message, problem=f"{_NOT_FOUND}, but there are documents" if has_documents else _NOT_FOUND)
 
 
 def _pictures(start: str, found_files: "tuple[EvidenceFile, ...]") -> Outcome:

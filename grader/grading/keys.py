@@ -21,10 +21,10 @@ def _is_number(value: Any) -> bool:
 def _are_choices(value: Any) -> bool:
     is_table = isinstance(value, dict) and len(value) <= MAX_CHOICES and all(map(_is_number, value.values()))
     return is_table and all(
-        text.strip()
+        text == text.strip() != ""
         and text.isprintable()
         and ";" not in text
-        and points < 0
+        and -MAX_POINTS <= points < 0
         and not Decimal(points).scaleb(_DECIMALS) % 1
         for text, points in value.items()
     )
@@ -86,7 +86,7 @@ _CHOICES = simple_type(
     f"a table of at most {MAX_CHOICES} comments without a semicolon, each with points below 0",
     {"type": "object", "additionalProperties": {"type": "number", "exclusiveMaximum": 0}, "maxProperties": MAX_CHOICES},
     _are_choices,
-    lambda table: {text.strip(): Decimal(points) for text, points in table.items()},
+    lambda table: {text: Decimal(points) for text, points in table.items()},
 )
 _FALLBACK = toml_type(Literal["failed", "manual"])
 _ANSWERS = constrained(_TEXT, Constraint("a .toml file in the rubric's folder", _is_below, {"pattern": r"\.toml$"}))

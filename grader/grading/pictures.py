@@ -6,6 +6,7 @@ from grader.checks.manual import NO_ANSWER, answered, evidence_shown
 from grader.documents.collection import DocumentCollection
 from grader.documents.document import CONVERTED, Document
 from grader.documents.evidence import headed
+from grader.documents.evidence_files import EvidenceFile
 from grader.documents.headings import Heading
 from grader.documents.pictures import EmbeddedPicture, NotShown, read_picture, verified
 from grader.errors import InputError
@@ -39,11 +40,33 @@ def may_have_pictures(result: Result) -> bool:
 
 
 def is_empty(result: Result, report: Report) -> bool:
-    """Return whether there is nothing to read for a criterion: no answer, or no file that may be evidence."""
-    if not _is_evidence(result):
-        return _is_question(result) and result.outcome.problem in NO_ANSWER
-    others = (report.other_pictures, *(files for one in report.evidence for files in (one.files, one.possible)))
-    return not any((evidence_files(result), *others))
+    """Return whether there is nothing to read for a criterion: no answer, no PDF and no picture that may be one.
+
+    Of evidence: no file that may be it.
+    """
+    if not (_is_evidence(result) or _is_question(result)) or result.outcome.problem not in NO_ANSWER:
+        return False
+    if _is_question(result):
+        return not _loose_files(report)
+    return not any((report.other_pictures, *(files for one in report.evidence for files in (one.files, one.possible))))
+
+
+def content_of(result: Result, report: Report) -> str:
+    """Return the written answer without empty lines, if it is all that there is to read; else an empty text."""
+    found, is_certain = result.outcome.measured, not result.outcome.problem
+    if not (_is_question(result) and isinstance(found, str) and is_certain) or _loose_files(report):
+        return ""
+    is_whole = not any(sign in found for sign in (PICTURE, "![", "]("))
+    return "\n".join(filter(None, map(str.rstrip, found.splitlines()))) if is_whole else ""
+
+
+def _loose_files(report: Report) -> tuple[EvidenceFile, ...]:
+    """Return the files that may hold a part of an answer: PDF files, and pictures that are no evidence."""
+    evidence = (result for result in report.results if _is_evidence(result) and not result.outcome.problem)
+    named = {path for result in evidence for path in evidence_files(result)}
+    listed = (file for one in report.evidence for files in (one.files, one.possible) for file in files)
+    others = (file for file in report.other_pictures if file.path not in named)
+    return (*others, *(file for file in (*listed, *report.other_pictures) if file.path.lower().endswith(".pdf")))
 
 
 def _is_question(result: Result) -> bool:

@@ -1,37 +1,27 @@
-"""Written answers as plain text, without the signs of Markdown."""
+"""Written answers as plain text: Markdown without the signs of headings, bold text, code and links."""
 
 import re
+from functools import reduce
 
-_FENCE = re.compile(r"\s*(?:```[^`]*|~~~.*)$")
-_SIGNS = tuple(
-    (re.compile(pattern), plain)
-    for pattern, plain in (
-        (r"^ {0,3}(?:> ?)+", ""),
-        (r"^ {0,3}(?:#{1,6}(?:\s+|$)|#{2,6}(?=\w))|(?<=\s)#+\s*$", ""),
-        (r"^\s*([-*_=])(?:\s*\1){2,}\s*$", ""),  # a rule
-        # Bounded, because a text of 32,000 characters may be full of signs without a partner.
-        (r"(?<![\w*\\])(\*{1,3})(?=[^\s*])(.{1,500}?)(?<=[^\s*\\])\1(?![\w*])", r"\2"),
-        (r"!\[([^\[\]]{0,500})\]\([^()\s]*\)", r"[picture: \1]"),
-        (r"\[([^\[\]]{1,500})\]\(([^()\s]+)\)", r"\1 (\2)"),
-        (r"(?<!`)(`{1,2})(?!`)(.{1,500}?)(?<!`)\1(?!`)", r"\2"),
-        (r"\\([-\\`*_{}\[\]()#+.!<>|~])", r"\1"),
-    )
+_FENCE = re.compile(r"\s*(?:```|~~~)[\w-]*\s*$")
+# What is certain to be Markdown: "> 5 mm", a[i](j), **/*.urdf and a rule of dashes are not.
+_SIGNS = (
+    (re.compile(r"^ {0,3}#{1,6}(?:\s+|(?<=##)(?=\w))"), ""),
+    (re.compile(r"\*\*(?=[^\s*/])([^*]{1,500}?)(?<=[^\s*/])\*\*"), r"\1"),
+    (re.compile(r"(?<!`)`([^`]{1,500})`(?!`)"), r"\1"),
+    (re.compile(r"!\[([^\[\]]{0,500})\]\([^()\s]{1,500}\)"), r"[picture: \1]"),
+    (re.compile(r"\[([^\[\]]{1,500})\]\((https?://[^()\s]{1,500})\)"), r"\1 (\2)"),
 )
 
 
 def plain_lines(markdown: str) -> list[str]:
-    """Return the lines of a text without the signs of Markdown, except in code, and without empty lines around."""
+    """Return the lines of a text without these signs, except in code, and without empty lines around."""
     lines: list[str] = []
     is_code = False
     for line in markdown.splitlines():
         if _FENCE.match(line):
             is_code = not is_code
-        else:
-            lines.append(line if is_code else _plain(line))
+            continue
+        plain = reduce(lambda text, sign: sign[0].sub(sign[1], text), () if is_code else _SIGNS, line)
+        lines.append(plain.rstrip())
     return "\n".join(lines).strip("\n").split("\n") if any(lines) else []
-
-
-def _plain(line: str) -> str:
-    for sign, plain in _SIGNS:
-        line = sign.sub(plain, line)
-    return line.rstrip()

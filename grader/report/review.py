@@ -8,7 +8,7 @@ from rich.text import Text
 
 from grader.checks.manual import MANUAL_CHECKS, answered
 from grader.classroom.gradebook.lateness import time_text
-from grader.classroom.gradebook.manual_queue import QueuedResult
+from grader.classroom.gradebook.manual_queue import QueuedMember, QueuedResult
 from grader.classroom.gradebook.marks import Mark
 from grader.grading.criterion import Criterion
 from grader.grading.pictures import evidence_files
@@ -49,17 +49,17 @@ def render_item(
     _print_block("Earlier comments", lines, console)
 
 
-def who(item: QueuedResult) -> str:
+def who(one: QueuedMember) -> str:
     """Return the name and key of the student, or the number of an anonymous one; printable."""
-    student = item.grade.student
-    if item.number is not None:
-        return f"submission {item.number}"
+    student = one.grade.student
+    if one.number is not None:
+        return f"submission {one.number}"
     return printable(named(student.key, student.name))
 
 
 def who_together(item: QueuedResult) -> str:
     """Return the student of an item, or the number of its students."""
-    return f"{len(item.members)} students" if item.others else who(item)
+    return f"{len(item.members)} students" if item.others else who(item.first)
 
 
 def together_text(item: QueuedResult) -> str:
@@ -78,7 +78,7 @@ def choice_words(criterion: Criterion) -> list[str]:
 def message_text(item: QueuedResult) -> str:
     """Return what was found; without the names of files, which students choose, if the student is anonymous."""
     outcome = item.result.outcome
-    if item.number is None:
+    if item.first.number is None:
         return printable(outcome.message)
     if outcome.status != "pending":
         return f"the check: {outcome.status}"
@@ -95,10 +95,10 @@ def message_text(item: QueuedResult) -> str:
 
 def marked_text(item: QueuedResult) -> str:
     """Return the mark or comment that counts, and whether a mark gives a part of the points; empty without one."""
-    if item.mark is None or (item.result.manual_mark is None and item.result.comment is None):
+    if item.first.mark is None or (item.result.manual_mark is None and item.result.comment is None):
         return ""
     is_partial = status_of(item.result) == "partial"
-    return f"{mark_text(item.mark)}{' (partial points)' if is_partial else ''}"
+    return f"{mark_text(item.first.mark)}{' (partial points)' if is_partial else ''}"
 
 
 def mark_text(mark: Mark) -> str:
@@ -111,7 +111,7 @@ def mark_text(mark: Mark) -> str:
 
 def files_text(item: QueuedResult) -> list[str]:
     """Return where the files are that a criterion is about, printable."""
-    return [printable(_where(item, file)) for file in evidence_files(item.result)] if item.number is None else []
+    return [printable(_where(item, file)) for file in evidence_files(item.result)] if item.first.number is None else []
 
 
 def place_text(item: QueuedResult) -> str:
@@ -120,7 +120,7 @@ def place_text(item: QueuedResult) -> str:
     Empty if the files are named elsewhere, or the student is anonymous.
     """
     location = item.result.outcome.location
-    if item.number is not None or item.is_empty_group:
+    if item.first.number is not None or item.is_empty_group:
         return ""
     if location is None:
         submitted = (str(Path(item.grade.files.root, path)) for path in item.grade.files.paths)
@@ -141,6 +141,8 @@ def _print_block(title: str, lines: Iterable[str], console: Console) -> None:
 def _where(item: QueuedResult, path: str) -> str:
     """Return the path of a file of the submission on this machine."""
     origin = item.grade.files
+    if len(origin.paths) == 1 and origin.paths[0].rpartition("/")[2] == path:  # a single document
+        return str(Path(origin.root, origin.paths[0]))
     if len(origin.paths) == 1:
         return str(Path(origin.root, origin.paths[0], path))
     named = dict(zip(origin.names or [name.rpartition("/")[2] for name in origin.paths], origin.paths, strict=True))

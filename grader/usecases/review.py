@@ -127,10 +127,11 @@ def _read_mark(line: str, session: ReviewSession) -> tuple[Decimal, str]:
     while criterion.choices and (number := _DEDUCTION.match(rest)):
         if int(number[1]) > len(criterion.choices):
             raise InputError(f"there is no deduction {number[0].strip()}")
-        chosen.append([*criterion.choices][int(number[1]) - 1])
+        text = [*criterion.choices][int(number[1]) - 1]
+        chosen += [text] * (text not in chosen)
         rest = rest[number.end() :]
     if chosen:
-        return criterion.after(chosen), "; ".join(filter(None, (*chosen, rest)))
+        return criterion.after(chosen), "; ".join(filter(None, (*chosen, _comment(session, rest))))
     answer, _, comment = line.partition(" ")
     return read_points(answer, criterion.id, criterion.points), _comment(session, comment.strip())
 

@@ -42,7 +42,7 @@ class ReviewPage:
 
     def __init__(self, session: ReviewSession, book: Gradebook, reader: ThreadPoolExecutor) -> None:
         self.session, self._book, self._reader = session, book, reader
-        self._albums: OrderedDict[int, Future[Album]] = OrderedDict()  # by the position of the item
+        self._albums: OrderedDict[str, Future[Album]] = OrderedDict()  # by the stamp of the item
         self._notice = ""
 
     def __call__(self, request: Request) -> Response:
@@ -63,7 +63,7 @@ class ReviewPage:
         with suppress(GraderError):  # the page of that item shows the error
             item = self.session.item_at(following)
             if item is not None:
-                self._album(following, item)
+                self._album(item)
 
     def _page(self, path: tuple[str, ...]) -> Response:
         match path:
@@ -86,7 +86,7 @@ class ReviewPage:
 
     def _item(self) -> Response:
         session, item = self.session, self.session.current_item()
-        pictures = self._album(session.position, item).result()
+        pictures = self._album(item).result()
         return _html(item_page(item, self._place(), pictures, session.comments(), self._pop_notice()))
 
     def _place(self) -> Place:
@@ -118,7 +118,7 @@ class ReviewPage:
         return Response(page.encode("utf-8", "backslashreplace"), _HTML, policy=_REPORT_POLICY)
 
     def _picture(self, which: str) -> Response:
-        pictures = self._album(self.session.position, self.session.current_item()).result()
+        pictures = self._album(self.session.current_item()).result()
         found = dict(enumerate(pictures, 1)).get(int(which) if _is_number(which) else 0)
         if not isinstance(found, EmbeddedPicture):
             return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
@@ -141,13 +141,14 @@ class ReviewPage:
             return _json({"newer": mark_text(error.mark), "shown": error.mark.id})
         return _json({"go": self._address()})
 
-    def _album(self, position: int, item: QueuedResult) -> "Future[Album]":
+    def _album(self, item: QueuedResult) -> "Future[Album]":
         """Return the pictures of an item. Another thread reads them, so that marks are not delayed."""
-        if position not in self._albums:
-            self._albums[position] = self._reader.submit(item_pictures, item, self.session.rubric_of(item))
+        shown = stamp_of(item)
+        if shown not in self._albums:
+            self._albums[shown] = self._reader.submit(item_pictures, item, self.session.rubric_of(item))
         while len(self._albums) > _KEPT:
             self._albums.popitem(last=False)[1].cancel()
-        return self._albums[position]
+        return self._albums[shown]
 
     def _address(self) -> str:
         return str(self.session.position + 1) if self.session.item is not None else "end"

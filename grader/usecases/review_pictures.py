@@ -28,7 +28,7 @@ def item_pictures(item: QueuedResult, rubric: Rubric) -> tuple[EmbeddedPicture |
         return ()
     submission = SubmissionSources(item.grade.files, rubric).submission
     found = (NotShown("pictures", _CHANGED),) if submission is None else pictures_of(item.result, submission)
-    return found if item.number is None else tuple(starmap(_anonymous, enumerate(found, 1)))
+    return found if item.first.number is None else tuple(starmap(_anonymous, enumerate(found, 1)))
 
 
 def _anonymous(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPicture | NotShown:
@@ -53,7 +53,7 @@ class PictureFolder:
         self._names = {} if session.scope.anonymous else report_names(book)
         make_folder(folder)
         if not session.scope.anonymous:
-            keys = {key for item in session.queue for key in item.keys}
+            keys = {key for item in session.queue for key, _ in item.students}
             update_index(folder, {key: self._names[key] for key in sorted(keys)})
         elif any(folder.iterdir()):
             raise InputError(f"{printable_path(folder)} is not empty: --anonymous needs a new folder for --pictures")
@@ -61,7 +61,7 @@ class PictureFolder:
     def write(self, item: QueuedResult) -> list[str]:
         """Write the pictures of an item; return a line for each, also for those that are not shown."""
         key, criterion = item.grade.student.key, item.result.criterion.id
-        name = self._names[key] if item.number is None else f"submission-{item.number}"
+        name = self._names[key] if item.first.number is None else f"submission-{item.first.number}"
         start = self._folder / self._folders[criterion] / name
         found = item_pictures(item, self._session.rubric_of(item))
         return [_write_picture(one, start, number, item) for number, one in enumerate(found, 1)]
@@ -78,7 +78,7 @@ def write_all_pictures(
             continue
         found[queued] = folder.write(item)
         for line in found[queued]:
-            show(f"{who(item)}, {printable(queued.criterion)}: {line}\n")
+            show(f"{who(item.first)}, {printable(queued.criterion)}: {line}\n")
     session.start()
     return found
 

@@ -170,7 +170,7 @@ def meanwhile(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
 def put(top: Path, key: str, criterion: str, points: int, comment: str = "") -> None:
     """Mark as Kim."""
     with Gradebook(top / "book.db") as book:
-        (found,) = queued_results(Grades(book), key, [criterion])
+        (found,) = queued_results(Grades(book), Grades(book).find(key), [criterion])
         mark(book, found.grade, found.result.criterion, Decimal(points), "Kim", comment)
 
 
@@ -219,7 +219,7 @@ def test_a_third_mark_is_shown_as_well(graded_class: Path, top: Path) -> None:
     del graded_class
     with Gradebook(top / "book.db") as one, Gradebook(top / "book.db") as other:
         standings = Grades(one)
-        (found,) = queued_results(standings, "anna", ["essay"])
+        (found,) = queued_results(standings, standings.find("anna"), ["essay"])
         shown, seen = found.newest, []
         for points in (1, 2):
             theirs = mark(other, found.grade, found.result.criterion, Decimal(points), "", "").before

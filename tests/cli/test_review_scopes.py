@@ -194,7 +194,7 @@ def test_the_page_of_a_second_opinion_has_no_score(top: Path) -> None:
         for is_second in (False, True):
             scope = ReviewScope("essay", "Lee", second=is_second)
             grades = Grades(book)
-            (item,) = queued_results(grades, "u7701", ["essay"], scope)
+            (item,) = queued_results(grades, grades.find("u7701"), ["essay"], scope)
             page = item_page(item, Place(1, 1, "1", False, False), (), (), "")
             assert ("9.25" in page, "3.25" in page) == (not is_second, not is_second)
 

@@ -80,7 +80,7 @@ def time_text(when: datetime | str, zone: tzinfo | None = None) -> str:
             moment = moment.astimezone(zone)
     plain = moment.replace(tzinfo=None)
     offset = moment.isoformat().removeprefix(plain.isoformat())
-    shown = plain.isoformat(" ", "seconds" if plain.second and not plain.microsecond else "minutes")
+    shown = plain.isoformat(" ", "seconds" if plain.second and plain.time() != time.max else "minutes")
     return f"{shown} (UTC{offset.replace('+00:00', '')})" if offset else shown
 
 

@@ -4,7 +4,6 @@ import re
 from collections.abc import Collection
 from typing import NamedTuple
 
-from grader.checks.manual import answered
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import Mark, newest_mark, newest_second
@@ -12,8 +11,8 @@ from grader.classroom.gradebook.result import storable
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.matching import plain_group, plain_name
 from grader.errors import InputError
-from grader.grading.pictures import PICTURE, is_empty
-from grader.grading.report import ManualMark, Report, Result
+from grader.grading.pictures import content_of, is_empty
+from grader.grading.report import ManualMark, Result
 from grader.text import enumerated
 from grader.values import dataclass
 
@@ -48,27 +47,42 @@ class ReviewScope(NamedTuple):
 EVERYTHING = ReviewScope()
 
 
-@dataclass(frozen=True, slots=True)
-class QueuedResult:
-    """A queued criterion in its current state, with its newest mark, which may withdraw an earlier one.
-
-    With `is_second`, both are those of a second opinion. An anonymous student has a `number`. `content` is what results
-    have in common that one mark serves, empty if there is nothing to read; `others` are the results of the other
-    students that are marked with this one.
-    """
+class QueuedMember(NamedTuple):
+    """A student of an item, with the newest mark, which may withdraw an earlier one, and a `number` if anonymous."""
 
     grade: StudentGrade
-    result: Result
-    mark: Mark | None = None
-    is_second: bool = False
+    mark: Mark | None
     number: int | None = None
-    content: str = ""
-    others: tuple["QueuedResult", ...] = ()
 
     @property
-    def members(self) -> tuple["QueuedResult", ...]:
-        """The results of all students that one mark serves."""
-        return (self, *self.others)
+    def is_open(self) -> bool:
+        """Return whether there are no points."""
+        return self.mark is None or self.mark.points is None
+
+
+@dataclass(frozen=True, slots=True)
+class QueuedResult:
+    """A queued criterion in its current state, with its newest mark; with `is_second` those of a second opinion.
+
+    `content` is what results have in common that one mark serves, empty if there is nothing to read; `others` are the
+    other students that are marked with this one.
+    """
+
+    first: QueuedMember
+    result: Result
+    is_second: bool = False
+    content: str = ""
+    others: tuple[QueuedMember, ...] = ()
+
+    @property
+    def members(self) -> tuple[QueuedMember, ...]:
+        """All students that one mark serves."""
+        return (self.first, *self.others)
+
+    @property
+    def grade(self) -> StudentGrade:
+        """The grade of the first student, whose result is shown."""
+        return self.first.grade
 
     @property
     def is_empty_group(self) -> bool:
@@ -83,7 +97,8 @@ class QueuedResult:
     @property
     def is_open(self) -> bool:
         """Return whether a member still needs a mark, or a second opinion."""
-        return any(one.result.manual_mark is None if one.is_second else one.result.is_open for one in self.members)
+        is_first_open = self.first.is_open if self.is_second else self.result.is_open
+        return is_first_open or any(one.is_open for one in self.others)
 
 
 _QUEUED = (
@@ -131,36 +146,24 @@ def _students_of(book: Gradebook, scope: ReviewScope) -> set[str]:
 
 
 def queued_results(
-    grades: Grades, key: str, criteria: Collection[str], scope: ReviewScope = EVERYTHING, number: int | None = None
+    grades: Grades, grade: StudentGrade, criteria: Collection[str], scope: ReviewScope = EVERYTHING
 ) -> list[QueuedResult]:
     """Return queued criteria of a student in their current state, without those that are no longer graded."""
-    grade = next(grades.between(key, key), None)
-    if grade is None or grade.result is None:
+    if grade.result is None:
         return []
     # Before the report, so that no later mark counts as shown.
-    newest = {name: newest_of(grades.book, grade, name, scope) for name in criteria}
+    members = {name: QueuedMember(grade, newest_of(grades.book, grade, name, scope)) for name in criteria}
     report = grades.report(grade)
     return [
         QueuedResult(
-            grade,
-            _blind(result, newest[result.criterion.id]) if scope.second else result,
-            newest[result.criterion.id],
+            member := members[result.criterion.id],
+            _blind(result, member.mark) if scope.second else result,
             scope.second,
-            number,
-            _content(result, report, grade),
+            content_of(result, report) or ("" if is_empty(result, report) else FILES + grade.files.digest),
         )
         for result in report.results
-        if result.criterion.id in newest
+        if result.criterion.id in members
     ]
-
-
-def _content(result: Result, report: Report, grade: StudentGrade) -> str:
-    """Return the words of a written answer, else the digest of the submission; empty if there is nothing to read."""
-    found = result.outcome.measured
-    if is_empty(result, report):
-        return ""
-    is_text = result.criterion.check.function is answered and isinstance(found, str) and PICTURE not in found
-    return " ".join(str(found).casefold().split()) if is_text else FILES + grade.files.digest
 
 
 def newest_of(book: Gradebook, grade: StudentGrade, criterion: str, scope: ReviewScope) -> Mark | None:

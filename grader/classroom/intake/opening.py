@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     import hashlib
 
 _UNSUPPORTED = "is neither a URDF nor a folder, an archive or a document"
-_PACKED = (".docx", ".odt", ".pages")  # documents that are zip archives
-_DOCUMENTS = (*EVIDENCE, *_PACKED, ".doc", ".md", ".txt", ".rst", ".rtf")
+_DOCUMENTS = (*EVIDENCE, ".docx", ".doc", ".odt", ".pages", ".ipynb", ".md", ".txt", ".rst", ".rtf")
 _MAX_HASHED = 64 * 1024 * 1024  # bytes of a file that go into the digest; of a larger file its size does
 _CHUNK = 1024 * 1024
 
@@ -65,15 +64,27 @@ def open_class_submission(
 ) -> OpenedSubmission:
     """Open what is at `paths` below a class folder, or in a class zip; raises InputError.
 
-    Several files become one submission, called `name`, that contains them as `names`; so does a single document.
+    Several files become one submission, called `name`, that contains them as `names`; so does a single document, which
+    has its own name.
     """
-    if len(paths) == 1:
-        opened = _open_in_zip(root, paths[0], max_size) if is_zip(root) else _open_on_disk(root, paths[0], max_size)
-        if opened is not None:
-            return opened
+    if len(paths) == 1 and _is_document(root, paths[0]):
+        name = without_endings(PurePosixPath(paths[0]).name)
+    elif len(paths) == 1:
+        return _open_in_zip(root, paths[0], max_size) if is_zip(root) else _open_on_disk(root, paths[0], max_size)
     files = dict(zip(paths, names or [PurePosixPath(path).name for path in paths], strict=True))
     tree = _class_zip(root, file_stamp(root)).files(files, name) if is_zip(root) else _side_by_side(root, files, name)
     return OpenedSubmission(name, name, _digest_of_tree(name, tree, max_size), None, tree, max_size)
+
+
+def _is_document(root: str, path: str) -> bool:
+    """Return whether a single file may hold answers or evidence, and is no URDF with the ending .txt."""
+    if not path.lower().endswith(_DOCUMENTS):
+        return False
+    class_zip = _class_zip(root, file_stamp(root)) if is_zip(root) else None
+    if class_zip.is_folder(path) if class_zip is not None else Path(root, path).is_dir():
+        return False
+    with class_zip.raw(path) if class_zip is not None else _raw(root, path) as file:
+        return not path.lower().endswith(".txt") or not is_robot(file.read(START))
 
 
 def unreadable_digest(root: str, paths: tuple[str, ...]) -> str:
@@ -94,31 +105,24 @@ def _raw(root: str, path: str) -> IO[bytes]:
     return os.fdopen(open_regular(Path(root, path), top=root), "rb")
 
 
-def _refuse_unless_document(shown: str) -> None:
-    if not shown.lower().endswith(_DOCUMENTS):
-        raise InputError(f"{shown} {_UNSUPPORTED}")
-
-
-def _open_on_disk(root: str, path: str, max_size: int) -> OpenedSubmission | None:
+def _open_on_disk(root: str, path: str, max_size: int) -> OpenedSubmission:
     last = path.rpartition("/")[2]
     if last.lower().endswith(ROBOT_ENDINGS):
         shown = printable_path(last)
         return _lone_urdf(shown, read_capped(f"{root}/{path}", max_size, shown=shown, top=root), max_size)
     place = Path(root, path)
-    is_packed = last.lower().endswith(_PACKED) and not place.is_dir()
-    tree = outer_tree(place, root) if not is_packed else None
+    tree = outer_tree(place, root)
     if tree is None:
         shown = printable_path(place.name)
         if not is_robot(read_start(place, START, shown, root)):
-            _refuse_unless_document(shown)
-            return None
+            raise InputError(f"{shown} {_UNSUPPORTED}")
         return _lone_urdf(shown, read_capped(place, max_size, shown=shown, top=root), max_size)
     name = tree_name(place)
     digest = _digest_of_tree(name, tree, max_size) if place.is_dir() else _digest_of_file(name, place, root, max_size)
     return OpenedSubmission(name, printable_path(path), digest, None, tree, max_size)
 
 
-def _open_in_zip(root: str, path: str, max_size: int) -> OpenedSubmission | None:
+def _open_in_zip(root: str, path: str, max_size: int) -> OpenedSubmission:
     class_zip = _class_zip(root, file_stamp(root))
     last = path.rpartition("/")[2]
     if class_zip.is_folder(path):
@@ -128,12 +132,11 @@ def _open_in_zip(root: str, path: str, max_size: int) -> OpenedSubmission | None
         return _lone_urdf(last, class_zip.read(path, max_size), max_size)
     name = without_endings(last)
     digest = _digest(name, max_size)
-    archive = None if last.lower().endswith((".xml", *_PACKED)) else class_zip.archive(path, digest)
+    archive = None if last.lower().endswith(".xml") else class_zip.archive(path, digest)
     if archive is None:
         data = class_zip.read(path, max_size)
         if not is_robot(data):
-            _refuse_unless_document(last)
-            return None
+            raise InputError(f"{last} {_UNSUPPORTED}")
         return _lone_urdf(last, data, max_size)
     return OpenedSubmission(name, path, digest.hexdigest(), None, archive, max_size)
 

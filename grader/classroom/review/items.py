@@ -1,5 +1,6 @@
 """The items of a review: equal answers and a team's submission are one item, and similar answers are neighbours."""
 
+import json
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from functools import reduce
@@ -11,18 +12,20 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import FILES, ReviewScope, manual_grading_queue, queued_results
 from grader.files.reading import sha256_of
 
-_MAX_COMPARED, _MAX_WORDS = 1000, 200  # answers to a question, each of which is compared with all others
+# Answers to a question, each of which is compared with all others, and words of one.
+_MAX_COMPARED, _MAX_WORDS = 300, 200
+AMONG = "key IN (SELECT value FROM json_each(?))"
 
 
 class QueuedItem(NamedTuple):
-    """A criterion of the students that one mark serves.
+    """A criterion of the students that one mark serves, each with the id of the result that was read.
 
     `content` is what their results have in common, empty if there is nothing to read. An item of one student who is
     also part of an item of several has the position of that one, `whole`.
     """
 
     criterion: str
-    keys: tuple[str, ...]
+    students: tuple[tuple[str, int | None], ...]
     content: str = ""
     whole: int | None = None
 
@@ -36,47 +39,51 @@ def review_items(grades: Grades, scope: ReviewScope, numbers: Mapping[str, int])
     queued = defaultdict[str, list[str]](list)
     for key, criterion in manual_grading_queue(grades, scope):
         queued[key].append(criterion)
-    groups = defaultdict[str, dict[str, list[str]]](dict)  # of each criterion, by content
-    for key in sorted(queued, key=lambda key: (numbers.get(key, 0), key)):
-        for one in queued_results(grades, key, queued[key], scope):
-            groups[one.result.criterion.id].setdefault(one.content, []).append(key)
+    read: list[tuple[int, str, int | None, list[tuple[str, str]]]] = []
+    for grade in list(grades.where(AMONG, json.dumps([*queued]))):
+        key = grade.student.key
+        found = [(one.result.criterion.id, one.content) for one in queued_results(grades, grade, queued[key], scope)]
+        read.append((numbers.get(key, 0), key, grade.result, found))
+    groups = defaultdict[str, dict[str, list[tuple[str, int | None]]]](dict)  # of each criterion, by content
+    for _, key, result, found in sorted(read):
+        for criterion, content in found:
+            groups[criterion].setdefault(content, []).append((key, result))
     items: list[QueuedItem] = []
-    for criterion, content, keys in _in_order([row.id for row in grades.newest_rubric().criteria], groups):
-        whole = len(items)
-        items.append(QueuedItem(criterion, tuple(keys), content))
-        items += [QueuedItem(criterion, (key,), content, whole) for key in keys if len(keys) > 1]
+    for criterion, content in _in_order([row.id for row in grades.newest_rubric().criteria], groups):
+        whole, students = len(items), groups[criterion][content]
+        items.append(QueuedItem(criterion, tuple(students), content))
+        items += [QueuedItem(criterion, (one,), content, whole) for one in students if len(students) > 1]
     return tuple(items)
 
 
-def _in_order(
-    criteria: Sequence[str], groups: Mapping[str, Mapping[str, list[str]]]
-) -> Iterator[tuple[str, str, list[str]]]:
+def _in_order(criteria: Sequence[str], groups: Mapping[str, Mapping[str, object]]) -> Iterator[tuple[str, str]]:
     for criterion in filter(groups.__contains__, criteria):
         found = groups[criterion]
         texts = similar_order([content for content in found if content and not content.startswith(FILES)])
-        contents = (*texts, *(content for content in found if content.startswith(FILES)))
-        yield from ((criterion, content, found[content]) for content in contents)
-    yield from ((criterion, "", groups[criterion][""]) for criterion in criteria if "" in groups.get(criterion, ()))
+        yield from ((criterion, content) for content in texts)
+        yield from ((criterion, content) for content in found if content.startswith(FILES))
+    yield from ((criterion, "") for criterion in criteria if "" in groups.get(criterion, ()))
 
 
 def similar_order(texts: Sequence[str]) -> list[str]:
     """Return texts in an order in which each is followed by the one, of those that are left, that shares most words.
 
-    The first stays the first.
+    The first stays the first. Very many are in alphabetical order.
     """
     if len(texts) > _MAX_COMPARED:
-        return [*texts]
+        return sorted(texts, key=str.casefold)
     bits: dict[str, int] = {}  # of each word, in a set of words as a whole number
-    left = [
-        (text, reduce(or_, (1 << bits.setdefault(word, len(bits)) for word in text.split()[:_MAX_WORDS]), 0))
-        for text in texts
-    ]
+    left = [(text, reduce(or_, (1 << bits.setdefault(word, len(bits)) for word in _words(text)), 0)) for text in texts]
     order, last = list[str](), 0
     while left:
         shares = [(words & last).bit_count() / ((words | last).bit_count() or 1) for _, words in left]
         text, last = left.pop(shares.index(max(shares)))
         order.append(text)
     return order
+
+
+def _words(text: str) -> list[str]:
+    return text.casefold().split()[:_MAX_WORDS]
 
 
 def student_numbers(book: Gradebook) -> dict[str, int]:

@@ -5,7 +5,7 @@ from decimal import Decimal
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.manual_queue import QueuedResult, ReviewScope, newest_of
+from grader.classroom.gradebook.manual_queue import QueuedMember, QueuedResult, ReviewScope
 from grader.classroom.gradebook.marks import (
     WITHDRAWN,
     WITHDRAWN_SECOND,
@@ -16,14 +16,15 @@ from grader.classroom.gradebook.marks import (
     restore_mark,
     writing,
 )
+from grader.classroom.gradebook.student_grade import StudentGrade
 
 
 class GivenMark(NamedTuple):
-    """A mark of a review: the position of its item, its criterion, and the mark `before` it of each student."""
+    """A mark of a review: the position of its item, its criterion, and the students by key, with the marks `before`."""
 
     position: int
     criterion: str
-    before: dict[str, Mark | None]
+    before: dict[str, tuple[StudentGrade, Mark | None]]
 
 
 class OwnMarks:
@@ -39,65 +40,70 @@ class OwnMarks:
         """Return whether there is a mark to undo."""
         return bool(self._given)
 
-    def has(self, item: QueuedResult) -> bool:
-        """Return whether this review has marked a student of an item."""
-        return any((item.result.criterion.id, one.grade.student.key) in self.newest for one in item.members)
+    def has(self, criterion: str, member: QueuedMember) -> bool:
+        """Return whether a student's newest mark is of this review."""
+        own = self.newest.get((criterion, member.grade.student.key))
+        return own is not None and member.mark is not None and own == member.mark.id
 
     def mark(self, position: int, item: QueuedResult, points: Decimal, comment: str, shown: int | None) -> None:
         """Mark the students of an item who do not already have this mark, see ReviewSession.mark."""
         shown = item.newest if shown is None else shown
-        criterion, by = item.result.criterion.id, self._scope.by
+        criterion = item.result.criterion.id
         entry = Entry("second" if self._scope.second else "points", points, comment)
-        marks = {}
+        # By age, so that of several marks that were not shown each is confirmed.
+        members = sorted(item.members, key=lambda one: one.mark.id if one.mark is not None else 0)
+        before: dict[str, tuple[StudentGrade, Mark | None]] = {}
+        newest: dict[tuple[str, str], int] = {}
         with writing(self._book):
-            for one in item.members:
-                newest = newest_of(self._book, one.grade, criterion, self._scope)
-                if newest is None or newest.id > shown or newest.entry != entry:
-                    mark = add_mark(self._book, one.grade, criterion, entry, by, shown=shown)
-                    marks[one.grade.student.key] = mark
-        if marks:
-            before = {key: mark.before for key, mark in marks.items()}
-            self._given.append(GivenMark(position, criterion, before))
-        self.newest |= {(criterion, key): mark.id for key, mark in marks.items()}
+            for grade, mark, _ in members:
+                if mark is None or mark.id > shown or mark.entry != entry:
+                    added = add_mark(self._book, grade, criterion, entry, self._scope.by, shown=shown)
+                    before[grade.student.key] = grade, added.before
+                    newest[criterion, grade.student.key] = added.id
+        self._given += [GivenMark(position, criterion, before)] * bool(before)
+        self.newest |= newest
 
     def pop(self, position: int) -> GivenMark:
-        """Remove and return the newest mark of the item at a position, else of the review, to undo it."""
-        here = [index for index, given in enumerate(self._given) if given.position == position]
-        return self._given.pop(here[-1] if here else -1)
+        """Remove and return the newest mark of the item at a position, else of the review, to undo it.
 
-    def undo(self, given: GivenMark, item: QueuedResult) -> Mark | None:
+        A later mark of one of its students goes first.
+        """
+        at = next((at for at, one in reversed([*enumerate(self._given)]) if one.position == position), -1)
+        chosen = self._given[at]
+        for later in reversed(self._given):
+            if later.criterion == chosen.criterion and later.before.keys() & chosen.before.keys():
+                self._given.remove(later)
+                return later
+        raise AssertionError("a mark has its own students")
+
+    def undo(self, given: GivenMark) -> Mark | None:
         """Add an entry for each student that restores the mark before, or withdraws the mark; return what counts now.
 
-        Raises NewerMarkError if a student has a newer mark, which stays.
+        That is None if it differs between the students. Raises NewerMarkError if a student has a newer mark, which
+        stays.
         """
         newer = None
-        for one in item.members:
-            key = one.grade.student.key
-            if key in given.before:
-                try:
-                    self._restore(one, given.before[key])
-                except NewerMarkError as error:
-                    self.forget(given.criterion, [key])
-                    newer = error
-        gone = given.before.keys() - {one.grade.student.key for one in item.members}
-        self.forget(given.criterion, gone)  # results that have changed since keep their marks
+        for key, (grade, before) in given.before.items():
+            mark = before or (WITHDRAWN_SECOND if self._scope.second else WITHDRAWN)
+            shown = self.newest[given.criterion, key]
+            try:
+                added = restore_mark(self._book, grade, given.criterion, mark, self._scope.by, shown=shown)
+            except NewerMarkError as error:
+                self.forget(given.criterion, [key])
+                newer = error
+                continue
+            self.newest[given.criterion, key] = added.id
+            if not any(one.criterion == given.criterion and key in one.before for one in self._given):
+                self.forget(given.criterion, [key])
         if newer is not None:
             raise newer
-        return next(iter(given.before.values()))
-
-    def _restore(self, one: QueuedResult, before: Mark | None) -> None:
-        key, criterion = one.grade.student.key, one.result.criterion.id
-        mark = before or (WITHDRAWN_SECOND if self._scope.second else WITHDRAWN)
-        shown = self.newest[criterion, key]
-        added = restore_mark(self._book, one.grade, criterion, mark, self._scope.by, shown=shown)
-        self.newest[criterion, key] = added.id
-        if not any(other.criterion == criterion and key in other.before for other in self._given):
-            self.forget(criterion, [key])
+        first, *others = (before for _, before in given.before.values())
+        return first if all(one == first for one in others) else None
 
     def forget(self, criterion: str, keys: Iterable[str]) -> None:
         """Forget the marks of students: they can no longer be undone."""
-        for key in keys:
-            del self.newest[criterion, key]
+        for key in list(keys):
+            self.newest.pop((criterion, key), None)
             for given in self._given:
                 if given.criterion == criterion:
                     given.before.pop(key, None)

@@ -1,21 +1,24 @@
 """A review: one person goes through the items that need manual grading. Each mark is saved immediately."""
 
+import json
 from dataclasses import replace
 from decimal import Decimal
 
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import (
     EVERYTHING,
+    QueuedMember,
     QueuedResult,
     ReviewScope,
     manual_grading_queue,
+    newest_of,
     numbered_comments,
     queued_results,
     reusable_comments,
 )
 from grader.classroom.gradebook.marks import Mark
 from grader.classroom.review.filter import ITEM_STATES, ReviewFilter
-from grader.classroom.review.items import QueuedItem, review_items, student_numbers
+from grader.classroom.review.items import AMONG, QueuedItem, review_items, student_numbers
 from grader.classroom.review.own_marks import OwnMarks
 from grader.classroom.students import Student
 from grader.classroom.typed_names import criterion_of
@@ -23,6 +26,7 @@ from grader.errors import InputError
 from grader.grading.rubric import Rubric
 
 MAX_COMMENTS = 9  # one key each
+_MAX_KEPT = 8  # items in memory
 _NOT_GRADED = "this criterion is no longer graded for this student"
 
 
@@ -48,6 +52,8 @@ class ReviewSession:
         self._split: set[int] = set()  # the positions of the items whose students are marked one by one
         self.own = OwnMarks(grades.book, scope)
         self._comments: dict[str, list[str]] = {}  # of each criterion, in the order of their keys
+        self._state: object = None  # of the gradebook and the filter when `_items` were read
+        self._items: dict[int, QueuedResult | None] = {}
         self.item: QueuedResult | None = None
         self.start()
 
@@ -64,17 +70,18 @@ class ReviewSession:
     @property
     def is_own(self) -> bool:
         """Return whether this review has marked the current item."""
-        return self.item is not None and self.own.has(self.item)
+        item = self.item
+        return item is not None and any(self.own.has(item.result.criterion.id, one) for one in item.members)
 
     @property
     def sections(self) -> list[str]:
         """The sections of the students in the queue."""
-        return sorted({self._sections.get(key, "") for item in self.queue for key in item.keys} - {""})
+        return sorted({self._sections.get(key, "") for item in self.queue for key, _ in item.students} - {""})
 
     @property
     def students(self) -> list[Student]:
         """The students in the queue; none if they are anonymous."""
-        keys = {key for item in self.queue for key in item.keys} if not self.scope.anonymous else ()
+        keys = {key for item in self.queue for key, _ in item.students} if not self.scope.anonymous else ()
         return [student for student in self._grades.book.students() if student.key in keys]
 
     def listed(self) -> list[int]:
@@ -91,7 +98,7 @@ class ReviewSession:
 
     def _keys(self, item: QueuedItem) -> list[str]:
         """Return the students of an item in the section of the filter."""
-        return [key for key in item.keys if self.filter.section in ("", self._sections.get(key, ""))]
+        return [key for key, _ in item.students if self.filter.section in ("", self._sections.get(key, ""))]
 
     def start(self) -> None:
         """Go to the first item that is shown, or to the end."""
@@ -99,12 +106,19 @@ class ReviewSession:
         self.next()
 
     def show_only(self, wanted: ReviewFilter) -> None:
-        """Show the items that a filter lets through, from the first one."""
+        """Show the items that a filter lets through, from the first one. Raises InputError for an unknown value."""
+        known = {item.criterion for item in self.queue}
+        if {wanted.criterion, wanted.section} - {"", *known, *self.sections}:
+            raise InputError("nothing in this review has this question or section")
         self.filter = wanted
         self.start()
 
     def go(self, position: int) -> None:
-        """Go to a position in the queue, also to a marked item; beyond the last one to the end."""
+        """Go to a position in the queue, also to a marked item; beyond the last one to the end.
+
+        In place of an item that is split it goes to its first student.
+        """
+        position += position in self._split
         self.item = self.item_at(position)
         self.position = position if 0 <= position < len(self.queue) else len(self.queue)
 
@@ -113,18 +127,29 @@ class ReviewSession:
 
         Students whose result has changed are not in an item of several, nor are those that others have marked.
         """
-        inside = 0 <= position < len(self.queue)
-        if not inside:
-            return None
-        queued = self.queue[position]
+        book = self._grades.book
+        state = book.first("PRAGMA data_version"), book.connection.total_changes, self.filter
+        if state != self._state or len(self._items) > _MAX_KEPT:
+            self._state, self._items = state, {}
+        if position not in self._items:
+            inside = 0 <= position < len(self.queue)
+            self._items[position] = self._read(self.queue[position]) if inside else None
+        return self._items[position]
+
+    def _read(self, queued: QueuedItem) -> QueuedResult | None:
+        """Return an item as the gradebook has it now; only of the first student the whole result is read."""
+        criterion, results, book = queued.criterion, dict(queued.students), self._grades.book
         found = [
-            one
-            for key in self._keys(queued)
-            for one in queued_results(self._grades, key, (queued.criterion,), self.scope, self._numbers.get(key))
-            if one.content == queued.content or len(queued.keys) == 1
+            QueuedMember(grade, newest_of(book, grade, criterion, self.scope), self._numbers.get(grade.student.key))
+            for grade in list(self._grades.where(AMONG, json.dumps(self._keys(queued))))
+            if len(results) == 1 or grade.result == results[grade.student.key]
         ]
-        found = [one for one in found if one.is_open or self.own.has(one)] or found
-        return replace(found[0], others=tuple(found[1:])) if found else None
+        found.sort(key=lambda one: one.number or 0)
+        shown = [one for one in found if one.is_open or self.own.has(criterion, one)] or found
+        items = [
+            item for one in shown[:1] for item in queued_results(self._grades, one.grade, (criterion,), self.scope)
+        ]
+        return next((replace(item, first=shown[0], others=tuple(shown[1:])) for item in items), None)
 
     def current_item(self) -> QueuedResult:
         """Return the current item; raise InputError if it is no longer graded."""
@@ -179,7 +204,13 @@ class ReviewSession:
         if not found:
             where = " under this filter" if any(self.filter) else ""
             raise InputError(f"there is nothing to grade for {name!r}{where}")
-        self.go(min(found, key=lambda at: (not self.queue[at].content, self.queue[at].criterion != here, at)))
+        start = self.position
+        for at in sorted(found, key=lambda at: (not self.queue[at].content, self.queue[at].criterion != here, at)):
+            self.go(at)
+            if self.item is not None and key in (one.grade.student.key for one in self.item.members):
+                return
+        self.go(start)
+        raise InputError(f"everything of {name!r} is marked by others")
 
     def mark(self, points: Decimal, comment: str, shown: int | None = None) -> None:
         """Mark all students of the current item, unless they already have this mark.
@@ -204,7 +235,7 @@ class ReviewSession:
             self.stay()
             raise InputError(f"not undone: {_NOT_GRADED}")
         try:
-            return self.own.undo(given, self.item)
+            return self.own.undo(given)
         finally:
             self.go(given.position)
 

@@ -54,8 +54,9 @@ def item_page(
         "title": f"{place.number} of {place.total}: {who_together(item)}, {criterion.title}",
         "place": place,
         "who": who_together(item),
+        "first": who(item.first),
         "together": together_text(item),
-        "members": [who(one) for one in item.others and item.members],
+        "members": [who(one) for one in item.members if item.others],
         "criterion": criterion,
         "points": counted_points(criterion.points),
         "maximum": format_points(criterion.points),
@@ -93,7 +94,7 @@ def stamp_of(item: QueuedResult) -> str:
 
 def has_report(item: QueuedResult) -> bool:
     """Return whether the student's page may be shown: it has the name, and the marks of others."""
-    return item.number is None and not item.is_second and not item.is_empty_group
+    return item.first.number is None and not item.is_second and not item.is_empty_group
 
 
 def _grade(grade: StudentGrade) -> str:

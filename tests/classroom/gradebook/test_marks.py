@@ -50,7 +50,7 @@ def put(standings: Grades, key: str, name: str, points: str) -> None:
 
 def is_open(standings: Grades, queued: QueuedCriterion) -> bool:
     """Return whether a queued criterion still needs manual grading."""
-    (found,) = queued_results(standings, queued.key, [queued.criterion])
+    (found,) = queued_results(standings, standings.find(queued.key), [queued.criterion])
     return found.result.is_open
 
 

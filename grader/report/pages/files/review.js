@@ -26,7 +26,9 @@
       const sent = { do: action, ...(action === "mark" ? mark : more) };
       const headers = { "Content-Type": "application/json" };
       const answer = await (await fetch(location.pathname, { method: "POST", headers, body: JSON.stringify(sent) })).json();
+      const written = answer.error && form ? [points.value, comment.value] : null;
       if (answer.go) show(answer.go, await (await fetch(answer.go)).text());
+      if (written && form) [points.value, comment.value] = written;
       busy = false;
       find("main").inert = false;
       if (answer.newer) askToKeep(answer);
@@ -66,7 +68,8 @@
   /** Insert a key into the field that has the focus, as the browser does. */
   function insertKey(key) {
     const field = document.activeElement;
-    if (field !== points && field !== comment) return;
+    if (field === find("student") && key === "Enter") find("find-form").requestSubmit();
+    if (![points, comment, find("student")].includes(field)) return;
     const [start, end] = [field.selectionStart, field.selectionEnd];
     if (key === "Backspace") field.setRangeText("", start === end ? Math.max(0, start - 1) : start, end, "end");
     else if ([...key].length === 1) field.setRangeText(key, start, end, "end");
@@ -98,17 +101,19 @@
     comment.blur();  // the next digit is another comment
   }
 
-  const separator = /\s*[;\n]\s*/;
-  const chosen = () => { const parts = comment.value.split(separator); return data.choices.filter(([text]) => parts.includes(text)); };
+  const parts = () => comment.value.split(/(\s*[;\n]\s*)/);  // with what separates them
+  const chosen = () => data.choices.filter(([text]) => parts().includes(text));
+  const between = (value) => Number(Math.min(data.maximum, Math.max(0, value)).toFixed(4));
+  const left = () => between(chosen().reduce((sum, [, cost]) => sum + cost, data.maximum));
 
-  /** Add a usual deduction to the comment, or remove it, and take what the comment has from the maximum. */
+  /** Add a usual deduction to the comment and take its cost from the points, or take both back. */
   function choose(number) {
     const choice = data.choices[number - 1];
     if (!choice) return;
-    const others = comment.value.split(separator).filter((part) => part && part !== choice[0]);
-    const isNew = !chosen().includes(choice);
-    comment.value = (isNew ? [...chosen().map(([text]) => text), choice[0], ...others.filter((part) => data.choices.every(([text]) => text !== part))] : others).join("; ");
-    points.value = Number(Math.max(0, chosen().reduce((left, [, cost]) => left + cost, data.maximum)).toFixed(4));
+    const [text, cost] = choice, at = parts().indexOf(text), isTyped = points.value !== "" && Number(points.value) !== left();
+    comment.value = at >= 0 ? parts().toSpliced(Math.min(at, Math.max(0, parts().length - 2)), 2).join("") : [text, ...comment.value ? [comment.value] : []].join("; ");
+    points.value = isTyped ? between(Number(points.value.replace(",", ".")) + (at >= 0 ? -cost : cost)) : left();
+    points.focus();
     showChosen();
   }
 
