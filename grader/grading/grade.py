@@ -7,7 +7,7 @@ from decimal import Decimal
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from grader.checks.manual import evidence_shown
+from grader.checks.manual import MANUAL_CHECKS, evidence_shown
 from grader.errors import InputError
 from grader.grading.criterion import Evidence
 from grader.grading.deciding import decide
@@ -92,9 +92,10 @@ def _choose_parts(
 def _evidence_of(
     rubric: Rubric, submission: Submission, chosen: Sequence[str]
 ) -> "tuple[tuple[EvidenceResult, ...], tuple[EvidenceFile, ...]]":
-    """Return the evidence that the lab asks for, and the other pictures of the submission."""
+    """Return the evidence that the lab asks for, and the other pictures, which neither it nor a criterion names."""
     wanted = [evidence for evidence in rubric.evidence if evidence.part in chosen]
-    if not wanted:
+    manual = [row for row in rubric.criteria if row.part in chosen and row.check.function in MANUAL_CHECKS]
+    if not (wanted or manual):
         return (), ()
     from grader.documents.evidence import find_all_evidence  # a URDF on its own has none
     from grader.documents.evidence_files import as_evidence
@@ -103,8 +104,11 @@ def _evidence_of(
     # A file that may be meant for several pieces is listed where a criterion lists it, too.
     ordered = sorted(wanted, key=lambda evidence: not graded[evidence.id])
     names = [tuple(dict.fromkeys((*evidence.names, *graded[evidence.id]))) for evidence in ordered]
+    known = {name for one in names for name in one}
+    shown = [row.arguments["names"] for row in manual if row.check.function is evidence_shown]
+    names += [own for own in shown if known.isdisjoint(own)]
     found = find_all_evidence(submission.labelled_files, names, submission.readable_documents)
-    by_id = {evidence.id: one for evidence, one in zip(ordered, found, strict=True)}
+    by_id = {evidence.id: one for evidence, one in zip(ordered, found, strict=False)}
     found_files = tuple(EvidenceResult(evidence, *by_id[evidence.id]) for evidence in wanted)
     listed = {file.path for one in found for file in (*one.files, *one.possible)}
     others = [labelled for labelled in submission.labelled_files if labelled.file.path not in listed]

@@ -221,17 +221,17 @@ def test_mistakes_are_said_and_nothing_is_lost(open_page: Open, review: Review, 
     """Invalid points, leaving what is not saved, also if it was changed after the warning, and the help."""
     page = open_page(review.url).page
     error = page.locator("#error")
-    for typed, why in (("", "points are a number from 0 to 4"), ("9", "essay is worth 0 to 4 points, not 9")):
+    for typed, why in (("", "Enter the points first."), ("9", "essay is worth 0 to 4 points, not 9")):
         press(page, f"{typed} Enter")
         page.wait_for_function("why => document.getElementById('error').textContent.includes(why)", arg=why)
         assert page.evaluate("document.activeElement.id") == "points"
     press(page, "n")
-    assert error.inner_text() == "Not saved. Press the same key again to leave without saving (next)."
+    assert error.inner_text() == "Not saved. Do the same again to leave without saving."
     press(page, "f n")
     assert page.locator("#points").input_value() == "4"
     press(page, "c 'good' Escape n")
     assert page.locator("#comment").input_value() == "good"
-    assert error.inner_text() == "Not saved. Press the same key again to leave without saving (next)."
+    assert error.inner_text() == "Not saved. Do the same again to leave without saving."
     press(page, "n", "2")
     press(page, "?")
     assert page.locator("#help").is_visible()
@@ -331,25 +331,30 @@ def test_deductions(open_page: Open, chosen: Path) -> None:
         page = open_page(review.url).page
         press(page, "c 'see me' Alt+1 Alt+2")
         assert page.locator("#points").input_value() == "1.5"
-        assert page.locator("#comment").input_value() == "no reason; too short; see me"
-        press(page, "Alt+2")
+        assert page.locator("#comment").input_value() == "too short; no reason; see me"
+        press(page, "p 3 Alt+2")
+        assert page.locator("#points").input_value() == "3.5"
+        page.locator("[data-choice='2']").click()
+        page.locator("[data-choice='2']").click()
         assert page.locator("#comment").input_value() == "no reason; see me"
+        press(page, "p 2")
         assert page.locator("[data-choice][aria-pressed=true]").all_inner_texts() == ["Alt+1 no reason (-2)"]
         press(page, "Enter", "2")
         press(page, "Escape 1 1 2 Enter")
-        page.wait_for_function("() => document.getElementById('error').textContent.includes('points are a number')")
+        page.wait_for_function("() => document.getElementById('error').textContent.includes('Enter the points')")
         assert page.locator("#comment").input_value() == "no reason; see me"
     assert marks(chosen) == [("ash", "essay", 2, "no reason; see me")]
 
 
 def test_filters_students_and_the_report(open_page: Open, review: Review) -> None:
     """A list shows one question, `/` goes to a student, `v` shows the report, which cannot reach the review."""
-    page = open_page(review.url).page
+    opened = open_page(review.url)
+    page = opened.page
     page.locator("[data-filter=criterion]").select_option("picture")
     page.wait_for_url("**/6")
     assert page.locator(".place").inner_text().strip() == "1 of 5"
     press(page, "/ 'elm' Enter", "10")
-    press(page, "/ 'nobody' Enter")
+    press(page, "Escape / 'nobody' Enter")
     page.wait_for_function("() => document.getElementById('error').textContent.includes('no student')")
     press(page, "v")
     report = page.frame_locator("#report iframe")
@@ -357,6 +362,8 @@ def test_filters_students_and_the_report(open_page: Open, review: Review) -> Non
     frame = page.frame(url=re.compile("/report$"))
     assert frame is not None
     assert frame.evaluate("fetch('10', {method: 'POST'}).then(() => 'sent', () => 'refused')") == "refused"
+    assert "Content Security Policy" in opened.messages.pop()
+    opened.messages.clear()
 
 
 def test_one_column_below_900_pixels(open_page: Open, review: Review) -> None:

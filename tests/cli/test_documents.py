@@ -285,7 +285,7 @@ def test_a_batch_counts_evidence_without_a_urdf(tmp_path: Path) -> None:
 
     for text in (batch(""), batch(""), grader("stats", "--gradebook", book).stdout):  # graded, unchanged
         assert " ".join(text.split()).endswith(
-            f"2 submissions have {NO_URDF}: the criteria of the URDF are failed. "
+            f"2 submissions have {NO_URDF}: the criteria of the URDF fail. "
             'Set `without_urdf = "manual"` in the rubric to grade them manually, or "failed" to keep this'
         )
     data = json.loads(batch("", "--format", "json"))

@@ -194,7 +194,7 @@ def test_a_batch_counts_submissions_without_a_package(tmp_path: Path) -> None:
     book = tmp_path / "lab.db"
     done = run(("batch", folder, "--gradebook", book, "--jobs", 1, "--rubric", rubric(tmp_path / "default")))
     text = (
-        "2 submissions have pictures or documents, but no package of this lab: the criteria of the package are failed. "
+        "2 submissions have pictures or documents, but no package of this lab: the criteria of the package fail. "
         'Set `without_package = "manual"` in the rubric to grade them manually, or "failed" to keep this'
     )
     for printed in (done, run(("stats", "--gradebook", book))):

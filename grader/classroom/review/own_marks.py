@@ -5,7 +5,7 @@ from decimal import Decimal
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.manual_queue import QueuedMember, QueuedResult, ReviewScope
+from grader.classroom.gradebook.manual_queue import QueuedMember, QueuedResult, ReviewScope, newest_of
 from grader.classroom.gradebook.marks import (
     WITHDRAWN,
     WITHDRAWN_SECOND,
@@ -50,12 +50,13 @@ class OwnMarks:
         shown = item.newest if shown is None else shown
         criterion = item.result.criterion.id
         entry = Entry("second" if self._scope.second else "points", points, comment)
+        found = [(one.grade, newest_of(self._book, one.grade, criterion, self._scope)) for one in item.members]
         # By age, so that of several marks that were not shown each is confirmed.
-        members = sorted(item.members, key=lambda one: one.mark.id if one.mark is not None else 0)
+        found.sort(key=lambda pair: pair[1].id if pair[1] is not None else 0)
         before: dict[str, tuple[StudentGrade, Mark | None]] = {}
         newest: dict[tuple[str, str], int] = {}
         with writing(self._book):
-            for grade, mark, _ in members:
+            for grade, mark in found:
                 if mark is None or mark.id > shown or mark.entry != entry:
                     added = add_mark(self._book, grade, criterion, entry, self._scope.by, shown=shown)
                     before[grade.student.key] = grade, added.before

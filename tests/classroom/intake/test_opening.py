@@ -20,6 +20,7 @@ from grader.errors import InputError
 from grader.files import reading
 from grader.files.folder import read_folder
 from grader.files.opening import outer_tree
+from grader.files.reading import URDF_LIMIT
 from tests.classroom.class_runs import Item, tarred
 from tests.documents.files import docx
 from tests.samples import LAB6, ROOT
@@ -404,3 +405,24 @@ def test_what_is_refused_in_a_folder_is_refused_in_a_zip(name: str, tmp_path: Pa
             open_class_submission(str(top), (f"lab/{name}",), (), "ann")
         output.add(str(caught.value).replace(f"{top}/", ""))
     assert len(output) == 1
+
+
+def test_a_large_document_and_its_name(tmp_path: Path) -> None:
+    """A PDF above the limit for a URDF is opened, also in a zip; its name, not the student's, is in the digest."""
+    data = b"%PDF-1.4\n" + bytes(URDF_LIMIT)
+    tops = _both(tmp_path, {"report.pdf": data})
+    digests = {open_class_submission(str(top), ("report.pdf",), (), key).digest for top in tops for key in ("a", "b")}
+    assert len(digests) == 1
+
+
+def test_what_is_no_document(tmp_path: Path) -> None:
+    """A URDF with the ending .txt, a folder with that of a document; a symlink is refused."""
+    (tmp_path / "ann.txt").write_bytes(URDF)
+    (tmp_path / "ben.pdf").mkdir()
+    (tmp_path / "ben.pdf" / "robot.urdf").write_bytes(URDF)
+    (tmp_path / "cleo.pdf").symlink_to(tmp_path / "ann.txt")
+    assert open_class_submission(str(tmp_path), ("ann.txt",), (), "ann").data == URDF
+    opened = open_class_submission(str(tmp_path), ("ben.pdf",), (), "ben")
+    assert opened.tree is not None and [*opened.tree.files] == ["robot.urdf"]
+    with pytest.raises(InputError, match="symlink"):
+        open_class_submission(str(tmp_path), ("cleo.pdf",), (), "cleo")

@@ -16,8 +16,11 @@ from grader.classroom.gradebook.marks import NewerMarkError
 from grader.classroom.review.filter import ReviewFilter
 from grader.classroom.review.items import similar_order
 from grader.classroom.review.session import ReviewSession
+from grader.classroom.typed_names import criterion_of
 from grader.errors import InputError
-from tests.classroom.gradebooks import batch, grader, lab_text, write_submission
+from tests.checks.submissions import jpeg
+from tests.classroom.gradebooks import PNG, batch, grader, lab, lab_text, mark, urdf, write_submission
+from tests.documents.files import docx, pdf
 
 ANSWERS = {
     "ash": "The roots.",
@@ -208,3 +211,140 @@ def test_similar_order() -> None:
     assert similar_order(texts) == ["a b c", "a b c d", "a b d", "x y", "x y z"]
     many = [f"{number} {number % 7}" for number in range(1001)]
     assert similar_order(many) == sorted(many)
+
+
+def contents(tmp_path: Path, **files: dict[str, bytes]) -> dict[str, list[str]]:
+    """Return the students of each item that has something to read, and of the others, by criterion."""
+    for key, own in files.items():
+        (tmp_path / "class" / key).mkdir(parents=True)
+        for name, data in {"robot.urdf": urdf().encode(), **own}.items():
+            (tmp_path / "class" / key / name).write_bytes(data)
+    (tmp_path / "roster.csv").write_text("id\n" + "\n".join(files) + "\n")
+    (tmp_path / "small.toml").write_text(lab_text())
+    assert batch(tmp_path).returncode == 0
+    found: dict[str, list[str]] = {}
+    with Gradebook(tmp_path / "book.db") as book:
+        session = ReviewSession(Grades(book))
+        for position in session.listed():
+            item = session.queue[position]
+            name = item.criterion if item.content else f"no {item.criterion}"
+            found.setdefault(name, []).append(" ".join(key for key, _ in item.students))
+    return found
+
+
+def test_what_may_hold_an_answer_is_not_empty(tmp_path: Path) -> None:
+    """An unread document, a PDF without text, a photo, a Word file: each is an item of its own."""
+    template = b"# Step 1\n\nWhy?\n"
+    found = contents(
+        tmp_path,
+        ash={"answers.md": template, "mine.pdf": b"%PDF-1.4 damaged"},
+        birch={"scan.pdf": pdf(["-"])},
+        cedar={"answer1.jpg": jpeg()},
+        dogwood={"report.docx": docx("Task 3", "text")},
+        elm={"answers.md": template},
+        fir={},
+    )
+    assert found["essay"] == ["ash", "birch", "cedar"]
+    assert found["no essay"] == ["dogwood elm fir"]
+    assert found["picture"] == ["ash", "birch", "cedar", "dogwood"]
+    assert found["no picture"] == ["elm fir"]
+
+
+def test_answers_that_are_not_all_there_is_are_not_equal(tmp_path: Path) -> None:
+    """A picture, a PDF or another case can make a difference; empty lines at the end cannot."""
+    text = b"# Step 1\n\n"
+    found = contents(
+        tmp_path,
+        ash={"answers.md": text + b"![](a.png)", "a.png": PNG},
+        birch={"answers.md": text + b"![](a.png)", "a.png": PNG},
+        cedar={"answers.md": text + b"See the PDF.", "x.pdf": pdf(["one"])},
+        dogwood={"answers.md": text + b"See the PDF.", "x.pdf": pdf(["two"])},
+        elm={"answers.md": text + b"/Cmd_Vel"},
+        fir={"answers.md": text + b"/cmd_vel"},
+        gum={"answers.md": text + b"/cmd_vel\n\n"},
+    )
+    assert sorted(found["essay"]) == ["ash", "birch", "cedar", "dogwood", "elm", "fir gum"]
+
+
+def theirs(book: Gradebook, key: str, points: int, by: str = "Lee") -> None:
+    """Mark an essay as another person does."""
+    mark(book, Grades(book).find(key), criterion_of(lab(), "essay"), Decimal(points), by, "")
+
+
+def test_a_mark_that_replaces_an_own_one_leaves_the_item(book: Gradebook) -> None:
+    """It is not shown as marked in this review, and not overwritten."""
+    session = ReviewSession(Grades(book))
+    session.mark(Decimal(3), "")
+    theirs(book, "cedar", 4)
+    session.go(0)
+    assert session.item is not None
+    assert [one.grade.student.key for one in session.item.members] == ["ash"]
+    session.mark(Decimal(1), "")
+    assert [row for row in points(book) if row[0] == "cedar"] == [("cedar", "essay", 3), ("cedar", "essay", 4)]
+
+
+def test_each_newer_mark_is_confirmed(book: Gradebook) -> None:
+    """Of two marks that were not shown, the older one is shown first, and the other one before it is replaced."""
+    session = ReviewSession(Grades(book))
+    theirs(book, "cedar", 4, "Mo")
+    theirs(book, "ash", 2)
+    shown, seen = 0, list[str]()
+    for _ in range(2):
+        with pytest.raises(NewerMarkError) as caught:
+            session.mark(Decimal(3), "", shown)
+        shown = caught.value.mark.id
+        seen.append(caught.value.mark.by)
+    session.mark(Decimal(3), "", shown)
+    assert seen == ["Mo", "Lee"]
+    assert [row[2] for row in points(book)] == [4, 2, 3, 3]
+
+
+def test_undo_takes_the_newest_mark_of_a_student_first(book: Gradebook) -> None:
+    """A mark of the item before it was split is undone after those of its students."""
+    session = ReviewSession(Grades(book))
+    session.mark(Decimal(3), "")
+    session.go(0)
+    session.split()
+    session.mark(Decimal(1), "")
+    session.go(0)
+    assert session.item is not None and not session.item.others
+    assert session.undo() is not None
+    assert points(book)[-1] == ("ash", "essay", 3)
+    session.undo()
+    assert [row[::2] for row in points(book)[-2:]] == [("ash", None), ("cedar", None)]
+
+
+def test_undo_reaches_students_whose_answer_has_changed(book: Gradebook) -> None:
+    """The mark of each student is withdrawn, also if the item no longer shows all of them."""
+    session = ReviewSession(Grades(book))
+    session.mark(Decimal(3), "")
+    with book.transaction():
+        book.connection.execute(
+            "INSERT INTO result SELECT NULL, student, rubric, version, digest || 'x', verdict, reason, parts, score,"
+            " out_of, pending, dictionary, record, urdf, robot, forms FROM result WHERE student ="
+            " (SELECT id FROM student WHERE key = 'ash')"
+        )
+        book.connection.execute(
+            "UPDATE submission SET result = (SELECT max(id) FROM result) WHERE student ="
+            " (SELECT id FROM student WHERE key = 'ash')"
+        )
+    session.undo()
+    assert [row[2] for row in points(book)] == [3, 3, None, None]
+
+
+def test_a_student_whom_others_have_marked_is_not_found(book: Gradebook) -> None:
+    """No item of other students is shown instead."""
+    session = ReviewSession(Grades(book), ReviewScope("essay"))
+    theirs(book, "cedar", 4)
+    with pytest.raises(InputError, match=r"^everything of 'cedar' is marked by others$"):
+        session.find("cedar")
+    assert session.position == 0
+
+
+def test_the_section_of_the_filter_must_exist(book: Gradebook) -> None:
+    """An unknown question or section is refused, and the filter stays."""
+    session = ReviewSession(Grades(book))
+    for wanted in (ReviewFilter("nothing"), ReviewFilter("", "C")):
+        with pytest.raises(InputError, match=r"^nothing in this review has this question or section$"):
+            session.show_only(wanted)
+    assert session.filter == ReviewFilter()
