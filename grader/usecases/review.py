@@ -2,7 +2,7 @@
 
 import re
 from bisect import bisect
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from decimal import Decimal
 from functools import partial
 from pathlib import Path
@@ -45,7 +45,7 @@ def review(gradebook: Path, scope: ReviewScope, pictures: Path | None, terminal:
     """
     with Gradebook(gradebook) as book:
         session = ReviewSession(Grades(book, answers=True), scope)
-        if not session.queue:
+        if not session.queue.items:
             return NOTHING
         book.check_writable()
         folder = PictureFolder(session, book, pictures) if pictures else None
@@ -53,7 +53,7 @@ def review(gradebook: Path, scope: ReviewScope, pictures: Path | None, terminal:
         try:
             while session.item is not None or _at_end(session, terminal):
                 assert session.item is not None
-                queued = session.queue[session.position]
+                queued = session.queue.items[session.position]
                 if folder is not None and queued not in written:
                     written[queued] = folder.write(session.item)
                 _show(session, written.get(queued, ()), terminal)
@@ -71,10 +71,8 @@ def _at_end(session: ReviewSession, terminal: Terminal) -> bool:
         match line.strip().lower():
             case "" | "q" | "quit":
                 return False
-            case "u" | "undo":
-                _undo(session, terminal)
-            case "b" | "back":
-                session.back()
+            case "u" | "undo" | "b" | "back":
+                _move(session, line.strip().lower(), terminal)
             case _:
                 terminal.warn(_AT_END)
     return session.item is not None
@@ -82,7 +80,7 @@ def _at_end(session: ReviewSession, terminal: Terminal) -> bool:
 
 def _show(session: ReviewSession, pictures: Sequence[str], terminal: Terminal) -> None:
     assert session.item is not None
-    listed = session.listed()
+    listed = session.queue.listed()
     position = f"{bisect(listed, session.position)} of {len(listed)}"
     used = session.comments()
     comments = {number: text for number, text in session.numbered_comments().items() if text in used}
@@ -106,14 +104,16 @@ def _go_on(session: ReviewSession, terminal: Terminal) -> bool:
         line = line.strip()
         if line.lower() in ("q", "quit"):
             return False
+        word = line.partition(" ")[0].lower()
         try:
-            if line.startswith("/"):
+            if word.startswith("/"):
                 session.find(line[1:].strip())
                 return True
-            action = _ACTIONS.get(line.partition(" ")[0].lower())
-            if action is None:
+            if word == "?":
+                terminal.print(f"\n{_HELP}")
+            elif word not in _MOVES:
                 return _mark(session, *_read_mark(line, session), terminal)
-            if action(session, terminal):
+            elif _move(session, word, terminal):
                 return True
         except InputError as error:
             terminal.warn(str(error))
@@ -136,44 +136,30 @@ def _read_mark(line: str, session: ReviewSession) -> tuple[Decimal, str]:
     return read_points(answer, criterion.id, criterion.points), _comment(session, comment.strip())
 
 
-def _skip(session: ReviewSession, _: Terminal) -> bool:
-    session.next()
-    return True
-
-
-def _back(session: ReviewSession, terminal: Terminal) -> bool:
-    if session.back():
-        return True
-    terminal.warn("this is the first item")
-    return False
-
-
-def _split(session: ReviewSession, terminal: Terminal) -> bool:
-    if session.split():
-        return True
-    terminal.warn("this item has one student only")
-    return False
-
-
-def _undo(session: ReviewSession, terminal: Terminal) -> bool:
-    """Undo a mark of this review, and print what happened; return whether there was one."""
-    can_undo = session.own.can_undo
-    try:
-        terminal.warn(undo(session))
-    except InputError as error:
-        terminal.warn(str(error))
-    return can_undo
-
-
-def _help(_: ReviewSession, terminal: Terminal) -> bool:
-    terminal.print(f"\n{_HELP}")
-    return False
-
-
-# What an answer does that is not points; each returns whether an item is to be shown.
-_ACTIONS: dict[str, Callable[[ReviewSession, Terminal], bool]] = {
-    "": _skip, "s": _skip, "skip": _skip, "b": _back, "back": _back, "u": _undo, "undo": _undo, "o": _split, "?": _help,
+# What an answer does that is not points.
+_MOVES = {
+    "": "next", "s": "next", "skip": "next", "b": "back", "back": "back", "u": "undo", "undo": "undo", "o": "split",
 }  # fmt: skip
+
+
+def move(session: ReviewSession, name: str) -> str:
+    """Go to another item, or undo a mark; return a notice about it. Raises InputError."""
+    if name == "undo":
+        return _undo(session)
+    {"next": session.next, "back": session.back, "split": session.split, "keep": session.stay}[name]()
+    return ""
+
+
+def _move(session: ReviewSession, word: str, terminal: Terminal) -> bool:
+    """Do what a word means, and print what happened; return whether an item is to be shown."""
+    here = session.position
+    try:
+        notice, is_done = move(session, _MOVES[word]), True
+    except InputError as error:
+        notice, is_done = str(error), session.position != here
+    if notice:
+        terminal.warn(notice)
+    return is_done
 
 
 def _comment(session: ReviewSession, typed: str) -> str:
@@ -187,7 +173,7 @@ def _comment(session: ReviewSession, typed: str) -> str:
     return comment
 
 
-def undo(session: ReviewSession) -> str:
+def _undo(session: ReviewSession) -> str:
     """Undo a mark of this review; return which mark counts now, or that a newer one stays. Raises InputError."""
     if not session.own.can_undo:
         raise InputError("nothing to undo: this review has marked nothing")

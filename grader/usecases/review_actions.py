@@ -4,11 +4,10 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from grader.classroom.review.filter import ITEM_STATES, ReviewFilter
+from grader.classroom.review.queue import ITEM_STATES, ReviewFilter
 from grader.classroom.review.session import ReviewSession
 from grader.classroom.typed_names import read_points
-from grader.errors import InputError
-from grader.usecases.review import undo
+from grader.usecases.review import move
 
 # What the page sends besides `do`, with the type of each value.
 _ACTIONS: Mapping[str, Mapping[str, type]] = {
@@ -39,16 +38,11 @@ def follow(session: ReviewSession, sent: Mapping[str, Any]) -> str:
             points = read_points(sent["points"], criterion.id, criterion.points)
             session.mark(points, sent["comment"].strip(), sent["shown"])
             session.next()
-        case "back":
-            if not session.back():
-                raise InputError("this is the first item")
-        case "undo":
-            said = undo(session)
-            return f"{said[0].upper()}{said[1:]}"
         case "find":
             session.find(sent["student"].strip())
         case "filter":
             session.show_only(ReviewFilter(*(sent[name] for name in ReviewFilter._fields)))
-        case simple:
-            {"next": session.next, "keep": session.stay, "split": session.split}[simple]()
+        case name:
+            notice = move(session, name)
+            return f"{notice[:1].upper()}{notice[1:]}"
     return ""

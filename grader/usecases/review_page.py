@@ -14,7 +14,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import EVERYTHING, QueuedResult, ReviewScope
 from grader.classroom.gradebook.marks import NewerMarkError
-from grader.classroom.review.filter import ITEM_STATES, ReviewFilter
+from grader.classroom.review.queue import ITEM_STATES, ReviewFilter
 from grader.classroom.review.session import ReviewSession
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import GraderError
@@ -52,18 +52,22 @@ class ReviewPage:
         except GraderError as error:
             if request.body is not None:
                 return _json({"error": str(error)})
-            position = self._position(request.path[0])
-            following = str(position + 2) if position is not None and position + 1 < len(self.session.queue) else "end"
-            return _html(error_page(str(error), following), HTTPStatus.SERVICE_UNAVAILABLE)
+            following = self._following(self._position(request.path[0]))
+            following_address = str(following + 1) if following < len(self.session.queue.items) else "end"
+            return _html(error_page(str(error), following_address), HTTPStatus.SERVICE_UNAVAILABLE)
 
     def prepare(self) -> None:
         """Begin to read the pictures of the next item, while the person looks at this one."""
-        listed = self.session.listed()
-        following = next(iter(listed[bisect(listed, self.session.position) :]), len(self.session.queue))
+        following = self._following(self.session.position)
         with suppress(GraderError):  # the page of that item shows the error
-            item = self.session.item_at(following)
+            item = self.session.queue.item_at(following)
             if item is not None:
                 self._album(item)
+
+    def _following(self, position: int | None) -> int:
+        """Return the position of the next item that the filter lets through."""
+        queue = self.session.queue
+        return next((at for at in queue.listed() if position is not None and at > position), len(queue.items))
 
     def _page(self, path: tuple[str, ...]) -> Response:
         match path:
@@ -90,22 +94,17 @@ class ReviewPage:
         return _html(item_page(item, self._place(), pictures, session.comments(), self._pop_notice()))
 
     def _place(self) -> Place:
-        session, listed = self.session, self.session.listed()
-        criteria = {item.criterion for item in session.queue}
+        session, listed = self.session, self.session.queue.listed()
+        asked = {item.criterion for item in session.queue.items}
         values = (
-            ("", *(row.id for row in session.criteria if row.id in criteria)),
-            ("", *session.sections),
-            tuple(ITEM_STATES),
+            {"": "all questions"} | {row.id: row.id for row in session.criteria if row.id in asked},
+            {"": "all sections"} | {name: name for name in session.queue.sections},
+            ITEM_STATES,
         )
-        words = ({"": "all questions"}, {"": "all sections"}, {name: words for name, (words, _) in ITEM_STATES.items()})
         filters = [
-            (name, label, [(value, named.get(value, value), value == chosen) for value in some])
-            for name, label, chosen, some, named in zip(
-                ReviewFilter._fields, ("Question", "Section", "Items"), session.filter, values, words, strict=True
-            )
-            if len(some) > 2  # else there is nothing to choose
+            *zip(ReviewFilter._fields, ("Question", "Section", "Items"), values, session.queue.filter, strict=True)
         ]
-        students = [(one.key, one.name) for one in session.students]
+        students = [(one.key, one.name) for one in session.queue.students]
         number = bisect(listed, session.position)
         return Place(number, len(listed), self._address(), session.is_own, session.own.can_undo, filters, students)
 
@@ -129,7 +128,7 @@ class ReviewPage:
         sent = read_action(request.body or b"")
         position = self._position(request.path[0]) if len(request.path) == 1 else None
         if request.path == ("end",):
-            position = len(self.session.queue)
+            position = len(self.session.queue.items)
         if sent is None or position is None:
             return _json({"error": "this request is not from the page"}, HTTPStatus.BAD_REQUEST)
         self.session.go(position)
@@ -154,7 +153,7 @@ class ReviewPage:
         return str(self.session.position + 1) if self.session.item is not None else "end"
 
     def _position(self, number: str) -> int | None:
-        inside = _is_number(number) and 1 <= int(number) <= len(self.session.queue)
+        inside = _is_number(number) and 1 <= int(number) <= len(self.session.queue.items)
         return int(number) - 1 if inside else None
 
     def _pop_notice(self) -> str:
@@ -202,7 +201,7 @@ def serving(
         try:
             session = worker.submit(lambda: ReviewSession(Grades(book, answers=True), scope)).result()
             page = ReviewPage(session, book, reader)
-            if not session.queue:
+            if not session.queue.items:
                 yield None, page
                 return
             book.check_writable()

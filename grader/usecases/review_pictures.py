@@ -53,7 +53,7 @@ class PictureFolder:
         self._names = {} if session.scope.anonymous else report_names(book)
         make_folder(folder)
         if not session.scope.anonymous:
-            keys = {key for item in session.queue for key, _ in item.students}
+            keys = {key for item in session.queue.items for key, _ in item.students}
             update_index(folder, {key: self._names[key] for key in sorted(keys)})
         elif any(folder.iterdir()):
             raise InputError(f"{printable_path(folder)} is not empty: --anonymous needs a new folder for --pictures")
@@ -72,8 +72,8 @@ def write_all_pictures(
 ) -> dict[QueuedItem, list[str]]:
     """Write the pictures of all items, and print the student of each; return those of each item."""
     found: dict[QueuedItem, list[str]] = {}
-    for position in session.listed():
-        item, queued = session.item_at(position), session.queue[position]
+    for position in session.queue.listed():
+        item, queued = session.queue.item_at(position), session.queue.items[position]
         if item is None or not item.content:
             continue
         found[queued] = folder.write(item)

@@ -446,7 +446,7 @@ def test_a_pdf_is_served_to_the_viewer(tmp_path: Path) -> None:
         ({"do": "filter", "criterion": "", "section": "", "state": "empty"}, {"go": "5"}),
         ({"do": "filter", "criterion": "", "section": "", "state": "marked"}, {"go": "end"}),
         ({"do": "keep"}, {"go": "1"}),
-        ({"do": "split"}, {"go": "1"}),
+        ({"do": "split"}, {"error": "this item has one student only"}),
     ],
 )
 def test_other_actions(sent: dict[str, str], answer: dict[str, str] | None, review: Review) -> None:

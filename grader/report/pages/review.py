@@ -1,6 +1,6 @@
 """The pages of a review in the browser: one item that needs manual grading, the end of the queue, an error."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from typing import Any, NamedTuple
 
@@ -31,7 +31,7 @@ _DECIMALS = Decimal("0.0001")
 class Place(NamedTuple):
     """The number of an item in the queue, from 1, and its address; whether this review has marked it, or any item.
 
-    `filters` are the lists to filter by: the name of each, its words, and its values with their words and whether one
+    `filters` are the lists to filter by: the name of each, its label, its values with their words, and the value that
     is chosen. `students` are the keys and names to find one by.
     """
 
@@ -40,7 +40,7 @@ class Place(NamedTuple):
     address: str
     is_own: bool
     can_undo: bool
-    filters: Sequence[tuple[str, str, Sequence[tuple[str, str, bool]]]] = ()
+    filters: Sequence[tuple[str, str, Mapping[str, str], str]] = ()
     students: Sequence[tuple[str, str]] = ()
 
 
@@ -113,7 +113,7 @@ def end_page(marked: int, left: int, place: Place, gradebook: str, notice: str) 
         "summary": f"{counted(marked, 'mark')} given in this review.",
         "left": left,
         "place": place,
-        "is_filtered": any(name and is_chosen for *_, rows in place.filters for name, _, is_chosen in rows),
+        "is_filtered": any(chosen for *_, chosen in place.filters),
         "command": f"grader export csv --gradebook {shell_quoted(gradebook)}",
         "notice": notice,
     }

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+from contextlib import suppress
 from copy import deepcopy
 from datetime import UTC, datetime, timedelta, tzinfo
 from decimal import Decimal
@@ -200,7 +201,8 @@ class TwoGraders(RuleBasedStateMachine):
                     case "next":
                         session.next()
                     case "back":
-                        session.back()
+                        with suppress(InputError):  # the first item
+                            session.back()
                     case "undo" if session.own.can_undo:
                         self._undo(session, model, given, item, by)
                     case "mark" | "other" if item is not None and session.item is not None:

@@ -13,8 +13,8 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import ReviewScope
 from grader.classroom.gradebook.marks import NewerMarkError
-from grader.classroom.review.filter import ReviewFilter
 from grader.classroom.review.items import similar_order
+from grader.classroom.review.queue import ReviewFilter
 from grader.classroom.review.session import ReviewSession
 from grader.classroom.typed_names import criterion_of
 from grader.errors import InputError
@@ -61,7 +61,7 @@ def book(graded: Path, tmp_path: Path) -> Iterator[Gradebook]:
 
 def items(session: ReviewSession) -> list[str]:
     """Return the criterion and the students of each item that is listed."""
-    listed = [session.queue[position] for position in session.listed()]
+    listed = [session.queue.items[position] for position in session.queue.listed()]
     return [f"{item.criterion}: {' '.join(key for key, _ in item.students)}" for item in listed]
 
 
@@ -124,12 +124,13 @@ def test_undo_keeps_a_newer_mark_of_one_student(book: Gradebook) -> None:
 def test_one_by_one(book: Gradebook) -> None:
     """The item is replaced by one for each of its students; an item of one student is not split."""
     session = ReviewSession(Grades(book))
-    session.go(session.listed()[-2])
-    assert session.split()
+    session.go(session.queue.listed()[-2])
+    session.split()
     assert items(session)[9:] == ["essay: dogwood", "essay: fir", "picture: dogwood fir"]
     session.mark(Decimal(0), "")
     assert points(book) == [("dogwood", "essay", 0)]
-    assert not session.split()
+    with pytest.raises(InputError, match=r"^this item has one student only$"):
+        session.split()
 
 
 def test_filters(book: Gradebook) -> None:
@@ -138,7 +139,7 @@ def test_filters(book: Gradebook) -> None:
     session.show_only(ReviewFilter("essay", "B"))
     session.mark(Decimal(1), "")
     assert points(book) == [("birch", "essay", 1)]
-    assert session.sections == ["A", "B"]
+    assert session.queue.sections == ["A", "B"]
     shown: dict[str, list[str]] = {}
     for state in ("unmarked", "answered", "empty", "marked"):
         session.show_only(ReviewFilter("essay", "", state))
@@ -158,7 +159,7 @@ def test_undo_of_an_item_that_the_filter_hides(book: Gradebook) -> None:
     session.mark(Decimal(1), "")
     session.show_only(ReviewFilter("picture", "B"))
     session.undo()
-    assert session.filter == ReviewFilter()
+    assert session.queue.filter == ReviewFilter()
     assert [row[2] for row in points(book)] == [1, 1, None, None]
 
 
@@ -225,8 +226,8 @@ def contents(tmp_path: Path, **files: dict[str, bytes]) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
     with Gradebook(tmp_path / "book.db") as book:
         session = ReviewSession(Grades(book))
-        for position in session.listed():
-            item = session.queue[position]
+        for position in session.queue.listed():
+            item = session.queue.items[position]
             name = item.criterion if item.content else f"no {item.criterion}"
             found.setdefault(name, []).append(" ".join(key for key, _ in item.students))
     return found
@@ -347,4 +348,4 @@ def test_the_section_of_the_filter_must_exist(book: Gradebook) -> None:
     for wanted in (ReviewFilter("nothing"), ReviewFilter("", "C")):
         with pytest.raises(InputError, match=r"^nothing in this review has this question or section$"):
             session.show_only(wanted)
-    assert session.filter == ReviewFilter()
+    assert session.queue.filter == ReviewFilter()
