@@ -77,15 +77,15 @@ class ReviewPage:
                 session = self.session
                 page = end_page(session.marked, session.left, self._place(), self._book.shown, self._pop_notice())
                 return _html(page)
-            case (number,) if (position := self._position(number)) is not None:
+            case (number, *rest) if (position := self._position(number)) is not None:
                 self.session.go(position)
-                return self._item()
-            case (number, "picture", which) if (position := self._position(number)) is not None:
-                self.session.go(position)
-                return self._picture(which)
-            case (number, "report") if (position := self._position(number)) is not None:
-                self.session.go(position)
-                return self._report()
+                match rest:
+                    case []:
+                        return self._item()
+                    case ["picture", which]:
+                        return self._picture(which)
+                    case ["report"]:
+                        return self._report()
         return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
 
     def _item(self) -> Response:
