@@ -109,11 +109,8 @@ class Order(NamedTuple):
     @property
     def remarks(self) -> tuple[tuple[str, tuple[Result, ...]], ...]:
         """The criteria with a mark, an adjustment or a comment that are not failures, each group with its heading."""
-        found = (
-            ("Marked manually", self.marked),
-            ("Corrected after grading", self.adjusted),
-            ("Comments", self.commented),
-        )
+        titles = ("Marked manually", "Corrected after grading", "Comments")
+        found = zip(titles, (self.marked, self.adjusted, self.commented), strict=True)
         return tuple((title, results) for title, results in found if results)
 
     @property
