@@ -10,6 +10,7 @@ from rich.text import Text
 from grader.errors import MissingElement, NotDecided
 from grader.report.as_json import PROBLEM
 from grader.report.console import put, show_problems, symbol, wrapped
+from grader.report.content import UNDECIDED, VERDICTS
 from grader.report.json_data import (
     NUMBER,
     TEXT,
@@ -32,13 +33,8 @@ from grader.text import printable
 from grader.values import dataclass
 
 _MAX_LISTED = 500  # links in the terminal
-_EFFECTS = {
-    "clean": "ROS 2 loads it",
-    "degraded": "ROS 2 loads it, but drops content of it",
-    "rejected": "ROS 2 rejects it",
-}
-_UNDECIDED = "xacro that cannot be determined statically"
-_STYLES = dict(zip((*_EFFECTS.values(), _UNDECIDED), ("green", "yellow", "bold red", "bold red"), strict=True))
+_EFFECTS = {verdict: text.replace("the file", "it") for verdict, text in VERDICTS.items()}
+_STYLES = dict(zip((*_EFFECTS.values(), UNDECIDED), ("green", "yellow", "bold red", "bold red"), strict=True))
 _BRANCHES = ("\u251c\u2500 ", "\u2514\u2500 ", "\u2502  ")  # to a link, to the last one, past others
 
 
@@ -145,7 +141,7 @@ def _print_rest(console: Console, count: int) -> None:
 
 def effect(reading: Reading) -> str:
     """Return what ROS 2 does with a URDF."""
-    return _EFFECTS[reading.verdict] if reading.is_certain else _UNDECIDED
+    return _EFFECTS[reading.verdict] if reading.is_certain else UNDECIDED
 
 
 def tree(robot: Configuration, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, str, str]]:
