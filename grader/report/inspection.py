@@ -25,6 +25,7 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
+from grader.report.order import alike
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.reader import Reading
@@ -146,13 +147,11 @@ def effect(reading: Reading) -> str:
 
 def tree(robot: Configuration, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, str, str]]:
     """Yield every link after its parent: the branches before it, its name, and its parent joint in words."""
-    children: dict[str, list[Joint]] = {}
-    for joint in robot.parent_joints.values():
-        children.setdefault(joint.parent, []).append(joint)
+    children = dict(alike(robot.parent_joints.values(), lambda joint: joint.parent))
     branch, last, bar = signs
     for root in robot.roots:
         yield "", printable(root), ""
-        stack = _branches(children.get(root, []), "")
+        stack = _branches(children.get(root, ()), "")
         while stack:
             joint, indent, is_last = stack.pop()
             yield (
@@ -160,10 +159,10 @@ def tree(robot: Configuration, signs: Sequence[str] = _BRANCHES) -> Iterator[tup
                 printable(joint.child),
                 f"{printable(joint.name)}: {_joint_text(joint)}",
             )
-            stack += _branches(children.get(joint.child, []), (indent + ("   " if is_last else bar))[-60:])
+            stack += _branches(children.get(joint.child, ()), (indent + ("   " if is_last else bar))[-60:])
 
 
-def _branches(joints: list[Joint], indent: str) -> list[tuple[Joint, str, bool]]:
+def _branches(joints: Sequence[Joint], indent: str) -> list[tuple[Joint, str, bool]]:
     return [(joint, indent, index == 0) for index, joint in enumerate(reversed(joints))]
 
 
