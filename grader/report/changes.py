@@ -1,9 +1,9 @@
 """The changes between two runs or gradebooks, on a terminal and as JSON."""
 
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from operator import itemgetter
-from typing import Any, TypeVar
+from typing import Any
 
 from rich.console import Console
 from rich.text import Text
@@ -32,11 +32,11 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
+from grader.report.order import alike
 from grader.report.rubrics import toml_text
 from grader.text import counted, enumerated, format_points, named, printable, signed_points
 
 _MAX_NAMED, _MAX_LINES = 3, 12
-K = TypeVar("K", bound=Hashable)
 Steps = tuple[PointsChange, ...]
 
 
@@ -103,13 +103,13 @@ def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Co
     wrapped(console, Text(printable(f"From {before} to {after}"), style="dim"), 0)
     if not changes:
         wrapped(console, Text("nothing changed"), 0)
-    for (reason, *details), found in _groups(changes, _reason):
+    for (reason, *details), found in sorted(alike(changes, _reason), key=_size):
         console.print()
         wrapped(console, Text(printable(f"{reason} ({counted(len(found), 'student')})"), style="bold"), 0)
         for line in details:
             wrapped(console, Text(printable(line)), 2)
         regraded = [change for change in found if change.is_regraded]
-        for steps, some in _groups(regraded, lambda change: change.steps):
+        for steps, some in sorted(alike(regraded, lambda change: change.steps), key=_size):
             _show_students(steps, some, console)
         if same := len(found) - len(regraded):
             wrapped(console, Text(f"{counted(same, 'student')} with the same grade, but other points of criteria"), 2)
@@ -120,12 +120,9 @@ def _reason(change: Change) -> tuple[str, ...]:
     return "; ".join(change.why) or "unknown reason: please report it", *map(_rubric_line, change.rubric)
 
 
-def _groups(changes: Sequence[Change], key: Callable[[Change], K]) -> list[tuple[K, list[Change]]]:
-    """Return the changes grouped by key, the largest group first; groups of one size by their first students."""
-    found: dict[K, list[Change]] = {}
-    for change in changes:
-        found.setdefault(key(change), []).append(change)
-    return sorted(found.items(), key=lambda item: -len(item[1]))
+def _size(group: tuple[Any, Sequence[Change]]) -> int:
+    """Return the key by which the largest group is first; groups of one size are in the order of their students."""
+    return -len(group[1])
 
 
 def _show_students(steps: Steps, changes: Sequence[Change], console: Console) -> None:
@@ -174,11 +171,9 @@ def _total(change: Change) -> str:
 
 def _lines(steps: Sequence[PointsChange]) -> Iterator[str]:
     """Yield a line for each criterion, or one for many with the same change, and how many more there are."""
-    alike: dict[tuple[Decimal | None, Decimal | None], list[str]] = {}
-    for step in steps:
-        alike.setdefault((step.before, step.after), []).append(step.criterion)
     lines: list[tuple[str, int]] = []
-    for span, names in alike.items():
+    for span, some in alike(steps, lambda step: (step.before, step.after)):
+        names = [step.criterion for step in some]
         if len(names) <= _MAX_NAMED:
             lines += [(f"{name}: {_span(*span)}", 1) for name in names]
         else:

@@ -74,6 +74,7 @@ _AGREEMENT = Record(
     }
 )
 _CHOICE = Record({"criterion": (TEXT, "criterion.id"), "text": TEXT, "points": {"type": "number"}, "students": TOTAL})
+_IDENTICAL = Record({"students": array(TEXT), "same_file": array(array(TEXT)), "equal": TEXT})
 _SECTION = Record(
     {
         "name": TEXT,
@@ -151,10 +152,7 @@ CLASS = Record(
         "run": Record(each(TOTAL, "total graded unchanged errored")),
         "statistics": (_STATISTICS, "summary.statistics"),
         "fixes": (Many(_FIX), "summary.fixes"),
-        "identical": (
-            Many(Record({"students": array(TEXT), "same_file": array(array(TEXT)), "equal": TEXT})),
-            "summary.identical",
-        ),
+        "identical": (Many(_IDENTICAL), "summary.identical"),
         "agreement": (_AGREEMENT, "summary.agreement"),
         "choices": (Many(_CHOICE), "summary.choices"),
         "comparison": _COMPARISON,

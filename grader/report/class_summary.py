@@ -14,31 +14,7 @@ from grader.classroom.gradebook.hints import CommonFix
 from grader.classroom.gradebook.identical import IdenticalWork
 from grader.classroom.gradebook.statistics import ClassStatistics, CommonFailure
 from grader.classroom.gradebook.summary import ClassSummary
-from grader.report.class_words import (
-    ATTENTION_NOTE,
-    CRITERIA_NOTE,
-    FIXES_NOTE,
-    IDENTICAL_NOTE,
-    MAX_DETAILS,
-    MAX_GROUPS,
-    MAX_LISTED,
-    MAX_NAMED,
-    NOT_DEDUCTED_NOTE,
-    adjusted_lines,
-    counts_line,
-    criterion_name,
-    earlier_line,
-    edit_lines,
-    evidence_lines,
-    final_line,
-    gain,
-    identical_line,
-    is_low,
-    late_line,
-    mark_lines,
-    percent,
-    span,
-)
+from grader.report import class_words as words
 from grader.report.console import wrapped
 from grader.text import counted, format_points, people_text, printable
 
@@ -54,30 +30,31 @@ def render_class(summary: ClassSummary, console: Console, *, verbose: bool = Fal
     """
     statistics = summary.statistics
     wrapped(console, Text(printable(summary.rubric.title), style="bold"), 0)
-    for line in filter(None, (counts_line(statistics), final_line(statistics), earlier_line(statistics))):
+    heads = words.counts_line(statistics), words.final_line(statistics), words.earlier_line(statistics)
+    for line in filter(None, heads):
         wrapped(console, Text(line), 0)
     if statistics.graded:
         _print_marks(statistics, console)
-        _print_criteria(statistics.criteria, adjusted_lines(summary.rubric), console)
-        _print_failures(statistics.failures[:MAX_LISTED], console)
-    _print_fixes(summary.fixes[:MAX_LISTED], console)
+        _print_criteria(statistics.criteria, words.adjusted_lines(summary.rubric), console)
+        _print_failures(statistics.failures[: words.MAX_LISTED], console)
+    _print_fixes(summary.fixes[: words.MAX_LISTED], console)
     _print_choices(summary.choices, console)
     _print_agreement(summary.agreement, summary.names, console)
     _print_identical(summary.identical, summary.names, console)
     _print_attention(summary.attention, summary.names, console, verbose=verbose)
-    for line in filter(None, (*evidence_lines(summary), late_line(summary))):
+    for line in filter(None, (*words.evidence_lines(summary), words.late_line(summary))):
         console.print()
         wrapped(console, Text(line), 0)
 
 
 def _print_marks(statistics: ClassStatistics, console: Console) -> None:
     console.print()
-    for line in mark_lines(statistics):
+    for line in words.mark_lines(statistics):
         wrapped(console, Text(line), 0)
     most = max(statistics.bins)
     for tenth, count in enumerate(statistics.bins if most else ()):
         bar = "#" * -(-count * min(_BAR_WIDTH, console.width - 30) // most)
-        console.print(Text(f"  {span(statistics, tenth):>14} {count:>6}  {bar}"), no_wrap=True, crop=False)
+        console.print(Text(f"  {words.span(statistics, tenth):>14} {count:>6}  {bar}"), no_wrap=True, crop=False)
 
 
 def _print_failures(failures: Sequence[CommonFailure], console: Console) -> None:
@@ -91,24 +68,24 @@ def _print_failures(failures: Sequence[CommonFailure], console: Console) -> None
 def _print_fixes(fixes: Sequence[CommonFix], console: Console) -> None:
     """Print edits with the number of students who need them."""
     if fixes:
-        _print_heading("Edits that would fix the most", console, FIXES_NOTE)
+        _print_heading("Edits that would fix the most", console, words.FIXES_NOTE)
     for fix in fixes:
         who = Text(f"{counted(fix.count, 'student')}: ", style="bold")
         wrapped(console, who + Text(printable(fix.action)), 4, Text("  "))
-        for sign, line in edit_lines(fix.example):
+        for sign, line in words.edit_lines(fix.example):
             style = _STYLES.get(sign, "dim")
             head = Text(f"{' ' * _INDENT}{sign} ", style=style)
             wrapped(console, Text(printable(line), style=style), _INDENT + 2, head)
-        wrapped(console, Text(gain(fix), style="dim"), _INDENT)
+        wrapped(console, Text(words.gain(fix), style="dim"), _INDENT)
 
 
 def _print_choices(choices: Sequence[ChoiceCount], console: Console) -> None:
-    if any(choice.students for choice in choices):
+    used = [choice for choice in choices if choice.students]
+    if used:
         _print_heading("Usual deductions", console)
-    for criterion, text, points, count in choices:
-        if count:
-            words = f"{criterion.id}: {text} ({format_points(points)})"
-            wrapped(console, Text(printable(words)), 8, Text(f"{count:>6}  ", style="bold"))
+    for criterion, text, points, count in used:
+        line = f"{criterion.id}: {text} ({format_points(points)})"
+        wrapped(console, Text(printable(line)), 8, Text(f"{count:>6}  ", style="bold"))
 
 
 def _print_agreement(agreement: Agreement, names: Mapping[str, str], console: Console) -> None:
@@ -118,20 +95,18 @@ def _print_agreement(agreement: Agreement, names: Mapping[str, str], console: Co
     mean = f"mean difference {agreement.mean_difference_percent:.1f} % of the maximum"
     lines = [f"{counted(agreement.items, 'item')} marked twice, {agreement.same} with the same points, {mean}"]
     for item in agreement.largest:
-        points = (
-            f"{format_points(item.first)} and {format_points(item.second)} of {format_points(item.max_points)} points"
-        )
-        lines.append(f"{names[item.key]}, {item.criterion}: {points}")
+        first, second, most = map(format_points, (item.first, item.second, item.max_points))
+        lines.append(f"{names[item.key]}, {item.criterion}: {first} and {second} of {most} points")
     for line in lines:
         wrapped(console, Text(printable(line)), 4, Text("  "))
 
 
 def _print_identical(identical: Sequence[IdenticalWork], names: Mapping[str, str], console: Console) -> None:
     if identical:
-        _print_heading("Identical work", console, IDENTICAL_NOTE)
-    for work in identical[:MAX_GROUPS]:
-        wrapped(console, Text(printable(identical_line(work, names))), 4, Text("  "))
-    _print_rest(len(identical) - MAX_GROUPS, console)
+        _print_heading("Identical work", console, words.IDENTICAL_NOTE)
+    for work in identical[: words.MAX_GROUPS]:
+        wrapped(console, Text(printable(words.identical_line(work, names))), 4, Text("  "))
+    _print_rest(len(identical) - words.MAX_GROUPS, console)
 
 
 def _print_attention(attention: Attention, names: Mapping[str, str], console: Console, *, verbose: bool) -> None:
@@ -141,7 +116,7 @@ def _print_attention(attention: Attention, names: Mapping[str, str], console: Co
         _print_heading("Needs attention", console)
     for group in attention.groups:
         has_details = any(item.detail for item in group.items)
-        most = len(group.items) if verbose else MAX_DETAILS if has_details else MAX_NAMED
+        most = len(group.items) if verbose else words.MAX_DETAILS if has_details else words.MAX_NAMED
         head, rest = Text(f"{group.reason} ({len(group.items)})", style="bold"), len(group.items) - most
         is_cut = is_cut or rest > 0
         if has_details:
@@ -154,7 +129,7 @@ def _print_attention(attention: Attention, names: Mapping[str, str], console: Co
             who = people_text([names[item.key] for item in group.items], most)
             wrapped(console, head + Text(printable(f": {who}"), "not bold"), 4, Text("  "))
     if is_cut:
-        wrapped(console, Text(ATTENTION_NOTE, style="dim"), 2)
+        wrapped(console, Text(words.ATTENTION_NOTE, style="dim"), 2)
 
 
 def _print_heading(title: str, console: Console, note: str = "") -> None:
@@ -181,17 +156,18 @@ def _print_criteria(criteria: Iterable[CriterionStatistics], adjusted: Sequence[
         table.add_column(name, justify="right", no_wrap=True)
     for row in asked:
         table.add_row(
-            criterion_name(row.criterion),
+            words.criterion_name(row.criterion),
             format_points(row.criterion.points),
             str(row.passed),
             *([str(row.carried)] if has_carried else []),
             *([str(row.manual_marks)] if has_marks else []),
             str(row.of),
-            percent(row.share) if row.share is not None else "",
+            words.percent(row.share) if row.share is not None else "",
             _discrimination_text(row.discrimination),
         )
     console.print(table)
-    wrapped(console, Text(f"{CRITERIA_NOTE}{f' {NOT_DEDUCTED_NOTE}' if has_carried else ''}", style="dim"), 0)
+    note = f"{words.CRITERIA_NOTE} {words.NOT_DEDUCTED_NOTE}" if has_carried else words.CRITERIA_NOTE
+    wrapped(console, Text(note, style="dim"), 0)
     for line in adjusted:
         wrapped(console, Text(line), 0)
 
@@ -199,4 +175,4 @@ def _print_criteria(criteria: Iterable[CriterionStatistics], adjusted: Sequence[
 def _discrimination_text(discrimination: float | None) -> Text:
     if discrimination is None:
         return Text("")
-    return Text(f"{discrimination:.2f}", style="yellow" if is_low(discrimination) else "")
+    return Text(f"{discrimination:.2f}", style="yellow" if words.is_low(discrimination) else "")

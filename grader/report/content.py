@@ -11,7 +11,8 @@ from grader.report.locations import location_text
 from grader.report.order import earned_text, failures, sum_text
 from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted
 
-_VERDICTS = {
+UNDECIDED = "xacro that cannot be determined statically"
+VERDICTS = {
     "clean": "ROS 2 loads the file",
     "degraded": "ROS 2 loads the file, but drops content of it",
     "rejected": "ROS 2 rejects the file",
@@ -76,7 +77,7 @@ def verdict_and_counts(report: Report) -> str:
     submission = report.submission
     urdf = "the URDF could not be read" if submission.unread else "no URDF was submitted"
     if submission.path is not None and submission.has_urdf:
-        urdf = _VERDICTS[submission.verdict] if submission.verdict else "xacro that cannot be determined statically"
+        urdf = VERDICTS[submission.verdict] if submission.verdict else UNDECIDED
     statuses = [
         "marked manually" if one.manual_mark else "adjusted" if one.is_adjusted else one.outcome.status
         for one in report.results

@@ -11,15 +11,17 @@ from grader.report.order import FailedCriterion, alike, failures, is_failure, is
 from grader.source import Location
 from grader.text import by_name, enumerated, printable, signed_points
 
-SYMBOLS = {
-    "passed": "\u2713",
-    "failed": "\u2717",
-    "skipped": "\u2212",
-    "pending": "?",
-    "errored": "!",
-    "adjusted": "=",
-    "partial": "~",
-}  # of each status
+# The symbol of each status, that for a terminal in another encoding, the style on a terminal, and the word.
+_STATUSES = (
+    ("passed", "\u2713", "+", "green", "Passed"),
+    ("failed", "\u2717", "X", "bold red", "Failed"),
+    ("skipped", "\u2212", "-", "yellow", "Skipped"),
+    ("pending", "?", "?", "cyan", "Needs manual grading"),
+    ("errored", "!", "!", "bold magenta", "Could not be graded"),
+    ("adjusted", "=", "=", "blue", "Corrected after grading"),
+    ("partial", "~", "~", "bold yellow", "Some points"),
+)
+SYMBOLS, ASCII_SYMBOLS, STYLES, STATUS_WORDS = ({row[0]: row[column] for row in _STATUSES} for column in range(1, 5))
 _MAX_FILES, _MAX_CRITERIA = 2, 3
 
 

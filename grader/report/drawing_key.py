@@ -7,7 +7,7 @@ from typing import Any
 from grader.drawing.picture import Callout, Picture, picture_of
 from grader.drawing.sheet import WIDTH, Place, Sheet
 from grader.grading.report import Report
-from grader.report.drawing_signs import Signs, is_lifted, wheel_sign
+from grader.report.drawing_signs import Signs, lifted_ground, wheel_sign
 from grader.report.order import points_of
 from grader.report.svg_elements import circle, put, put_lines, segments
 from grader.robot.transforms import Vector
@@ -76,7 +76,7 @@ def _meanings(picture: Picture, *, legend: bool) -> Iterator[tuple[_Draw, str]]:
     travels = [wheel.travel is not None for wheel in picture.scene.wheels]
     if any(callout.point is not None for callout in picture.callouts):
         yield lambda signs, at: signs.badge((at[0] + 12.0, at[1]), 1), f"points lost{': see below' if legend else ''}"
-    if picture.outlines or picture.frames or _is_lifted(picture):
+    if picture.outlines or picture.frames or lifted_ground(picture) is not None:
         yield partial(_draw_line, "reference"), "reference solution"
     if any(travels):
         yield partial(_draw_wheel, -3.0, (1.0, 0.0, 0.0)), "driving direction, positive turn"
@@ -85,12 +85,6 @@ def _meanings(picture: Picture, *, legend: bool) -> Iterator[tuple[_Draw, str]]:
     yield _draw_axes, "frame of a link: x, y, z"
     if len(picture.scene.bodies) > 1:
         yield partial(_draw_line, "hidden"), "hidden edge"
-
-
-def _is_lifted(picture: Picture) -> bool:
-    ground, reference = picture.scene.ground, picture.reference
-    expected = reference.ground if reference is not None else None
-    return ground is not None and expected is not None and is_lifted(ground, expected)
 
 
 def _draw_wheel(left: float, travel: Vector | None, signs: Signs, at: Place) -> None:

@@ -14,18 +14,9 @@ from grader.robot.transforms import Transform, Vector
 _AXIS = 20.0  # pixels
 _LONG_AXIS = 32.0  # of a frame of the reference, so that it is visible beside the robot's own
 _LETTER = (9.0, 11.0)  # the room of one
-# Where the letter of an axis is, from its tip: along the axis and to its side.
-_SIDES = (
-    (2.0, 8.0),
-    (2.0, -8.0),
-    (-5.0, 8.5),
-    (-5.0, -8.5),
-    (-12.0, 8.5),
-    (-12.0, -8.5),
-    (-12.0, 13.0),
-    (-12.0, -13.0),
-)
-_BESIDE = ((8.0, 0.0), *_SIDES, (20.0, 0.0))
+# Where the letter of an axis is, from its tip: along the axis and to either side of it.
+_SIDES = ((2.0, 8.0), (-5.0, 8.5), (-12.0, 8.5), (-12.0, 13.0))
+_BESIDE = ((8.0, 0.0), *((along, way * side) for along, side in _SIDES for way in (1.0, -1.0)), (20.0, 0.0))
 _ARROW = 30.0
 _HEAD = 6.0
 _RADIUS = 9.0  # of a number
@@ -81,7 +72,7 @@ class ViewSigns(Signs):
 
     def add_ground(self) -> None:
         """Add the ground as a line if it is seen edge-on, and that of the reference if it differs."""
-        ground, reference = self._picture.scene.ground, self._picture.reference
+        ground, expected = self._picture.scene.ground, lifted_ground(self._picture)
         if ground is None:
             return
         for start, end in self._ground_line(ground):
@@ -89,8 +80,7 @@ class ViewSigns(Signs):
             at = self._labels.put(start, [(22.0, 10.0), (22.0, -8.0)], (44.0, 12.0)) or start
             self._names.append(((at[0], at[1] + 2.0), "ground"))
             self._labels.mark([start, end], 1.0)
-        expected = reference.ground if reference is not None else None
-        if expected is not None and is_lifted(expected, ground):
+        if expected is not None:
             for line in self._ground_line(expected):
                 self.line("reference", segments([line]))
                 self._labels.mark(line, 1.0)
@@ -199,9 +189,11 @@ class ViewSigns(Signs):
             self.badge(centre, number)
 
 
-def is_lifted(one: Transform, other: Transform) -> bool:
-    """Return whether two grounds differ in height."""
-    return abs(one.translation[2] - other.translation[2]) > _SAME
+def lifted_ground(picture: Picture) -> Transform | None:
+    """Return the ground of the reference if it differs in height from the robot's."""
+    own, other = picture.scene.ground, picture.reference.ground if picture.reference is not None else None
+    is_lifted = own is not None and other is not None and abs(own.translation[2] - other.translation[2]) > _SAME
+    return other if is_lifted else None
 
 
 def wheel_sign(start: Place, travel: Vector | None) -> str:

@@ -10,21 +10,11 @@ from rich.text import Text
 
 from grader.grading.report import Report, Result
 from grader.report.console import block, excerpt_block, put, symbol, wrapped
-from grader.report.details import SYMBOLS, Details, hint_of, result_details, sentence
+from grader.report.details import ASCII_SYMBOLS, STYLES, SYMBOLS, Details, hint_of, result_details, sentence
 from grader.report.locations import diff_lines, location_text
 from grader.report.order import CriteriaGroup, FailedCriterion, earned_text, points_of, status_of
 from grader.text import printable
 
-STYLES = {
-    "passed": "green",
-    "failed": "bold red",
-    "skipped": "yellow",
-    "pending": "cyan",
-    "errored": "bold magenta",
-    "adjusted": "blue",
-    "partial": "bold yellow",
-}
-_ASCII = dict(zip(SYMBOLS, "+X-?!=~", strict=True))  # for a terminal in another encoding
 _DIFF_STYLES = {"-": "red", "+": "green"}
 INDENT = 2
 _MAX_FIRST = 3  # failures with their source line
@@ -76,7 +66,7 @@ class Page(NamedTuple):
 
     def mark(self, status: str) -> Text:
         """Return the symbol of a status in its colour."""
-        return Text(symbol(self.console, SYMBOLS[status], _ASCII[status]), STYLES[status])
+        return Text(symbol(self.console, SYMBOLS[status], ASCII_SYMBOLS[status]), STYLES[status])
 
 
 def show_failure(failure: FailedCriterion, page: Page, number: int) -> None:

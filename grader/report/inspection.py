@@ -10,6 +10,7 @@ from rich.text import Text
 from grader.errors import MissingElement, NotDecided
 from grader.report.as_json import PROBLEM
 from grader.report.console import put, show_problems, symbol, wrapped
+from grader.report.content import UNDECIDED, VERDICTS
 from grader.report.json_data import (
     NUMBER,
     TEXT,
@@ -24,6 +25,7 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
+from grader.report.order import alike
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.reader import Reading
@@ -32,13 +34,8 @@ from grader.text import printable
 from grader.values import dataclass
 
 _MAX_LISTED = 500  # links in the terminal
-_EFFECTS = {
-    "clean": "ROS 2 loads it",
-    "degraded": "ROS 2 loads it, but drops content of it",
-    "rejected": "ROS 2 rejects it",
-}
-_UNDECIDED = "xacro that cannot be determined statically"
-_STYLES = dict(zip((*_EFFECTS.values(), _UNDECIDED), ("green", "yellow", "bold red", "bold red"), strict=True))
+_EFFECTS = {verdict: text.replace("the file", "it") for verdict, text in VERDICTS.items()}
+_STYLES = dict(zip((*_EFFECTS.values(), UNDECIDED), ("green", "yellow", "bold red", "bold red"), strict=True))
 _BRANCHES = ("\u251c\u2500 ", "\u2514\u2500 ", "\u2502  ")  # to a link, to the last one, past others
 
 
@@ -145,18 +142,16 @@ def _print_rest(console: Console, count: int) -> None:
 
 def effect(reading: Reading) -> str:
     """Return what ROS 2 does with a URDF."""
-    return _EFFECTS[reading.verdict] if reading.is_certain else _UNDECIDED
+    return _EFFECTS[reading.verdict] if reading.is_certain else UNDECIDED
 
 
 def tree(robot: Configuration, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, str, str]]:
     """Yield every link after its parent: the branches before it, its name, and its parent joint in words."""
-    children: dict[str, list[Joint]] = {}
-    for joint in robot.parent_joints.values():
-        children.setdefault(joint.parent, []).append(joint)
+    children = dict(alike(robot.parent_joints.values(), lambda joint: joint.parent))
     branch, last, bar = signs
     for root in robot.roots:
         yield "", printable(root), ""
-        stack = _branches(children.get(root, []), "")
+        stack = _branches(children.get(root, ()), "")
         while stack:
             joint, indent, is_last = stack.pop()
             yield (
@@ -164,10 +159,10 @@ def tree(robot: Configuration, signs: Sequence[str] = _BRANCHES) -> Iterator[tup
                 printable(joint.child),
                 f"{printable(joint.name)}: {_joint_text(joint)}",
             )
-            stack += _branches(children.get(joint.child, []), (indent + ("   " if is_last else bar))[-60:])
+            stack += _branches(children.get(joint.child, ()), (indent + ("   " if is_last else bar))[-60:])
 
 
-def _branches(joints: list[Joint], indent: str) -> list[tuple[Joint, str, bool]]:
+def _branches(joints: Sequence[Joint], indent: str) -> list[tuple[Joint, str, bool]]:
     return [(joint, indent, index == 0) for index, joint in enumerate(reversed(joints))]
 
 

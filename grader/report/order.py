@@ -1,6 +1,6 @@
 """The criteria of a report in the order in which people read them: what to fix first, what is fine last."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from decimal import Decimal
 from itertools import groupby
 from typing import NamedTuple, TypeVar
@@ -11,6 +11,7 @@ from grader.grading.report import Report, Result
 from grader.text import format_points, signed_points
 
 T = TypeVar("T")
+K = TypeVar("K", bound=Hashable)
 
 
 def status_of(result: Result) -> str:
@@ -109,11 +110,8 @@ class Order(NamedTuple):
     @property
     def remarks(self) -> tuple[tuple[str, tuple[Result, ...]], ...]:
         """The criteria with a mark, an adjustment or a comment that are not failures, each group with its heading."""
-        found = (
-            ("Marked manually", self.marked),
-            ("Corrected after grading", self.adjusted),
-            ("Comments", self.commented),
-        )
+        titles = ("Marked manually", "Corrected after grading", "Comments")
+        found = zip(titles, (self.marked, self.adjusted, self.commented), strict=True)
         return tuple((title, results) for title, results in found if results)
 
     @property
@@ -208,9 +206,9 @@ def groups(report: Report) -> Iterator[CriteriaGroup]:
         yield CriteriaGroup(part, about or report.rubric.part(part).title, tuple(results))
 
 
-def alike(items: Iterable[T], key: Callable[[T], str]) -> list[tuple[str, tuple[T, ...]]]:
+def alike(items: Iterable[T], key: Callable[[T], K]) -> list[tuple[K, tuple[T, ...]]]:
     """Return each value of a key with the items that have it, in the order of the first ones."""
-    found: dict[str, list[T]] = {}
+    found: dict[K, list[T]] = {}
     for item in items:
         found.setdefault(key(item), []).append(item)
     return [(value, tuple(some)) for value, some in found.items()]

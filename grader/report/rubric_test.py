@@ -28,6 +28,7 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
+from grader.report.order import alike
 from grader.text import counted, enumerated, first_lines, format_points, printable, without_commands
 
 _MAX_OF_GROUP, _MAX_GROUPS, _MAX_DIFF, _MAX_LOSSES = 3, 12, 14, 10
@@ -110,12 +111,10 @@ def _losses(title: str, losses: Sequence[Loss]) -> Iterator[str]:
 
 def _survivors(survivors: Sequence[Survivor]) -> Iterator[str]:
     """Yield the survivors by what may catch them, the most frequent first."""
-    groups: dict[str, list[Survivor]] = {}
-    for survivor in survivors:
-        groups.setdefault(survivor.suggestion, []).append(survivor)
+    groups = alike(survivors, lambda survivor: survivor.suggestion)
     if groups:
         yield from ("", "These mutants of the reference get full marks:")
-    ordered = sorted(groups.items(), key=lambda group: -len(group[1]))
+    ordered = sorted(groups, key=lambda group: -len(group[1]))
     for suggestion, group in ordered[:_MAX_GROUPS]:
         yield from ("", f"{counted(len(group), 'mutant')}: {suggestion}")
         for survivor in group[:_MAX_OF_GROUP]:

@@ -107,9 +107,8 @@ def edge_look(rgba: Rgba) -> str:
     red, green, blue, alpha = rgba
     if alpha < 0.5:
         return "edge"
-    luminance = (
-        0.2126 * red**2.2 + 0.7152 * green**2.2 + 0.0722 * blue**2.2
-    )  # as WCAG 2.2 defines it, with a plain gamma
+    # As WCAG 2.2 defines it, with a plain gamma.
+    luminance = 0.2126 * red**2.2 + 0.7152 * green**2.2 + 0.0722 * blue**2.2
     return "edge-on-light" if luminance > 0.18 else "edge-on-dark"
 
 

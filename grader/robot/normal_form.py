@@ -38,8 +38,7 @@ def robot_hash(reading: Reading) -> str:
     if reading.robot is None or not reading.robot.links:
         return ""
     problems = sorted((problem.code, problem.message) for problem in reading.problems)
-    content = problems, normal_form(reading.robot), _extensions(reading.elements)
-    return _hash(content)
+    return _hash((problems, normal_form(reading.robot), _extensions(reading.elements)))
 
 
 def written_form(root: Element | None, *, is_handed_out: bool = False) -> tuple[str, list[str]]:

@@ -11,37 +11,17 @@ from grader import __version__
 from grader.classroom.gradebook.criterion_statistics import CriterionStatistics
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.hints import CommonFix
-from grader.classroom.gradebook.identical import IdenticalWork
 from grader.classroom.gradebook.statistics import ClassStatistics, members
 from grader.classroom.gradebook.summary import ClassSummary
 from grader.drawing.curves import SIDE, TOP
 from grader.drawing.picture import Picture, picture_of
-from grader.drawing.scene import Scene
 from grader.grading.report import Report
-from grader.report.class_words import (
-    CRITERIA_NOTE,
-    FIXES_NOTE,
-    IDENTICAL_NOTE,
-    MAX_LISTED,
-    NOT_DEDUCTED_NOTE,
-    VERDICTS,
-    adjusted_lines,
-    earlier_line,
-    edit_lines,
-    evidence_lines,
-    final_line,
-    gain,
-    is_low,
-    mark_lines,
-    percent,
-    span,
-    what_is_same,
-)
+from grader.report import class_words as words
 from grader.report.drawing import thumbnail_element
 from grader.report.pages.class_rows import columns, group_data, row_groups, student_rows
 from grader.report.pages.robot import RULES
 from grader.report.pages.shell import Assets, render_page
-from grader.robot.transforms import Vector, dot
+from grader.robot.transforms import dot
 from grader.text import counted, format_points
 
 _SAME_WAY = 0.9  # cosine
@@ -83,7 +63,8 @@ def _about(picture: Picture, criteria: Collection[str]) -> Picture:
 
 def _drives_elsewhere(picture: Picture) -> bool:
     """Return whether a wheel drives in another direction than the reference's, which is visible from above."""
-    expected = _travels(picture.reference) if picture.reference is not None else {}
+    wheels = picture.reference.wheels if picture.reference is not None else ()
+    expected = {wheel.link: wheel.travel for wheel in wheels if wheel.travel is not None}
     return any(
         wheel.travel is None or dot(wheel.travel, expected[wheel.link]) < _SAME_WAY
         for wheel in picture.scene.wheels
@@ -91,15 +72,11 @@ def _drives_elsewhere(picture: Picture) -> bool:
     )
 
 
-def _travels(scene: Scene) -> dict[str, Vector]:
-    return {wheel.link: wheel.travel for wheel in scene.wheels if wheel.travel is not None}
-
-
-MAX_DRAWINGS = MAX_LISTED
+MAX_DRAWINGS = words.MAX_LISTED
 _MAX_ATTENTION = 100  # students for one reason
 _ELEMENTS = {"-": "del", "+": "ins"}  # of a line of an edit, by its sign
 _COUNTS = {
-    **{f"status-{verdict}": words for verdict, words in VERDICTS.items()},
+    **{f"status-{verdict}": text for verdict, text in words.VERDICTS.items()},
     "pending": "with points that need manual grading",
     "late": "late",
     "final": "with a final mark",
@@ -126,24 +103,24 @@ def render_class_page(
         "version": __version__,
         "title": summary.rubric.title,
         "rubric": summary.rubric,
-        "counts": [(name, f"{len(found[name].keys)} {words}") for name, words in _COUNTS.items() if name in found],
-        "notes": [*filter(None, (final_line(summary.statistics), earlier_line(summary.statistics)))],
-        "adjusted": adjusted_lines(summary.rubric),
-        "lines": list(mark_lines(summary.statistics)) if summary.statistics.graded else [],
+        "counts": [(name, f"{len(found[name].keys)} {text}") for name, text in _COUNTS.items() if name in found],
+        "notes": [*filter(None, (words.final_line(summary.statistics), words.earlier_line(summary.statistics)))],
+        "adjusted": words.adjusted_lines(summary.rubric),
+        "lines": list(words.mark_lines(summary.statistics)) if summary.statistics.graded else [],
         "reasons": summary.statistics.reasons[1:],
         "bars": _bars(summary.statistics),
         "out_of": format_points(summary.statistics.out_of),
         "criteria": _criteria(summary.statistics),
-        "criteria_note": CRITERIA_NOTE,
-        "not_deducted_note": NOT_DEDUCTED_NOTE,
+        "criteria_note": words.CRITERIA_NOTE,
+        "not_deducted_note": words.NOT_DEDUCTED_NOTE,
         "failures": summary.statistics.failures if summary.statistics.graded else (),
-        "fixes": [_fix(fix, drawings) for fix in summary.fixes[:MAX_LISTED]],
-        "fixes_note": FIXES_NOTE,
-        "identical": [_identical(work, summary.names) for work in summary.identical],
-        "identical_note": IDENTICAL_NOTE,
+        "fixes": [_fix(fix, drawings) for fix in summary.fixes[: words.MAX_LISTED]],
+        "fixes_note": words.FIXES_NOTE,
+        "identical": [(work.students, words.what_is_same(work, summary.names)) for work in summary.identical],
+        "identical_note": words.IDENTICAL_NOTE,
         "attention": summary.attention,
         "max_attention": _MAX_ATTENTION,
-        "evidence": evidence_lines(summary),
+        "evidence": words.evidence_lines(summary),
         "people": {row.key: row for row in rows},
         "rows": rows,
         "columns": columns(rows, summary.statistics),
@@ -157,7 +134,7 @@ def _bars(statistics: ClassStatistics) -> list[dict[str, Any]]:
     return [
         {
             "group": f"grade-{tenth}",
-            "span": span(statistics, tenth),
+            "span": words.span(statistics, tenth),
             "count": count,
             "height": round(100 * count / most),
         }
@@ -177,10 +154,10 @@ def _criterion(row: CriterionStatistics) -> dict[str, Any]:
         "row": row,
         "group": f"criterion-{row.criterion.position}",
         "points": format_points(row.criterion.points),
-        "share": percent(row.share) if row.share is not None else "",
+        "share": words.percent(row.share) if row.share is not None else "",
         "width": round(100 * (row.share or 0)),
         "discrimination": f"{row.discrimination:.2f}" if row.discrimination is not None else "",
-        "is_low": is_low(row.discrimination),
+        "is_low": words.is_low(row.discrimination),
     }
 
 
@@ -188,11 +165,7 @@ def _fix(fix: CommonFix, drawings: Mapping[str, str]) -> dict[str, Any]:
     return {
         "who": counted(fix.count, "student"),
         "action": fix.action,
-        "lines": [(_ELEMENTS.get(sign, "span"), f"{sign} {line}") for sign, line in edit_lines(fix.example)],
-        "gain": gain(fix),
+        "lines": [(_ELEMENTS.get(sign, "span"), f"{sign} {line}") for sign, line in words.edit_lines(fix.example)],
+        "gain": words.gain(fix),
         "drawing": Markup(drawings.get(fix.action, "")),  # noqa: S704  from a tree of elements
     }
-
-
-def _identical(work: IdenticalWork, names: Mapping[str, str]) -> dict[str, Any]:
-    return {"students": work.students, "same_file": what_is_same(work, names)}

@@ -35,10 +35,8 @@ _MAX_RANGE = 1e5  # radians or metres: larger limits are ignored
 class Slider(NamedTuple):
     """The control of a joint: its number in the file, its range and position in degrees or mm.
 
-    `scale` makes them radians or metres.
-
-    A mimic joint `follows` another one; `note` names that joint, or describes invalid limits. The position of a
-    continuous joint `wraps` after a full turn.
+    `scale` makes them radians or metres. A mimic joint `follows` another one; `note` names that joint, or describes
+    invalid limits. The position of a continuous joint `wraps` after a full turn.
     """
 
     joint: int

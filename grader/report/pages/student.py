@@ -7,7 +7,7 @@ from typing import NamedTuple
 from grader.drawing.picture import picture_of
 from grader.grading.report import Report, Result
 from grader.report import content
-from grader.report.details import SYMBOLS, Details, result_details, skipped_text
+from grader.report.details import STATUS_WORDS, SYMBOLS, Details, result_details, skipped_text
 from grader.report.drawing_key import why_no_picture
 from grader.report.locations import SourceLine, diff_lines, location_text, source_lines
 from grader.report.order import (
@@ -22,16 +22,6 @@ from grader.report.order import (
 )
 from grader.report.pages.robot import render_robot_page
 from grader.text import format_points, printable
-
-_WORDS = {
-    "passed": "Passed",
-    "failed": "Failed",
-    "skipped": "Skipped",
-    "pending": "Needs manual grading",
-    "errored": "Could not be graded",
-    "adjusted": "Corrected after grading",
-    "partial": "Some points",
-}  # of each status
 
 
 class Card(NamedTuple):
@@ -118,7 +108,7 @@ def _criteria(report: Report) -> dict[str, object]:
     cards = [card for some in (failed, *(some for _, some in sections)) for card in some]
     return {
         "symbols": SYMBOLS,
-        "status_words": _WORDS,
+        "status_words": STATUS_WORDS,
         "status_of": status_of,
         "earned_text": earned_text,
         "location_text": location_text,
