@@ -2,7 +2,6 @@
 
 import io
 import sys
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -13,6 +12,7 @@ from grader.cli.terminal import TERMINAL, screen
 from grader.report.formats import OutputFormat
 from grader.usecases.writing import write_stdout
 
+_KEEP = "Whose marks count in every conflict: those of A or B."
 _BY = "Compare the sections, or the students of each marker."
 
 
@@ -98,13 +98,6 @@ Examples:
 gradebook = typer.Typer(help=_HELP, no_args_is_help=True)
 
 
-class Keep(StrEnum):
-    """Whose marks count in a conflict."""
-
-    FIRST = "first"
-    SECOND = "second"
-
-
 @gradebook.callback()
 def _group() -> None:
     """Make typer treat the only command of the group as a command."""
@@ -116,9 +109,7 @@ def merge(
     second: Annotated[
         Path, typer.Argument(metavar="B", help="The gradebook whose marks are added; it does not change.")
     ],
-    keep: Annotated[
-        Keep | None, typer.Option("--keep", help="Whose marks count in every conflict: those of A or B.")
-    ] = None,
+    keep: Annotated[Literal["first", "second"] | None, typer.Option("--keep", help=_KEEP)] = None,
 ) -> int:
     """Add the manual marks of gradebook B to gradebook A.
 
@@ -138,6 +129,6 @@ def merge(
 
     if isinstance(sys.stdin, io.TextIOWrapper):
         sys.stdin.reconfigure(errors="backslashreplace")  # a terminal in another encoding
-    text, code = merge_gradebooks(first, second, keep.value if keep else None, TERMINAL)
+    text, code = merge_gradebooks(first, second, keep, TERMINAL)
     write_stdout(text)
     return code

@@ -8,8 +8,7 @@ from rich.text import Text
 
 from grader.classroom.gradebook.agreement import Agreement
 from grader.classroom.gradebook.attention import Attention
-from grader.classroom.gradebook.choices import ChoiceCount
-from grader.classroom.gradebook.criterion_statistics import CriterionStatistics
+from grader.classroom.gradebook.criterion_statistics import ChoiceCount, CriterionStatistics
 from grader.classroom.gradebook.hints import CommonFix
 from grader.classroom.gradebook.identical import IdenticalWork
 from grader.classroom.gradebook.statistics import ClassStatistics, CommonFailure

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Iterator
 from decimal import Decimal
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 
 from grader.classroom.gradebook import marks
@@ -12,7 +12,6 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.lateness import read_time
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.tables import SIZE_LIMIT, plain_title, rows_with_lines
-from grader.classroom.typed_names import read_points
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import TOTAL
@@ -61,7 +60,7 @@ def _new_marks(grades: Grades, requests: Iterator[tuple[int, MarkRequest]], show
             _, most = marked_criterion(grades, grade, request)
             marks.refuse_unsubmitted(grade, request.criterion)
             kind = "points"
-            entry = entry_of(request, partial(read_points, name=request.criterion, most=most))
+            entry = entry_of(request, most)
             new = grade, request.criterion, entry._replace(comment=request.comment)
             if rows.setdefault((grade.id, request.criterion), new) is not new:
                 message = f"{key_and_name(grade.student)} has {request.criterion} twice"
@@ -92,7 +91,7 @@ def mark_missing(gradebook: Path, request: MarkRequest) -> str:
     with Gradebook(gradebook) as book, marks.writing(book):
         grades, given = Grades(book), list[str]()
         most = sum((row.points for row in grades.criteria), Decimal(0))
-        entry = entry_of(request, partial(read_points, name=TOTAL, most=most))
+        entry = entry_of(request, most)
         for grade in list(grades.where("is_on_roster = 1 AND result IS NULL AND final IS NULL AND NOT is_excused")):
             before = marks.newest_mark(book, grade.id, TOTAL)
             comment = request.comment or (before.comment if before is not None else "")

@@ -112,20 +112,13 @@ def _options(request: ExportRequest, file: Path, grades: Grades) -> FillOptions:
 
 def _feedback(request: ExportRequest, grades: Grades, deadline: datetime | None, terminal: Terminal) -> bytes:
     into = request.into if request.target == "moodle" else None
-    worksheet = (
-        (read_capped(into, SIZE_LIMIT, advice=""), _options(request, into, grades)) if into is not None else None
-    )
+    worksheet = (read_capped(into, SIZE_LIMIT, advice=""), _options(request, into, grades)) if into else None
     asked = FeedbackRequest(request.target, Format(request.feedback_format), deadline, worksheet)
     return feedback_zip(grades, asked, terminal)
 
 
 def _refuse_options(request: ExportRequest) -> None:
-    given = {
-        "--into": request.into is not None,
-        "--feedback": request.feedback is not None,
-        "--excel": request.excel,
-        "--only": request.only,
-    }
+    given = {"--into": request.into, "--feedback": request.feedback, "--excel": request.excel, "--only": request.only}
     for option, targets in _TARGETS.items():
         if given[option] and request.target not in targets:
             verb = "do" if len(targets) > 1 else "does"

@@ -127,16 +127,14 @@ def _for_canvas(feedback: Feedback) -> dict[str, bytes]:
         if len({report for _, report in members}) > 1:
             name, why = "", "the members of the group have different reports, and Canvas gives one to all of them"
         if name:
-            report = members[0][1]
-            named[name] = _pack(name, {feedback.name: report})
+            named[name] = _pack(name, feedback.name, members[0][1])
         else:
             feedback.without.update((student.key, why) for student in students)
     return named
 
 
-def _pack(name: str, report: dict[str, bytes]) -> bytes:
-    """Return a report as the kind of file that its name promises: an archive, or the report itself."""
+def _pack(name: str, inside: str, report: bytes) -> bytes:
+    """Return a report as the kind of file that its name promises: an archive with it `inside`, or the report itself."""
     if not name.lower().endswith(ARCHIVES):
-        (data,) = report.values()
-        return data
-    return zip_of(report) if name.lower().endswith(".zip") else tar_gz_of(report)
+        return report
+    return (zip_of if name.lower().endswith(".zip") else tar_gz_of)({inside: report})

@@ -71,8 +71,6 @@ FILLERS: dict[str, Callable[[bytes, Sequence[LmsGrade], FillOptions], Filled]] =
     "blackboard": partial(fill_offline, form=BLACKBOARD),
     "brightspace": partial(fill_offline, form=BRIGHTSPACE),
 }
-_WITH_FEEDBACK = ("moodle",)
-_WITH_EXCUSES = ("canvas",)
 _NEXT_STEP = "`grader mark STUDENT total POINTS` gives a final mark; `grader review` grades what is open"
 _MAX_NAMED, _MAX_LINES, _MAX_REASONS = 3, 10, 50
 
@@ -80,9 +78,7 @@ _MAX_NAMED, _MAX_LINES, _MAX_REASONS = 3, 10, 50
 def fill_lms_file(lms: str, file: Path, grades: Grades, options: FillOptions, *, pending_as_zero: bool) -> Filled:
     """Return the file of an LMS with the grades in it, and what importing it changes. Raises InputError."""
     data = read_capped(file, SIZE_LIMIT, advice="")
-    found = lms_grades(
-        grades, feedback=lms in _WITH_FEEDBACK, excuses=lms in _WITH_EXCUSES, pending_as_zero=pending_as_zero
-    )
+    found = lms_grades(grades, feedback=lms == "moodle", excuses=lms == "canvas", pending_as_zero=pending_as_zero)
     return FILLERS[lms](data, list(found), options)
 
 
@@ -93,9 +89,8 @@ def lms_grades(grades: Grades, *, feedback: bool, excuses: bool, pending_as_zero
     """
     for grade in grades.all():
         reason, is_on_roster = grade.why_not_final, grade.is_on_roster is not False
-        is_only_pending = (
-            grade.verdict in ("graded", "errored") and not replace(grade, pending=Decimal(0)).why_not_final
-        )
+        is_graded = grade.verdict in ("graded", "errored")
+        is_only_pending = is_graded and not replace(grade, pending=Decimal(0)).why_not_final
         if reason and not (is_only_pending and pending_as_zero):
             is_excused = excuses and grade.is_excused
             yield LmsGrade(grade.student, None, "", reason, is_on_roster, is_excused, grade.final_is_older)
@@ -118,12 +113,11 @@ def _feedback(grades: Grades, grade: StudentGrade) -> str:
 
 def _whole(remarks: Remarks) -> Iterator[FeedbackItem]:
     """Yield the final mark or the comment on the whole submission."""
-    if remarks.whole is not None and remarks.whole.points is not None:
-        yield FeedbackItem(
-            "Final mark", None, Decimal(0), f"given instead of the sum of the criteria. {remarks.whole.comment}"
-        )
-    elif remarks.whole is not None:
-        yield FeedbackItem("Comment", None, Decimal(0), remarks.whole.comment)
+    if (whole := remarks.whole) is not None and whole.points is not None:
+        comment = f"given instead of the sum of the criteria. {whole.comment}"
+        yield FeedbackItem("Final mark", None, Decimal(0), comment)
+    elif whole is not None:
+        yield FeedbackItem("Comment", None, Decimal(0), whole.comment)
 
 
 def preflight_lines(found: Preflight) -> Iterator[str]:

@@ -1,25 +1,14 @@
 """Give, withdraw or undo a manual mark by command."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
 
+from grader.classroom.gradebook import marks
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.manual_queue import COMMENT_NUMBER, numbered_comments
-from grader.classroom.gradebook.marks import (
-    EXTENSION,
-    TAKE_BACK,
-    WITHDRAWN,
-    WITHDRAWN_SECOND,
-    Entry,
-    Mark,
-    NewerMarkError,
-    add_mark,
-    newest_mark,
-    undo_mark,
-)
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.students import Student
 from grader.classroom.typed_names import criterion_of, read_points
@@ -60,7 +49,7 @@ class MarkRequest(NamedTuple):
     @property
     def is_points(self) -> bool:
         """Return whether it gives points, and does not withdraw them."""
-        return self.points is not None and self.points.strip() != TAKE_BACK
+        return self.points is not None and self.points.strip() != marks.TAKE_BACK
 
     def check(self) -> None:
         """Raise InputError if the options contradict each other, or say nothing."""
@@ -92,7 +81,9 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
         grade = grades.find(request.submission)
         criterion, most = marked_criterion(grades, grade, request)
         if request.comments:
-            return _comment_lines(numbered_comments(book, request.criterion))
+            comments = numbered_comments(book, request.criterion).items()
+            lines = (printable(f"#{number} {' '.join(comment.split())}") for number, comment in comments)
+            return "".join(f"{line}\n" for line in lines) or "no comments yet\n"
         before = _record(book, grade, request, most, warn)
         now = grades.find(grade.student.key)
         whole = sum((row.maximum for row in grades.criteria), Decimal(0))
@@ -103,7 +94,7 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
     text = _grade_text(now, whole)
     if request.second:
         text = f"second opinion on {request.criterion}; the grade stays the same"
-    elif request.criterion == EXTENSION:
+    elif request.criterion == marks.EXTENSION:
         deadline = f"deadline {request.comment}" if request.comment else "no deadline of their own"
         text = "; ".join(filter(None, (deadline, now.late.reason, text)))
     return printable(f"{key_and_name(now.student)}: {text}") + "\n"
@@ -111,7 +102,7 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
 
 def marked_criterion(grades: Grades, grade: StudentGrade, request: MarkRequest) -> tuple[Criterion | None, Decimal]:
     """Return the criterion to mark, None for the whole submission, and the most points. Raises InputError."""
-    if request.criterion in (TOTAL, EXTENSION):
+    if request.criterion in (TOTAL, marks.EXTENSION):
         return None, sum((row.points for row in grades.criteria), Decimal(0))
     criterion = criterion_of(grades.rubric(grade.rubric) if grade.rubric else grades.newest_rubric(), request.criterion)
     if request.is_points and criterion.adjustment is not None and not criterion.points:
@@ -121,10 +112,10 @@ def marked_criterion(grades: Grades, grade: StudentGrade, request: MarkRequest) 
 
 def _unmarked_members(book: Gradebook, grade: StudentGrade, criterion: str) -> Iterator[str]:
     """Yield the other members of a team whose newest mark of a criterion is not the same."""
-    mark = newest_mark(book, grade.id, criterion)
+    mark = marks.newest_mark(book, grade.id, criterion)
     for student, key, name in list(book.rows(_SAME_SUBMISSION, grade.id, grade.id)):
-        other = newest_mark(book, student, criterion)
-        if mark is not None and (WITHDRAWN if other is None else other.entry) != mark.entry:
+        other = marks.newest_mark(book, student, criterion)
+        if mark is not None and (marks.WITHDRAWN if other is None else other.entry) != mark.entry:
             yield printable(named(key, name))
 
 
@@ -133,30 +124,33 @@ def key_and_name(student: Student) -> str:
     return student.key if student.name in ("", student.key) else f"{student.key}, {student.name}"
 
 
-def _record(book: Gradebook, grade: StudentGrade, request: MarkRequest, most: Decimal, warn: Warn) -> Mark | None:
+def _record(book: Gradebook, grade: StudentGrade, request: MarkRequest, most: Decimal, warn: Warn) -> marks.Mark | None:
     """Write what is requested, and return the mark that was the newest before."""
     if request.undo:
         try:
-            return undo_mark(book, grade, request.criterion, request.by)
-        except NewerMarkError as error:
+            return marks.undo_mark(book, grade, request.criterion, request.by)
+        except marks.NewerMarkError as error:
             raise InputError(f"not undone: somebody has marked this since: {mark_text(error.mark)}") from None
-    if request.second:
-        _refuse_own_opinion(newest_mark(book, grade.id, request.criterion), request)
+    first = marks.newest_mark(book, grade.id, request.criterion) if request.second else None
+    if first is not None and first.points is not None and first.by == request.by:
+        mark = f"the mark of {request.criterion} is by {request.by}"
+        raise InputError(f"{mark}: a second opinion must be given by another person")
     comment = _comment(book, request, warn)
-    entry = entry_of(request, lambda text: read_points(text, request.criterion, most))
-    return add_mark(book, grade, request.criterion, entry._replace(comment=comment), request.by).before
+    entry = entry_of(request, most)
+    return marks.add_mark(book, grade, request.criterion, entry._replace(comment=comment), request.by).before
 
 
-def entry_of(request: MarkRequest, read: Callable[[str], Decimal]) -> Entry:
-    """Return the entry of a request, without its comment unless that is all; `read` reads points."""
+def entry_of(request: MarkRequest, most: Decimal) -> marks.Entry:
+    """Return the entry of a request, without its comment. Raises InputError for points out of range."""
     match request:
         case MarkRequest(excused=True):
-            return Entry("excused")
+            return marks.Entry("excused")
         case MarkRequest(points=None):
-            return Entry("comment")
+            return marks.Entry("comment")
         case MarkRequest(is_points=False):
-            return WITHDRAWN_SECOND if request.second else WITHDRAWN
-    return Entry("second" if request.second else "points", read(request.points or ""))
+            return marks.WITHDRAWN_SECOND if request.second else marks.WITHDRAWN
+    points = read_points(request.points or "", request.criterion, most)
+    return marks.Entry("second" if request.second else "points", points)
 
 
 def _comment(book: Gradebook, request: MarkRequest, warn: Warn) -> str:
@@ -174,19 +168,13 @@ def _comment(book: Gradebook, request: MarkRequest, warn: Warn) -> str:
     return comment
 
 
-def _refuse_own_opinion(first: Mark | None, request: MarkRequest) -> None:
-    if first is not None and first.points is not None and first.by == request.by:
-        raise InputError(
-            f"the mark of {request.criterion} is by {request.by}: a second opinion must be given by another person"
-        )
-
-
-def _report_replaced(before: Mark | None, criterion: Criterion | None, request: MarkRequest, warn: Warn) -> None:
+def _report_replaced(before: marks.Mark | None, criterion: Criterion | None, request: MarkRequest, warn: Warn) -> None:
     name = request.criterion
-    is_withdrawn = before is None or before.entry.kind == "withdrawn" or before.entry == WITHDRAWN_SECOND
+    is_withdrawn = before is None or before.entry.kind == "withdrawn" or before.entry == marks.WITHDRAWN_SECOND
     if before is not None and not is_withdrawn:
         what = "second opinion" if request.second else "comment" if before.entry.kind == "comment" else "mark"
-        newest = f"newest {what} of {name}: {mark_text(before)}" if name != EXTENSION else f"deadline {before.comment}"
+        is_mark = name != marks.EXTENSION
+        newest = f"newest {what} of {name}: {mark_text(before)}" if is_mark else f"deadline {before.comment}"
         warn(f"this {'undoes' if request.undo else 'replaces'} the {newest}")
     if criterion is not None and criterion.adjustment is not None:
         warn(_NOT_COUNTED.format(name))
@@ -204,8 +192,3 @@ def _grade_text(grade: StudentGrade, whole: Decimal) -> str:
         return "no submission"
     late = f"; {format_points(grade.total)} after the late penalty" if grade.late.points else ""
     return of_criteria + late + (f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else "")
-
-
-def _comment_lines(comments: dict[int, str]) -> str:
-    lines = [printable(f"#{number} {' '.join(comment.split())}") for number, comment in comments.items()]
-    return "".join(f"{line}\n" for line in lines) or "no comments yet\n"

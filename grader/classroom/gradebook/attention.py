@@ -1,6 +1,5 @@
 """The students who need attention, and why."""
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 from grader.classroom.gradebook.grades import Grades
@@ -43,10 +42,5 @@ def attention(grades: Grades) -> Attention:
         total += 1
         for reason, detail in grade.concerns:
             found[reason].append(AttentionItem(grade.student.key, grade.student.name, detail))
-    return Attention(tuple(_groups(found)), total)
-
-
-def _groups(found: dict[Reason, list[AttentionItem]]) -> Iterator[AttentionGroup]:
-    for reason, items in found.items():
-        if items:
-            yield AttentionGroup(reason.value, tuple(items))
+    groups = (AttentionGroup(reason.value, tuple(items)) for reason, items in found.items() if items)
+    return Attention(tuple(groups), total)

@@ -67,7 +67,7 @@ def _change(key: str, old: StudentState, new: StudentState, comparison: _Compari
         return Change(*whole, (), why, name) if why else None
     steps = tuple(_steps(old, new))
     removed = tuple(name for name in old.points if name in new.marks and name not in new.points)
-    late = tuple(_late_penalty(old, new))
+    late = (f"late penalty: {format_points(-old.late)} to {format_points(-new.late)}",) * (old.late != new.late)
     is_other = bool(final or removed) or old.verdict != new.verdict
     if not (steps or late or is_other):
         return None
@@ -84,11 +84,6 @@ def _submission_change(old: StudentState, new: StudentState) -> Iterator[str]:
         yield "first submission"
     elif old.verdict:
         yield "no longer there"
-
-
-def _late_penalty(old: StudentState, new: StudentState) -> Iterator[str]:
-    if old.late != new.late:
-        yield f"late penalty: {format_points(-old.late)} to {format_points(-new.late)}"
 
 
 def _steps(old: StudentState, new: StudentState) -> Iterator[PointsChange]:

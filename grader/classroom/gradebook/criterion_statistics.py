@@ -1,14 +1,19 @@
-"""Statistics of the criteria of a class: how many passed each, its difficulty and discrimination."""
+"""Statistics of the criteria of a class: how many passed each, its difficulty, discrimination, usual deductions."""
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from decimal import Decimal
 from math import sqrt
 from typing import NamedTuple
 
+from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.graded_students import GradedStudent, full_units
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 from grader.values import dataclass
+
+_SEPARATOR = re.compile(r"\s*[;\n]\s*")  # of the comments in one
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,4 +98,26 @@ def _criterion(criterion: Criterion, patterns: Mapping[_Pattern, int]) -> Criter
         errored=found["errored"],
         share=x / (count * full_units(criterion)) if count else None,
         discrimination=(count * xr - x * r) / sqrt(variances) if variances else None,
+    )
+
+
+class ChoiceCount(NamedTuple):
+    """A usual deduction of a criterion, its points below 0, and the number of students whose mark has its comment."""
+
+    criterion: Criterion
+    text: str
+    points: Decimal
+    students: int
+
+
+def choice_counts(book: Gradebook, rubric: Rubric) -> tuple[ChoiceCount, ...]:
+    """Return how often each usual deduction was given, in the order of the rubric."""
+    criteria = [row for row in rubric.criteria if row.choices]
+    counts = Counter(
+        (str(name), text)
+        for name, comment in (book.rows("SELECT criterion, comment FROM manual_mark") if criteria else ())
+        for text in set(_SEPARATOR.split(comment.strip()))
+    )
+    return tuple(
+        ChoiceCount(row, text, points, counts[row.id, text]) for row in criteria for text, points in row.choices.items()
     )

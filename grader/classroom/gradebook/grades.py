@@ -67,10 +67,13 @@ class Grades:
         policy = self.newest_rubric().late
         return policy is not None and (self._deadline or policy.due) is not None
 
-    def points(self, grade: StudentGrade) -> dict[str, Decimal]:
-        """Return the points of each criterion that has a result or a manual mark."""
-        marks = {name: mark.points for name, mark in self._manual_marks(grade).items()}
-        return self._points(grade, marks)
+    def points(self, grade: StudentGrade, *, automatic: bool = False) -> dict[str, Decimal]:
+        """Return the points of each criterion that has a result or a manual mark, or only those of checks."""
+        if grade.result is None:
+            return {}
+        marks = {} if automatic else {name: mark.points for name, mark in self._manual_marks(grade).items()}
+        points = criterion_points(self.rubric(grade.rubric), self.book.outcomes(grade.result), marks)
+        return {name: value for name, value in points.items() if value is not None}
 
     def carried(self, grade: StudentGrade) -> list[str]:
         """Return the criteria that failed because of an earlier mistake alone, and whose points are given."""
@@ -79,32 +82,23 @@ class Grades:
         marks = self._manual_marks(grade) if criteria else {}
         return [row.id for row in criteria if row.id not in marks]
 
-    def automatic_points(self, grade: StudentGrade) -> dict[str, Decimal]:
-        """Return the points of each criterion that a check decided."""
-        return self._points(grade, {})
-
-    def _points(self, grade: StudentGrade, marks: Mapping[str, Decimal]) -> dict[str, Decimal]:
-        if grade.result is None:
-            return {}
-        points = criterion_points(self.rubric(grade.rubric), self.book.outcomes(grade.result), marks)
-        return {name: value for name, value in points.items() if value is not None}
-
     def all(self) -> Iterator[StudentGrade]:
         """Yield all grades, in the order of the keys."""
-        return self._select("ORDER BY key")
+        return self.where("TRUE")
 
     def between(self, first: str, last: str) -> Iterator[StudentGrade]:
         """Yield the grades with keys from `first` to `last`, both included, in the order of the keys."""
-        return self._select("WHERE key BETWEEN ? AND ? ORDER BY key", first, last)
+        return self.where("key BETWEEN ? AND ?", first, last)
 
     def where(self, condition: str, *values: Any) -> Iterator[StudentGrade]:
         """Yield the grades that meet a condition on the view `grade`, in the order of the keys."""
-        return self._select(f"WHERE {condition} ORDER BY key", *values)
+        query = f"SELECT *, ({_EXTENDED}) AS extended FROM grade WHERE {condition} ORDER BY key"
+        return map(self._grade, self.book.records(query, *values))
 
     def find(self, name: str) -> StudentGrade:
         """Return the grade of the student with this key, else of the only match of a typed name; raises InputError."""
         name = storable(name)
-        for grade in list(self._select("WHERE key = ?", name)):
+        for grade in list(self.where("key = ?", name)):
             return grade
         advice = f"; `grader export csv --gradebook {shell_quoted(self.book.shown)}` lists all students"
         return self.find(find_typed(list(self.book.students()), name, advice).key)
@@ -136,10 +130,6 @@ class Grades:
         """Return the comments of criteria without manual points."""
         query = "SELECT criterion, comment, grader_name FROM current_mark WHERE student = ? AND kind = 'comment'"
         return {name: ManualComment(comment, by) for name, comment, by in self.book.rows(query, grade.id)}
-
-    def _select(self, condition: str, *values: Any) -> Iterator[StudentGrade]:
-        for row in self.book.records(f"SELECT *, ({_EXTENDED}) AS extended FROM grade {condition}", *values):
-            yield self._grade(row)
 
     def _grade(self, row: dict[str, Any]) -> StudentGrade:
         values = {name: row[name] for name in _PLAIN} | {name: bool(row[name]) for name in _TRUTHS}

@@ -91,11 +91,9 @@ def compare_marks(first: Gradebook, second: Gradebook) -> MarkComparison:
     marked = {student for student, _ in theirs}
     matched = _match_students(students, {number: others[number] for number in others if number in marked})
     items = [
-        MergeItem(
-            matched[student], students[matched[student]].key, criterion, own[matched[student], criterion], history
-        )
+        MergeItem(number, students[number].key, criterion, own[number, criterion], history)
         for (student, criterion), history in list(theirs.items())
-        if student in matched
+        if (number := matched.get(student)) is not None
     ]
     counts = Counter(student for (student, _), history in theirs.items() for _ in history)
     unmatched = [UnmatchedStudent(others[number].key, counts[number]) for number in sorted(marked - matched.keys())]

@@ -51,11 +51,10 @@ def identical_work(book: Gradebook) -> list[IdenticalWork]:
 
 
 def _same_robots(works: list[_Work]) -> list[IdenticalWork]:
-    inside: dict[str, list[tuple[str, ...]]] = {}
-    for (robot, _), group in _groups_of_several(((work.robot or work.urdf, work.urdf), work) for work in works).items():
-        inside.setdefault(robot, []).append(_keys(group))
-    robots = _groups_of_several((work.robot or work.urdf, work) for work in works)
-    same = [IdenticalWork(_keys(group), tuple(inside.get(robot, ()))) for robot, group in robots.items()]
+    same = []
+    for group in _groups_of_several((work.robot or work.urdf, work) for work in works).values():
+        files = _groups_of_several((work.urdf, work) for work in group)
+        same.append(IdenticalWork(_keys(group), tuple(map(_keys, files.values()))))
     return sorted(same, key=lambda work: (not work.same_file, -len(work.students), work.students))
 
 

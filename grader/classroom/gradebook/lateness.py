@@ -59,10 +59,8 @@ def lateness(rubric: Rubric, times: SubmissionTimes, score: Decimal, deadline: d
 
 def read_time(text: str) -> datetime:
     """Return a deadline that is written as ISO 8601; a date alone means the end of that day. Raises InputError."""
-    try:
+    with suppress(ValueError):
         return datetime.combine(date.fromisoformat(text.strip()), time.max)
-    except ValueError:
-        pass
     try:
         return datetime.fromisoformat(text.strip())
     except ValueError:

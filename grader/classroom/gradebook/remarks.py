@@ -65,7 +65,7 @@ def remarks_of(grades: Grades, grade: StudentGrade) -> Remarks:
     rows = [row for row in rubric.criteria if row.adjustment is None] if rubric is not None else []
     criteria = {row.id: marks[row.id] for row in rows if row.id in marks}
     counting = {name: mark for name, mark in criteria.items() if mark.points is not None}
-    automatic = grades.automatic_points(grade)
+    automatic = grades.points(grade, automatic=True)
     is_automatic = any(row.id in automatic and row.id not in counting for row in rows)
     if grade.final is not None:
         is_automatic, counting = False, {TOTAL: marks[TOTAL]}

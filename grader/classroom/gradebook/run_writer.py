@@ -122,13 +122,8 @@ def save_student(book: Gradebook, student: Student, enrolment: Enrolment | None)
 
 def _save_rubric(book: Gradebook, rubric: Rubric) -> None:
     own = {"rubric": rubric.sha256}
-    row: dict[str, Any] = {
-        "sha256": rubric.sha256,
-        "id": rubric.id,
-        "title": rubric.title,
-        "path": storable(str(rubric.path)),
-    }
-    book.insert("rubric", row | {"text": rubric.data}, unless_known=True)
+    row: dict[str, Any] = {"sha256": rubric.sha256, "id": rubric.id, "title": rubric.title, "text": rubric.data}
+    book.insert("rubric", row | {"path": storable(str(rubric.path))}, unless_known=True)
     for criterion in rubric.criteria:
         row = {
             "id": criterion.id,

@@ -54,13 +54,8 @@ def compare_sections(grades: Grades, by: Grouping) -> SectionComparison:
         groups[getattr(grade, by)].append(grade)
     most = max((student.out_of for student in students.values()), default=units_of(rubric.points))
     sections = tuple(_section(name, groups[name], students, most, rubric.criteria) for name in sorted(groups))
-    return SectionComparison(
-        by,
-        points_from_units(most),
-        rubric.criteria,
-        sections,
-        _differing([section for section in sections if section.name]),
-    )
+    differing = _differing([section for section in sections if section.name])
+    return SectionComparison(by, points_from_units(most), rubric.criteria, sections, differing)
 
 
 def _section(

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from grader.classroom.gradebook.agreement import Agreement, agreement
 from grader.classroom.gradebook.attention import Attention, attention
-from grader.classroom.gradebook.choices import ChoiceCount, choice_counts
+from grader.classroom.gradebook.criterion_statistics import ChoiceCount, choice_counts
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.hints import CommonFix, common_fixes

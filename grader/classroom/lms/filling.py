@@ -168,13 +168,8 @@ def match_rows(students: Sequence[LmsStudent], grades: Sequence[LmsGrade], prefl
         else:
             why = "no student of the gradebook matches this id, address or name"
             preflight.unknown.append(RowNote(student.row, student.who, why))
-    preflight.missing += (
-        RowNote(
-            0,
-            grades[index].who,
-            f"{'is excused' if grades[index].is_excused else 'has a grade'}, but no row in the file",
-        )
-        for index in sorted(left)
-        if grades[index].total is not None or grades[index].is_excused
-    )
+    for grade in (grades[index] for index in sorted(left)):
+        if grade.total is not None or grade.is_excused:
+            why = f"{'is excused' if grade.is_excused else 'has a grade'}, but no row in the file"
+            preflight.missing.append(RowNote(0, grade.who, why))
     return found

@@ -73,15 +73,8 @@ class Batch:
         identities = Identities(book, settings.root, settings.roster, intake.keys)
         if not settings.add:
             check_same_class(book, intake, identities, self._rubric.id)
-        writer = RunWriter(
-            book,
-            settings.root,
-            settings.layout,
-            self._rubric,
-            settings.deadline,
-            assignments_text(intake.assignments),
-            settings.max_size,
-        )
+        details = settings.deadline, assignments_text(intake.assignments), settings.max_size
+        writer = RunWriter(book, settings.root, settings.layout, self._rubric, *details)
         self.has_begun = True
         writer.add_handed_out(settings.handed_out)
         self.progress = Progress(len(intake))

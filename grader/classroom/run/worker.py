@@ -76,13 +76,9 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
         report = grade(rubric, submission, context.parts, is_one_of_class=True)
     except InputError as error:
         result = result._replace(digest=result.digest or unreadable_digest(context.root, task.paths))
-        is_unchanged = result.digest and result.digest == task.graded
-        verdict: GradingVerdict = "unchanged" if is_unchanged else "unreadable"
-        return (
-            result
-            if is_unchanged
-            else undecided_result(context, task, result._replace(verdict=verdict, reason=str(error)))
-        )
+        if result.digest and result.digest == task.graded:
+            return result
+        return undecided_result(context, task, result._replace(verdict="unreadable", reason=str(error)))
     except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of the grader affects only this submission
         is_memory = isinstance(error, MemoryError)
         if is_memory and not task.no_documents:
@@ -90,12 +86,12 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
         reason = NO_MEMORY if is_memory else f"the grader itself failed: {type(error).__name__}: {error}"
         return undecided_result(context, task, result._replace(verdict="errored", reason=reason))
     fault, reason = report.fault, _why_unreadable(submission)
-    verdict = "errored" if fault else "unreadable" if reason else "graded"
+    verdict: GradingVerdict = "errored" if fault else "unreadable" if reason else "graded"
     graded = result._replace(verdict=verdict, reason=fault or reason).with_report(report, context.dictionary)
-    if is_another_robot(rubric, robot_of(submission.urdf)):
-        return graded  # what the course handed out for the lab before is no identical work
-    urdf, robot = robot_hashes(submission)
-    return graded._replace(urdf=urdf, robot=robot, forms=json.dumps(_forms(submission)))
+    if not is_another_robot(rubric, robot_of(submission.urdf)):  # else the course handed it out
+        urdf, robot = robot_hashes(submission)
+        graded = graded._replace(urdf=urdf, robot=robot, forms=json.dumps(_forms(submission)))
+    return graded
 
 
 def reference_record(data: bytes, path: str) -> tuple[bytes, tuple[str, ...]]:
