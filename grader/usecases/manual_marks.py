@@ -176,6 +176,8 @@ def _report_replaced(before: marks.Mark | None, criterion: Criterion | None, req
         is_mark = name != marks.EXTENSION
         newest = f"newest {what} of {name}: {mark_text(before)}" if is_mark else f"deadline {before.comment}"
         warn(f"this {'undoes' if request.undo else 'replaces'} the {newest}")
+    elif request.points is not None and not request.is_points:
+        warn(f"there was no {name if name == marks.EXTENSION else f'mark of {name}'} to withdraw")
     if criterion is not None and criterion.adjustment is not None:
         warn(_NOT_COUNTED.format(name))
 

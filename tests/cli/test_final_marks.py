@@ -247,3 +247,11 @@ def test_a_file_that_cannot_be_opened_stays_the_same(top: Path, is_zip: bool) ->
     assert grader("mark", "dora", "total", "3", "--gradebook", top / "dora.db").returncode == 0
     assert alarm not in graded(b"no zip at all", lab_text() + "\n# a comment\n[late]\npercent_per_day = 5\n")
     assert alarm in graded(b"another file that is no zip", lab_text())
+
+
+def test_nothing_to_withdraw(top: Path) -> None:
+    """Without a mark, a final mark or a new deadline, the command says so."""
+    book = ("--gradebook", top / "book.db")
+    for command in (("mark", "anna", "total", "-"), ("mark", "anna", "essay", "-"), ("extend", "anna", "-")):
+        what = {"total": "mark of total", "essay": "mark of essay", "-": "new deadline"}[command[2]]
+        assert grader(*command, *book).stderr == f"grader: there was no {what} to withdraw\n"

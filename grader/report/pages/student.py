@@ -71,7 +71,7 @@ def _summary(report: Report) -> dict[str, object]:
     command = content.next_command(report)
     return {
         "version": report.version,
-        "title": f"{content.score_text(report)}: {printable(report.rubric.title)}",
+        "title": printable(f"{content.score_text(report)}: {report.rubric.title} ({report.submission.id})"),
         "heading": report.rubric.title,
         "score": content.counting_text(report),
         "maximum": format_points(report.max_score) if report.counting is not None else "",
