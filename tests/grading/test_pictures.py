@@ -210,11 +210,12 @@ def test_the_pages_below_a_heading_of_a_pdf() -> None:
             b"no PDF",
             "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF: open it yourself, with care",
         ),
+        ("Task1_Step8.docx", b"no zip", "lab.pdf cannot be read; it may be damaged: open it yourself"),
         ("Task1_Step8.mp4", b"\0\0\0\x18ftypisom", "its content is a video: open it yourself, with care"),
     ],
 )
 def test_what_is_not_shown_is_named(name: str, data: bytes, why: str) -> None:
-    """A PDF that is none and a video."""
+    """A PDF that is none, a damaged document and a video."""
     assert shown({name: data}, ["task 1 step 8"]) == [f"{name}: {why.replace('lab.pdf', name)}"]
 
 
