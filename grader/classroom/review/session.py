@@ -67,7 +67,7 @@ class ReviewSession:
         """Show the items that a filter lets through, from the first one. Raises InputError for an unknown value."""
         known = {item.criterion for item in self.queue.items}
         if {wanted.criterion, wanted.section} - {"", *known, *self.queue.sections}:
-            raise InputError("nothing in this review has this question or section")
+            raise InputError("this review has no such question or section")
         self.queue.filter = wanted
         self.start()
 
@@ -138,7 +138,7 @@ class ReviewSession:
             if self.item is not None and key in (one.grade.student.key for one in self.item.members):
                 return
         self.go(start)
-        raise InputError(f"everything of {name!r} is marked by others")
+        raise InputError(f"others have already marked {name!r}")
 
     def mark(self, points: Decimal, comment: str, shown: int | None = None) -> None:
         """Mark all students of the current item, unless they already have this mark.
