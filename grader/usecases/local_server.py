@@ -8,9 +8,13 @@ import hmac
 import secrets
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from threading import BoundedSemaphore
+from io import BufferedReader
+from socket import SHUT_RDWR, SocketIO, socket
+from threading import Lock
+from time import monotonic
 from typing import Any, NamedTuple
 
 from grader import __version__
@@ -19,8 +23,9 @@ from grader.text import printable
 
 HOST = "127.0.0.1"
 MAX_BODY = 64 * 1024  # bytes
-MAX_CONNECTIONS = 64
-PATIENCE = 15.0  # seconds in which a client must send or receive something
+MAX_REQUEST = 2 * MAX_BODY  # bytes, with the headers
+MAX_STRANGERS = 64  # connections that have not sent the secret yet
+PATIENCE = 15.0  # seconds in which a client must send a whole request, and receive a whole response
 TEXT = "text/plain; charset=utf-8"
 _TOKEN_BYTES = 24
 _HEADERS = {
@@ -70,12 +75,13 @@ class LocalServer(ThreadingHTTPServer):
 
     daemon_threads = True  # a slow client does not delay the end of the server
     allow_reuse_address = True
-    request_queue_size = MAX_CONNECTIONS
+    request_queue_size = MAX_STRANGERS
 
     def __init__(self, application: Application, worker: ThreadPoolExecutor, port: int = 0) -> None:
         self.application, self.worker = application, worker
         self.token = secrets.token_urlsafe(_TOKEN_BYTES)
-        self.free = BoundedSemaphore(MAX_CONNECTIONS)
+        self._strangers: dict[socket, None] = {}  # the oldest one first
+        self._lock = Lock()
         try:
             super().__init__((HOST, port), _Handler)
         except (OSError, OverflowError) as error:
@@ -91,28 +97,71 @@ class LocalServer(ThreadingHTTPServer):
         self.server_name, self.server_port = HOST, int(self.server_address[1])
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        """Serve a connection in its own thread, unless there are too many."""
-        if self.free.acquire(blocking=False):
-            super().process_request(request, client_address)
-        else:
-            self.shutdown_request(request)
+        """Serve a connection in its own thread; of too many without the secret, the oldest one is disconnected."""
+        with self._lock:
+            if len(self._strangers) >= MAX_STRANGERS:
+                oldest = next(iter(self._strangers))
+                del self._strangers[oldest]
+                with suppress(OSError):  # it has ended
+                    oldest.shutdown(SHUT_RDWR)
+            self._strangers[request] = None
+        super().process_request(request, client_address)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
         """Serve a connection."""
         try:
             super().process_request_thread(request, client_address)
         finally:
-            self.free.release()
+            self.admit(request)
+
+    def admit(self, connection: socket) -> None:
+        """Count a connection no longer among those without the secret."""
+        with self._lock:
+            self._strangers.pop(connection, None)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Ignore errors of broken connections."""
 
 
+class _Requests(SocketIO):
+    """What a client sends: each request within a limit of time and size, however slowly its bytes arrive."""
+
+    def __init__(self, connection: socket) -> None:
+        super().__init__(connection, "r")
+        self._connection = connection
+        self.begin()
+
+    def begin(self) -> None:
+        """Begin a request."""
+        self._deadline, self._left = monotonic() + PATIENCE, MAX_REQUEST
+
+    def readinto(self, buffer: Any) -> int | None:
+        """Read what has arrived. Raises TimeoutError beyond a limit."""
+        seconds = self._deadline - monotonic()
+        if seconds <= 0 or self._left <= 0:
+            raise TimeoutError
+        self._connection.settimeout(seconds)
+        number = super().readinto(buffer)
+        self._connection.settimeout(PATIENCE)  # of a response, as a whole
+        self._left -= number or 0
+        return number
+
+
 class _Handler(BaseHTTPRequestHandler):
     server: LocalServer
     protocol_version = "HTTP/1.1"
-    timeout = PATIENCE
     server_version, sys_version = f"grader/{__version__}", ""
+
+    def setup(self) -> None:
+        """Bound what the client sends."""
+        super().setup()
+        self._requests = _Requests(self.connection)
+        self.rfile = BufferedReader(self._requests)
+
+    def handle_one_request(self) -> None:
+        """Answer the next request of a connection."""
+        self._requests.begin()
+        super().handle_one_request()
 
     def do_GET(self) -> None:
         """Answer a request that changes nothing."""
@@ -145,6 +194,7 @@ class _Handler(BaseHTTPRequestHandler):
         first, *rest = self.path.partition("?")[0].removeprefix("/").split("/")
         if not hmac.compare_digest(first.encode(), self.server.token.encode()) or not rest:
             raise _RefusedError(HTTPStatus.NOT_FOUND, "not found: use the whole address that the command has printed")
+        self.server.admit(self.connection)
         return tuple(rest)
 
     def _body(self) -> bytes:

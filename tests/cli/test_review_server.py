@@ -8,6 +8,8 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
+from http.client import HTTPConnection
 from pathlib import Path
 from threading import Event
 from typing import Any
@@ -19,7 +21,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.grading.rubric import Rubric
 from grader.usecases import local_server
-from grader.usecases.local_server import HOST, MAX_BODY
+from grader.usecases.local_server import HOST, MAX_BODY, MAX_STRANGERS
 from tests.classroom.gradebooks import (
     ENVIRONMENT,
     PNG,
@@ -341,26 +343,40 @@ def locked_page(*_: object) -> str:
 
 
 def test_idle_and_slow_clients_do_not_block_others(review: Review) -> None:
-    """Browsers open connections in advance; the limit of connections is not exhausted by closed ones."""
-    idle = [socket.create_connection((HOST, review.port)) for _ in range(20)]
-    idle[0].sendall(b"POST / HTTP/1.1\r\nContent-Le")
+    """Of connections without the secret, the oldest one is disconnected; one with the secret stays."""
+    own = HTTPConnection(HOST, review.port, timeout=HANG_TIMEOUT)
+    strangers = []
     try:
+        for number in range(MAX_STRANGERS + 6):
+            strangers.append(socket.create_connection((HOST, review.port), timeout=HANG_TIMEOUT))
+            strangers[-1].sendall(b"POST / HTTP/1.1\r\nContent-Le")
+            if number % 10 == 0:
+                own.request("GET", f"/{review.token}/1")
+                assert own.getresponse().read()
         assert [review.get("1").status for _ in range(3)] == [200] * 3
+        assert strangers[0].recv(1) == b""
+        strangers[-1].sendall(b"ngth: 0\r\n\r\n")
+        assert strangers[-1].recv(12) == b"HTTP/1.1 421"
     finally:
-        for connection in idle:
+        for connection in (own, *strangers):
             connection.close()
-    assert [review.get("1").status for _ in range(local_server.MAX_CONNECTIONS + 6)].count(
-        200
-    ) == local_server.MAX_CONNECTIONS + 6
 
 
-def test_a_slow_client_is_disconnected(book: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """After a while without a byte."""
-    monkeypatch.setattr("grader.usecases.local_server._Handler.timeout", 0.05)
-    with running(book) as review, socket.create_connection((HOST, review.port), timeout=HANG_TIMEOUT) as slow:
-        slow.sendall(b"GET / HTTP/1.1\r\n")
-        while slow.recv(4096):
-            pass
+@pytest.mark.parametrize(("patience", "size"), [(0.3, 10**9), (HANG_TIMEOUT, 500)])
+def test_a_request_without_end_is_disconnected(
+    patience: float, size: int, book: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The limits of time and size are those of the whole request, not of each part that arrives."""
+    monkeypatch.setattr(local_server, "PATIENCE", patience)
+    monkeypatch.setattr(local_server, "MAX_REQUEST", size)
+    with running(book) as review, socket.create_connection((HOST, review.port)) as slow:
+        slow.settimeout(0.01)
+        for _ in range(3000):
+            with suppress(TimeoutError):
+                slow.sendall(b"a long word")
+                if slow.recv(1) == b"":
+                    return
+        pytest.fail("the connection is still open")
 
 
 def test_it_listens_on_this_machine_only(review: Review) -> None:
