@@ -1,11 +1,12 @@
 """Connections to the file of a gradebook: its kind and version, its tables, its transactions."""
 
+import re
 import sqlite3
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 
-from grader.classroom.gradebook.schema import APPLICATION_ID, TABLES, VERSION
+from grader.classroom.gradebook.schema import APPLICATION_ID, JSON_COLUMNS, TABLES, VERSION
 from grader.classroom.gradebook.views import VIEWS
 from grader.errors import InputError
 
@@ -25,6 +26,8 @@ def prepare(connection: sqlite3.Connection, shown: str, read_only: str) -> None:
             f"{shown} is a gradebook of version {version}, and this grader reads version {VERSION}: "
             "use the grader that made it, or name another file"
         )
+    if tables:
+        _check_content(connection, shown)
     if read_only:
         return
     _enable_wal(connection)
@@ -32,6 +35,34 @@ def prepare(connection: sqlite3.Connection, shown: str, read_only: str) -> None:
     connection.execute("PRAGMA foreign_keys = ON")
     if not tables:
         _create_tables(connection)
+
+
+def _check_content(connection: sqlite3.Connection, shown: str) -> None:
+    """Raise InputError if a table, trigger or view is not the grader's, or a value has another type than its column.
+
+    SQLite stores a value of any type in any column.
+    """
+    with closing(sqlite3.connect(":memory:")) as own:
+        own.executescript(TABLES + VIEWS)
+        if _definitions(connection) != _definitions(own):
+            raise InputError(f"{shown} has other tables than a gradebook of version {VERSION}: name another file")
+        for (table,) in own.execute("SELECT name FROM sqlite_master WHERE type = 'table'"):
+            wrong = " OR ".join(_is_wrong(*column) for column in own.execute(f"PRAGMA table_info({table})"))
+            if connection.execute(f"SELECT 1 FROM {table} WHERE {wrong} LIMIT 1").fetchone():
+                raise InputError(f"{shown} is damaged: its table {table} has a value that the grader does not write")
+
+
+def _definitions(connection: sqlite3.Connection) -> dict[str, str]:
+    """Return the definition of each table, index, trigger and view, without comments and line breaks."""
+    found = connection.execute("SELECT name, sql FROM sqlite_master WHERE sql <> ''")
+    return {name: " ".join(re.sub(r"--.*", "", sql).split()) for name, sql in found}
+
+
+def _is_wrong(_: int, name: str, kind: str, is_required: int, *__: object) -> str:
+    """Return the SQL condition that is true for a value that a column cannot have."""
+    nothing = "" if is_required else ", 'null'"
+    not_json = f" OR {name} <> '' AND NOT json_valid({name})" if name in JSON_COLUMNS else ""
+    return f"typeof({name}) NOT IN ('{kind.lower()}'{nothing}){not_json}"
 
 
 def _enable_wal(connection: sqlite3.Connection) -> None:

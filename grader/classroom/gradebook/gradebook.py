@@ -97,12 +97,15 @@ class Gradebook(AbstractContextManager["Gradebook"]):
         try:
             yield
         except sqlite3.DatabaseError as error:
-            is_refused = error.sqlite_errorcode & _PRIMARY in (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN)
+            code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_ERROR)  # without one, the text is not UTF-8
+            is_refused = code & _PRIMARY in (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN)
             if is_refused and self.read_only:
                 raise InputError(f"the gradebook {self.shown}: {self.read_only}") from None
-            is_other_file = error.sqlite_errorcode in (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CANTOPEN)
+            is_other_file = code in (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CANTOPEN)
             advice = "; name another file" if is_other_file else ""
             raise InputError(f"the gradebook {self.shown}: {error}{advice}") from None
+        except UnicodeDecodeError:  # of a message of SQLite
+            raise InputError(f"the gradebook {self.shown} is damaged: its text is not UTF-8") from None
 
     @contextmanager
     def transaction(self) -> Iterator[None]:
@@ -113,7 +116,8 @@ class Gradebook(AbstractContextManager["Gradebook"]):
     def rows(self, query: str, *values: Any) -> Iterator[tuple[Any, ...]]:
         """Yield the rows of a query."""
         with self.input_errors():
-            yield from self.connection.execute(query, values)
+            for row in self.connection.execute(query, values):  # noqa: UP028  it would close the cursor: too late
+                yield row
 
     def records(self, query: str, *values: Any) -> Iterator[dict[str, Any]]:
         """Yield the rows of a query by the names of their columns."""
@@ -184,7 +188,10 @@ class Gradebook(AbstractContextManager["Gradebook"]):
         """Return the record of a result."""
         query = "SELECT record, text FROM result LEFT JOIN dictionary ON sha256 = dictionary WHERE id = ?"
         ((record, dictionary),) = self.rows(query, result)
-        return decompressed(record, dictionary or b"")
+        try:
+            return decompressed(record, dictionary or b"")
+        except ValueError:
+            raise InputError(f"the gradebook {self.shown} is damaged: the record {result} cannot be read") from None
 
     def outcomes(self, result: int) -> dict[int, StoredOutcome]:
         """Return the outcomes of a result by the position of the criterion, except those that passed."""

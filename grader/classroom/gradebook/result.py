@@ -16,6 +16,7 @@ from grader.text import cut
 
 GradingVerdict = Literal["graded", "unreadable", "errored", "unchanged"]
 UNITS_PER_POINT = 10_000  # the gradebook stores points as integers, so that SQL adds them exactly
+_MAX_RECORD = 64 * 1024**2  # bytes
 _MAX_CAUSE = 200  # characters
 _DIGITS = 6  # of a measured value
 _LEVEL = 3  # of zlib: with a dictionary, as fast as level 1 and a third smaller
@@ -96,8 +97,15 @@ def compressed(record: bytes, dictionary: bytes) -> bytes:
 
 
 def decompressed(data: bytes, dictionary: bytes) -> str:
-    """Return a record that was compressed with a dictionary."""
-    return zlib.decompressobj(zdict=dictionary).decompress(data).decode()
+    """Return a record that was compressed with a dictionary; raises ValueError for one that is damaged."""
+    unpacker = zlib.decompressobj(zdict=dictionary)
+    try:
+        record = unpacker.decompress(data, _MAX_RECORD)
+    except zlib.error:
+        raise ValueError from None
+    if not unpacker.eof:
+        raise ValueError
+    return record.decode()
 
 
 def criterion_points(

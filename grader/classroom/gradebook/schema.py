@@ -2,6 +2,7 @@
 
 APPLICATION_ID = 0x47524452  # "GRDR": the type of the file in its SQLite header
 VERSION = 2
+JSON_COLUMNS = ("files", "forms", "hints", "measured", "roster_entry")  # or empty
 
 TABLES = """
 CREATE TABLE rubric (

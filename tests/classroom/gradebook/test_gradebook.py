@@ -1,5 +1,6 @@
 """The gradebook: one file in which no result and no mark is ever lost, and the current grade is a view."""
 
+import shutil
 import sqlite3
 import threading
 from collections.abc import Iterator
@@ -261,6 +262,12 @@ def spoil(kind: str, path: Path) -> None:
                 made.execute(f"PRAGMA application_id = {APPLICATION_ID}")
                 made.execute(f"PRAGMA user_version = {VERSION}")
                 made.execute("CREATE TABLE mark (x)")
+        case "trigger":
+            Gradebook(path, create=True).close()
+            with closing(sqlite3.connect(path)) as made, made:
+                made.execute(
+                    "CREATE TRIGGER generous AFTER INSERT ON mark BEGIN INSERT INTO handed_out VALUES (1); END"
+                )
         case "damaged":
             with Gradebook(path, create=True) as book:
                 record_run(book, LABS[0], [graded_as(LABS[0], f"s{number}", "pps??") for number in range(200)])
@@ -275,9 +282,11 @@ WHY = {
     "folder": "unable to open database file",
     "of-others": "is a database, but not a gradebook",
     "newer": "is a gradebook of version 1000",
-    "hollow": "no such table",
+    "hollow": f"has other tables than a gradebook of version {VERSION}",
+    "trigger": f"has other tables than a gradebook of version {VERSION}",
     "damaged": "malformed",
 }
+WRONG = {"TEXT": b"text", "BLOB": "text", "INTEGER": "x", "REAL": "x"}  # what SQLite stores in a column of each type
 COMMANDS = {
     "mark": ("mark", "anna", "essay", "1", "--gradebook"),
     "review": ("review", "--gradebook"),
@@ -304,3 +313,55 @@ def test_other_files_are_refused_in_one_line(kind: str, tmp_path: Path) -> None:
         assert (done.returncode, done.stdout, WHY[kind] in done.stderr) == (2, "", True), done.stderr
     if kind in ("text", "of-others", "newer"):
         assert path.read_bytes() == before
+
+
+def tampered(path: Path, statement: str, *values: object) -> Path:
+    """Return a copy of a gradebook in which a statement has changed something that no trigger and no CHECK allows."""
+    copy = path.with_name("tampered.db")
+    shutil.copy(path, copy)
+    with closing(sqlite3.connect(copy)) as made, made:
+        triggers = made.execute("SELECT name, sql FROM sqlite_master WHERE type = 'trigger'").fetchall()
+        for name, _ in triggers:
+            made.execute(f"DROP TRIGGER {name}")
+        made.execute("PRAGMA ignore_check_constraints = ON")
+        assert made.execute(statement, values).rowcount > 0, statement
+        for _, definition in triggers:
+            made.execute(definition)
+    return copy
+
+
+def test_a_value_of_another_type_is_refused(book: Gradebook) -> None:
+    """In every column that has a value, as is a text where JSON belongs: SQLite stores whatever it is given."""
+    tables = [name for (name,) in book.rows("SELECT name FROM sqlite_master WHERE type = 'table'")]
+    columns = [
+        (table, name, WRONG[kind])
+        for table in tables
+        if book.first(f"SELECT 1 FROM {table}")
+        for _, name, kind, *_ in book.rows(f"PRAGMA table_info({table})")
+        if name != "id"  # SQLite itself refuses another type there
+    ]
+    book.close()
+    assert len(columns) > 60
+    for table, name, value in (*columns, ("result", "forms", "{"), ("submission", "files", "[")):
+        path = tampered(book.path, f"UPDATE OR REPLACE {table} SET {name} = ?", value)
+        with pytest.raises(
+            InputError, match=f"is damaged: its table {table} has a value that the grader does not write"
+        ):
+            Gradebook(path)
+    path = tampered(book.path, "UPDATE mark SET comment = ?", b"x")
+    assert "is damaged: its table mark has a value" in refusal(grader("stats", "--gradebook", path))
+
+
+@pytest.mark.parametrize(
+    ("statement", "why"),
+    [
+        ("UPDATE result SET record = x'00'", "is damaged: the record 1 cannot be read"),
+        ("UPDATE result SET record = substr(record, 1, length(record) - 9)", "is damaged: the record 1 cannot be read"),
+        ("UPDATE student SET name = CAST(x'ff' AS TEXT)", "Could not decode to UTF-8 column"),
+        ("UPDATE rubric SET text = x'ff'", "is not UTF-8"),
+    ],
+)
+def test_a_damaged_value_is_one_line(book: Gradebook, statement: str, why: str) -> None:
+    """Also one that its type does not show."""
+    book.close()
+    assert why in refusal(grader("export", "json", "--gradebook", tampered(book.path, statement)))
