@@ -24,6 +24,10 @@ _TOKEN = r"""(?sx)
     | [^\s"'\#\[\]{}=.]+              # a bare key, a number, or a boolean: points, 12, true
     | [ \t\r]+
     """
+# tomllib stores each beginning of a dotted key: memory that grows with the square of its parts.
+_LONG_KEY = re.compile(
+    rf"""(?m)(?:^|[\[{{,])[ \t]*+((?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{_MAX_DEPTH}}})"""
+)
 _MAX_COMPLAINTS = 1000  # lines about one file
 _MAX_WIDTH = 200  # characters of a line that are looked at on each side of a mistake
 _PLACE = r" \(at (?:line (\d+), column (\d+)|end of document)\)$"
@@ -56,6 +60,9 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
     shown = printable_path(path)
     try:
         text = data.decode().removeprefix("\ufeff")
+        if found := _LONG_KEY.search(text):
+            line = text.count("\n", 0, found.start(1)) + 1
+            raise RubricError((f"{shown}:{line}: a key has more than {_MAX_DEPTH} parts",))
         return text, tomllib.loads(text, parse_float=Decimal)
     except UnicodeDecodeError as error:
         raise RubricError((f"{shown}{_encoding(data, error.start)}",)) from None
