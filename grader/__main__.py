@@ -1,10 +1,11 @@
 """The entry point of `grader` and `python -m grader`."""
 
 import gc
+import os
 import sys
 from types import ModuleType
 
-_NOT_GRADED, _INTERRUPTED = 2, 130  # as in grader.usecases.exit_codes, which is not imported for --version
+_NOT_GRADED, _FAULT, _INTERRUPTED = 2, 3, 130  # as in grader.usecases.exit_codes, which is not imported for --version
 
 # Libraries import these modules of the standard library, and most commands use nothing of them.
 _LATE = ("bz2", "ipaddress", "linecache", "lzma", "subprocess", "textwrap", "tokenize")
@@ -22,7 +23,18 @@ class _LateModule(ModuleType):
 
 
 def main() -> None:
-    """Run the command line and exit with its code."""
+    """Run the command line and exit with its code, which no `os._exit` of a plug-in check changes."""
+    code: int | None = None
+    leave, process = os._exit, os.getpid()
+
+    def end(status: int) -> None:
+        if os.getpid() != process:
+            leave(status)
+        if code is None:
+            print("grader: a plug-in check has ended the process", file=sys.stderr, flush=True)
+        leave(_FAULT if code is None else code)
+
+    os._exit = end  # type: ignore[assignment]  # importing NoReturn takes longer than printing the version
     try:
         code = _run(sys.argv[1:])
     except KeyboardInterrupt:

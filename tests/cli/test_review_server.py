@@ -358,7 +358,8 @@ def test_idle_and_slow_clients_do_not_block_others(review: Review) -> None:
         strangers[-1].sendall(b"ngth: 0\r\n\r\n")
         assert strangers[-1].recv(12) == b"HTTP/1.1 421"
     finally:
-        for connection in (own, *strangers):
+        own.close()
+        for connection in strangers:
             connection.close()
 
 
