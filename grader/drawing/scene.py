@@ -19,7 +19,7 @@ from grader.values import dataclass
 
 Rgba = tuple[float, float, float, float]
 
-MAX_BODIES = 2000
+_MAX_BODIES = 500  # in software, a browser draws more only in seconds
 _MAX_COORDINATE = 1e4  # metres
 _MAX_NAMED = 4
 _WITHOUT_MATERIAL: Rgba = (1.0, 0.0, 0.0, 1.0)  # RViz shows such a shape in red
@@ -59,7 +59,7 @@ class Wheel(NamedTuple):
 class Scene:
     """The content of a picture of a robot, in the frame of the link `frame`, whose z axis points up.
 
-    `poses` are the T_frame_link of the links that have one, and `bodies` the shapes of these links, in file order.
+    `poses` are the T_frame_link of the links that have one, and `bodies` the different shapes of these links.
     `missing` are sentences that say what is not shown, and why.
     """
 
@@ -95,13 +95,13 @@ def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> 
     omitted: dict[str, dict[str, None]] = {}  # the links that are not shown, or not wholly, by reason
     poses = dict(_poses(robot, frame, omitted))
     omitted |= {_MESHES: {}, _UNKNOWN: {}}
-    bodies = [*_bodies(robot, poses, omitted)]
-    scene = Scene(robot, frame, poses, tuple(bodies[:MAX_BODIES]), (), ())
+    bodies = [*dict.fromkeys(_bodies(robot, poses, omitted))]
+    scene = Scene(robot, frame, poses, tuple(bodies[:_MAX_BODIES]), (), ())
     missing = [
         f"Not shown: {enumerated([*map(quoted, names)], _MAX_NAMED)}: {why}" for why, names in omitted.items() if names
     ]
-    if len(bodies) > MAX_BODIES:
-        missing.append(f"Not shown: {counted(len(bodies) - MAX_BODIES, 'more shape')}")
+    if len(bodies) > _MAX_BODIES:
+        missing.append(f"Not shown: {counted(len(bodies) - _MAX_BODIES, 'more shape')}")
     return replace(scene, wheels=(*_wheels(scene, wheels),), missing=tuple(missing))
 
 

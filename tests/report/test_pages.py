@@ -15,7 +15,7 @@ from lxml import html
 from grader.report.formats import Format, render
 from grader.report.pages.shell import Assets, render_page
 from grader.text import without_commands
-from tests.command_line import ROOT
+from tests.command_line import ROOT, run_with_input
 from tests.samples import SAMPLES
 
 FILES = ROOT / "grader" / "report" / "pages" / "files"
@@ -93,3 +93,18 @@ def test_scripts_make_no_markup_and_run_no_text(file: Path) -> None:
     assert not re.search(
         r"innerHTML|outerHTML|insertAdjacent|document\.write|\beval\b|\bFunction\(|import\(", file.read_text()
     )
+
+
+def test_a_page_of_a_huge_robot_is_bounded() -> None:
+    """A browser shows it soon: so many shapes, joints and links are on it, and how many are not."""
+    boxes = "".join(f"<visual><geometry><box size='1 1 {1 + k % 600}'/></geometry></visual>" for k in range(1500))
+    parts = "".join(
+        f"<link name='l{k}'/><joint name='j{k}' type='continuous'><parent link='a'/><child link='l{k}'/></joint>"
+        for k in range(1200)
+    )
+    urdf = f"<robot name='r'><link name='a'>{boxes}</link>{parts}</robot>"
+    found = html.fromstring(run_with_input(("inspect", "-", "--format", "html"), urdf.encode()).stdout.decode())
+    assert [len(found.xpath(path)) for path in ("//input[@type='range']", "//table//th[@scope='row']")] == [500, 500]
+    text = found.text_content()
+    for words in ("Not shown: 100 more shapes", "Not listed: 700 more joints.", "Not listed: 701 more links."):
+        assert words in text, words

@@ -26,7 +26,7 @@ from grader.robot.transforms import Transform
 from grader.text import counted, first_lines, printable, quoted
 
 _HALF_TURN = 180.0
-_MAX_LISTED = 500  # links of the tree, and problems
+_MAX_LISTED = 500  # links, joints, and problems
 _CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts
 _MAX_SLIDE = 1.0  # metres, of a joint without limits
 _MAX_RANGE = 1e5  # radians or metres: larger limits are ignored
@@ -117,13 +117,15 @@ def render_robot_page(
     if picture is None:
         assets = Assets("robot.css student.css", " ".join(scripts[-1:]))
         return render_page(template, {**values, "robot": None, "views": ""}, {}, assets)
-    scene, sliders = picture.scene, [*_sliders(picture.scene)]
+    scene = picture.scene
+    sliders, links = [*_sliders(scene)], [*_links(scene)]
     element = drawing_element(picture, legend=False)
     view = {
         "picture": picture,
-        "sliders": sliders,
-        "still": tuple(_unmoved_joints(scene)),
-        "links": [*_links(scene)],
+        "sliders": sliders[:_MAX_LISTED],
+        "still": (*_unmoved_joints(scene), *_unlisted(len(sliders), "joint")),
+        "links": links[:_MAX_LISTED],
+        "unlisted_links": (*_unlisted(len(links), "link"),),
         "words": _words(picture, len(sliders)),
         "can_drive": any(wheel.is_free for wheel in scene.wheels),
     }
@@ -132,6 +134,12 @@ def render_robot_page(
     robot = {**picture_data(picture), "sliders": starts}
     assets = Assets("robot.css student.css", " ".join((_SCRIPTS, *scripts)), RULES)
     return render_page(template, {**values, "robot": view, "views": views}, {**robot, **data}, assets)
+
+
+def _unlisted(number: int, noun: str) -> Iterator[str]:
+    """Yield how many are not listed, if there are too many."""
+    if number > _MAX_LISTED:
+        yield f"Not listed: {counted(number - _MAX_LISTED, f'more {noun}')}."
 
 
 def _links(scene: Scene) -> Iterator[tuple[str, str, str, str]]:
