@@ -10,6 +10,8 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from tests.browser.firefox import FIREFOX, Firefox
+
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
@@ -30,6 +32,16 @@ def browser() -> Iterator["Browser"]:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=arguments)
         yield browser
         browser.close()
+
+
+@pytest.fixture(scope="module")
+def firefox(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Firefox]:
+    """Return a Firefox."""
+    if FIREFOX is None:
+        pytest.skip("Firefox is not installed")
+    started = Firefox(tmp_path_factory.mktemp("firefox") / "profile")
+    yield started
+    started.close()
 
 
 @dataclass

@@ -40,11 +40,11 @@ class Firefox:
         return self("WebDriver:ExecuteScript", script=script, args=[], sandbox=None)
 
     def messages(self) -> list[str]:
-        """Return the messages of the console since the start that name a file."""
+        """Return the messages of the console since the start that name a file or a local address."""
         self("Marionette:SetContext", value="chrome")
         found: list[str] = self.run("return Services.console.getMessageArray().map((one) => String(one.message))")
         self("Marionette:SetContext", value="content")
-        return [message for message in found if "file://" in message]
+        return [message for message in found if "file://" in message or "127.0.0.1" in message]
 
     def close(self) -> None:
         """End the browser."""

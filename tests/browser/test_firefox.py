@@ -1,12 +1,11 @@
 """The student's page in Firefox: it has no error, its controls work, and the robot is there without WebGL, too."""
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from tests.browser.firefox import FIREFOX, Firefox
+from tests.browser.firefox import Firefox
 from tests.command_line import run
 from tests.samples import SAMPLES
 
@@ -16,16 +15,6 @@ WITHOUT_DISPLAY = """<script>
 const gl = new Proxy({}, { get: (_, name) => (/^[A-Z]/.test(name) ? 1 : /AttribLocation/.test(name) ? () => 0 : () => ({})) });
 HTMLCanvasElement.prototype.getContext = () => gl;
 </script>"""
-
-
-@pytest.fixture(scope="module")
-def firefox(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Firefox]:
-    """Return a Firefox."""
-    if FIREFOX is None:
-        pytest.skip("Firefox is not installed")
-    started = Firefox(tmp_path_factory.mktemp("firefox") / "profile")
-    yield started
-    started.close()
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,93 @@
+"""Each attack of the corpus in every text of a student, on every page, in two browsers: it is text and nothing else."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.browser.conftest import OpenPage
+from tests.browser.firefox import Firefox
+from tests.command_line import run
+from tests.report.attacks import ATTACKS, AttackedClass, make_attacked_class
+from tests.review_server import running
+
+pytestmark = pytest.mark.exhaustive
+# Opens what is folded, and looks at each link and group; then returns what no page of ours has.
+LOOK = """
+for (const one of document.querySelectorAll('details')) one.open = true;
+for (const one of document.querySelectorAll('#links option, #find')) {
+  const field = one.closest('select') || one;
+  field.value = one.value || '<script>';
+  for (const name of ['input', 'change']) field.dispatchEvent(new Event(name, { bubbles: true }));
+  if (window.viewer) window.viewer.draw();
+}
+const found = document.title === 'run' ? ['the title is changed'] : [];
+const unused = 'iframe:not([sandbox]), object, embed, base, link, video, audio, marquee, math, foreignObject, animate, image, template';
+for (const one of document.querySelectorAll('*')) {
+  const far = (value) => { const at = new URL(value, location); return at.protocol !== location.protocol || at.host !== location.host; };
+  const placed = one.closest('.labels'); // by the page's own script
+  const isWrong = ({ name, value }) => /^on|^srcdoc$/i.test(name) || (/^style$/i.test(name) && !placed) || (/href$|^src$|action$|^data$/i.test(name) && far(value));
+  if (one.matches(unused) || [...one.attributes].some(isWrong)) found.push(one.outerHTML.slice(0, 200));
+}
+return found;
+"""
+Visit = Callable[[str], Any]
+
+
+@pytest.fixture(scope="module")
+def attacked(tmp_path_factory: pytest.TempPathFactory) -> AttackedClass:
+    """Return the class of attackers."""
+    return make_attacked_class(tmp_path_factory.mktemp("attacked"))
+
+
+@pytest.fixture(params=["chromium", "firefox"])
+def visit(request: pytest.FixtureRequest) -> Iterator[Visit]:
+    """Yield a function that opens an address and returns what no page of ours has; at the end, the console is empty."""
+    if request.param == "chromium":
+        opened: OpenPage = request.getfixturevalue("open_page")("about:blank")
+
+        def chromium(address: str) -> Any:
+            opened.page.goto(address)
+            return opened.page.evaluate(f"() => {{{LOOK}}}")
+
+        yield chromium
+    else:
+        firefox: Firefox = request.getfixturevalue("firefox")
+
+        def navigate(address: str) -> Any:
+            firefox("WebDriver:Navigate", url=address)
+            return firefox.run(LOOK)
+
+        yield navigate
+        assert [one for one in firefox.messages() if "WebGL" not in one and "FaviconLoader" not in one] == []
+
+
+def test_the_look_finds_what_runs(visit: Visit, tmp_path: Path) -> None:
+    """The test can fail: it finds each kind of element and attribute that no page of ours has."""
+    page = tmp_path / "page.html"
+    page.write_text(
+        "<!DOCTYPE html><meta charset=utf-8><title>run</title><iframe></iframe><b onclick=''></b><a href='javascript:x'></a><p style=''></p>"
+    )
+    assert len(visit(page.as_uri())) == 5
+
+
+def test_pages_of_files(visit: Visit, attacked: AttackedClass, tmp_path: Path) -> None:
+    """The page of the class, the page of each student, and that of an inspection."""
+    pages = sorted(attacked.pages.glob("*.html"))
+    assert len(pages) > len(ATTACKS)
+    for number, folder in enumerate(attacked.folders):
+        page = tmp_path / f"{number}.html"
+        page.write_bytes(run(("inspect", folder, "--format", "html")).stdout)
+        pages.append(page)
+    found = {page.name: wrong for page in pages if (wrong := visit(page.as_uri()))}
+    assert found == {}
+
+
+def test_pages_of_a_review(visit: Visit, attacked: AttackedClass) -> None:
+    """The page of each item, the report beside it, and the page at the end."""
+    with running(attacked.book) as review:
+        count = int(review.get("1").text.partition(" of ")[2].partition("<")[0].split(":")[0])
+        assert count > len(ATTACKS)
+        pages = [*map(str, range(1, count + 1)), "1/report", "end"]
+        assert {page: wrong for page in pages if (wrong := visit(review.url + page))} == {}
