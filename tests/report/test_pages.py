@@ -103,8 +103,7 @@ def test_a_page_of_a_huge_robot_is_bounded() -> None:
         for k in range(1200)
     )
     urdf = f"<robot name='r'><link name='a'>{boxes}</link>{parts}</robot>"
-    found = html.fromstring(run_with_input(("inspect", "-", "--format", "html"), urdf.encode()).stdout.decode())
-    assert [len(found.xpath(path)) for path in ("//input[@type='range']", "//table//th[@scope='row']")] == [500, 500]
-    text = found.text_content()
+    text = run_with_input(("inspect", "-", "--format", "html"), urdf.encode()).stdout.decode()
+    assert (text.count('type="range"'), text.count('<tr><th scope="row">')) == (500, 500)
     for words in ("Not shown: 100 more shapes", "Not listed: 700 more joints.", "Not listed: 701 more links."):
         assert words in text, words
