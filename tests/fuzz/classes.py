@@ -127,7 +127,7 @@ LMS = {name: partial(lms, name=name) for name in LMS_SEEDS}
 
 # --- The review server -------------------------------------------------------------------------------------------------
 
-_STATUSES = {200, 302, 400, 403, 404, 405, 408, 411, 413, 414, 415, 421, 431, 503, 505}
+_STATUSES = {100, 200, 302, 400, 403, 404, 405, 408, 411, 413, 414, 415, 421, 431, 503, 505}
 _START = b"POST /t/1 HTTP/1.1\r\nHost: 127.0.0.1:80\r\nOrigin: http://127.0.0.1:80\r\nContent-Type: application/json\r\nContent-Length: "
 _FROM_PAGE = (b"/t/", b"http://", b"application/json", b"127.0.0.1:80")
 

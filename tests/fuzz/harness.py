@@ -159,13 +159,13 @@ class Guard:
         return bool(self.folder) and os.path.realpath(text).startswith(os.path.realpath(self.folder))
 
     @contextmanager
-    def watching(self) -> Iterator[None]:
-        """Watch what the block does."""
-        self.is_active = True
+    def watching(self, *, is_active: bool = True) -> Iterator[None]:
+        """Watch what the block does, or not."""
+        before, self.is_active = self.is_active, is_active
         try:
             yield
         finally:
-            self.is_active = False
+            self.is_active = before
 
 
 GUARD = Guard()

@@ -1,9 +1,9 @@
 """Harnesses of whole submissions: grading, hints, the files that `--fix` writes, and every format of the report."""
 
 import os
-import shutil
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from unittest.mock import patch
 
 from grader.grading.grade import grade
@@ -53,14 +53,12 @@ def check_graded(rubric: Rubric, submission: Submission, path: str) -> None:
     for hint in hints.values():
         check_message(hint.message)
         _check_hint(report, submission, hint)
-    target = Path(GUARD.folder, "fix" if not submission.is_single else "fix.urdf")
-    written = files_to_fix(target, path, hinted, fix, (), ())
-    check_message(write_fix(target, path, hinted, fix, written))
-    found = [target] if target.is_file() else [it for it in target.rglob("*") if it.is_file()]
-    assert {it: it.read_bytes() for it in found} == written
     assert fix.report.score >= report.score
-    shutil.rmtree(target, ignore_errors=True)
-    target.unlink(missing_ok=True)
+    with GUARD.watching(is_active=False), TemporaryDirectory() as folder, GUARD.watching():
+        target = Path(folder, "fix.urdf" if submission.is_single else "fix")
+        written = files_to_fix(target, path, hinted, fix, (), ())
+        check_message(write_fix(target, path, hinted, fix, written))
+        assert {it: it.read_bytes() for it in Path(folder).rglob("*") if it.is_file()} == written
     with patch.dict(os.environ, CLASSROOM50):
         for kind in Format:
             is_harmless(render(hinted, kind, Base()), kind)

@@ -5,8 +5,6 @@ slowest input is saved as `slowest`.
 """
 
 import hashlib
-import importlib
-import pkgutil
 import sys
 import tempfile
 import time
@@ -17,17 +15,12 @@ from random import Random
 
 import atheris  # of the extra `fuzz`
 
+with atheris.instrument_imports(include=["grader"]):
+    from tests.fuzz.harness import GUARD, mutated
+    from tests.fuzz.harnesses import HARNESSES
+
+_WARM_UP = 10  # every tenth seed is run before coverage is measured
 _SLOW = 0.5  # seconds of processor time, from which on an input is saved
-
-
-def instrumented() -> None:
-    """Import the whole grader with counters of coverage in it."""
-    with atheris.instrument_imports(include=["grader"]):
-        import grader
-
-        for module in pkgutil.walk_packages(grader.__path__, "grader."):
-            if not module.name.startswith(("grader.cli", "grader.bundle")):
-                importlib.import_module(module.name)
 
 
 def signature(error: BaseException) -> str:
@@ -42,13 +35,9 @@ def main() -> None:
     name, folder, *flags = sys.argv[1:]
     out = Path(folder)
     warnings.simplefilter("error")
-    instrumented()
-    from tests.fuzz.harness import GUARD, mutated
-    from tests.fuzz.harnesses import HARNESSES
-
-    harness = HARNESSES[name]
     slowest = _SLOW
     GUARD.folder = tempfile.tempdir = tempfile.mkdtemp(dir=out)
+    harness = HARNESSES[name]
 
     def target(data: bytes) -> None:
         nonlocal slowest
@@ -73,6 +62,9 @@ def main() -> None:
             return bytes(atheris.Mutate(data, size))
         return mutated(data, chance, harness.words, size)
 
+    with atheris.instrument_imports(include=["grader"]):  # of what is imported late, too
+        for data in harness.inputs(name)[::_WARM_UP]:
+            target(data)
     atheris.Setup([sys.argv[0], *flags], target, custom_mutator=mutate)
     atheris.Fuzz()
 

@@ -163,14 +163,14 @@ def test_values_with_line_breaks_are_not_plain(values: list[str], quote: str, ga
 
 
 def assert_alike_if_plain(raw: bytes) -> None:
-    """Assert the same of any bytes, except of names that XML and TinyXML2 read differently."""
+    """Assert the same of any bytes, except of names that XML and TinyXML2 read differently, and of deep trees."""
     if not is_plain(raw):
         return
     try:
         root = etree.fromstring(raw, _PARSER)
     except etree.XMLSyntaxError:
         return
-    if root.tag != "robot":
+    if root.tag != "robot" or root.xpath("//*[count(ancestor::*) > 30]"):  # deeper ones are not translated
         return
     translated = tree(etree.fromstring(Scanner(decoded(raw)).scan().xml, _PARSER))
     for (tag, attributes), (other, others) in zip(tree(root), translated, strict=True):

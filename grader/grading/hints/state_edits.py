@@ -175,4 +175,6 @@ def _fewer(piece: Piece) -> Iterator[list[Set]]:
         old, new = values_of(one.element.get(one.attribute) if one.element is not None else None), values_of(one.value)
         off = [index for index, pair in enumerate(zip(old, new, strict=False)) if pair[0] != pair[1]]
         for index in off if len(old) == len(new) and len(off) > 1 else ():
-            yield [one._replace(value=format_numbers((*new[:index], old[index], *new[index + 1 :])))]
+            value = format_numbers((*new[:index], old[index], *new[index + 1 :]))
+            if value != one.value:  # a number that is not finite, or has more digits, differs all the same
+                yield [one._replace(value=value)]
