@@ -53,6 +53,7 @@ class QuickGrading:
     def results(self, sets: Iterable[Set], wanted: Collection[str]) -> dict[str, Result]:
         """Return the results of criteria with other values, charged to the trials. Raises NoTrialsLeft."""
         self._trials.charge(self._cost)
+        self._trials.charge_checks(wanted)
         submission = self._state.submission
         urdf = submission.urdf
         assert isinstance(urdf, Read)
