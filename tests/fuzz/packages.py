@@ -121,12 +121,9 @@ def yaml(data: bytes) -> None:
 
 
 def yaml_text(data: bytes) -> str:
-    """Return a text with the lines of YAML, which are those of any system, without a byte-order mark."""
+    """Return the text of a YAML file."""
     is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
-    text = data.decode("utf-16" if is_wide else "utf-8", "replace").removeprefix("\ufeff")
-    for newline in ("\r\n", "\r", "\x85", "\u2028", "\u2029"):
-        text = text.replace(newline, "\n")
-    return text
+    return data.decode("utf-16" if is_wide else "utf-8", "replace")
 
 
 def _python_text(data: bytes) -> str:
