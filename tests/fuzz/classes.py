@@ -211,9 +211,17 @@ def sent_requests() -> Iterator[bytes]:
         yield f"GET {path} HTTP/1.1\r\nHost: localhost:80\r\n\r\n".encode()
     item = re.search(rb'"item":"(\w+)"', _answer(b"GET /t/1 HTTP/1.1\r\nHost: localhost:80\r\n\r\n"))
     mark = b'{"do":"mark","points":"2","comment":"good","shown":0,"item":"%b"}' % (item[1] if item else b"")
-    bodies = (mark, b'{"do":"next"}', b'{"do":"undo"}', b'{"do":"find","student":"ben"}', b"[]", b'{"do":"keep"}', b'{"do":"split"}')
-    bodies += (b'{"do":"filter","criterion":"essay","section":"","state":"open"}',)
-    yield from (_START + b"%d\r\n\r\n%b" % (len(body), body) for body in bodies)
+    bodies = (
+        mark,
+        b'{"do":"next"}',
+        b'{"do":"undo"}',
+        b'{"do":"find","student":"ben"}',
+        b"[]",
+        b'{"do":"keep"}',
+        b'{"do":"split"}',
+    )
+    other = b'{"do":"filter","criterion":"essay","section":"","state":"open"}'
+    yield from (_START + b"%d\r\n\r\n%b" % (len(body), body) for body in (*bodies, other))
     yield b"HEAD /t/1 HTTP/1.1\r\nHost: 127.0.0.1:80\r\n\r\nOPTIONS * HTTP/1.1\r\n\r\n"
 
 

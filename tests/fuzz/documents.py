@@ -8,7 +8,7 @@ from pathlib import Path
 from grader.classroom.intake.reading import read_class
 from grader.documents.answers import find_answer
 from grader.documents.collection import DocumentCollection
-from grader.documents.document import made_of
+from grader.documents.document import Document, made_of
 from grader.documents.evidence import DOCUMENTS, find_all_evidence
 from grader.documents.evidence_files import read_labelled_files
 from grader.documents.pictures import EmbeddedPicture, verified
@@ -23,14 +23,17 @@ from tests.fuzz.harness import GUARD, check_location, check_message, decoded, us
 _MAX_READ = 256 * 1024  # bytes of one file
 _ENDINGS = (".md", ".txt", ".docx", ".pdf")
 _QUESTIONS = (
-    ("What happens if you start it now, and why?", ["task 1 step 15", "step 15", "required question 1 of 2", "question 1 of 2"]),
+    (
+        "What happens if you start it now, and why?",
+        ["task 1 step 15", "step 15", "required question 1 of 2", "question 1 of 2"],
+    ),
     ("Name some nodes, and what they do.", ["task 2 step 2", "question 2 of 2", "nodes"]),
 )
 _EVIDENCE = (["task 1 step 8"], ["task 1 step 18"], ["task 2 step 6"], ["task 3 step 3", "task 3", "webcam", "camera"])
 
 
 def archive(data: bytes) -> None:
-    """An archive is refused, or its files are below it, are read up to their limits, and have the size that is said."""
+    """An archive is refused, or its files are below it, are read up to their limits."""
     kind = archive_kind(data[:512])
     if kind is None:
         return
@@ -54,7 +57,11 @@ def _check_tree(tree: Tree) -> None:
 
 def archives() -> Iterator[bytes]:
     """Yield small archives of every kind, with links, and one in another."""
-    links = (LinkMember("l", "my_robot/urdf/my_robot.urdf"), LinkMember("m/n", "../my_robot"), LinkMember("up", "../../etc"))
+    links = (
+        LinkMember("l", "my_robot/urdf/my_robot.urdf"),
+        LinkMember("m/n", "../my_robot"),
+        LinkMember("up", "../../etc"),
+    )
     yield from (make() for make in MAKERS.values())
     yield from (make_zip(links=links), make_tar(links=links), make_tar(links=links, kind="gz"))
     yield make_zip({"inner.tar.gz": make_tar(FILES, kind="gz"), "a.txt": b"a"})
@@ -94,14 +101,14 @@ def answers(data: bytes) -> None:
     if not path.endswith(".md"):  # the text that a converter has written
         documents._read_files[path] = made_of(file, data[1:].decode("utf-8", "replace"))
     document = documents.document(file)
-    lines = [] if document is None or isinstance(document, tuple) and not hasattr(document, "lines") else document.lines  # type: ignore[union-attr]
+    lines = document.lines if isinstance(document, Document) else []
     for question, places in _QUESTIONS:
         found = find_answer(documents, ("*.md", "*.txt", "*.docx", "*.pdf"), places, question).passage
         if found is not None:
             check_message(found.where)
             check_location(found.location, {path: "\n".join(lines)})
             assert len(found.text) <= 40_000
-    for heading in documents.headings(document) if lines else ():  # type: ignore[arg-type]
+    for heading in documents.headings(document) if isinstance(document, Document) else ():
         assert 0 <= heading.start <= heading.end <= len(lines)
     for one in find_all_evidence((), _EVIDENCE, documents):
         assert {it.path for it in (*one.files, *one.possible)} <= {path}
@@ -110,15 +117,24 @@ def answers(data: bytes) -> None:
 def documents() -> Iterator[bytes]:
     """Yield answers under headings of many kinds."""
     for first, second in (
-        *(("# Task 1 Step 15", "# Task 2 Step 2"), ("**REQUIRED Question:**", "**REQUIRED Question:**"), ("Q1", "Q2"), ("1.", "2.")),
-        *(("Task 1\n15)", "Task 2\n2)"), ("| Step 15 |", "| Step 2 |"), ("Answer to required question 1:", "Answer 2:")),
+        *(
+            ("# Task 1 Step 15", "# Task 2 Step 2"),
+            ("**REQUIRED Question:**", "**REQUIRED Question:**"),
+            ("Q1", "Q2"),
+            ("1.", "2."),
+        ),
+        *(
+            ("Task 1\n15)", "Task 2\n2)"),
+            ("| Step 15 |", "| Step 2 |"),
+            ("Answer to required question 1:", "Answer 2:"),
+        ),
     ):
         yield b"\0" + f"{first}\n\nIt has two roots.\n\n{second}\n\nrviz2 shows the robot.\n".encode()
     yield b"\3Task 1 Step 15\nIt has two roots.\n\xef\xbf\xbc\n\x0c\nTask 2 Step 2\nrviz2.\n\xef\xbf\xbc\n"
 
 
 def names(data: bytes) -> None:
-    """Pictures are evidence by their names; every one is named at most as often as it may be meant."""
+    """Pictures are evidence by their names, and described in words."""
     paths = [line for line in dict.fromkeys(decoded(data).split("\n")[:40]) if line.strip("/.")]
     tree = make_tree("s", [file_of(path, b"") for path in paths], ())
     files = read_labelled_files(tree)
@@ -128,6 +144,11 @@ def names(data: bytes) -> None:
         assert {it.path for it in (*one.files, *one.possible)} <= {*paths}
         for it in one.files:
             check_message(it.words)
+
+
+def file_names() -> Iterator[bytes]:
+    """Yield names of pictures, one in a line."""
+    yield b"Task1_Step8.png\nTask 1/step18 (2).jpg\nT2S6.PNG\nwebcm.gif\na/b/camera.pdf\nstep 3.png"
 
 
 def picture(data: bytes) -> None:

@@ -16,15 +16,52 @@ from tests.samples import ROOT
 
 FOLDER = Path(__file__).parent
 _MAX_MADE = 500
+MAX_SECONDS = 5.0  # of processor time, for one input
 MAX_SEED = 24 * 1024  # bytes; larger files make slow inputs
 _START = re.compile(rb"(?:\A|\n)=== ([^\n]{1,200})\n")  # of a file in an input that holds several
 _TOKEN = re.compile(rb"\s+|[A-Za-z_][\w.]*|[-+]?[\d.]+(?:[eE][-+]?\d+)?|[\x80-\xff]+|.", re.DOTALL)
-_NUMBERS = (b"0", b"-0", b"1", b"-1", b"1e308", b"-1e-308", b"nan", b"inf", b"1e400", b"9" * 30, b"0.1", b"3.14159", b"")
+_NUMBERS = (
+    b"0",
+    b"-0",
+    b"1",
+    b"-1",
+    b"1e308",
+    b"-1e-308",
+    b"nan",
+    b"inf",
+    b"1e400",
+    b"9" * 30,
+    b"0.1",
+    b"3.14159",
+    b"",
+)
 _WRITING = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 _REFUSED = frozenset(
-    "subprocess.Popen os.system os.exec os.posix_spawn os.fork os.kill socket.connect socket.bind socket.getaddrinfo".split()
+    [
+        "subprocess.Popen",
+        "os.system",
+        "os.exec",
+        "os.posix_spawn",
+        "os.fork",
+        "os.kill",
+        "socket.connect",
+        "socket.bind",
+        "socket.getaddrinfo",
+    ]
 )
-_CHANGES = frozenset("os.remove os.rename os.mkdir os.rmdir os.symlink os.link os.truncate os.chmod shutil.rmtree".split())
+_CHANGES = frozenset(
+    [
+        "os.remove",
+        "os.rename",
+        "os.mkdir",
+        "os.rmdir",
+        "os.symlink",
+        "os.link",
+        "os.truncate",
+        "os.chmod",
+        "shutil.rmtree",
+    ]
+)
 
 
 class Harness(NamedTuple):
@@ -39,16 +76,18 @@ class Harness(NamedTuple):
     size: int = 4096
     made: Callable[[], Iterable[bytes]] = tuple
 
+    @property
+    def meaning(self) -> str:
+        """What holds of every input, in a sentence."""
+        return (getattr(self.run, "func", self.run).__doc__ or "").rstrip(".")
+
     def inputs(self, name: str) -> list[bytes]:
         """Return the seeds, without those that are too large, and the inputs that once failed."""
         found = [path for pattern in self.seeds for path in sorted(ROOT.glob(pattern))]
         own = [path for kind in ("corpus", "crashes") for path in sorted((FOLDER / kind / name).glob("*"))]
         texts = (packed(path) if path.is_dir() else path.read_bytes() for path in (*found, *own))
-        made = [*dict.fromkeys(self.made())]
-        return [
-            *made[:: 1 + len(made) // _MAX_MADE],
-            *dict.fromkeys(text for text in texts if len(text) <= max(self.size, MAX_SEED)),
-        ]
+        made = [text for text in dict.fromkeys(self.made()) if len(text) <= MAX_SEED]
+        return [*made[:: 1 + len(made) // _MAX_MADE], *(text for text in texts if len(text) <= MAX_SEED)]
 
 
 def packed(folder: Path) -> bytes:
@@ -147,7 +186,11 @@ class Guard:
             return
         if event == "open":
             path, mode, flags = arguments
-            is_write = bool(flags & _WRITING) if isinstance(flags, int) and flags else isinstance(mode, str) and "r" not in mode
+            is_write = (
+                bool(flags & _WRITING)
+                if isinstance(flags, int) and flags
+                else isinstance(mode, str) and "r" not in mode
+            )
             assert not is_write or self._is_inside(path), f"writes {path!r}"
         assert event not in _REFUSED, f"{event} {arguments!r:.200}"
         assert event not in _CHANGES or self._is_inside(arguments[0]), f"{event} {arguments!r:.200}"

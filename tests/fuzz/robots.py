@@ -28,7 +28,16 @@ from tests.xacro.comparing import expand
 from tests.xacro.documents.document import PATH, Document
 from tests.xml.test_tinyxml2 import assert_alike_if_plain, assert_sound
 
-_NAMES: Mapping[str, Any] = {**GLOBALS, "a": 1, "b": 2.5, "c": "text", "d": [1, 2.5, "x"], "e": {"k": 1, "l": {"m": "n"}}, "f": True, "g": -3}
+_NAMES: Mapping[str, Any] = {
+    **GLOBALS,
+    "a": 1,
+    "b": 2.5,
+    "c": "text",
+    "d": [1, 2.5, "x"],
+    "e": {"k": 1, "l": {"m": "n"}},
+    "f": True,
+    "g": -3,
+}
 _WORK = 100_000  # parts of the budget that one input may use
 _MAX_WAYS = 6
 _SCREEN = Screen(width=80)
@@ -79,11 +88,11 @@ def syntax(data: bytes) -> None:
         after = edited(source.text, source.path, proposal.edits)
         assert after is not None
         assert after != source.text
-        assert remaining(source.text, is_urdf=is_urdf) != -1 or not is_urdf
+        assert not is_urdf or remaining(after, is_urdf=True) < remaining(source.text, is_urdf=True)
 
 
 def xacro(data: bytes) -> None:
-    """A document with its files is expanded; places are in the files, and rewritings fit and give what is wanted."""
+    """A document with its files is expanded; places are in the files, and rewritings fit them."""
     files = files_of(data) or {PATH: data}
     texts = {path: decoded(content) for path, content in files.items()}
     document = Document(texts.setdefault(PATH, ""), files)

@@ -6,6 +6,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from unittest.mock import patch
 
+from grader.files.tree import make_tree
 from grader.grading.grade import grade
 from grader.grading.hints.trials import gains_of
 from grader.grading.report import Hint, Report
@@ -14,15 +15,13 @@ from grader.report.formats import Format, render
 from grader.source import Base
 from grader.submission.opening import read_submission, submission_of
 from grader.submission.submission import Submission
-from grader.files.tree import make_tree
 from grader.usecases.hints import add_hints, files_to_fix, write_fix
 from tests.checks.submissions import file_of
-from tests.golden.cases import CLASSROOM50
 from tests.fuzz.harness import GUARD, check_location, check_message, decoded, files_of, user_errors
+from tests.golden.cases import CLASSROOM50
 from tests.hints.trials import with_edits
 from tests.report.harmless import is_harmless
 from tests.samples import RUBRICS
-
 
 
 def urdf(data: bytes, rubric: str) -> None:
@@ -31,7 +30,7 @@ def urdf(data: bytes, rubric: str) -> None:
 
 
 def package(data: bytes, rubric: str) -> None:
-    """A folder of files is graded in the same way."""
+    """A folder of files is graded, its hints hold, and `--fix` writes what they make of it."""
     files = files_of(data)
     tree = make_tree("student", [file_of(path, content) for path, content in files.items()], ())
     with user_errors():
@@ -82,6 +81,8 @@ def _check_report(report: Report, submission: Submission) -> None:
 
 def _check_hint(report: Report, submission: Submission, hint: Hint) -> None:
     """Assert that edits, applied by other code, make exactly the promised criteria pass, and cost none its points."""
-    results = {result.criterion.id: result for result in grade(report.rubric, with_edits(submission, hint.edits)).results}
+    results = {
+        result.criterion.id: result for result in grade(report.rubric, with_edits(submission, hint.edits)).results
+    }
     assert all(results[before.criterion.id].points >= before.points for before in report.results)
     assert hint.gains == gains_of({result.criterion.id: result for result in report.results}, results)

@@ -80,7 +80,7 @@ def test_a_folder_is_one_input(tmp_path: Path) -> None:
     [
         lambda folder: (folder / "a").write_text("a"),
         lambda folder: (folder / "b").mkdir(),
-        lambda folder: __import__("os").system("true"),
+        lambda _: __import__("os").system("true"),
     ],
 )
 def test_the_guard_finds_what_no_harness_may_do(act: object, tmp_path: Path) -> None:

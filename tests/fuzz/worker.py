@@ -16,7 +16,7 @@ from random import Random
 import atheris  # of the extra `fuzz`
 
 with atheris.instrument_imports(include=["grader"]):
-    from tests.fuzz.harness import GUARD, mutated
+    from tests.fuzz.harness import GUARD, MAX_SECONDS, mutated
     from tests.fuzz.harnesses import HARNESSES
 
 _WARM_UP = 10  # every tenth seed is run before coverage is measured
@@ -26,7 +26,11 @@ _SLOW = 0.5  # seconds of processor time, from which on an input is saved
 def signature(error: BaseException) -> str:
     """Return what tells a kind of finding from others: the exception, and the last places in our own files."""
     frames = traceback.extract_tb(error.__traceback__)
-    places = [f"{Path(frame.filename).stem}:{frame.name}:{frame.lineno}" for frame in frames if "/site-packages/" not in frame.filename]
+    places = [
+        f"{Path(frame.filename).stem}:{frame.name}:{frame.lineno}"
+        for frame in frames
+        if "/site-packages/" not in frame.filename
+    ]
     return f"{type(error).__name__}-" + hashlib.sha256("\n".join(places[-3:]).encode()).hexdigest()[:12]
 
 
@@ -55,10 +59,12 @@ def main() -> None:
             slowest = seconds
             (out / "slowest").write_bytes(data)
             (out / "slowest.txt").write_text(f"{seconds:.2f}")
+        if seconds > MAX_SECONDS:
+            (out / f"slow-{hashlib.sha256(data).hexdigest()[:12]}").write_bytes(data)
 
     def mutate(data: bytes, size: int, seed: int) -> bytes:
         chance = Random(seed)
-        if chance.random() < 0.3:
+        if chance.random() < 0.5:
             return bytes(atheris.Mutate(data, size))
         return mutated(data, chance, harness.words, size)
 

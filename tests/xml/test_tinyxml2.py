@@ -180,7 +180,9 @@ def assert_alike_if_plain(raw: bytes) -> None:
 
 
 def _plain_names(attributes: dict[str, str]) -> dict[str, str]:
-    names = (name for name in attributes if name.isascii() and name.isalnum() and len(name) < 60)  # longer ones are omitted
+    names = (
+        name for name in attributes if name.isascii() and name.isalnum() and len(name) < 60
+    )  # longer ones are omitted
     return {name: attributes[name] for name in names}
 
 

@@ -149,11 +149,10 @@ class Trials:
 
 def _steps_of(criterion: Criterion) -> int:
     """Return what the checks of a criterion cost besides reading a text: nothing unless they sample positions."""
-    steps = 0
-    for it in (criterion, *([criterion.carried] if criterion.carried is not None else [])):
-        parameter = it.check.parameters.get("samples")
-        steps += it.arguments.get("samples", parameter.default) // _SAMPLES if parameter is not None else 0
-    return steps
+    checks = [(criterion.check, criterion.arguments)]
+    checks += [criterion.carried[1:]] if criterion.carried is not None else []
+    sampling = [(check.parameters["samples"], given) for check, given in checks if "samples" in check.parameters]
+    return sum(int(given.get("samples", parameter.default)) // _SAMPLES for parameter, given in sampling)
 
 
 def _new_problems(before: Submission, after: Submission) -> bool:
