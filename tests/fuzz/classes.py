@@ -2,7 +2,7 @@
 
 import io
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
 from decimal import Decimal
 from functools import cache, partial
@@ -17,7 +17,7 @@ from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.lms.filling import FillOptions
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.review.session import ReviewSession
-from grader.classroom.tables import Table, TableRow, read_table
+from grader.classroom.tables import Table, TableRow, _rows, read_table
 from grader.errors import RubricError
 from grader.grading.grade import grade
 from grader.grading.rubric import read_rubric
@@ -93,20 +93,21 @@ def lms(data: bytes, name: str) -> None:
         table = read_table(data, "lms.csv")
         assert table.encoded() == data
         filled = FILLERS[name](data, grades, FillOptions(_OUT_OF, ("small", "A small lab"), shown="lms.csv"))
-        _check_filled(table, read_table(filled.data, "lms.csv"), filled.preflight.column)
+        text = filled.data.removeprefix(table.bom).decode(table.encoding)  # as what it was read, whatever is left of it
+        _check_filled(table, _rows(text, table.delimiter, "lms.csv"), filled.preflight.column)
         for line in preflight_lines(filled.preflight):
             assert line.isprintable(), line
 
 
-def _check_filled(before: Table, after: Table, column: str) -> None:
+def _check_filled(before: Table, after: Sequence[TableRow], column: str) -> None:
     """Assert that the rows are some of those before, in their order; the grade may differ, and one column for feedback."""
     grade = {index for index, title in enumerate(before.titles) if title == column}
     assert any(_are_some(before, after, {*grade, other}) for other in (-1, *range(len(before.titles))))
 
 
-def _are_some(before: Table, after: Table, changed: set[int]) -> bool:
-    """Return whether the rows of a table are some of another's, in their order, but for these columns."""
-    kept, rest = ([_without(row, changed) for row in table.rows if row.cells] for table in (after, before))
+def _are_some(before: Table, after: Sequence[TableRow], changed: set[int]) -> bool:
+    """Return whether rows are some of a table's, in their order, but for these columns."""
+    kept, rest = ([_without(row, changed) for row in rows if row.cells] for rows in (after, before.rows))
     rows = iter(rest)
     return all(any(row == old for old in rows) for row in kept)
 
