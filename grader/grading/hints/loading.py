@@ -43,9 +43,8 @@ def defects(reading: Reading) -> Defects:
     """Return how much ROS 2 does not read, rejects, leaves unconnected, and drops or ignores: less is better."""
     effects = [problem.kind.effect for problem in reading.problems]
     unread = remaining(reading.source.text) if reading.root is None else -1
-    silent = sum(problem.kind in _SILENT for problem in reading.problems) + (
-        remaining(reading.source.text, is_urdf=True) >= 0
-    )
+    is_cut = unread >= 0 or remaining(reading.source.text, is_urdf=True) >= 0
+    silent = sum(problem.kind in _SILENT for problem in reading.problems) + is_cut
     rejected = effects.count("rejects") or int(reading.verdict == "rejected")
     return unread, rejected, _loose(reading.robot), effects.count("drops") + silent
 
