@@ -22,7 +22,7 @@ Results = Mapping[str, Result]
 _MAX_STEPS = 3000  # of one submission
 # What it costs to read a text, and what a package costs in addition; to read changed elements costs one step.
 _TEXT_STEPS, _PACKAGE_STEPS = 2, 4
-_SAMPLES = 16  # positions of joints at which a check compares robots, for one step
+_SAMPLES = 10  # positions of joints at which a check compares robots, for one step
 _HARMFUL = ("rejects", "drops", "undetermined")
 
 
