@@ -9,7 +9,7 @@ from grader.grading.hints.trials import Trials
 from grader.submission.opening import read_submission
 from tests.examples import spread
 from tests.hints.trials import BASES, graded, search_for
-from tests.samples import ROOT, RUBRICS, reference
+from tests.samples import LAB6, ROOT, RUBRICS, reference
 from tests.work import limited_work
 
 REFERENCE = BASES["reference"].text
@@ -94,3 +94,12 @@ def test_positions_are_charged() -> None:
         return before - trials.left
 
     assert cost("motion-everywhere") >= cost("joint-1-axis") + 10
+
+
+def test_reading_of_broken_tags_is_charged() -> None:
+    """The search for the tags that are meant reads millions of characters of a short text: they count like gradings."""
+    broken = b'<<parent link="a"/>' + b"\xa4" * 102 + b"><<k1e308><c>E</a>"
+    submission = read_submission(broken, identity="student", path="my_robot.urdf")
+    results = graded(submission)
+    before = Trials(LAB6, submission, results).left
+    assert before - search_for(submission, results).trials.left > 600
