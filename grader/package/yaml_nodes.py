@@ -6,7 +6,7 @@ from typing import Any
 
 import yaml
 
-from grader.source import Location
+from grader.source import Location, Source
 
 _MAX_EVENTS = 100_000
 _MAX_ALIASES = 1000
@@ -25,7 +25,7 @@ class YamlFault(Exception):
 class YamlNode:
     """A value with its location: a text, a list or a mapping. An alias is the same object as its anchor."""
 
-    path: str
+    source: Source
     mark: Any  # PyYAML's; a Location is made only on demand
     value: "str | list[YamlNode] | dict[str, YamlNode]"
     quoted: bool = False  # a text in quotes, which is a string even if it is true or 1
@@ -33,7 +33,7 @@ class YamlNode:
     @property
     def location(self) -> Location:
         """Where it begins."""
-        return Location(self.path, self.mark.line + 1, self.mark.column + 1)
+        return _location(self.source, self.mark)
 
     def get(self, *keys: str) -> "YamlNode | None":
         """Return the node at a path of keys, None where there is none."""
@@ -57,13 +57,13 @@ def read_yaml(data: bytes, path: str) -> YamlNode:
     """Return the first document of a YAML text; an empty text is an empty mapping. Raises YamlFault."""
     is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
     text = data.decode("utf-16" if is_wide else "utf-8", "replace")
+    source = Source(path, text)
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
-        return _compose(yaml.parse(text, Loader=loader), path)
+        return _compose(yaml.parse(text.removeprefix("\ufeff"), Loader=loader), source)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        last = text.count("\n") + 1  # at the end of a text without a newline, the parser reports one line more
-        location = Location(path, min(mark.line + 1, last), mark.column + 1) if mark else Location(path, 1, 1)
+        location = _location(source, mark) if mark else Location(path, 1, 1)
         message = " ".join(filter(None, (error.context, error.problem)))
         raise YamlFault(message or "this is not YAML", location) from None
     except yaml.YAMLError as error:  # such as characters that YAML forbids
@@ -72,10 +72,15 @@ def read_yaml(data: bytes, path: str) -> YamlNode:
         raise YamlFault("the file is too deeply nested", Location(path, 1, 1)) from None
 
 
-def _compose(events: Iterator[yaml.Event], path: str) -> YamlNode:
-    root = YamlNode(path, next(events).start_mark, {})
+def _location(source: Source, mark: Any) -> Location:
+    """Return the location of a mark by its offset: the lines of YAML also end at separators of Unicode."""
+    return source.at(min(mark.index + source.text.startswith("\ufeff"), len(source.text)))
+
+
+def _compose(events: Iterator[yaml.Event], source: Source) -> YamlNode:
+    root = YamlNode(source, next(events).start_mark, {})
     open_nodes: list[tuple[YamlNode, list[str]]] = []  # each with the key in it whose value follows
-    anchors = _Anchors(path)
+    anchors = _Anchors(source)
     first = True
     for count, event in enumerate(events, 1):
         if count > _MAX_EVENTS:
@@ -101,12 +106,12 @@ def _compose(events: Iterator[yaml.Event], path: str) -> YamlNode:
 class _Anchors:
     """The nodes that aliases stand for, by the names of their anchors."""
 
-    def __init__(self, path: str) -> None:
-        self._path, self._nodes, self._aliases = path, dict[str, YamlNode](), 0
+    def __init__(self, source: Source) -> None:
+        self._source, self._nodes, self._aliases = source, dict[str, YamlNode](), 0
 
     def node(self, event: yaml.NodeEvent) -> YamlNode:
         """Return the node of an event. Raises YamlFault for an alias without an anchor, and for too many."""
-        node = YamlNode(self._path, event.start_mark, {})
+        node = YamlNode(self._source, event.start_mark, {})
         if isinstance(event, yaml.ScalarEvent):
             node.value, node.quoted = event.value, event.style in ("'", '"')
         elif isinstance(event, yaml.SequenceStartEvent):

@@ -10,7 +10,7 @@ from itertools import groupby
 from typing import NamedTuple
 
 from grader.problems import Problem
-from grader.source import Location, Source
+from grader.source import Source
 from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
 from grader.xacro import catalogue
 from grader.xacro.expanded_source import ExpandedSource
@@ -18,7 +18,7 @@ from grader.xacro.expander import STOPS, Expander, Open
 from grader.xacro.files import Files, Workspace
 from grader.xacro.nodes import XacroNode, read_nodes, recovered_nodes
 from grader.xacro.tags import CALL, HANDLERS
-from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, make_element
+from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, error_location, make_element
 
 __all__ = ("Expansion", "Open", "Workspace", "expand")
 
@@ -53,7 +53,7 @@ def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str,
     plain, budget = Source(path, data.decode("utf-8", "surrogateescape")), workspace.budget
     before = budget.used
     try:
-        source, refused, is_recovered = _read(data, path, budget)
+        source, refused, is_recovered = _read(data, plain, budget)
     except ExpressionFails as error:
         problem = Problem(catalogue.XACRO_NOT_XML, f"{error}; {STOPS}", plain.at(0))
         return Expansion(None, plain, (problem,), (), {})
@@ -78,22 +78,18 @@ def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str,
     )
 
 
-def _read(data: bytes, path: str, budget: Budget) -> tuple[XacroNode | None, tuple[Problem, ...], bool]:
+def _read(data: bytes, text: Source, budget: Budget) -> tuple[XacroNode | None, tuple[Problem, ...], bool]:
     """Return the elements of a file, what xacro refuses in it, and whether they are only what broken tags leave."""
+    path = text.path
     try:
         return read_nodes(data, path, budget), (), False
     except XMLSyntaxError as error:
-        refused = (_not_xml(error, path),)
+        message = f"xacro needs well-formed XML: {error.msg}; {STOPS}"
+        refused = (Problem(catalogue.XACRO_NOT_XML, message, error_location(error, text)),)
     with suppress(XMLSyntaxError):
         return read_nodes(data, path, budget, is_repaired=True), refused, False
     recovered, assumed = recovered_nodes(data, path, budget)
     return recovered, (*refused, *assumed) if recovered is not None else refused, True
-
-
-def _not_xml(error: XMLSyntaxError, path: str) -> Problem:
-    line, column = error.position
-    location = Location(path, max(line or 1, 1), max(column or 1, 1))
-    return Problem(catalogue.XACRO_NOT_XML, f"xacro needs well-formed XML: {error.msg}; {STOPS}", location)
 
 
 def _element(root: XacroNode, nodes: list[XacroNode], unresolved: dict[Element, Unresolved]) -> Element:

@@ -102,6 +102,13 @@ def is_plain(data: bytes) -> bool:
     )
 
 
+def error_location(error: Exception, source: Source) -> Location:
+    """Return where an XML parser stopped, within the text: libxml2 counts columns beyond the end of a line."""
+    line, column = getattr(error, "position", (1, 1))
+    line = min(max(line or 1, 1), source.text.count("\n") + 1)
+    return Location(source.path, line, min(max(column or 1, 1), len(source.line(line)) + 1))
+
+
 class XmlFault(Exception):
     """A text that is not XML, with the location of the error."""
 
@@ -118,12 +125,10 @@ class XmlFile:
         try:
             self.root = parse_xml(data)
         except (XMLSyntaxError, ValueError) as error:
-            line, column = getattr(error, "position", (1, 1))
             message, *_ = str(getattr(error, "msg", error)).split(
                 ", line "
             )  # lxml adds the position to libxml2's message
-            location = Location(source.path, max(line, 1), max(column, 1))
-            raise XmlFault(" ".join(message.split()), location) from None
+            raise XmlFault(" ".join(message.split()), error_location(error, source)) from None
         self._indices = {element: index for index, element in enumerate(self.root.iter("*"))}
 
     def location(self, element: Element) -> Location:

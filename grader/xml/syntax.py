@@ -1,6 +1,6 @@
 """Edits that make a broken XML text readable: a search over few operations near the place where the parser stops."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from heapq import nsmallest
 from itertools import islice
 from typing import NamedTuple
@@ -26,9 +26,14 @@ class Way(NamedTuple):
     after: str
 
 
-def syntax_proposals(source: Source, *, is_urdf: bool, is_strict: bool) -> Iterator[Proposal]:
-    """Yield edits that make a text readable, the most plausible first; none where none brings the parser further."""
-    search = _SyntaxSearch(Rules(is_strict, is_urdf))
+def syntax_proposals(
+    source: Source, *, is_urdf: bool, is_strict: bool, charge: Callable[[int], object] = lambda _: None
+) -> Iterator[Proposal]:
+    """Yield edits that make a text readable, the most plausible first; none where none brings the parser further.
+
+    `charge` gets the number of characters that each step of the search has read.
+    """
+    search = _SyntaxSearch(Rules(is_strict, is_urdf), charge)
     first = list(search.steps(source.text))
     if first:
         yield _join(source, [ways[0] for ways in first])
@@ -52,13 +57,16 @@ def _join(source: Source, ways: list[Way]) -> Proposal:
 class _SyntaxSearch:
     """A search, whose work is bounded."""
 
-    def __init__(self, rules: Rules) -> None:
-        self.rules, self.left = rules, _MAX_READ
+    def __init__(self, rules: Rules, charge: Callable[[int], object]) -> None:
+        self.rules, self.left, self._charge = rules, _MAX_READ, charge
 
     def steps(self, text: str) -> Iterator[list[Way]]:
         """Yield the ways to bring the parser further, the best first, until the text can be read."""
         for _ in range(_MAX_ERRORS):
-            if not (ways := self._ways(text)):
+            before = self.left
+            ways = self._ways(text)
+            self._charge(before - self.left)
+            if not ways:
                 return
             yield ways
             text = ways[0].after

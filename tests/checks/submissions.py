@@ -36,7 +36,7 @@ class Submitted:
     @cached_property
     def submission(self) -> Submission:
         """Return the submission that the grader reads from the files."""
-        files = [_file(path, self.data(path)) for path in self.files if not path.startswith("install/")]
+        files = [file_of(path, self.data(path)) for path in self.files if not path.startswith("install/")]
         tree = make_tree(
             "submission",
             files,
@@ -131,7 +131,9 @@ def jpeg(width: int = 800, height: int = 600) -> bytes:
     )
 
 
-def _file(path: str, data: bytes) -> File:
+def file_of(path: str, data: bytes) -> File:
+    """Return a file with these bytes."""
+
     def read(limit: int, *, first: bool = False) -> bytes:
         if len(data) > limit and not first:
             raise InputError(f"{path} is larger than {limit} bytes")

@@ -1,14 +1,20 @@
 """The search for hints ends: large and hostile robots cost a bounded number of steps, and no more work than those."""
 
+import re
+from itertools import count
+
 import pytest
 
+from grader.grading.hints.trials import Trials
 from grader.submission.opening import read_submission
 from tests.examples import spread
 from tests.hints.trials import BASES, graded, search_for
+from tests.samples import LAB6, ROOT, RUBRICS, reference
 from tests.work import limited_work
 
 REFERENCE = BASES["reference"].text
 MANY = 150
+_ARM = (ROOT / "rubrics" / "arm" / "arm.urdf").read_text()
 LOST = REFERENCE.replace("0.15 0 0.225", "0.15 0 0.2")
 
 
@@ -55,3 +61,45 @@ def test_a_large_robot_is_searched_with_bounded_work(name: str) -> None:
     assert any(result.is_lost for result in results.values())
     with limited_work(40_000_000):
         search_for(submission, results)
+
+
+def _arm_with_other_joints() -> str:
+    """Return the arm with each origin 1 cm higher than the one before, and all axes askew."""
+    numbers = count(1)
+
+    def higher(found: re.Match[str]) -> str:
+        return f"{found[1]}{float(found[2]) + 0.01 * next(numbers)}"
+
+    moved = re.sub(r'(<origin xyz="[^" ]* [^" ]* )([-.\d]+)', higher, _ARM)
+    return re.sub(r'(?<=<axis xyz=")[^"]*', "0.3 0.5 0.7", moved)
+
+
+@pytest.mark.exhaustive
+def test_a_check_at_many_positions_is_searched_with_bounded_work() -> None:
+    """An arm whose links all move in another way takes no more work than a small robot."""
+    submission = read_submission(_arm_with_other_joints().encode(), identity="student", path="arm.urdf")
+    results = graded(submission, RUBRICS["arm"])
+    with limited_work(25_000_000):
+        search_for(submission, results, RUBRICS["arm"])
+
+
+def test_positions_are_charged() -> None:
+    """A criterion that compares the robot with the reference at 100 positions costs ten times as much as another."""
+    arm = RUBRICS["arm"]
+    trials = Trials(arm, reference(arm), graded(reference(arm), arm))
+
+    def cost(name: str) -> int:
+        before = trials.left
+        trials.passing(trials.start, (), (name,))
+        return before - trials.left
+
+    assert cost("motion-everywhere") >= cost("joint-1-axis") + 10
+
+
+def test_reading_of_broken_tags_is_charged() -> None:
+    """The search for the tags that are meant reads millions of characters of a short text: they count like gradings."""
+    broken = b'<<parent link="a"/>' + b"\xa4" * 102 + b"><<k1e308><c>E</a>"
+    submission = read_submission(broken, identity="student", path="my_robot.urdf")
+    results = graded(submission)
+    before = Trials(LAB6, submission, results).left
+    assert before - search_for(submission, results).trials.left > 600

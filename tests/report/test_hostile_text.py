@@ -22,6 +22,7 @@ from grader.report.formats import Format, InspectFormat, render
 from grader.source import Base
 from grader.submission.opening import read_submission
 from tests.examples import examples, spread
+from tests.report.harmless import is_harmless
 from tests.report.hostile import BREAKING, PIECES, SLOTS, TEXT, UNASKED, name_of, write_submission
 from tests.report.readers import reader
 from tests.report.reports import hinted
@@ -30,25 +31,9 @@ from tests.report.workflow_commands import commands
 from tests.robot.edge_cases import EDGE_CASES, EdgeCase
 from tests.samples import LAB6, SAMPLES, opened
 
-ANNOTATIONS = {"error", "warning", "notice"}
-PROPERTIES = {"file", "line", "endLine", "col", "endColumn", "title"}
 TEXTS = st.dictionaries(st.sampled_from(SLOTS + BREAKING), TEXT, min_size=1, max_size=6)
 EVERYWHERE = {slot: "".join(PIECES[::7]) for slot in SLOTS}
 FENCES = {"answer": "`" * 300 + "\n![x](http://e.org/y.png)\n# h\n", "file": "`" * 90 + "![x](y)", "box": "`" * 90}
-
-
-def is_harmless(text: str, kind: Format | None = None) -> None:
-    """Assert that a text is visible UTF-8 without GitHub commands, except annotations in their own format."""
-    text.encode()
-    unseen = {character for character in text if not character.isprintable()} - {"\n"}
-    assert unseen <= ({"\u2060"} if kind is Format.MARKDOWN else set())  # it keeps mentions from being found
-    found = commands(text) if kind is not Format.MARKDOWN else []
-    assert kind is Format.GITHUB or not found
-    assert {command.name for command in found} <= ANNOTATIONS
-    for command in found:
-        keys = [key for key, _ in command.properties]
-        assert set(keys) <= PROPERTIES
-        assert len(set(keys)) == len(keys)
 
 
 def harmless_structures(report: Report, base: Base) -> dict[Format, Any]:

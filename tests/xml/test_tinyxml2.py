@@ -162,22 +162,36 @@ def test_values_with_line_breaks_are_not_plain(values: list[str], quote: str, ga
     assert_same_if_plain(f"<robot{attributes}><!--{between}-->{between}<b{attributes}/>{between}</robot>")
 
 
-@examples(60)
-@given(raw=data)
-def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
-    """Also for text without meaning, except names that XML and TinyXML2 read differently."""
-    assume(is_plain(raw))
+def assert_alike_if_plain(raw: bytes) -> None:
+    """Assert the same of any bytes, except of names that XML and TinyXML2 read differently, and of deep trees."""
+    if not is_plain(raw):
+        return
     try:
         root = etree.fromstring(raw, _PARSER)
     except etree.XMLSyntaxError:
         return
-    if root.tag != "robot":
+    if root.tag != "robot" or root.xpath("//*[count(ancestor::*) > 30]"):  # deeper ones are not translated
         return
     translated = tree(etree.fromstring(Scanner(decoded(raw)).scan().xml, _PARSER))
     for (tag, attributes), (other, others) in zip(tree(root), translated, strict=True):
         if tag.isascii() and tag.replace("_", "a").isalnum() and not tag.startswith("xml"):
             assert tag == other
-        assert {name: value for name, value in attributes.items() if name.isascii() and name.isalnum()} == others
+        assert _plain_names(attributes) == _plain_names(others)
+
+
+def _plain_names(attributes: dict[str, str]) -> dict[str, str]:
+    names = (
+        name for name in attributes if name.isascii() and name.isalnum() and len(name) < 60
+    )  # longer ones are omitted
+    return {name: attributes[name] for name in names}
+
+
+@examples(60)
+@given(raw=data)
+def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
+    """Also for text without meaning, except names that XML and TinyXML2 read differently."""
+    assume(is_plain(raw))
+    assert_alike_if_plain(raw)
 
 
 @examples(30)

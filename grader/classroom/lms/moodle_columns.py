@@ -84,7 +84,7 @@ def find_columns(table: Table, column: str, feedback_column: str, shown: str) ->
         raise InputError(f"cannot detect the column of {shown} with the grades, name it with --column; {_list(titles)}")
     maximum = grade + 1
     maxima = [read_lms_points(row.value(maximum)) or 0 for row in rows if len(row.cells) == len(titles)]
-    if not rows or any(value <= 0 for value in maxima):
+    if not rows or maximum == len(titles) or any(value <= 0 for value in maxima):
         reason = "an assignment that is graded by a scale takes no points"
         raise InputError(f"{shown} has no number as the maximum grade after {titles[grade]!r}: {reason}")
     between = range(identifier + 1, grade)

@@ -25,6 +25,7 @@ _MAX_VALUES = 40  # edits of one step that are graded
 _MAX_CANDIDATES = 150  # edits of one step that are read
 _MAX_MOVED = 6  # elements that are moved elsewhere
 _MAX_BYTES = 400_000  # of a file: nobody types a larger one
+_CHARACTERS = 5_000  # that the search for broken tags reads in the time of one step
 _SILENT = (MISSPELT, COLOUR_COUNT, IGNORED_REST, SEVERAL_ROOTS)  # ROS 2 loads the file, without what was meant
 
 Defects = tuple[int, ...]
@@ -42,9 +43,8 @@ def defects(reading: Reading) -> Defects:
     """Return how much ROS 2 does not read, rejects, leaves unconnected, and drops or ignores: less is better."""
     effects = [problem.kind.effect for problem in reading.problems]
     unread = remaining(reading.source.text) if reading.root is None else -1
-    silent = sum(problem.kind in _SILENT for problem in reading.problems) + (
-        remaining(reading.source.text, is_urdf=True) >= 0
-    )
+    is_cut = unread >= 0 or remaining(reading.source.text, is_urdf=True) >= 0
+    silent = sum(problem.kind in _SILENT for problem in reading.problems) + is_cut
     rejected = effects.count("rejects") or int(reading.verdict == "rejected")
     return unread, rejected, _loose(reading.robot), effects.count("drops") + silent
 
@@ -80,7 +80,7 @@ def _steps(trials: Trials, reference: Draft | None) -> Iterator[LoadingStep]:
             or trials.left < reserve
         ):
             return
-        step = _best(trials, state, reading, islice(_candidates(reading, reference), _MAX_CANDIDATES))
+        step = _best(trials, state, reading, islice(_candidates(trials, reading, reference), _MAX_CANDIDATES))
         if step is None:
             return
         yield step
@@ -97,10 +97,14 @@ def _reading(state: State) -> Reading | None:
     return urdf.loaded
 
 
-def _candidates(reading: Reading, reference: Draft | None) -> Iterator[Proposal]:
+def _candidates(trials: Trials, reading: Reading, reference: Draft | None) -> Iterator[Proposal]:
     """Yield the edits that may be the next step, the most plausible first: of the text, then of its elements."""
+
+    def charge(characters: int) -> None:
+        trials.charge(characters // _CHARACTERS)
+
     is_strict = any(problem.kind.is_before_ros for problem in reading.problems)  # xacro, which reads XML only
-    yield from syntax_proposals(reading.source, is_urdf=True, is_strict=is_strict)
+    yield from syntax_proposals(reading.source, is_urdf=True, is_strict=is_strict, charge=charge)
     draft = Draft.of(reading)
     if draft is not None:
         difference = RobotDifference(draft, reference or draft)

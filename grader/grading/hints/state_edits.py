@@ -53,6 +53,7 @@ class QuickGrading:
     def results(self, sets: Iterable[Set], wanted: Collection[str]) -> dict[str, Result]:
         """Return the results of criteria with other values, charged to the trials. Raises NoTrialsLeft."""
         self._trials.charge(self._cost)
+        self._trials.charge_checks(wanted)
         submission = self._state.submission
         urdf = submission.urdf
         assert isinstance(urdf, Read)
@@ -175,4 +176,6 @@ def _fewer(piece: Piece) -> Iterator[list[Set]]:
         old, new = values_of(one.element.get(one.attribute) if one.element is not None else None), values_of(one.value)
         off = [index for index, pair in enumerate(zip(old, new, strict=False)) if pair[0] != pair[1]]
         for index in off if len(old) == len(new) and len(off) > 1 else ():
-            yield [one._replace(value=format_numbers((*new[:index], old[index], *new[index + 1 :])))]
+            value = format_numbers((*new[:index], old[index], *new[index + 1 :]))
+            if value != one.value:  # a number that is not finite, or has more digits, differs all the same
+                yield [one._replace(value=value)]

@@ -1,12 +1,13 @@
 """Try edits of a submission: which criteria pass with them, and whether the whole proves it."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from decimal import Decimal
 from typing import NamedTuple
 
 from grader.edits import Proposal, composed
 from grader.errors import InputError
+from grader.grading.criterion import Criterion
 from grader.grading.deciding import decide
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
@@ -21,6 +22,7 @@ Results = Mapping[str, Result]
 _MAX_STEPS = 3000  # of one submission
 # What it costs to read a text, and what a package costs in addition; to read changed elements costs one step.
 _TEXT_STEPS, _PACKAGE_STEPS = 2, 4
+_SAMPLES = 10  # positions of joints at which a check compares robots, for one step
 _HARMFUL = ("rejects", "drops", "undetermined")
 
 
@@ -63,6 +65,7 @@ class Trials:
         parts = {part.id for part in rubric.parts if part.needs != "files"}
         own = {name: result for name, result in results.items() if result.criterion.part in parts}
         self.start = State(submission, (), own)
+        self._steps = {criterion.id: _steps_of(criterion) for criterion in rubric.criteria}
         self.left = 0 if submission.is_costly else _MAX_STEPS
         self.faults: list[str] = []  # the types of exceptions
 
@@ -79,6 +82,7 @@ class Trials:
     def passing(self, state: State, edits: Edits, wanted: Collection[str]) -> frozenset[str]:
         """Return those of the wanted criteria that pass with edits, at a quick look. Raises NoTrialsLeft."""
         edited = self.edit(state, edits)
+        self.charge_checks(wanted)
         results = decide(self.rubric, edited, wanted) if edited is not None else ()
         return frozenset(result.criterion.id for result in results if result.outcome.status == "passed")
 
@@ -97,6 +101,7 @@ class Trials:
         results: dict[str, Result] = {}
         for result in decide(self.rubric, edited, before):
             name = result.criterion.id
+            self.charge_checks((name,))
             results[name] = result
             if is_worse(before[name], result):
                 return State(edited, edits, results, name)
@@ -131,11 +136,23 @@ class Trials:
     def _charge_reading(self, submission: Submission) -> None:
         self.charge(_TEXT_STEPS * (1 + submission.cost))
 
+    def charge_checks(self, names: Iterable[str]) -> None:
+        """Charge the checks of criteria that take longer than others. Raises NoTrialsLeft."""
+        self.charge(sum(self._steps[name] for name in names))
+
     def charge(self, steps: int) -> None:
         """Charge steps. Raises NoTrialsLeft."""
         self.left -= steps
         if self.left < 0:
             raise NoTrialsLeft
+
+
+def _steps_of(criterion: Criterion) -> int:
+    """Return what the checks of a criterion cost besides reading a text: nothing unless they sample positions."""
+    checks = [(criterion.check, criterion.arguments)]
+    checks += [criterion.carried[1:]] if criterion.carried is not None else []
+    sampling = [(check.parameters["samples"], given) for check, given in checks if "samples" in check.parameters]
+    return sum(int(given.get("samples", parameter.default)) // _SAMPLES for parameter, given in sampling)
 
 
 def _new_problems(before: Submission, after: Submission) -> bool:

@@ -131,7 +131,7 @@ def _wheel(
     reach = max(shape.size) / 2 if isinstance(shape, Box) else getattr(shape, "radius", 0.1)
     return {
         "joint": wheel.joint,
-        "parent": links[joint.parent],
+        "parent": links.get(joint.parent, -1),
         "centre": _numbers(wheel.centre),
         "travel": _numbers(wheel.travel),
         "right": is_right and wheel.link not in failed,

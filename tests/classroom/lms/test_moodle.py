@@ -209,6 +209,7 @@ def test_a_workflow_a_marker_and_an_online_text() -> None:
             "no number as the maximum grade after 'Grade'",
         ),
         (b"Identifier,Full name,Grade,Maximum grade\nParticipant 1,Jane,,\n", "no number as the maximum grade"),
+        (b"Identifier,Full name,Grade\nParticipant 1,Jane\n", "no number as the maximum grade after 'Grade'"),
         (b"Tunniste,Nimi,Arvosana\nOsallistuja 1,Jane,\n", "cannot detect the column.*'Arvosana'"),
     ],
 )

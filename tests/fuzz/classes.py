@@ -1,0 +1,232 @@
+"""Harnesses of what an instructor has: rubrics, rosters, the files of an LMS, and the requests to a review."""
+
+import io
+import re
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future
+from decimal import Decimal
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.manual_queue import ReviewScope
+from grader.classroom.intake.roster import entry_from_json, entry_to_json
+from grader.classroom.intake.roster_file import read_roster
+from grader.classroom.lms.filling import FillOptions
+from grader.classroom.lms.grades import LmsGrade
+from grader.classroom.review.session import ReviewSession
+from grader.classroom.tables import Table, TableRow, _rows, read_table
+from grader.errors import RubricError
+from grader.grading.grade import grade
+from grader.grading.rubric import read_rubric
+from grader.usecases import local_server
+from grader.usecases.grade_files import FILLERS, preflight_lines
+from grader.usecases.local_server import LocalServer
+from grader.usecases.review_page import ReviewPage
+from tests.classroom.gradebooks import ROSTER, graded_as, lab, lab_text, record_run
+from tests.classroom.lms.enrolled_class import CLASS
+from tests.classroom.lms.test_round_trips import blackboard_file, brightspace_file, canvas_file, moodle_file
+from tests.fuzz.harness import GUARD, check_message, user_errors
+from tests.samples import LAB6, reference
+
+_SOME = CLASS[:10]
+_OUT_OF = Decimal(11)
+
+
+def rubric(data: bytes) -> None:
+    """A rubric is refused with a line for each mistake, or grades a robot without a fault of the grader."""
+    try:
+        found = read_rubric(data, Path("rubrics/fuzzed.toml"))
+    except RubricError as error:
+        assert error.complaints
+        for complaint in error.complaints:
+            check_message(complaint)
+            assert complaint.startswith("rubrics/fuzzed.toml"), complaint
+        return
+    with user_errors():  # a reference that does not exist
+        report = grade(found, reference(LAB6))
+        assert not report.fault, [result.traceback for result in report.results if result.traceback]
+        assert 0 <= report.score <= report.max_score + report.bonus
+
+
+def rubrics() -> Iterator[bytes]:
+    """Yield small rubrics."""
+    yield lab_text().encode()
+    yield lab_text("due = 2026-09-10T12:00:00Z\npercent_per_day = 10\nfloor_percent = 40").encode()
+    whole = LAB6.data.decode()
+    start, *rows = whole.split("[[criterion]]")
+    yield from (f"{start}[[criterion]]{row}".encode() for row in rows)
+
+
+def roster(data: bytes) -> None:
+    """A roster is refused, or has students with different keys, each of whom is found again by it."""
+    path = Path(GUARD.folder, "roster.csv")
+    path.write_bytes(data)
+    with user_errors():
+        found = read_roster(path)
+        keys = [student.key for student in found.students]
+        assert len({*keys}) == len(keys)
+        assert all(keys)
+        for note in found.notes:
+            check_message(note)
+        for index, entry in enumerate(found.entries):
+            assert entry_from_json(entry_to_json(entry)) == entry
+            assert found.entry(entry.student.key) is entry
+            match = found.match(entry.student)
+            assert match.position in (index, None)
+
+
+def rosters() -> Iterator[bytes]:
+    """Yield rosters in several forms."""
+    yield from (ROSTER.encode(), ROSTER.replace(",", ";").encode("cp1252"), ROSTER.encode("utf-16"))
+    yield b"Last name,First name,Group,Section,Due,Extension,Late,Status\nAsh,Ann,team 1,A,2026-09-10,2,no,Submitted - 2 hours late\n"
+    yield b"Identifier,Full name,Email address,Status\nParticipant 5001,Ann Ash,a@uni.example,Submitted for grading - 1 day 2 hours late\n"
+    yield canvas_file({one.key: "" for one in _SOME})
+
+
+def lms(data: bytes, name: str) -> None:
+    """A file of an LMS is refused, or filled: rows are removed, and of the others only grade and feedback change."""
+    grades = [LmsGrade(one.student, one.total, "<p>Well done.</p>" * (name == "moodle"), "is open") for one in _SOME]
+    with user_errors():
+        table = read_table(data, "lms.csv")
+        assert table.encoded() == data
+        filled = FILLERS[name](data, grades, FillOptions(_OUT_OF, ("small", "A small lab"), shown="lms.csv"))
+        text = filled.data.removeprefix(table.bom).decode(table.encoding)  # as what it was read, whatever is left of it
+        _check_filled(table, _rows(text, table.delimiter, "lms.csv"), filled.preflight.column)
+        for line in preflight_lines(filled.preflight):
+            assert line.isprintable(), line
+
+
+def _check_filled(before: Table, after: Sequence[TableRow], column: str) -> None:
+    """Assert that the rows are some of those before, in their order; the grade may differ, and one column for feedback."""
+    grade = {index for index, title in enumerate(before.titles) if title == column}
+    assert any(_are_some(before, after, {*grade, other}) for other in (-1, *range(len(before.titles))))
+
+
+def _are_some(before: Table, after: Sequence[TableRow], changed: set[int]) -> bool:
+    """Return whether rows are some of a table's, in their order, but for these columns."""
+    kept, rest = ([_without(row, changed) for row in rows if row.cells] for rows in (after, before.rows))
+    rows = iter(rest)
+    return all(any(row == old for old in rows) for row in kept)
+
+
+def _without(row: TableRow, changed: set[int]) -> list[str]:
+    return ["" if index in changed else cell.raw for index, cell in enumerate(row.cells)]
+
+
+_CELLS = {one.key: ("", "1.00", "")[one.number % 3] for one in _SOME}
+LMS_SEEDS: dict[str, Callable[[], list[bytes]]] = {
+    "canvas": lambda: [canvas_file(_CELLS), canvas_file(_CELLS, only=True)],
+    "moodle": lambda: [moodle_file(_CELLS, {one.key: "<p>kept</p>" for one in _SOME[:2]})],
+    "blackboard": lambda: [blackboard_file(_CELLS), blackboard_file(_CELLS).decode("utf-16").encode()],
+    "brightspace": lambda: [brightspace_file(_CELLS)],
+}
+LMS = {name: partial(lms, name=name) for name in LMS_SEEDS}
+
+
+# --- The review server -------------------------------------------------------------------------------------------------
+
+_STATUSES = {100, 200, 302, 400, 403, 404, 405, 408, 411, 413, 414, 415, 421, 431, 503, 505}
+_START = b"POST /t/1 HTTP/1.1\r\nHost: 127.0.0.1:80\r\nOrigin: http://127.0.0.1:80\r\nContent-Type: application/json\r\nContent-Length: "
+_FROM_PAGE = (b"/t/", b"http://", b"application/json", b"127.0.0.1:80")
+
+
+def requests(data: bytes) -> None:
+    """Every request has an answer that is no fault; only what the page itself sends changes a mark."""
+    server, book = _server()
+    before = _marks(book)
+    connection = _Connection(data)
+    local_server._Handler(connection, ("127.0.0.1", 1), server)  # type: ignore[arg-type]
+    for status in re.findall(rb"(?:\A|\n)HTTP/1\.1 (\d{3}) ", bytes(connection.sent)):
+        assert int(status) in _STATUSES, connection.sent
+    if _marks(book) != before:
+        assert all(part in data.lower() for part in _FROM_PAGE)
+        if _marks(book) > 50:
+            _server.cache_clear()
+
+
+class _Connection:
+    """A connection whose client has sent everything that it sends."""
+
+    def __init__(self, data: bytes) -> None:
+        self._data, self.sent = data, bytearray()
+
+    def makefile(self, _mode: str, _size: int) -> io.BytesIO:
+        return io.BytesIO(self._data)
+
+    def sendall(self, data: bytes) -> None:
+        self.sent += data
+
+    def settimeout(self, _seconds: float) -> None:
+        """There is nothing to wait for."""
+
+
+class _Server(LocalServer):
+    """A server without a port."""
+
+    def server_bind(self) -> None:
+        self.server_name, self.server_port = local_server.HOST, 80
+
+    def server_activate(self) -> None:
+        """Nobody can connect."""
+
+
+class _AtOnce:
+    """An executor that does its tasks at once."""
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> "Future[Any]":
+        found: Future[Any] = Future()
+        try:
+            found.set_result(function(*arguments))
+        except Exception as error:  # noqa: BLE001  it is the task's
+            found.set_exception(error)
+        return found
+
+
+@cache
+def _server() -> tuple[LocalServer, Gradebook]:
+    """Return a server of a review with three items, and its gradebook."""
+    path = Path(GUARD.folder, "book.db")
+    for ending in ("", "-wal", "-shm"):
+        path.with_name(f"book.db{ending}").unlink(missing_ok=True)
+    book = Gradebook(path, create=True)
+    record_run(book, lab(), [graded_as(lab(), key, "ppp??", key) for key in ("anna", "ben")])
+    pool: Any = _AtOnce()
+    page = ReviewPage(ReviewSession(Grades(book, answers=True), ReviewScope("", "Kim")), book, pool)
+    server = _Server(page, pool, 80)
+    server.socket.close()
+    server.token = "t"
+    return server, book
+
+
+def _marks(book: Gradebook) -> int:
+    return int(next(iter(book.rows("SELECT count(*) FROM mark")))[0])
+
+
+def sent_requests() -> Iterator[bytes]:
+    """Yield requests as a browser sends them, and others."""
+    _server.cache_clear()
+    for path in ("/t/", "/t/1", "/t/2/picture/1", "/t/1/report", "/t/end", "/favicon.ico", "/", "/t/99"):
+        yield f"GET {path} HTTP/1.1\r\nHost: localhost:80\r\n\r\n".encode()
+    item = re.search(rb'"item":"(\w+)"', _answer(b"GET /t/1 HTTP/1.1\r\nHost: localhost:80\r\n\r\n"))
+    mark = b'{"do":"mark","points":"2","comment":"good","shown":0,"item":"%b"}' % (item[1] if item else b"")
+    bodies = (
+        mark,
+        b'{"do":"next"}',
+        b'{"do":"undo"}',
+        b'{"do":"find","student":"ben"}',
+        b"[]",
+        b'{"do":"keep"}',
+        b'{"do":"split"}',
+    )
+    other = b'{"do":"filter","criterion":"essay","section":"","state":"open"}'
+    yield from (_START + b"%d\r\n\r\n%b" % (len(body), body) for body in (*bodies, other))
+    yield b"HEAD /t/1 HTTP/1.1\r\nHost: 127.0.0.1:80\r\n\r\nOPTIONS * HTTP/1.1\r\n\r\n"
+
+
+def _answer(data: bytes) -> bytes:
+    connection = _Connection(data)
+    local_server._Handler(connection, ("127.0.0.1", 1), _server()[0])  # type: ignore[arg-type]
+    return bytes(connection.sent)

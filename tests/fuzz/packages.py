@@ -1,0 +1,143 @@
+"""Harnesses of the files of a ROS 2 package, each beside files that it can name."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+
+from grader.files.tree import Tree, make_tree
+from grader.package.cmake import read_cmake
+from grader.package.launch.reader import read_launch
+from grader.package.manifest import read_manifest
+from grader.package.rviz import read_rviz
+from grader.package.setup_py import read_setup
+from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.source import Location
+from grader.static_python.parse import Position, parse
+from tests.checks.submissions import file_of
+from tests.fuzz.harness import check_location, check_message, decoded
+from tests.package.my_robot import FILES
+
+_TREE = make_tree("my_robot", [file_of(path, text.format(path).encode()) for path, text in FILES.items()], ())
+_LAUNCHES = {
+    "share/my_robot/launch/other.launch.py": b"from launch import LaunchDescription\n"
+    b"def generate_launch_description():\n    return LaunchDescription([])\n",
+    "share/my_robot/launch/other.launch.xml": b'<launch><include file="$(dirname)/other.launch.yaml"/></launch>',
+    "share/my_robot/launch/other.launch.yaml": b"launch:\n- arg: {name: a, default: b}\n",
+}
+
+
+def with_file(path: str, data: bytes) -> Tree:
+    """Return the files of the package with another one."""
+    kept = [file for file in _TREE.files.values() if file.path != path]
+    return make_tree("my_robot", [*kept, file_of(path, data)], ())
+
+
+def setup(data: bytes) -> None:
+    """What a setup.py installs are files of the package, at paths below the prefix; what is wrong has a place."""
+    text = _python_text(data)
+    code = parse(data, "setup.py")
+    found = read_setup(code, with_file("setup.py", data))
+    for copy in found.copies:
+        assert copy.source in {*_TREE.files, "setup.py"}
+        assert ".." not in copy.target.split("/"), copy
+    if found.fault is not None:
+        _check(found.fault.message, found.fault.location, text)
+    places: list[tuple[str, Position]] = [(fault.message, fault.at) for fault in found.stops]
+    places += [(fault.message, fault.at) for fault in found.faults]
+    places += [(it.reason, it.at) for it in found.unknown]
+    places += [(empty.pattern, empty.at) for empty in found.empty if empty.pattern]
+    for message, at in places:
+        _check(message, found.location(at), text)
+
+
+def launch(data: bytes, ending: str) -> None:
+    """A launch file of any language, and those that it includes, are evaluated; what is found has a place."""
+    path = f"launch/my.launch.{ending}"
+    found = read_launch(data, path, f"share/my_robot/{path}", lambda path: _opened(path, data, ending))
+    text = _TEXTS[ending](data)
+    faults = [*found.faults, *found.unknown, *([found.syntax] if found.syntax is not None else [])]
+    for fault in faults:
+        _check(fault.message, fault.location, text)
+    for reference in found.references:
+        assert reference.path is not None or reference.reason
+        check_location(reference.location, {path: text})
+    for node in (*found.nodes, *found.forgotten):
+        check_location(node.location, {path: text})
+    assert all(frame is None or frame[:1] != "/" for frame in found.frames_of("base_link"))
+
+
+def _opened(path: str, data: bytes, ending: str) -> tuple[bytes, str] | None:
+    if path.endswith(f"my.launch.{ending}"):
+        return data, f"launch/my.launch.{ending}"
+    return (_LAUNCHES[path], path.removeprefix("share/my_robot/")) if path in _LAUNCHES else None
+
+
+def cmake(data: bytes) -> None:
+    """What a CMakeLists.txt installs are files of the package, below the prefix."""
+    tree = with_file("CMakeLists.txt", data)
+    for target, source in read_cmake(tree).installed.items():
+        assert source in tree.files
+        assert ".." not in target.split("/")
+
+
+def manifest(data: bytes) -> None:
+    """A package.xml has a name and a build type, or problems with their places."""
+    found = read_manifest(data, "package.xml")
+    for problem in found.problems:
+        _check(problem.message, problem.location, decoded(data))
+    texts = {"package.xml": decoded(data)}
+    check_location(found.name_location, texts)
+    check_location(found.type_location, texts)
+    assert found.name is None or found.name.strip() == found.name != ""
+
+
+def rviz(data: bytes) -> None:
+    """An RViz file has displays and a frame, each with its place."""
+    found = read_rviz(data, "my.rviz")
+    texts = {"my.rviz": yaml_text(data)}
+    for problem in found.problems:
+        _check(problem.message, problem.location, texts["my.rviz"])
+    check_location(found.frame_location, texts)
+    for display in found.displays:
+        check_location(display.location, texts)
+        assert isinstance(display.enabled, bool)
+
+
+def yaml(data: bytes) -> None:
+    """YAML is read into values with places, or has a fault with one."""
+    texts = {"a.yaml": yaml_text(data)}
+    try:
+        root = read_yaml(data, "a.yaml")
+    except YamlFault as fault:
+        _check(str(fault), fault.location, texts["a.yaml"])
+        return
+    pending, seen = [root], set[int]()
+    while pending:
+        node = pending.pop()
+        if id(node) not in seen:
+            seen.add(id(node))
+            check_location(node.location, texts)
+            inside = node.value.values() if isinstance(node.value, dict) else node.items
+            pending += [it for it in inside if isinstance(it, YamlNode)]
+
+
+def yaml_text(data: bytes) -> str:
+    """Return the text of a YAML file."""
+    is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
+    return data.decode("utf-16" if is_wide else "utf-8", "replace")
+
+
+def _python_text(data: bytes) -> str:
+    return parse(data, "setup.py").source.text
+
+
+_TEXTS = {"py": _python_text, "xml": decoded, "yaml": yaml_text}
+
+
+def _check(message: str, location: Location, text: str) -> None:
+    check_message(message)
+    check_location(location, {location.path: text})
+
+
+LAUNCHES: Mapping[str, Callable[[bytes], None]] = {
+    ending: partial(launch, ending=ending) for ending in ("py", "xml", "yaml")
+}

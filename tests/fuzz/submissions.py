@@ -1,0 +1,88 @@
+"""Harnesses of whole submissions: grading, hints, the files that `--fix` writes, and every format of the report."""
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from unittest.mock import patch
+
+from grader.files.tree import make_tree
+from grader.grading.grade import grade
+from grader.grading.hints.trials import gains_of
+from grader.grading.report import Hint, Report
+from grader.grading.rubric import Rubric
+from grader.report.formats import Format, render
+from grader.source import Base
+from grader.submission.opening import read_submission, submission_of
+from grader.submission.submission import Submission
+from grader.usecases.hints import add_hints, files_to_fix, write_fix
+from tests.checks.submissions import file_of
+from tests.fuzz.harness import GUARD, check_location, check_message, decoded, files_of, user_errors
+from tests.golden.cases import CLASSROOM50
+from tests.hints.trials import with_edits
+from tests.report.harmless import is_harmless
+from tests.samples import RUBRICS
+
+
+def urdf(data: bytes, rubric: str) -> None:
+    """A URDF is graded; its hints gain what they promise and lose nothing, and `--fix` writes what they make of it."""
+    check_graded(RUBRICS[rubric], read_submission(data, identity="student", path="my_robot.urdf"), "my_robot.urdf")
+
+
+def package(data: bytes, rubric: str) -> None:
+    """A folder of files is graded, its hints hold, and `--fix` writes what they make of it."""
+    files = files_of(data)
+    tree = make_tree("student", [file_of(path, content) for path, content in files.items()], ())
+    with user_errors():
+        check_graded(RUBRICS[rubric], submission_of(tree, "student", RUBRICS[rubric].lab), "student")
+
+
+def check_graded(rubric: Rubric, submission: Submission, path: str) -> None:
+    """Assert what holds of every submission that is graded."""
+    rubric = replace(rubric, hints="edit")
+    report = grade(rubric, submission)
+    _check_report(report, submission)
+    warnings: list[str] = []
+    hinted, fix = add_hints(report, submission, None, warnings.append, is_fixed=True)
+    assert not warnings, warnings
+    assert [(it.criterion, it.outcome.status, it.points) for it in hinted.results] == [
+        (it.criterion, it.outcome.status, it.points) for it in report.results
+    ]
+    hints = {result.hint.edits: result.hint for result in hinted.results if result.hint is not None}
+    for hint in hints.values():
+        check_message(hint.message)
+        _check_hint(report, submission, hint)
+    assert fix.report.score >= report.score
+    with GUARD.watching(is_active=False), TemporaryDirectory() as folder, GUARD.watching():
+        target = Path(folder, "fix.urdf" if submission.is_single else "fix")
+        written = files_to_fix(target, path, hinted, fix, (), ())
+        check_message(write_fix(target, path, hinted, fix, written))
+        assert {it: it.read_bytes() for it in Path(folder).rglob("*") if it.is_file()} == written
+    with patch.dict(os.environ, CLASSROOM50):
+        for kind in Format:
+            is_harmless(render(hinted, kind, Base()), kind)
+
+
+def _check_report(report: Report, submission: Submission) -> None:
+    assert not report.fault, [result.traceback for result in report.results if result.traceback]
+    assert 0 <= report.score <= report.max_score + report.bonus
+    assert report.score + report.pending <= report.max_score + report.bonus
+    texts = {path: decoded(file.read(1 << 20)) for path, file in submission.whole_tree.files.items()}
+    if submission.is_single and submission.path is not None:
+        source = submission.source(submission.path)
+        texts = {submission.path: source.text} if source is not None else {}
+    for result in report.results:
+        check_message(result.outcome.message)
+        location = result.outcome.location
+        check_location(location, texts)
+    for problem in report.problems:
+        check_location(problem.location, texts)
+
+
+def _check_hint(report: Report, submission: Submission, hint: Hint) -> None:
+    """Assert that edits, applied by other code, make exactly the promised criteria pass, and cost none its points."""
+    results = {
+        result.criterion.id: result for result in grade(report.rubric, with_edits(submission, hint.edits)).results
+    }
+    assert all(results[before.criterion.id].points >= before.points for before in report.results)
+    assert hint.gains == gains_of({result.criterion.id: result for result in report.results}, results)
