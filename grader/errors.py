@@ -33,10 +33,12 @@ class MachineError(GraderError):
     """A fault of the machine while a submission is read, as of its disk: it says nothing about the submission."""
 
     @classmethod
-    def check(cls, error: BaseException, shown: str) -> None:
-        """Raise MachineError for the error of a file if the file is not the cause."""
-        if isinstance(error, OSError) and error.errno not in _OF_FILES:
-            raise cls(f"cannot read {shown}: {error.strerror}") from None
+    def check(cls, error: BaseException | None, shown: str) -> None:
+        """Raise MachineError for the error of a file, or of an archive, if the file is not the cause."""
+        while error is not None:
+            if isinstance(error, OSError) and error.errno not in _OF_FILES:
+                raise cls(f"cannot read {shown}: {error.strerror}") from None
+            error = error.__context__  # zipfile raises BadZipFile for a file that cannot be read
 
 
 class RubricError(GraderError):

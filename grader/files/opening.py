@@ -48,8 +48,10 @@ def outer_tree(path: Path, top: str = "") -> Tree | None:
     shown = shown_below(path, top)
     try:
         is_folder = path.is_dir()
-        if not is_folder and not os.path.lexists(path):
-            raise InputError(f"{shown} does not exist") if top else not_there(path)
+        if not is_folder:
+            path.lstat()
+    except (FileNotFoundError, NotADirectoryError):
+        raise InputError(f"{shown} does not exist") if top else not_there(path) from None
     except OSError as error:
         raise read_error(error, shown) from None
     except ValueError as error:

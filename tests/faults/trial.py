@@ -41,6 +41,7 @@ class Book(NamedTuple):
 
 
 _NO_BOOK = Book(True, (), frozenset())
+_CLASS_PAGE = "/index.html"
 _REMOVED = ("report.json",)  # what `--save` names is removed first: a run that is refused leaves no old report
 
 
@@ -49,6 +50,7 @@ class Bench:
 
     def __init__(self, top: Path, template: Path, shim: Shim) -> None:
         self.top, self._template, self._shim = top, template, shim
+        self.record: Path | None = None  # where the calls of commands are recorded
 
     def reset(self) -> None:
         """Restore the files."""
@@ -101,7 +103,7 @@ class Bench:
         (folder := self.top / "tmp").mkdir(exist_ok=True)
         before, tempfile.tempdir = tempfile.tempdir, str(folder)
         try:
-            with self._shim.armed(*fault):
+            with self._shim.armed(*fault) if self.record is None else self._shim.recording(self.record):
                 yield
         finally:
             tempfile.tempdir = before
@@ -182,6 +184,8 @@ def _of_files(
         found = state.get(name)
         if isinstance(after.get(name), Book) or found == after.get(name):
             continue
+        if name.endswith(_CLASS_PAGE) and found is not None and found.endswith(b"</html>\n"):
+            continue  # a picture of a robot on it may be missing
         if name not in before and name not in after:
             if kind != "unlink":
                 yield f"{name} is left behind"

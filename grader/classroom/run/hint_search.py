@@ -52,7 +52,9 @@ def _proven_hints(one: LossySubmission, rubric: Rubric) -> str | None:
 
 def _give_up(submission: LossySubmission, error: Exception) -> SearchedHints:
     """Return that there are no hints: searched again if another task or the machine may be why the search was lost."""
-    is_own_fault = error.is_own_fault if isinstance(error, WorkerError) else not isinstance(error, MachineError)
+    is_own_fault = (
+        error.is_own_fault if isinstance(error, WorkerError) else not isinstance(error, MachineError | OSError)
+    )
     return SearchedHints(submission.content, NO_HINTS if is_own_fault else None, "errored")
 
 

@@ -1,10 +1,12 @@
 """Worker processes on this machine: an executor as in `concurrent.futures` whose tasks end in any case."""
 
+import errno
 import gc
 import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
@@ -18,8 +20,10 @@ from grader.errors import GraderError
 
 MAX_MEMORY = 2 * 1024**3  # bytes for each worker
 NO_MEMORY = f"grading it needs more memory than a worker may use ({MAX_MEMORY // 1024**3} GiB)"
+_NOT_STARTED = "the worker processes cannot be started: there may be too many processes, or too little memory"
 _POOL_ENDED = "the worker processes ended"
-_EXIT_CHANNEL_BLOCKED = 1  # the exit code of a worker that waited too long for the channel to its parent
+# The exit codes of a worker that waited too long for the channel to its parent, or could not use it.
+_EXIT_CHANNEL_LOST = (1, errno.EPIPE)
 _EXIT_ENDED = 70  # the exit code of a worker that exited unexpectedly with exit code 0
 _CHANNEL_TIMEOUT = 3.0  # seconds to wait for the channel: a worker that is killed while it sends never releases it
 _CHECK_INTERVAL = 0.5  # seconds
@@ -65,13 +69,14 @@ class Processes(Executor):
         with self._lock:
             forks.start_server()  # again if it has ended
             for tries_left in reversed(range(_MAX_TRIES)):
-                self._replace_broken_pool()
                 try:
+                    self._replace_broken_pool()
                     inner = self._pool.schedule(function, arguments, named, timeout)
                     break
-                except (RuntimeError, BrokenProcessPool):  # it broke just now
+                except (RuntimeError, OSError, BrokenProcessPool) as error:  # it broke just now
                     if not tries_left or self._is_shut.is_set():
-                        raise
+                        raise WorkerError(_NOT_STARTED, is_own_fault=False) from error
+                    time.sleep(_CHECK_INTERVAL)  # a fork server that could not fork is about to end
             self._pending.add(outer)
         inner.add_done_callback(lambda future: self._pass_on(future, outer, timeout))
         return outer
@@ -99,7 +104,9 @@ class Processes(Executor):
                     self._replace_broken_pool()
 
     def _replace_broken_pool(self) -> None:
-        if self._pool.active or self._is_shut.is_set():
+        # A thread of the pool ends if it cannot send, and the pool remains active.
+        is_working = self._pool.active and all(loop.is_alive() for loop in getattr(self._pool, "_loops", ()))
+        if is_working or self._is_shut.is_set():
             return
         self._pool.stop()  # type: ignore[no-untyped-call]
         threading.Thread(target=self._pool.join, daemon=True).start()  # ends the workers that are left
@@ -115,7 +122,7 @@ class Processes(Executor):
                 outer, WorkerError(f"grading it took longer than {timeout:g} s (--timeout raises the limit)")
             )
         except ProcessExpired as error:
-            is_own_fault = error.exitcode != _EXIT_CHANNEL_BLOCKED
+            is_own_fault = error.exitcode not in _EXIT_CHANNEL_LOST
             reason = f"the process that graded it {_exit_words(error.exitcode)}"
             self._complete(outer, WorkerError(reason, is_own_fault=is_own_fault))
         except (BrokenProcessPool, CancelledError):
