@@ -27,6 +27,7 @@ _EXIT_CHANNEL_LOST = (1, errno.EPIPE)
 _EXIT_ENDED = 70  # the exit code of a worker that exited unexpectedly with exit code 0
 _CHANNEL_TIMEOUT = 3.0  # seconds to wait for the channel: a worker that is killed while it sends never releases it
 _CHECK_INTERVAL = 0.5  # seconds
+_MAX_IDLE = 30.0  # seconds beyond the timeout in which a task must be completed
 _MAX_END = 5.0  # seconds in which a pool must end
 _MAX_TRIES = 3  # to submit a task to a pool, which may break at any moment
 
@@ -51,7 +52,8 @@ class Processes(Executor):
         CONSTS.sleep_unit = 0.02  # seconds; a pool ends after one of them
         self._context = forks.worker_context()
         self._lock = threading.RLock()
-        self._pending: set[Future[Any]] = set()
+        self._pending: dict[Future[Any], float] = {}  # with the timeout of each
+        self._progress = 0.0  # when a task was completed, or submitted to an idle pool
         self._is_shut = threading.Event()
         self._pool = self._new_pool()
         self._watch = threading.Thread(target=self._watch_pool, daemon=True)
@@ -77,7 +79,8 @@ class Processes(Executor):
                     if not tries_left or self._is_shut.is_set():
                         raise WorkerError(_NOT_STARTED, is_own_fault=False) from error
                     time.sleep(_CHECK_INTERVAL)  # a fork server that could not fork is about to end
-            self._pending.add(outer)
+            self._progress = self._progress if self._pending else time.monotonic()
+            self._pending[outer] = timeout
         inner.add_done_callback(lambda future: self._pass_on(future, outer, timeout))
         return outer
 
@@ -97,16 +100,17 @@ class Processes(Executor):
         return ProcessPool(self._workers, 0, _start_worker, (self._memory,), self._context)
 
     def _watch_pool(self) -> None:
-        """Replace a broken pool: if a worker is killed while it sends, the pool never completes its futures."""
+        """Replace a broken pool: it never completes a task whose worker ended while it sent, or just before it began."""
         while not self._is_shut.wait(_CHECK_INTERVAL):
             with self._lock:
                 if self._pending:
-                    self._replace_broken_pool()
+                    idle = time.monotonic() - self._progress
+                    self._replace_broken_pool(is_stuck=idle > max(self._pending.values()) + _MAX_IDLE)
 
-    def _replace_broken_pool(self) -> None:
+    def _replace_broken_pool(self, *, is_stuck: bool = False) -> None:
         # A thread of the pool ends if it cannot send, and the pool remains active.
         is_working = self._pool.active and all(loop.is_alive() for loop in getattr(self._pool, "_loops", ()))
-        if is_working or self._is_shut.is_set():
+        if (is_working and not is_stuck) or self._is_shut.is_set():
             return
         self._pool.stop()  # type: ignore[no-untyped-call]
         threading.Thread(target=self._pool.join, daemon=True).start()  # ends the workers that are left
@@ -137,7 +141,8 @@ class Processes(Executor):
         with self._lock:
             if outer not in self._pending:
                 return
-            self._pending.discard(outer)
+            del self._pending[outer]
+            self._progress = time.monotonic()
         if error is not None:
             outer.set_exception(error)
         else:
