@@ -1,5 +1,13 @@
 """The exceptions that a user can see. Each prints as one line."""
 
+import errno
+
+# Why a file itself cannot be opened. Other errors, such as EIO, EMFILE and ESTALE, are faults of the machine.
+_OF_FILES = (
+    None, errno.EACCES, errno.EINVAL, errno.EISDIR, errno.ELOOP, errno.ENAMETOOLONG, errno.ENODEV, errno.ENOENT,
+    errno.ENOTDIR, errno.ENXIO, errno.EILSEQ, errno.EOPNOTSUPP, errno.EPERM,
+)  # fmt: skip
+
 
 class GraderError(Exception):
     """An error that stops a command before it has graded: exit code 2."""
@@ -19,6 +27,18 @@ class FileError(InputError):
 
     def __str__(self) -> str:
         return f"{self.path} {self.reason}"
+
+
+class MachineError(GraderError):
+    """A fault of the machine while a submission is read, as of its disk: it says nothing about the submission."""
+
+    @classmethod
+    def check(cls, error: BaseException | None, shown: str) -> None:
+        """Raise MachineError for the error of a file, or of an archive, if the file is not the cause."""
+        while error is not None:
+            if isinstance(error, OSError) and error.errno not in _OF_FILES:
+                raise cls(f"cannot read {shown}: {error.strerror}") from None
+            error = error.__context__  # zipfile raises BadZipFile for a file that cannot be read
 
 
 class RubricError(GraderError):

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
-from contextlib import chdir, contextmanager
+from contextlib import AbstractContextManager, chdir, contextmanager, nullcontext
 from pathlib import Path
 from tempfile import TemporaryFile
 from threading import current_thread, main_thread
@@ -34,16 +34,24 @@ def run(arguments: Sequence[object], **variables: str) -> Done:
 
 
 def run_with_input(
-    arguments: Sequence[object], stdin: bytes, variables: Mapping[str, str] = {}, folder: Path = ROOT
+    arguments: Sequence[object],
+    stdin: bytes,
+    variables: Mapping[str, str] = {},
+    folder: Path = ROOT,
+    inside: AbstractContextManager[object] | None = None,
 ) -> Done:
-    """Run the command line like `run`, with standard input or from another folder."""
+    """Run the command line like `run`, with standard input, from another folder or inside of a context."""
     words = [os.fsdecode(argument) if isinstance(argument, bytes) else str(argument) for argument in arguments]
     if _needs_own_process(words, variables):
         return run_process(words, stdin, variables, folder)
     with TemporaryFile() as given, TemporaryFile() as out, TemporaryFile() as err:
         given.write(stdin)
         given.seek(0)
-        with chdir(folder), _process_state(words, {**clean_environment(), **variables}, (given, out, err)):
+        with (
+            chdir(folder),
+            _process_state(words, {**clean_environment(), **variables}, (given, out, err)),
+            inside or nullcontext(),
+        ):
             code = _exit_code()
         texts = []
         for stream in (out, err):

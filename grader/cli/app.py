@@ -17,7 +17,7 @@ from grader import __version__
 from grader.cli.ending import outer_limits, quiet_interrupts
 from grader.cli.terminal import warn
 from grader.errors import GraderError
-from grader.text import shell_quoted
+from grader.text import printable_path, shell_quoted
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.rubrics import DEFAULT_RUBRIC
 from grader.usecases.writing import write_stdout
@@ -131,7 +131,7 @@ def _run(arguments: Sequence[str]) -> int:
         if isinstance(result, str):
             write_stdout(result)
     except (GraderError, OSError) as error:
-        reason = f"cannot write: {error.strerror or error}" if isinstance(error, OSError) else str(error)
+        reason = _reason_of(error) if isinstance(error, OSError) else str(error)
         for line in reason.split("\n"):
             warn(line)
         return ExitCode.NOT_GRADED
@@ -142,6 +142,11 @@ def _run(arguments: Sequence[str]) -> int:
     if result == 1 and arguments[0] in _COMPLETION:  # typer's code for a shell that it does not know
         return ExitCode.NOT_GRADED
     return result if isinstance(result, int) else ExitCode.PASSED
+
+
+def _reason_of(error: OSError) -> str:
+    what = f"use {printable_path(error.filename)}" if isinstance(error.filename, str) else "write"
+    return f"cannot {what}: {error.strerror or error}"
 
 
 def _complete() -> int:

@@ -17,7 +17,7 @@ from grader.documents import converter, embedded_pictures
 from grader.documents.document import CONVERTED, Document, Unread, made_of
 from grader.documents.headings import Heading, Pattern, find_headings
 from grader.documents.labels import stem
-from grader.errors import InputError
+from grader.errors import InputError, MachineError
 from grader.files.tree import File, Tree
 
 MAX_SECONDS = 20.0  # for all Word and PDF files of a submission
@@ -148,7 +148,8 @@ class DocumentCollection:
             code, output = self._run(command, data, file.path)
         except subprocess.TimeoutExpired:
             raise late from None
-        except OSError:
+        except OSError as error:
+            MachineError.check(error, file.path)
             raise InputError(f"{file.path} could not be read on this machine: open it yourself") from None
         finally:
             self._seconds -= time.monotonic() - began

@@ -48,7 +48,7 @@ def read_archive(file: IO[bytes], kind: str, name: str, allowance: limits.Allowa
                 members = zip_members(file) if kind == "zip" else tar_members(file)
             tree = tree_of(members, name, limit)
         except ARCHIVE_ERRORS as error:
-            raise FileError(name, f"cannot be read as an archive: {error_text(error)}") from None
+            raise FileError(name, f"cannot be read as an archive: {error_text(error, name)}") from None
         sizes = (member.size for member in tree.files.values())
         allowance.spend(name, unpacked=sum(size for size in sizes if size <= limits.MAX_FILE_SIZE))
         weakref.finalize(tree, opened.pop_all().close)
@@ -121,7 +121,7 @@ def _read(member: ArchiveMember, path: str, limit: int, *, first: bool = False) 
         with member.open() as file:
             data = file.read(limit if first else limit + 1)
     except ARCHIVE_ERRORS as error:
-        raise InputError(f"cannot read {path}: {error_text(error)}") from None
+        raise InputError(f"cannot read {path}: {error_text(error, path)}") from None
     return capped(data, limit, path, advice_for(path))
 
 

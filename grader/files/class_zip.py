@@ -39,7 +39,7 @@ class ClassZip:
                 if len(self._members) > _MAX_MEMBERS:
                     raise FileError(self._shown, f"contains more than {_MAX_MEMBERS} files")
         except ARCHIVE_ERRORS as error:
-            raise FileError(self._shown, f"cannot be read as an archive: {error_text(error)}") from None
+            raise FileError(self._shown, f"cannot be read as an archive: {error_text(error, self._shown)}") from None
         self._names = sorted(self._members)
 
     def folder(self, path: str) -> Tree:
@@ -83,7 +83,7 @@ class ClassZip:
             if kind is not None:
                 return read_archive(stored, kind, path)
         except ARCHIVE_ERRORS as error:
-            raise InputError(f"cannot read {name}: {error_text(error)}") from None
+            raise InputError(f"cannot read {name}: {error_text(error, name)}") from None
         finally:
             if kind is None:
                 stored.close()
@@ -102,7 +102,7 @@ class ClassZip:
         try:
             tree = tree_of([member._replace(path=path) for path, member in members.items()], name)
         except ARCHIVE_ERRORS as error:
-            raise FileError(name, f"cannot be read: {error_text(error)}") from None
+            raise FileError(name, f"cannot be read: {error_text(error, name)}") from None
         return replace(tree, kept=(self,))
 
 

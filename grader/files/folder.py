@@ -8,10 +8,10 @@ from itertools import islice
 from operator import attrgetter
 from pathlib import Path
 
-from grader.errors import FileError, InputError
+from grader.errors import FileError, MachineError
 from grader.files import limits
 from grader.files.names import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
-from grader.files.reading import advice_for, read_capped, read_start, shown_below
+from grader.files.reading import advice_for, read_capped, read_error, read_start, shown_below
 from grader.files.tree import File, IgnoredFile, Tree, keep_small, make_tree, parents
 from grader.text import printable_path
 
@@ -87,7 +87,8 @@ class _Walk:
         try:
             real = os.path.realpath(entry.path) if entry.is_symlink() else ""
             is_folder, is_file = entry.is_dir(), entry.is_file()
-        except OSError:  # such as a symlink to itself
+        except OSError as error:  # such as a symlink to itself
+            MachineError.check(error, shown)
             real, is_folder, is_file = "", False, False
         if real and real != self._top and not real.startswith(self._top.rstrip(os.sep) + os.sep):
             self._ignore(shown, "is a symlink that leads out of the submission, and was not followed")
@@ -100,10 +101,7 @@ class _Walk:
             return True
         elif is_file:
             place = real or f"{real_folder}/{entry.name}"
-            size = 0
-            with suppress(OSError):
-                size = entry.stat().st_size
-            self.files.append(File(shown, size, keep_small(partial(_read, place, shown, self._trusted))))
+            self.files.append(File(shown, _size(entry, shown), keep_small(partial(_read, place, shown, self._trusted))))
         elif entry.is_symlink() and not Path(entry.path).exists():
             self._ignore(shown, "is a symlink that leads nowhere, and was not followed")
         else:
@@ -119,9 +117,19 @@ class _Walk:
                 return sorted(islice(found, limits.MAX_FILES + 1), key=attrgetter("name"))
         except OSError as error:
             if not where:
-                raise InputError(f"cannot read {self._shown}: {error.strerror}") from None
+                raise read_error(error, self._shown) from None
+            MachineError.check(error, printable_path(where))
             self._ignore(printable_path(where), f"is a folder that cannot be opened: {error.strerror}")
             return []
+
+
+def _size(entry: "os.DirEntry[str]", shown: str) -> int:
+    """Return the size of a file; 0 if it has just been removed."""
+    try:
+        return entry.stat().st_size
+    except OSError as error:
+        MachineError.check(error, shown)
+        return 0
 
 
 def is_looked_at(folder: Path, path: str) -> bool:
@@ -140,7 +148,7 @@ def file_at(path: Path, name: str, top: str) -> File:
     try:
         status = path.lstat()
     except OSError as error:
-        raise InputError(f"cannot read {name}: {error.strerror}") from None
+        raise read_error(error, name) from None
     if stat.S_ISLNK(status.st_mode):
         raise FileError(name, _IS_SYMLINK)
     return File(name, status.st_size, partial(_read, os.fspath(path), name, top))

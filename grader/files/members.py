@@ -11,6 +11,7 @@ from contextlib import AbstractContextManager
 from functools import partial
 from typing import IO, Any, Literal, NamedTuple
 
+from grader.errors import MachineError
 from grader.text import printable_path
 
 MAX_NAME_LENGTH = 4096  # characters of a name, and of what a link points to
@@ -63,8 +64,9 @@ def safe_path(name: str) -> str | None:
     return printable_path("/".join(part for part in plain.split("/") if part not in ("", ".")))
 
 
-def error_text(error: BaseException) -> str:
-    """Return what an error says, fit for a message."""
+def error_text(error: BaseException, shown: str) -> str:
+    """Return what an error of an archive says, fit for a message; raises MachineError if that is not the cause."""
+    MachineError.check(error, shown)
     return printable_path(" ".join(str(error).split())[:200]) or type(error).__name__
 
 
@@ -99,7 +101,8 @@ def _target(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> str:
     try:
         with archive.open(info) as file:
             return file.read(MAX_NAME_LENGTH).decode("utf-8", "replace")
-    except ARCHIVE_ERRORS:
+    except ARCHIVE_ERRORS as error:
+        MachineError.check(error, info.filename)
         return "/"
 
 

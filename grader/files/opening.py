@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.names import ARCHIVES, PACKAGE_FILES, ROBOT_ENDINGS
-from grader.files.reading import not_there, open_regular, read_start, shown_below
+from grader.files.reading import not_there, open_regular, read_error, read_start, shown_below
 from grader.files.tree import File, IgnoredFile, Tree, make_tree
 from grader.text import printable_path
 
@@ -48,11 +48,14 @@ def outer_tree(path: Path, top: str = "") -> Tree | None:
     shown = shown_below(path, top)
     try:
         is_folder = path.is_dir()
-        if not is_folder and not os.path.lexists(path):
-            raise InputError(f"{shown} does not exist") if top else not_there(path)
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise InputError(f"cannot read {shown}: {reason}") from None
+        if not is_folder:
+            path.lstat()
+    except (FileNotFoundError, NotADirectoryError):
+        raise InputError(f"{shown} does not exist") if top else not_there(path) from None
+    except OSError as error:
+        raise read_error(error, shown) from None
+    except ValueError as error:
+        raise InputError(f"cannot read {shown}: {error}") from None
     if is_folder:
         from grader.files.folder import read_folder  # late: a single URDF does not need it
 

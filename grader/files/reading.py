@@ -13,7 +13,7 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from grader.errors import InputError
+from grader.errors import InputError, MachineError
 from grader.files.names import ROBOT_ENDINGS
 from grader.text import printable_path
 
@@ -44,9 +44,15 @@ def read_start(path: Path | str, count: int, shown: str = "", top: str = "") -> 
     try:
         return _read(handle, count)
     except OSError as error:
-        raise InputError(f"cannot read {shown or shown_below(path, top)}: {error.strerror or error}") from None
+        raise read_error(error, shown or shown_below(path, top)) from None
     finally:
         os.close(handle)
+
+
+def read_error(error: OSError, shown: str) -> InputError:
+    """Return the error for a file that cannot be read; raises MachineError if the file is not the cause."""
+    MachineError.check(error, shown)
+    return InputError(f"cannot read {shown}: {error.strerror or error}")
 
 
 def shown_below(path: Path | str, top: str) -> str:
@@ -59,11 +65,12 @@ def open_regular(path: Path | str, shown: str = "", top: str = "") -> int:
     shown = shown or shown_below(path, top)
     try:
         handle = _open_below(top, os.fspath(path)) if top else os.open(path, _FLAGS)
+        is_regular = stat.S_ISREG(os.fstat(handle).st_mode)
     except OSError as error:
         if error.errno == errno.ELOOP and top:
             raise InputError(f"{shown} is a symlink, and was not followed") from None
-        raise InputError(f"cannot read {shown}: {error.strerror or error}") from None
-    if not stat.S_ISREG(os.fstat(handle).st_mode):
+        raise read_error(error, shown) from None
+    if not is_regular:
         os.close(handle)
         raise InputError(f"{shown} is not a regular file")
     return handle

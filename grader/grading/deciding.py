@@ -7,7 +7,7 @@ from typing import Any
 from grader.checks.check import Check
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.tree import urdf_loads
-from grader.errors import MissingElement, NotDecided, OutOfTime, RubricError
+from grader.errors import MachineError, MissingElement, NotDecided, OutOfTime, RubricError
 from grader.grading.criterion import Carried, Criterion
 from grader.grading.missing_work import another_robot, by_evidence, is_another_robot, missing_work, robot_of
 from grader.grading.report import Result
@@ -124,7 +124,7 @@ class _Grading:
                 pose = self._subjects.pose_text(criterion.at)
                 outcome = outcome._replace(message=f"{outcome.message} (with {pose})")
             return Result(criterion, _fault_outcome(check, fault) if fault else outcome)
-        except MissingElement:
+        except (MissingElement, MachineError):
             raise
         except RubricError as error:
             raise RubricError(tuple(f"the criterion {criterion.id}: {line}" for line in error.complaints)) from None

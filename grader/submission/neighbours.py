@@ -4,7 +4,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from grader.errors import InputError
+from grader.errors import InputError, MachineError
 from grader.files.folder import is_looked_at, read_folder
 from grader.files.tree import File, Tree
 from grader.package.package import MANIFEST
@@ -35,7 +35,8 @@ def read_with_neighbours(place: Path, data: bytes, identity: str, opening: Openi
         root = next((above for above in (folder, *folder.parents) if (above / MANIFEST).is_file()), folder)
         path = printable((folder / place.name).relative_to(root).as_posix())
         tree = overlaid(read_folder(root), {path: data}) if is_looked_at(root, path) else None
-    except (OSError, InputError):
+    except (OSError, InputError) as error:
+        MachineError.check(error, printable_path(place.name))
         tree = None
     return _with_files_around(submission, tree, path, alone) if tree is not None else submission
 

@@ -45,8 +45,8 @@ def search_class_hints(
     if unavailable:
         verb = "has" if unavailable == 1 else "have"
         terminal.warn(
-            f"no hints for {counted(unavailable, 'submission')}, which {verb} changed or moved since the last run: "
-            "run `grader batch` again"
+            f"no hints for {counted(unavailable, 'submission')}, which {verb} changed or moved since the last run, "
+            "or could not be read: run `grader batch` again"
         )
 
 

@@ -84,10 +84,12 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
             comments = numbered_comments(book, request.criterion).items()
             lines = (printable(f"#{number} {' '.join(comment.split())}") for number, comment in comments)
             return "".join(f"{line}\n" for line in lines) or "no comments yet\n"
-        before = _record(book, grade, request, most, warn)
-        now = grades.find(grade.student.key)
-        whole = sum((row.maximum for row in grades.criteria), Decimal(0))
-        others = [] if request.second or request.is_total else list(_unmarked_members(book, now, request.criterion))
+        with marks.writing(book):  # what cannot be reported is not saved
+            before = _record(book, grade, request, most, warn)
+            now = grades.find(grade.student.key)
+            whole = sum((row.maximum for row in grades.criteria), Decimal(0))
+            is_alone = request.second or request.is_total
+            others = [] if is_alone else list(_unmarked_members(book, now, request.criterion))
     _report_replaced(before, criterion, request, warn)
     if others:
         warn(f"the same submission counts for {people_text(others, _MAX_NAMED)}: mark them as well")

@@ -101,6 +101,8 @@ def _replace(target: Path, data: bytes, mode: int | None) -> None:
     try:
         with os.fdopen(os.open(temporary, flags, 0o666), "wb") as file:
             file.write(data)
+            file.flush()
+            os.fsync(file.fileno())  # else a file may be empty under its new name after a power failure
         if target.exists():
             mode = stat.S_IMODE(target.stat().st_mode)
         if mode is not None:

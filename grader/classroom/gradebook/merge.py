@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.histories import MergeItem, UnmatchedStudent, compare_marks, is_newest
-from grader.classroom.gradebook.marks import account, insert_mark
+from grader.classroom.gradebook.marks import account, insert_mark, writing
 from grader.classroom.gradebook.schema import APPLICATION_ID
 from grader.errors import InputError
 from grader.text import printable_path
@@ -62,7 +62,7 @@ def merge(first: Gradebook, second: Gradebook, choices: Mapping[ConflictId, Choi
 
     If another mark than the chosen one would count after that, the chosen one is repeated as a new entry.
     """
-    with first.transaction():
+    with writing(first):
         items, unmatched = compare_marks(first, second)
         results = _Results(first, second)
         written: dict[str, int] = {}

@@ -10,10 +10,10 @@ from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.errors import InputError
+from grader.errors import InputError, MachineError
 from grader.files.members import ARCHIVE_ERRORS, ArchiveMember, error_text, safe_path, zip_members
 from grader.files.names import BUILD_FOLDERS, IGNORED_FOLDERS, LITTER
-from grader.files.reading import read_start
+from grader.files.reading import read_error, read_start
 from grader.text import printable_path
 
 MAX_MEMBERS = 200_000  # of a zip
@@ -49,8 +49,9 @@ class FolderListing:
                     if not is_litter(entry.name):
                         _add(entry, found)
         except OSError as error:
+            refused = read_error(error, printable_path(folder or self._top))
             if not folder:
-                raise InputError(f"cannot read {printable_path(self._top)}: {error.strerror}") from None
+                raise refused from None
         return found
 
     def first(self, folder: str) -> str | None:
@@ -58,7 +59,8 @@ class FolderListing:
         try:
             with os.scandir(f"{self._top}/{folder}") as entries:
                 return next((entry.name for entry in entries if not is_litter(entry.name)), None)
-        except OSError:
+        except OSError as error:
+            MachineError.check(error, printable_path(folder))
             return None
 
     def starts(self, paths: Iterable[str], count: int) -> dict[str, bytes]:
@@ -81,6 +83,7 @@ def _add(entry: "os.DirEntry[str]", found: Children) -> None:
         else:
             found.refused.append((entry.name, "is not a regular file"))
     except OSError as error:
+        MachineError.check(error, printable_path(entry.name))
         found.refused.append((entry.name, f"cannot be read: {error.strerror}"))
 
 
@@ -97,7 +100,8 @@ class ZipListing:
                         raise InputError(f"{printable_path(path)} contains more than {MAX_MEMBERS} files, the limit")
                     self._add(member)
         except ARCHIVE_ERRORS as error:
-            raise InputError(f"{printable_path(path)} cannot be read as a zip: {error_text(error)}") from None
+            shown = printable_path(path)
+            raise InputError(f"{shown} cannot be read as a zip: {error_text(error, shown)}") from None
 
     def _add(self, member: ArchiveMember) -> None:
         path = safe_path(member.path)
@@ -140,8 +144,11 @@ class ZipListing:
             for member in zip_members(file) if wanted else ():
                 path = safe_path(member.path)
                 if path in wanted and member.kind == "file":
-                    with suppress(*ARCHIVE_ERRORS), member.open() as opened:
-                        starts[path] = opened.read(count)
+                    try:
+                        with member.open() as opened:
+                            starts[path] = opened.read(count)
+                    except ARCHIVE_ERRORS as error:
+                        MachineError.check(error, path)
         return starts
 
 

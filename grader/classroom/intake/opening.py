@@ -8,13 +8,13 @@ from typing import IO, TYPE_CHECKING, NamedTuple
 
 from grader.classroom.intake.fingerprint import file_stamp, is_zip
 from grader.documents.evidence_files import EVIDENCE
-from grader.errors import InputError
+from grader.errors import InputError, MachineError
 from grader.files.class_zip import ClassZip
 from grader.files.folder import file_at
 from grader.files.members import ARCHIVE_ERRORS
 from grader.files.names import ROBOT_ENDINGS, ignored_part, is_generated
 from grader.files.opening import outer_tree, tree_name, with_inner, without_endings
-from grader.files.reading import URDF_LIMIT, open_regular, read_capped, read_start
+from grader.files.reading import URDF_LIMIT, open_regular, read_capped, read_error, read_start
 from grader.files.tree import Tree, make_tree
 from grader.grading.rubric import Rubric
 from grader.submission.labs import LabFolders
@@ -96,7 +96,7 @@ def unreadable_digest(root: str, paths: tuple[str, ...]) -> str:
             with _class_zip(root, file_stamp(root)).raw(path) if is_zip(root) else _raw(root, path) as file:
                 for _ in range(_MAX_HASHED // _CHUNK):
                     digest.update(file.read(_CHUNK))
-    except (InputError, *ARCHIVE_ERRORS):
+    except (InputError, MachineError, *ARCHIVE_ERRORS):
         return ""
     return digest.hexdigest()
 
@@ -175,7 +175,7 @@ def _digest_of_file(name: str, path: Path, root: str, max_size: int) -> str:
             while chunk := file.read(_CHUNK):
                 digest.update(chunk)
     except OSError as error:
-        raise InputError(f"cannot read {printable_path(path.name)}: {error.strerror}") from None
+        raise read_error(error, printable_path(path.name)) from None
     return digest.hexdigest()
 
 

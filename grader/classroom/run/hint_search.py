@@ -11,7 +11,7 @@ from grader.classroom.gradebook.result import GradingVerdict
 from grader.classroom.run.pool import WorkerError
 from grader.classroom.run.queue import Queue
 from grader.classroom.run.worker import rubric_from
-from grader.errors import InputError
+from grader.errors import InputError, MachineError
 from grader.grading.hints.record import NO_HINTS
 from grader.grading.rubric import Rubric
 
@@ -51,13 +51,15 @@ def _proven_hints(one: LossySubmission, rubric: Rubric) -> str | None:
 
 
 def _give_up(submission: LossySubmission, error: Exception) -> SearchedHints:
-    """Return that there are no hints: searched again if another task may be the cause that the search was lost."""
-    is_own_fault = not isinstance(error, WorkerError) or error.is_own_fault
+    """Return that there are no hints: searched again if another task or the machine may be why the search was lost."""
+    is_own_fault = (
+        error.is_own_fault if isinstance(error, WorkerError) else not isinstance(error, MachineError | OSError)
+    )
     return SearchedHints(submission.content, NO_HINTS if is_own_fault else None, "errored")
 
 
 class ClassHintSearch:
-    """The search for a class's hints for one rubric. `unavailable` counts submissions with changed or missing files."""
+    """The search for a class's hints for one rubric. `unavailable` counts submissions that cannot be read as graded."""
 
     def __init__(self, book: Gradebook, rubric: Rubric, group: Group) -> None:
         self._book, self._rubric = book, rubric
@@ -82,5 +84,5 @@ class ClassHintSearch:
             for searched in group:
                 if searched.hints is not None:
                     save_hints(self._book, self._alike[searched.content], searched.hints)
-                self.unavailable += searched.hints is None and searched.verdict == "graded"
+                self.unavailable += searched.hints is None
                 yield searched.verdict

@@ -1,10 +1,12 @@
 """Worker processes on this machine: an executor as in `concurrent.futures` whose tasks end in any case."""
 
+import errno
 import gc
 import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
@@ -18,11 +20,14 @@ from grader.errors import GraderError
 
 MAX_MEMORY = 2 * 1024**3  # bytes for each worker
 NO_MEMORY = f"grading it needs more memory than a worker may use ({MAX_MEMORY // 1024**3} GiB)"
+_NOT_STARTED = "the worker processes cannot be started: there may be too many processes, or too little memory"
 _POOL_ENDED = "the worker processes ended"
-_EXIT_CHANNEL_BLOCKED = 1  # the exit code of a worker that waited too long for the channel to its parent
+# The exit codes of a worker that waited too long for the channel to its parent, or could not use it.
+_EXIT_CHANNEL_LOST = (1, errno.EPIPE)
 _EXIT_ENDED = 70  # the exit code of a worker that exited unexpectedly with exit code 0
 _CHANNEL_TIMEOUT = 3.0  # seconds to wait for the channel: a worker that is killed while it sends never releases it
 _CHECK_INTERVAL = 0.5  # seconds
+_MAX_IDLE = 30.0  # seconds beyond the timeout in which a task must be completed
 _MAX_END = 5.0  # seconds in which a pool must end
 _MAX_TRIES = 3  # to submit a task to a pool, which may break at any moment
 
@@ -47,7 +52,8 @@ class Processes(Executor):
         CONSTS.sleep_unit = 0.02  # seconds; a pool ends after one of them
         self._context = forks.worker_context()
         self._lock = threading.RLock()
-        self._pending: set[Future[Any]] = set()
+        self._pending: dict[Future[Any], float] = {}  # with the timeout of each
+        self._progress = 0.0  # when a task was completed, or submitted to an idle pool
         self._is_shut = threading.Event()
         self._pool = self._new_pool()
         self._watch = threading.Thread(target=self._watch_pool, daemon=True)
@@ -65,14 +71,16 @@ class Processes(Executor):
         with self._lock:
             forks.start_server()  # again if it has ended
             for tries_left in reversed(range(_MAX_TRIES)):
-                self._replace_broken_pool()
                 try:
+                    self._replace_broken_pool()
                     inner = self._pool.schedule(function, arguments, named, timeout)
                     break
-                except (RuntimeError, BrokenProcessPool):  # it broke just now
+                except (RuntimeError, OSError, BrokenProcessPool) as error:  # it broke just now
                     if not tries_left or self._is_shut.is_set():
-                        raise
-            self._pending.add(outer)
+                        raise WorkerError(_NOT_STARTED, is_own_fault=False) from error
+                    time.sleep(_CHECK_INTERVAL)  # a fork server that could not fork is about to end
+            self._progress = self._progress if self._pending else time.monotonic()
+            self._pending[outer] = timeout
         inner.add_done_callback(lambda future: self._pass_on(future, outer, timeout))
         return outer
 
@@ -92,14 +100,17 @@ class Processes(Executor):
         return ProcessPool(self._workers, 0, _start_worker, (self._memory,), self._context)
 
     def _watch_pool(self) -> None:
-        """Replace a broken pool: if a worker is killed while it sends, the pool never completes its futures."""
+        """Replace a broken pool: it never completes a task whose worker ended while it sent, or just before it began."""
         while not self._is_shut.wait(_CHECK_INTERVAL):
             with self._lock:
                 if self._pending:
-                    self._replace_broken_pool()
+                    idle = time.monotonic() - self._progress
+                    self._replace_broken_pool(is_stuck=idle > max(self._pending.values()) + _MAX_IDLE)
 
-    def _replace_broken_pool(self) -> None:
-        if self._pool.active or self._is_shut.is_set():
+    def _replace_broken_pool(self, *, is_stuck: bool = False) -> None:
+        # A thread of the pool ends if it cannot send, and the pool remains active.
+        is_working = self._pool.active and all(loop.is_alive() for loop in getattr(self._pool, "_loops", ()))
+        if (is_working and not is_stuck) or self._is_shut.is_set():
             return
         self._pool.stop()  # type: ignore[no-untyped-call]
         threading.Thread(target=self._pool.join, daemon=True).start()  # ends the workers that are left
@@ -115,7 +126,7 @@ class Processes(Executor):
                 outer, WorkerError(f"grading it took longer than {timeout:g} s (--timeout raises the limit)")
             )
         except ProcessExpired as error:
-            is_own_fault = error.exitcode != _EXIT_CHANNEL_BLOCKED
+            is_own_fault = error.exitcode not in _EXIT_CHANNEL_LOST
             reason = f"the process that graded it {_exit_words(error.exitcode)}"
             self._complete(outer, WorkerError(reason, is_own_fault=is_own_fault))
         except (BrokenProcessPool, CancelledError):
@@ -130,7 +141,8 @@ class Processes(Executor):
         with self._lock:
             if outer not in self._pending:
                 return
-            self._pending.discard(outer)
+            del self._pending[outer]
+            self._progress = time.monotonic()
         if error is not None:
             outer.set_exception(error)
         else:

@@ -14,7 +14,7 @@ from grader.classroom.gradebook.result import GradingResult, GradingVerdict
 from grader.classroom.intake.fingerprint import fingerprint
 from grader.classroom.intake.opening import open_class_submission, unreadable_digest
 from grader.classroom.run.pool import NO_MEMORY
-from grader.errors import InputError
+from grader.errors import InputError, MachineError
 from grader.files.names import ARCHIVES
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.grading.grade import grade
@@ -83,7 +83,9 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
         is_memory = isinstance(error, MemoryError)
         if is_memory and not task.no_documents:
             return _grade_one(context, task._replace(no_documents=NO_MEMORY))
-        reason = NO_MEMORY if is_memory else f"the grader itself failed: {type(error).__name__}: {error}"
+        is_known = isinstance(error, MachineError)  # in the next run it may be over
+        reason = str(error) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
+        reason = NO_MEMORY if is_memory else reason
         return undecided_result(context, task, result._replace(verdict="errored", reason=reason))
     fault, reason = report.fault, _why_unreadable(submission)
     verdict: GradingVerdict = "errored" if fault else "unreadable" if reason else "graded"

@@ -195,7 +195,10 @@ def test_a_moved_class_is_reported(tmp_path: Path) -> None:
     assert [line for line in section(done).splitlines() if "student" in line] == [
         "  1 student: set the green of the material color of 'green' to 0.6"
     ]
-    why = "no hints for 2 submissions, which have changed or moved since the last run: run `grader batch` again"
+    why = (
+        "no hints for 2 submissions, which have changed or moved since the last run, or could not be read: "
+        "run `grader batch` again"
+    )
     assert done.stderr == f"grader: {why}\n"
     assert searched(tmp_path) == {"cedar"}
 

@@ -1,0 +1,101 @@
+"""The commands that get faults, and the files that they find."""
+
+import shutil
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import NamedTuple
+
+from tests.classroom.gradebooks import batch, grader, make_class, write_submission
+from tests.command_line import Done, run_process, run_with_input
+from tests.review_server import running
+from tests.samples import ROOT
+
+_CANVAS = """\
+Student,ID,SIS User ID,SIS Login ID,Section,A small lab (900)
+    Points Possible,,,,,11
+"Ek, Anna",101,,ae1,S,
+"Oh, Ben",102,,bo2,S,
+"Fi, Dora",104,,df4,S,
+"""
+_MARKS = "student,criterion,points,comment\nanna,essay,3,good\nemil,essay,1,short\nben,total,5,late\n"
+
+Fault = AbstractContextManager[object]  # armed while the command runs
+
+
+class Scenario(NamedTuple):
+    """A command over the files of `prepare`. `is_process` means that it runs as a user starts it, with its workers.
+
+    Without `words`, `act` does the work. `goes_on` says that it warns of a mark that is not saved, and ends as usual.
+    """
+
+    name: str
+    words: Sequence[str] = ()
+    stdin: bytes = b""
+    is_process: bool = False
+    act: Callable[[Path, Fault], Done] | None = None
+    goes_on: bool = False
+
+    def run(self, top: Path, fault: Fault) -> Done:
+        """Run the command in the folder with the files."""
+        if self.act is not None:
+            return self.act(top, fault)
+        if self.is_process:
+            with fault:
+                return run_process(self.words, self.stdin, folder=top)
+        return run_with_input(self.words, self.stdin, folder=top, inside=fault)
+
+
+def prepare(top: Path) -> None:
+    """Make a class, its gradebook, another gradebook with marks, and the files that commands read."""
+    make_class(top)
+    shutil.copytree(ROOT / "submissions/reference", top / "lab6", ignore=shutil.ignore_patterns("expected.toml"))
+    (urdf,) = (top / "lab6").rglob("*.urdf")
+    (top / "robot.urdf").write_text(urdf.read_text().replace("0.15 0 0.225", "0.15 0 0.2"))
+    write_submission(top / "zipped" / "finn")
+    shutil.make_archive(str(top / "class/finn"), "zip", top / "zipped/finn")
+    shutil.rmtree(top / "zipped")
+    assert batch(top, "--add").returncode == 0
+    (top / "canvas.csv").write_text(_CANVAS)
+    (top / "marks.csv").write_text(_MARKS)
+    (top / "report.json").write_text("old")
+    shutil.copy(top / "book.db", top / "other.db")
+    for book, criterion in (("book", "picture"), ("other", "essay")):
+        assert grader("mark", "anna", criterion, "1", "--gradebook", top / f"{book}.db", "--by", "Kim").returncode == 0
+
+
+def _mark_on_the_page(top: Path, fault: Fault) -> Done:
+    """Mark the first item on the page of `review --html`; the answer is the output, and an error the exit code 2."""
+    with running(top / "book.db") as review:
+        item = review.item("1")
+        sent = {"do": "mark", "points": "1", "comment": "seen", "shown": 0, "item": item}
+        with fault:
+            answer = review.post("1", sent)
+        is_saved = answer.status == 200 and "go" in answer.json
+        error = "" if is_saved else f"grader: {answer.json['error']}\n"
+        return Done([], 0 if is_saved else 2, answer.body if is_saved else b"", error.encode())
+
+
+_BOOK = ("--gradebook", "book.db")
+_BATCH = ("batch", "class", "--rubric", "small.toml", "--roster", "roster.csv", "--jobs", "2")
+_OUTPUT = ("--csv", "grades.csv", "--reports", "reports")
+
+SCENARIOS = (
+    Scenario("grade", ("grade", "lab6", "--save", "json=report.json", "--save", "html=report.html")),
+    Scenario("grade-fix", ("grade", "robot.urdf", "--fix", "fixed.urdf")),
+    Scenario("batch", (*_BATCH, "--gradebook", "new.db", *_OUTPUT)),
+    Scenario("batch-again", (*_BATCH, *_BOOK, "--force")),
+    Scenario("mark", ("mark", "anna", "essay", "3.5", "--comment", "good", *_BOOK)),
+    Scenario("mark-import", ("mark", "--import", "marks.csv", *_BOOK)),
+    Scenario("extend", ("extend", "anna", "2026-11-25", *_BOOK)),
+    Scenario("review", ("review", *_BOOK), b"3.5 good\nq\n", goes_on=True),
+    Scenario("review-html", act=_mark_on_the_page),
+    Scenario("export-csv", ("export", "csv", *_BOOK, "--output", "grades.csv")),
+    Scenario("export-into", ("export", "canvas", *_BOOK, "--into", "canvas.csv", "--output", "upload.csv")),
+    Scenario("export-html", ("export", "html", *_BOOK, "--output", "pages")),
+    Scenario("export-feedback", ("export", "canvas", *_BOOK, "--feedback", "feedback.zip")),
+    Scenario("merge", ("gradebook", "merge", "book.db", "other.db")),
+    Scenario("batch-workers", (*_BATCH, "--gradebook", "new.db", *_OUTPUT), is_process=True),
+    Scenario("pages-workers", ("export", "html", *_BOOK, "--output", "pages"), is_process=True),
+)
+IN_PROCESSES = ("spawn", "send")  # the kinds that concern these scenarios only
