@@ -1,0 +1,111 @@
+"""A second opinion on the geometric criteria of a rubric: status, measured value, and whether a mistake is carried forward."""
+
+import tomllib
+from math import radians
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from tests.second_opinion.facts import FACTS, Missing, Posed, Undecided, Unsure
+from tests.second_opinion.urdf import Robot, Unclear
+
+RUBRICS = Path(__file__).parents[2] / "rubrics"
+
+
+class Opinion(NamedTuple):
+    """What a criterion should say; a status `carried` is a failure with its points."""
+
+    status: str
+    measured: Any = None
+
+
+class Rubric:
+    """The rows of a rubric in its order, with their defaults."""
+
+    def __init__(self, name: str) -> None:
+        with (RUBRICS / f"{name}.toml").open("rb") as file:
+            rubric = tomllib.load(file)
+        solution = RUBRICS / rubric["reference"] / rubric["urdf"]
+        self.reference = Robot(solution.read_bytes()) if solution.suffix == ".urdf" else None
+        self.defaults = rubric.get("defaults", {}).get("with", {})
+        self.rows = [row for row in rubric["criterion"] if row["check"] in FACTS]
+
+    def arguments(self, row: dict[str, Any]) -> dict[str, Any]:
+        """Return the arguments of a check, with the rubric's defaults."""
+        return self.defaults.get(row["check"], {}) | row.get("with", {})
+
+    def opinions(self, robot: Robot) -> dict[str, Opinion]:
+        """Return an opinion on each criterion that a fact decides."""
+        found: dict[str, Opinion] = {}
+        missed: set[tuple[str, ...]] = set()
+        for row in self.rows:
+            try:
+                opinion = self._decide(robot, row, row.get("at", {}))
+            except Missing as missing:
+                opinion = Opinion("skipped" if missing.thing in missed else "failed")
+                missed.add(missing.thing)
+            carried = row.get("carried")
+            if carried and opinion.status in ("failed", "skipped") and any(
+                found[name].status != "passed" for name in carried["from"]
+            ):
+                opinion = self._carried(robot, row, carried, opinion)
+            found[row["id"]] = opinion
+        return found
+
+    def _carried(self, robot: Robot, row: dict[str, Any], carried: dict[str, Any], opinion: Opinion) -> Opinion:
+        try:
+            other = self._decide(robot, carried, row.get("at", {}))
+        except Missing:
+            return opinion
+        statuses = {"passed": "carried", "pending": "pending", "unsure": "unsure"}
+        return opinion._replace(status=statuses.get(other.status, opinion.status))
+
+    def _decide(self, robot: Robot, row: dict[str, Any], at: dict[str, float]) -> Opinion:
+        try:
+            arguments = {key: _resolved(robot, value) for key, value in self.arguments(row).items()}
+            positions = {}
+            for name, position in at.items():
+                joint = next((joint for joint in robot.joints if joint.name == _resolved(robot, name, is_joint=True)), None)
+                if joint is None or joint.type == "fixed":
+                    raise Missing("joint", name)
+                positions[joint.name] = position if joint.type == "prismatic" else radians(position)
+            if row["check"] == "kinematics_match_reference":
+                arguments["reference"] = self.reference
+            fine, measured = FACTS[row["check"]](Posed(robot, positions), **arguments)
+        except Undecided:
+            return Opinion("pending")
+        except Unsure:
+            return Opinion("unsure")
+        return Opinion("passed" if fine else "failed", measured)
+
+
+def _resolved(robot: Robot, value: Any, *, is_joint: bool = False) -> Any:
+    """Return a value in which the names of places in the tree are names of links: `@root`, `@moved:2`."""
+    if isinstance(value, list):
+        return [_resolved(robot, item) for item in value]
+    if not isinstance(value, str) or not value.startswith("@"):
+        return value
+    if value == "@root":
+        if len(robot.trees) != 1:
+            raise Missing("root", value)
+        return next(iter(robot.trees))
+    number = int(value.removeprefix("@moved:"))
+    chains = {}
+    for link in robot.links:
+        chain, name = [], link
+        while name in robot.parents:
+            joint = robot.parents[name]
+            if joint.type != "fixed" and not joint.is_mimic:
+                chain.append(joint)
+            name = joint.parent
+        chains[link] = chain[::-1]
+    longest = max(map(len, chains.values()))
+    if longest < number:
+        raise Missing("moved", value)
+    ends = {chain[number - 1].name: chain[number - 1] for chain in chains.values() if len(chain) == longest}
+    if len(ends) > 1:
+        raise Undecided(value)
+    joint = next(iter(ends.values()))
+    return joint.name if is_joint else joint.child
+
+
+__all__ = ["Opinion", "Robot", "Rubric", "Unclear"]
