@@ -86,12 +86,12 @@ def is_same_solid(one: Shape, other: Shape, tolerance: float) -> bool:
     """Return whether two solids are the same: kind, centre, sizes, and the place of each point of the surface."""
     if one.kind != other.kind or np.abs(one.pose[:3, 3] - other.pose[:3, 3]).max() > tolerance + 1e-9:
         return False
-    sizes, others = np.abs(one.size), np.abs(other.size)
+    sizes, others = np.array(one.size), np.array(other.size)  # a negative size differs, because simulators refuse it
     relative = one.pose[:3, :3].T @ other.pose[:3, :3]
     if one.kind == "box":
         for quarter in _QUARTERS:
             turned = relative @ quarter
-            if np.abs(np.abs(quarter).T @ others - sizes).max() <= tolerance + 1e-9:
+            if np.abs(np.abs(quarter) @ others - sizes).max() <= tolerance + 1e-9:
                 corners = np.array(list(product((-1, 1), repeat=3))) * sizes / 2
                 if np.linalg.norm(corners @ turned.T - corners, axis=1).max() <= tolerance + 1e-9:
                     return True

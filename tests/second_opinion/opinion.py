@@ -16,6 +16,8 @@ class Opinion(NamedTuple):
 
     status: str
     measured: Any = None
+    because: str = ""
+    cause: str = ""
 
 
 class Rubric:
@@ -36,28 +38,28 @@ class Rubric:
     def opinions(self, robot: Robot) -> dict[str, Opinion]:
         """Return an opinion on each criterion that a fact decides."""
         found: dict[str, Opinion] = {}
-        missed: set[tuple[str, ...]] = set()
+        missed: dict[tuple[str, ...], str] = {}
         for row in self.rows:
             try:
                 opinion = self._decide(robot, row, row.get("at", {}))
             except Missing as missing:
-                opinion = Opinion("skipped" if missing.thing in missed else "failed")
-                missed.add(missing.thing)
+                first = missed.setdefault(missing.thing, row["id"])
+                opinion = Opinion("failed") if first == row["id"] else Opinion("skipped", because=first)
             carried = row.get("carried")
-            if carried and opinion.status in ("failed", "skipped") and any(
-                found[name].status != "passed" for name in carried["from"]
-            ):
-                opinion = self._carried(robot, row, carried, opinion)
+            if carried and opinion.status in ("failed", "skipped"):
+                reasons = {opinion.because, found[opinion.because].cause} if opinion.because else set(carried["from"])
+                causes = [name for name in carried["from"] if name in reasons and found[name].status in ("failed", "carried")]
+                opinion = self._carried(robot, row, carried, opinion, causes[0]) if causes else opinion
             found[row["id"]] = opinion
         return found
 
-    def _carried(self, robot: Robot, row: dict[str, Any], carried: dict[str, Any], opinion: Opinion) -> Opinion:
+    def _carried(self, robot: Robot, row: dict[str, Any], carried: dict[str, Any], opinion: Opinion, cause: str) -> Opinion:
         try:
             other = self._decide(robot, carried, row.get("at", {}))
         except Missing:
             return opinion
         statuses = {"passed": "carried", "pending": "pending", "unsure": "unsure"}
-        return opinion._replace(status=statuses.get(other.status, opinion.status))
+        return opinion._replace(status=statuses.get(other.status, opinion.status), cause=cause)
 
     def _decide(self, robot: Robot, row: dict[str, Any], at: dict[str, float]) -> Opinion:
         try:
@@ -85,9 +87,7 @@ def _resolved(robot: Robot, value: Any, *, is_joint: bool = False) -> Any:
     if not isinstance(value, str) or not value.startswith("@"):
         return value
     if value == "@root":
-        if len(robot.trees) != 1:
-            raise Missing("root", value)
-        return next(iter(robot.trees))
+        return max(robot.trees, key=lambda root: len(robot.trees[root]))
     number = int(value.removeprefix("@moved:"))
     chains = {}
     for link in robot.links:

@@ -209,7 +209,7 @@ def _turn_frame(random: Random, robot: ET.Element) -> None:
                 _place(other, turned.T, np.eye(3))
         if (axis := joint.find("axis")) is not None:
             axis.set("xyz", " ".join(map(_text, turned.T @ [float(value) for value in axis.get("xyz", "").split()])))
-    except ValueError:
+    except (TypeError, ValueError):
         return  # an earlier change left no three numbers
 
 

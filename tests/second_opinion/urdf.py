@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -44,9 +44,16 @@ class Shape:
         }[self.kind]()
 
     @property
+    def radius(self) -> float:
+        """The distance of the farthest point from the centre."""
+        sizes = np.abs(self.size)
+        radii = {"box": np.linalg.norm(sizes) / 2, "cylinder": np.hypot(sizes[0], sizes[-1] / 2), "sphere": sizes[0]}
+        return float(radii[self.kind])
+
+    @property
     def has_size(self) -> bool:
-        """Whether RViz shows anything: a box with one or two edges of 0 is still a sheet."""
-        return self.kind == "mesh" or any(self.size) and (self.kind == "box" or all(self.size))
+        """Whether it has an area: a box without height is a plate, a cylinder without length is a disc."""
+        return self.size.count(0) < 2 if self.kind == "box" else self.size[0] != 0 or any(self.size) and self.kind == "mesh"
 
 
 @dataclass
@@ -69,7 +76,12 @@ class Joint:
     origin: Matrix
     axis: Matrix
     limit: tuple[float, ...] | None
-    is_mimic: bool
+    mimic: tuple[str, float, float] | None
+
+    @property
+    def is_mimic(self) -> bool:
+        """Whether the joint follows another."""
+        return self.mimic is not None
 
 
 def numbers(text: str | None, count: int) -> list[float]:
@@ -149,6 +161,14 @@ def _inertial(element: ET.Element) -> tuple[float, Matrix, Matrix]:
     return mass, pose[:3, 3], pose[:3, :3] @ tensor @ pose[:3, :3].T
 
 
+class Placed(NamedTuple):
+    """The root of a link, the joint without a direction above it, if any, and the pose in the frame of these."""
+
+    root: str
+    below: str
+    pose: Matrix
+
+
 class Robot:
     """What ROS 2 reads of a text; raises ET.ParseError for what is not XML, and Unclear."""
 
@@ -158,7 +178,7 @@ class Robot:
         root = ET.fromstring(text)
         self.loads = root.tag == "robot" and "name" in root.attrib
         self.links: dict[str, Link] = {}
-        self.joints: list[Joint] = []
+        self.named: list[Joint] = []
         self.materials: dict[str, tuple[float, ...]] = {}
         for element in root.findall("material"):
             if element.get("name") in (None, *self.materials):
@@ -224,14 +244,17 @@ class Robot:
         try:
             if name is None or kind not in _TYPES or len(ends) != 2 or None in ends:
                 raise Bad(name)
-            if any(joint.name == name for joint in self.joints):
+            if any(joint.name == name for joint in self.named):
                 raise Bad(name)
             origin = _origin(element)
             direction = [1.0, 0.0, 0.0] if axis is None else [0.0, 0.0, 0.0]
             if axis is not None and axis.get("xyz") is not None and kind not in ("fixed", "floating"):
                 direction = numbers(axis.get("xyz"), 3)
-            if mimic is not None and mimic.get("joint") is None:
-                raise Bad(name)
+            follows = None
+            if mimic is not None:
+                follows = (mimic.get("joint"), number(mimic, "multiplier", "1"), number(mimic, "offset", "0"))
+                if follows[0] is None:
+                    raise Bad(name)
         except Bad as error:
             raise Unclear(name) from error
         limits = None
@@ -243,18 +266,18 @@ class Robot:
         elif kind in ("revolute", "prismatic"):
             self.loads = False
         parent, child = str(ends[0]), str(ends[1])
-        if parent in self.links and child in self.links:
-            self.joints.append(Joint(name, kind, parent, child, origin, np.array(direction), limits, mimic is not None))
-        else:
-            self.loads = False
+        self.named.append(Joint(name, kind, parent, child, origin, np.array(direction), limits, follows))
 
     def _build(self) -> None:
         """Find the parent joints, the roots, and the links of each tree from its root downward."""
+        self.joints = [joint for joint in self.named if {joint.parent, joint.child} <= self.links.keys()]
         self.parents: dict[str, Joint] = {}
         for joint in sorted(self.joints, key=lambda joint: joint.name.encode()):
             self.parents[joint.child] = joint
         roots = [name for name in self.links if name not in self.parents]
-        self.loads = self.loads and len(roots) == 1
+        self.loads = self.loads and len(roots) == 1 and self.joints == self.named
+        if not self.loads and len(self.parents) < len(self.joints):
+            raise Unclear("a link with two parents")
         children: dict[str, list[Joint]] = {}
         for joint in self.parents.values():
             children.setdefault(joint.parent, []).append(joint)
@@ -267,23 +290,41 @@ class Robot:
         if sum(map(len, self.trees.values())) < len(self.links):
             raise Unclear("a loop")
 
-    def poses(self, positions: Mapping[str, float]) -> dict[str, tuple[str, Matrix]]:
-        """Return root and T_root_link of every link; an axis without a length gives NaN, as in KDL."""
-        found: dict[str, tuple[str, Matrix]] = {}
+    def child(self, name: str) -> str:
+        """Return the link below a joint; the empty text if there is no such joint."""
+        return next((joint.child for joint in self.joints if joint.name == name), "")
+
+    def poses(self, positions: Mapping[str, float]) -> dict[str, Placed]:
+        """Return the place of every link."""
+        found: dict[str, Placed] = {}
+        by_name = {joint.name: joint for joint in self.joints}
+
+        def position(joint: Joint | None, before: tuple[str, ...] = ()) -> float:
+            """Return the given position, or that which follows from the leader's; a leader that is missing is at 0."""
+            if joint is None or joint.name in positions or joint.mimic is None or joint.name in before:
+                return positions.get(joint.name, 0.0) if joint is not None else 0.0
+            leader, factor, offset = joint.mimic
+            return factor * position(by_name.get(leader), (*before, joint.name)) + offset
+
         for root, tree in self.trees.items():
-            found[root] = (root, np.eye(4))
+            found[root] = Placed(root, "", np.eye(4))
             for link in tree[1:]:
                 joint = self.parents[link]
-                found[link] = (root, found[joint.parent][1] @ joint.origin @ _moved(joint, positions.get(joint.name, 0.0)))
+                above, moved = found[joint.parent], _moved(joint, position(joint))
+                if moved is None:
+                    found[link] = Placed(root, joint.name, np.eye(4))
+                else:
+                    found[link] = Placed(root, above.below, above.pose @ joint.origin @ moved)
         return found
 
 
-def _moved(joint: Joint, position: float) -> Matrix:
+def _moved(joint: Joint, position: float) -> Matrix | None:
+    """Return how far a joint moves its child; None for an axis without a direction, where KDL's poses are NaN."""
     if joint.type in ("fixed", "floating"):
         return np.eye(4)
     length = np.linalg.norm(joint.axis)
     if length == 0:
-        return np.full((4, 4), np.nan)
+        return None
     if joint.type == "prismatic":
         return transform(np.eye(3), joint.axis / length * position)
     return transform(turn(joint.axis / length, position), [0, 0, 0]) if position else np.eye(4)
