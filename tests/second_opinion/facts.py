@@ -467,7 +467,7 @@ def kinematics_match_reference(
     assert match == "order"
     posed = Posed(posed.robot)
     base = next(iter(reference.trees))
-    base = base if base in posed.robot.links else next(iter(posed.robot.trees))
+    base = base if base in posed.robot.links else max(posed.robot.trees, key=lambda root: len(posed.robot.trees[root]))
     expected = Posed(reference)
     shares = []
     for link in links:

@@ -59,17 +59,19 @@ class Rubric:
         except Missing:
             return opinion
         statuses = {"passed": "carried", "pending": "pending", "unsure": "unsure"}
-        return opinion._replace(status=statuses.get(other.status, opinion.status), cause=cause)
+        if other.status not in statuses:
+            return opinion
+        return opinion._replace(status=statuses[other.status], cause=cause)
 
     def _decide(self, robot: Robot, row: dict[str, Any], at: dict[str, float]) -> Opinion:
         try:
-            arguments = {key: _resolved(robot, value) for key, value in self.arguments(row).items()}
             positions = {}
             for name, position in at.items():
                 joint = next((joint for joint in robot.joints if joint.name == _resolved(robot, name, is_joint=True)), None)
                 if joint is None or joint.type == "fixed":
                     raise Missing("joint", name)
                 positions[joint.name] = position if joint.type == "prismatic" else radians(position)
+            arguments = {key: _resolved(robot, value) for key, value in self.arguments(row).items()}
             if row["check"] == "kinematics_match_reference":
                 arguments["reference"] = self.reference
             fine, measured = FACTS[row["check"]](Posed(robot, positions), **arguments)
@@ -80,6 +82,14 @@ class Rubric:
         return Opinion("passed" if fine else "failed", measured)
 
 
+def _main_root(robot: Robot, selector: str) -> str:
+    """Return the root of the largest tree."""
+    sizes = sorted(map(len, robot.trees.values()))
+    if sizes[-2:] == sizes[-1:] * 2:
+        raise Missing("selector", selector)
+    return max(robot.trees, key=lambda root: len(robot.trees[root]))
+
+
 def _resolved(robot: Robot, value: Any, *, is_joint: bool = False) -> Any:
     """Return a value in which the names of places in the tree are names of links: `@root`, `@moved:2`."""
     if isinstance(value, list):
@@ -87,10 +97,10 @@ def _resolved(robot: Robot, value: Any, *, is_joint: bool = False) -> Any:
     if not isinstance(value, str) or not value.startswith("@"):
         return value
     if value == "@root":
-        return max(robot.trees, key=lambda root: len(robot.trees[root]))
+        return _main_root(robot, value)
     number = int(value.removeprefix("@moved:"))
     chains = {}
-    for link in robot.links:
+    for link in robot.trees[_main_root(robot, value)]:
         chain, name = [], link
         while name in robot.parents:
             joint = robot.parents[name]
@@ -100,7 +110,7 @@ def _resolved(robot: Robot, value: Any, *, is_joint: bool = False) -> Any:
         chains[link] = chain[::-1]
     longest = max(map(len, chains.values()))
     if longest < number:
-        raise Missing("moved", value)
+        raise Missing("selector", value)
     ends = {chain[number - 1].name: chain[number - 1] for chain in chains.values() if len(chain) == longest}
     if len(ends) > 1:
         raise Undecided(value)

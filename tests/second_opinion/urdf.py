@@ -247,9 +247,9 @@ class Robot:
             if any(joint.name == name for joint in self.named):
                 raise Bad(name)
             origin = _origin(element)
-            direction = [1.0, 0.0, 0.0] if axis is None else [0.0, 0.0, 0.0]
-            if axis is not None and axis.get("xyz") is not None and kind not in ("fixed", "floating"):
-                direction = numbers(axis.get("xyz"), 3)
+            direction = [1.0, 0.0, 0.0]
+            if axis is not None and kind not in ("fixed", "floating"):
+                direction = numbers(axis.get("xyz"), 3) if axis.get("xyz") is not None else [0.0, 0.0, 0.0]
             follows = None
             if mimic is not None:
                 follows = (mimic.get("joint"), number(mimic, "multiplier", "1"), number(mimic, "offset", "0"))
@@ -325,6 +325,8 @@ def _moved(joint: Joint, position: float) -> Matrix | None:
     length = np.linalg.norm(joint.axis)
     if length == 0:
         return None
+    if joint.type == "planar":  # one number moves none
+        return np.eye(4)
     if joint.type == "prismatic":
         return transform(np.eye(3), joint.axis / length * position)
     return transform(turn(joint.axis / length, position), [0, 0, 0]) if position else np.eye(4)
