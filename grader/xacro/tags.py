@@ -132,9 +132,7 @@ def _include(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes
         inner = Scopes(XacroScope(is_namespace=True), XacroScope(scopes.symbols, is_namespace=True))
         scopes.macros.bind(f"{space}.", inner.macros)
         scopes.symbols.bind(f"{space}.", inner.symbols)
-        found = Namespace(
-            space, lambda name: texts.find(name, inner.symbols), lambda: bool(inner.symbols.properties)
-        )
+        found = Namespace(space, lambda name: texts.find(name, inner.symbols), lambda: bool(inner.symbols.properties))
         scopes.symbols.bind(space, found)
     optional = node.attributes.get("optional")
     is_optional = optional is not None and _boolean(optional, optional)

@@ -1,4 +1,4 @@
-"""Mutated URDFs: does ROS 2's library accept, degrade or reject each as the grader's reader says?"""
+"""Mutated URDFs: the verdict of ROS 2's library on each against that of the grader's reader."""
 
 import re
 from collections.abc import Callable, Iterator
@@ -92,7 +92,12 @@ def _moved(pattern: re.Pattern[bytes]) -> Callable[[Random, bytes], bytes]:
         (start, end), (other, other_end) = _spot(random, pattern, text), _spot(random, pattern, text)
         taken = text[start:end]
         return random.choice(
-            (text[:start] + text[end:], text[:end] + taken + text[end:], text[:other] + taken + text[other_end:], text[:other] + taken + text[other:])
+            (
+                text[:start] + text[end:],
+                text[:end] + taken + text[end:],
+                text[:other] + taken + text[other_end:],
+                text[:other] + taken + text[other:],
+            )
         )
 
     return change

@@ -1,15 +1,16 @@
 """Compare random robots: `python -m tests.second_opinion N [FIRST SEED] [PROCESSES]`; `mutants` compares all mutants."""
 
 import sys
+from collections.abc import Iterable
 from itertools import chain
 
-from tests.second_opinion.compare import compared_mutants, compared_seeds, summary
+from tests.second_opinion.compare import Comparison, compared_mutants, compared_seeds, summary
 
 
 def main(number: str, first: str = "0", processes: str = "1") -> int:
     """Print the summary and return the exit code: 1 with a disagreement."""
     if number == "mutants":
-        comparisons = chain(*map(compared_mutants, ("lab6", "arm")))
+        comparisons: Iterable[Comparison] = chain(*map(compared_mutants, ("lab6", "arm")))
     else:
         comparisons = compared_seeds(range(int(first), int(first) + int(number)), int(processes))
     lines, different = summary(comparisons)

@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 
-from tests.second_opinion.urdf import Matrix, Shape
+from tests.second_opinion.elements import Matrix, Shape
 
 _CLOUD = np.random.default_rng(7).normal(size=(600, 3))
 _CLOUD /= np.linalg.norm(_CLOUD, axis=1)[:, None]

@@ -5,8 +5,9 @@ from math import radians
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tests.second_opinion.facts import FACTS, Missing, Posed, Undecided, Unsure
-from tests.second_opinion.urdf import Robot, Unclear
+from tests.second_opinion.facts import FACTS
+from tests.second_opinion.posed import Missing, Posed, Undecided, Unsure
+from tests.second_opinion.robot import Robot
 
 RUBRICS = Path(__file__).parents[2] / "rubrics"
 
@@ -33,7 +34,8 @@ class Rubric:
 
     def arguments(self, row: dict[str, Any]) -> dict[str, Any]:
         """Return the arguments of a check, with the rubric's defaults."""
-        return self.defaults.get(row["check"], {}) | row.get("with", {})
+        found: dict[str, Any] = self.defaults.get(row["check"], {}) | row.get("with", {})
+        return found
 
     def opinions(self, robot: Robot) -> dict[str, Opinion]:
         """Return an opinion on each criterion that a fact decides."""
@@ -48,12 +50,16 @@ class Rubric:
             carried = row.get("carried")
             if carried and opinion.status in ("failed", "skipped"):
                 reasons = {opinion.because, found[opinion.because].cause} if opinion.because else set(carried["from"])
-                causes = [name for name in carried["from"] if name in reasons and found[name].status in ("failed", "carried")]
+                causes = [
+                    name for name in carried["from"] if name in reasons and found[name].status in ("failed", "carried")
+                ]
                 opinion = self._carried(robot, row, carried, opinion, causes[0]) if causes else opinion
             found[row["id"]] = opinion
         return found
 
-    def _carried(self, robot: Robot, row: dict[str, Any], carried: dict[str, Any], opinion: Opinion, cause: str) -> Opinion:
+    def _carried(
+        self, robot: Robot, row: dict[str, Any], carried: dict[str, Any], opinion: Opinion, cause: str
+    ) -> Opinion:
         try:
             other = self._decide(robot, carried, row.get("at", {}))
         except Missing:
@@ -67,7 +73,9 @@ class Rubric:
         try:
             positions = {}
             for name, position in at.items():
-                joint = next((joint for joint in robot.joints if joint.name == _resolved(robot, name, is_joint=True)), None)
+                joint = next(
+                    (joint for joint in robot.joints if joint.name == _resolved(robot, name, is_joint=True)), None
+                )
                 if joint is None or joint.type == "fixed":
                     raise Missing("joint", name)
                 positions[joint.name] = position if joint.type == "prismatic" else radians(position)
@@ -116,6 +124,3 @@ def _resolved(robot: Robot, value: Any, *, is_joint: bool = False) -> Any:
         raise Undecided(value)
     joint = next(iter(ends.values()))
     return joint.name if is_joint else joint.child
-
-
-__all__ = ["Opinion", "Robot", "Rubric", "Unclear"]

@@ -11,12 +11,24 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from tests.second_opinion.urdf import rotation
+from tests.second_opinion.elements import rotation
 
 _ROOT = Path(__file__).parents[2]
-_OF_LAB6 = ("mounts-between", "wheel-joints-at-centres", "turned-box", "with-collisions-and-inertia", "materials-in-links", "half-turns")
+_OF_LAB6 = (
+    "mounts-between",
+    "wheel-joints-at-centres",
+    "turned-box",
+    "with-collisions-and-inertia",
+    "materials-in-links",
+    "half-turns",
+)
 _OF_ARM = ("one-line", "mounts-between", "frames-turned")
-_SHAPES = ('<box size="0.2 0.2 0.05"/>', '<cylinder radius="0.1" length="0.05"/>', '<sphere radius="0.05"/>', '<box size="0 0 0"/>')
+_SHAPES = (
+    '<box size="0.2 0.2 0.05"/>',
+    '<cylinder radius="0.1" length="0.05"/>',
+    '<sphere radius="0.05"/>',
+    '<box size="0 0 0"/>',
+)
 _TYPES = ("fixed", "continuous", "revolute", "prismatic", "floating", "planar")
 # How far the criteria allow a number to be off, by the attribute that has it.
 _TOLERANCES = {
@@ -81,9 +93,24 @@ def _change_number(random: Random, robot: ET.Element) -> None:
         return
     place = random.randrange(len(values))
     tolerance = _TOLERANCES.get(name, abs(values[place]) * 0.03)
-    step = tolerance * random.choice((1, 1, 1 - 1e-3, 1 + 1e-3, 0.5, 2, 10, random.uniform(0, 3), random.uniform(0, 100)))
+    step = tolerance * random.choice(
+        (1, 1, 1 - 1e-3, 1 + 1e-3, 0.5, 2, 10, random.uniform(0, 3), random.uniform(0, 100))
+    )
     value = values[place]
-    values[place] = random.choice((value + step, value - step, value + step, value - step, -value, 0.0, value * 10, value / 2, value * 1000, value * pi / 180))
+    values[place] = random.choice(
+        (
+            value + step,
+            value - step,
+            value + step,
+            value - step,
+            -value,
+            0.0,
+            value * 10,
+            value / 2,
+            value * 1000,
+            value * pi / 180,
+        )
+    )
     if name == "rgba" and random.random() < 0.9:
         values[place] = min(max(values[place], 0.0), 1.0)
     element.set(name, " ".join(map(_text, values)))
@@ -101,7 +128,11 @@ def _change_all(random: Random, robot: ET.Element) -> None:
         case 2:
             values = [_text(-float(value)) for value in values]
         case _:
-            values = values[:-1] if random.random() < 0.3 else [f"+{value}" if value[0] not in "+-" else f" {value} " for value in values]
+            values = (
+                values[:-1]
+                if random.random() < 0.3
+                else [f"+{value}" if value[0] not in "+-" else f" {value} " for value in values]
+            )
     element.set(name, " ".join(values))
 
 
@@ -110,7 +141,9 @@ def _rotate(random: Random, robot: ET.Element) -> None:
     origin = _some(random, robot.findall(".//origin"))
     values = [float(value) for value in origin.get("rpy", "0 0 0").split(" ") if value]
     if len(values) == 3:
-        values[random.randrange(3)] += random.choice((pi / 2, -pi / 2, pi, 1.57, random.uniform(-0.05, 0.05), random.uniform(-3, 3)))
+        values[random.randrange(3)] += random.choice(
+            (pi / 2, -pi / 2, pi, 1.57, random.uniform(-0.05, 0.05), random.uniform(-3, 3))
+        )
         origin.set("rpy", " ".join(map(_text, values)))
 
 
@@ -154,7 +187,12 @@ def _retype(random: Random, robot: ET.Element) -> None:
 def _axis(random: Random, robot: ET.Element) -> None:
     axis = _some(random, robot.findall(".//axis"))
     some = " ".join(_text(random.uniform(-1, 1)) for _ in range(3))
-    axis.set("xyz", random.choice(("1 0 0", "0 1 0", "0 0 1", "0 0 -1", "0 -1 0", "0 0 2.5", "0 0.0174 1", "0 0.018 1", "0 0 0", some)))
+    axis.set(
+        "xyz",
+        random.choice(
+            ("1 0 0", "0 1 0", "0 0 1", "0 0 -1", "0 -1 0", "0 0 2.5", "0 0.0174 1", "0 0.018 1", "0 0 0", some)
+        ),
+    )
 
 
 def _reshape(random: Random, robot: ET.Element) -> None:
@@ -168,10 +206,21 @@ def _another_shape(random: Random, robot: ET.Element) -> None:
     tag = random.choice(("visual", "visual", "collision"))
     shape = random.choice(_SHAPES)
     numbers = " ".join(_text(random.choice((0.0, random.uniform(-0.2, 0.2)))) for _ in range(3))
-    material = random.choice(("", '<material name="gray"/>', '<material name="m"><color rgba="0.5 0 0 0"/></material>', '<material name="none"/>'))
-    new = ET.fromstring(f'<{tag}><origin xyz="{numbers}"/><geometry>{shape}</geometry>{material if tag == "visual" else ""}</{tag}>')
+    material = random.choice(
+        (
+            "",
+            '<material name="gray"/>',
+            '<material name="m"><color rgba="0.5 0 0 0"/></material>',
+            '<material name="none"/>',
+        )
+    )
+    new = ET.fromstring(
+        f'<{tag}><origin xyz="{numbers}"/><geometry>{shape}</geometry>{material if tag == "visual" else ""}</{tag}>'
+    )
     same = link.find(tag)
-    link.insert(random.randrange(len(link) + 1), copy.deepcopy(same) if same is not None and random.random() < 0.3 else new)
+    link.insert(
+        random.randrange(len(link) + 1), copy.deepcopy(same) if same is not None and random.random() < 0.3 else new
+    )
 
 
 def _joint_between(random: Random, robot: ET.Element) -> None:
@@ -180,7 +229,9 @@ def _joint_between(random: Random, robot: ET.Element) -> None:
     parent = joint.find("parent")
     if parent is None or robot.find("link[@name='between']") is not None:
         return
-    first = ET.SubElement(robot, "joint", {"name": "first_half", "type": random.choice(("fixed", "fixed", "fixed", "continuous"))})
+    first = ET.SubElement(
+        robot, "joint", {"name": "first_half", "type": random.choice(("fixed", "fixed", "fixed", "continuous"))}
+    )
     ET.SubElement(first, "parent", {"link": parent.get("link", "")})
     ET.SubElement(first, "child", {"link": "between"})
     origin = joint.find("origin")
@@ -250,7 +301,9 @@ def _material(random: Random, robot: ET.Element) -> None:
     visual = _some(random, robot.findall(".//visual"))
     for material in visual.findall("material"):
         visual.remove(material)
-    rgba = random.choice(("0 0.6 0 1", "0.7 0.7 0.7 1", "1 1 1 1", "0.75 0.75 0.75 1", "0.9 0.9 0.9", "0 0 2 1", "0.7 0.71 0.7 0"))
+    rgba = random.choice(
+        ("0 0.6 0 1", "0.7 0.7 0.7 1", "1 1 1 1", "0.75 0.75 0.75 1", "0.9 0.9 0.9", "0 0 2 1", "0.7 0.71 0.7 0")
+    )
     inner = random.choice((f'<color rgba="{rgba}"/>', f'<color rgba="{rgba}"/>', ""))
     visual.append(ET.fromstring(f'<material name="{random.choice(("own", "gray", "", "green"))}">{inner}</material>'))
 

@@ -17,7 +17,7 @@ _BY_NAME = "${a}.xacro"
 _PARAMS = (
     "", "a", "b", "a b", "a:=1", "a=2", "a:=^", "a:=^|3", "b:=^|${a}", "a:=${b}", "b:=${c + 1}", "a:='x y'", "a:=^|'x y'", "*b", "**b", "*a", "a *b",
     "a **b", "*a *b", "**a *b", "a:=1 b:=${a}", "b:=${a} a:=1", "a:=^ b:=^|7", "a:= ", "a:=", "  a   b:=2 ", "a,b", "a a", "^a", "a:=$(arg a)",
-    "a:=true", "c:=^|", "a:=\"x\"", "a:=^|^", "n.a", "a:=[1,2]", "a:=${[1, 2]}", "a\nb:=1", "*b a:=1",
+    "a:=true", "c:=^|", 'a:="x"', "a:=^|^", "n.a", "a:=[1,2]", "a:=${[1, 2]}", "a\nb:=1", "*b a:=1",
 )  # fmt: skip
 _VALUES = (
     "1", "2.50", "0.1", "1e3", "1e-7", "007", "-0.0", " 5 ", "+3", "1_0", "0x10", "True", "false", "None", "nan", "inf", "1e400", "'5'", '"5"', "x y",
@@ -97,7 +97,19 @@ class _Writer:
         return f"<s x={quoteattr(self._text())}>{escape(self._text()) if self._random.random() < 0.2 else ''}</s>"
 
     def _property(self) -> str:
-        more = self._pick(("", "", "", 'scope="parent"', 'scope="global"', 'lazy_eval="false"', 'lazy_eval="true"', 'scope="local"', 'remove="true"'))
+        more = self._pick(
+            (
+                "",
+                "",
+                "",
+                'scope="parent"',
+                'scope="global"',
+                'lazy_eval="false"',
+                'lazy_eval="true"',
+                'scope="local"',
+                'remove="true"',
+            )
+        )
         value = self._pick(("value", "value", "value", "default")) + f"={quoteattr(self._text())}"
         if "remove" in more and self._random.random() < 0.8:
             value = ""
@@ -111,7 +123,16 @@ class _Writer:
         given = self._random.sample(_NAMES, self._random.choice((0, 1, 1, 2)))
         attributes = " ".join(f"{name}={quoteattr(self._text())}" for name in given)
         blocks = "".join(
-            self._pick(("<x/>", "<x><y v='${a}'/></x>", "<xacro:insert_block name='b'/>", "<!-- c --><x/>", "<x>t</x>", "<xacro:k/>"))
+            self._pick(
+                (
+                    "<x/>",
+                    "<x><y v='${a}'/></x>",
+                    "<xacro:insert_block name='b'/>",
+                    "<!-- c --><x/>",
+                    "<x>t</x>",
+                    "<xacro:k/>",
+                )
+            )
             for _ in range(self._random.choice((0, 0, 1, 1, 2)))
         )
         name = self._pick((*_MACROS[:3], *_MACROS))
@@ -134,21 +155,33 @@ class _Writer:
         tag = self._pick(("if", "unless"))
         return f"<xacro:{tag} value={quoteattr(self._pick(_CONDITIONS))}>{self.body(depth)}</xacro:{tag}>"
 
-    def _include(self, depth: int) -> str:
+    def _include(self, _: int) -> str:
         if self.has_optional and not self.is_main:
             return self._shown()  # docs/xacro.md: what is missing inside of an optional file is a known difference
         space = self._pick(_SPACES)
-        more = (f' ns="{space}"' if self._random.random() < 0.7 else "") + (' optional="true"' if self.has_optional and self._random.random() < 0.5 else "")
+        more = (f' ns="{space}"' if self._random.random() < 0.7 else "") + (
+            ' optional="true"' if self.has_optional and self._random.random() < 0.5 else ""
+        )
         name = self._pick((*_FILES, "./one.xacro", "$(find my_robot)/urdf/two.xacro", _BY_NAME))
         return f"<xacro:include filename={quoteattr(name)}{more}/>"
 
     def _element(self) -> str:
-        attribute = f"<xacro:attribute name={quoteattr(self._pick(('k', 'x', '${a}', '')))} value={quoteattr(self._text())}/>"
+        attribute = (
+            f"<xacro:attribute name={quoteattr(self._pick(('k', 'x', '${a}', '')))} value={quoteattr(self._text())}/>"
+        )
         name = quoteattr(self._pick(("e", "${a}", "")))
-        return self._pick((f"<xacro:element xacro:name={name}>{attribute}<z/></xacro:element>", f"<w>{attribute}{attribute}</w>", f"<xacro:element name={name}/>"))
+        return self._pick(
+            (
+                f"<xacro:element xacro:name={name}>{attribute}<z/></xacro:element>",
+                f"<w>{attribute}{attribute}</w>",
+                f"<xacro:element name={name}/>",
+            )
+        )
 
     def _comment(self) -> str:
-        return self._pick(("<!-- ${a} -->", "<!-- $(arg a) --> ", "<?pi ${a}?>", "\n\n", "text ${a}", "&amp;&lt;", "<![CDATA[x]]>"))
+        return self._pick(
+            ("<!-- ${a} -->", "<!-- $(arg a) --> ", "<?pi ${a}?>", "\n\n", "text ${a}", "&amp;&lt;", "<![CDATA[x]]>")
+        )
 
     def _plain(self, depth: int) -> str:
         return f"<g y={quoteattr(self._text())}>{self.body(depth)}</g>"

@@ -1,164 +1,29 @@
 """A second reader of URDFs, written from urdfdom's rules: what ROS 2 makes of a text, with poses at any position."""
 
-import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import NamedTuple
 from xml.etree import ElementTree as ET
 
 import numpy as np
 
-Matrix = np.ndarray[Any, Any]
-_NUMBER = re.compile(r"\s*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?\Z")
-_BREAK = re.compile(rb"""=\s*(?:"[^"<>]*[\t\r\n]|'[^'<>]*[\t\r\n])""")
-_TYPES = ("fixed", "continuous", "revolute", "prismatic", "floating", "planar")
-BLACK = (0.0, 0.0, 0.0, 1.0)
-
-
-class Bad(ValueError):
-    """The part of the text that is read is one that urdfdom refuses."""
-
-
-class Unclear(Exception):
-    """ROS 2 refuses the file in a way that leaves open which robot is meant, so only its loading can be compared."""
-
-
-@dataclass
-class Shape:
-    """A shape with its pose in the frame of its link; the sizes of a cylinder are radius and length."""
-
-    kind: str
-    size: tuple[float, ...]
-    pose: Matrix
-    colour: tuple[float, ...] | None = None
-
-    @property
-    def volume(self) -> float:
-        """The volume in cubic metres; a mesh, whose size is unknown, is larger than everything."""
-        a = [abs(number) for number in self.size]
-        return {
-            "box": lambda: a[0] * a[1] * a[2],
-            "cylinder": lambda: np.pi * a[0] ** 2 * a[1],
-            "sphere": lambda: 4 / 3 * np.pi * a[0] ** 3,
-            "mesh": lambda: np.inf,
-        }[self.kind]()
-
-    @property
-    def radius(self) -> float:
-        """The distance of the farthest point from the centre."""
-        sizes = np.abs(self.size)
-        radii = {"box": np.linalg.norm(sizes) / 2, "cylinder": np.hypot(sizes[0], sizes[-1] / 2), "sphere": sizes[0]}
-        return float(radii[self.kind])
-
-    @property
-    def has_size(self) -> bool:
-        """Whether it has an area: a box without height is a plate, a cylinder without length is a disc."""
-        return self.size.count(0) < 2 if self.kind == "box" else self.size[0] != 0 or any(self.size) and self.kind == "mesh"
-
-
-@dataclass
-class Link:
-    """The shapes and the inertia of a link: mass, centre of mass, tensor about it in the frame of the link."""
-
-    visuals: list[Shape] = field(default_factory=list)
-    collisions: list[Shape] = field(default_factory=list)
-    inertial: tuple[float, Matrix, Matrix] | None = None
-
-
-@dataclass
-class Joint:
-    """A joint; `limit` is lower, upper, effort and velocity."""
-
-    name: str
-    type: str
-    parent: str
-    child: str
-    origin: Matrix
-    axis: Matrix
-    limit: tuple[float, ...] | None
-    mimic: tuple[str, float, float] | None
-
-    @property
-    def is_mimic(self) -> bool:
-        """Whether the joint follows another."""
-        return self.mimic is not None
-
-
-def numbers(text: str | None, count: int) -> list[float]:
-    """Return the numbers of an attribute, split at spaces only."""
-    pieces = [piece for piece in (text or "").split(" ") if piece]
-    if len(pieces) != count or not all(map(_NUMBER.match, pieces)):
-        raise Bad(text)
-    found = [float(piece) for piece in pieces]
-    if not np.all(np.isfinite(found)):
-        raise Bad(text)
-    return found
-
-
-def number(element: ET.Element | None, name: str, default: str | None = None) -> float:
-    """Return the one number of an attribute, which has no trailing space."""
-    text = element.get(name, default) if element is not None else default
-    if text is None or not _NUMBER.match(text) or not np.isfinite(float(text)):
-        raise Bad(text)
-    return float(text)
-
-
-def rotation(roll: float, pitch: float, yaw: float) -> Matrix:
-    """Return the rotation about the fixed axes x, then y, then z."""
-    (a, b, c), (d, e, f) = np.cos((roll, pitch, yaw)), np.sin((roll, pitch, yaw))
-    return np.array(
-        [[b * c, d * e * c - a * f, a * e * c + d * f], [b * f, d * e * f + a * c, a * e * f - d * c], [-e, d * b, a * b]]
-    )
-
-
-def turn(axis: Matrix, angle: float) -> Matrix:
-    """Return the rotation about a unit vector."""
-    x, y, z = axis
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
-
-
-def transform(rotated: Matrix, moved: Matrix | list[float]) -> Matrix:
-    """Return a rotation and a translation as one matrix."""
-    found = np.eye(4)
-    found[:3, :3], found[:3, 3] = rotated, moved
-    return found
-
-
-def _origin(element: ET.Element) -> Matrix:
-    origin = element.find("origin")
-    if origin is None:
-        return np.eye(4)
-    xyz = numbers(origin.get("xyz", "0 0 0"), 3)
-    rpy = numbers(origin.get("rpy", "0 0 0"), 3)
-    return transform(rotation(*rpy), xyz)
-
-
-def _shape(element: ET.Element) -> Shape:
-    pose, geometry = _origin(element), element.find("geometry")
-    if geometry is None or len(geometry) == 0:
-        raise Bad("no geometry")
-    form = geometry[0]
-    match form.tag:
-        case "box":
-            size = numbers(form.get("size"), 3)
-        case "cylinder":
-            size = [number(form, "radius"), number(form, "length")]
-        case "sphere":
-            size = [number(form, "radius")]
-        case "mesh" if form.get("filename") is not None:
-            size = numbers(form.get("scale", "1 1 1"), 3)
-        case _:
-            raise Bad(form.tag)
-    return Shape(form.tag, tuple(size), pose)
-
-
-def _inertial(element: ET.Element) -> tuple[float, Matrix, Matrix]:
-    pose, inertia = _origin(element), element.find("inertia")
-    mass = number(element.find("mass"), "value")
-    ixx, ixy, ixz, iyy, iyz, izz = (number(inertia, name) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
-    tensor = np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
-    return mass, pose[:3, 3], pose[:3, :3] @ tensor @ pose[:3, :3].T
+from tests.second_opinion.elements import (
+    BLACK,
+    LINE_BREAK,
+    TYPES,
+    Bad,
+    Joint,
+    Link,
+    Matrix,
+    Shape,
+    Unclear,
+    number,
+    numbers,
+    origin_of,
+    read_inertial,
+    read_shape,
+    transform,
+    turn,
+)  # fmt: skip
 
 
 class Placed(NamedTuple):
@@ -173,7 +38,7 @@ class Robot:
     """What ROS 2 reads of a text; raises ET.ParseError for what is not XML, and Unclear."""
 
     def __init__(self, text: bytes) -> None:
-        if _BREAK.search(text):
+        if LINE_BREAK.search(text):
             raise Unclear("a line break in an attribute, which an XML parser reads as a space, and urdfdom does not")
         root = ET.fromstring(text)
         self.loads = root.tag == "robot" and "name" in root.attrib
@@ -181,9 +46,10 @@ class Robot:
         self.named: list[Joint] = []
         self.materials: dict[str, tuple[float, ...]] = {}
         for element in root.findall("material"):
-            if element.get("name") in (None, *self.materials):
-                raise Unclear(element.get("name"))
-            self.materials[element.attrib["name"]] = self._colour(element) or BLACK
+            name = element.get("name", "")  # one without a name is dropped, with an error
+            if name in self.materials:
+                raise Unclear(name)
+            self.materials[name] = self._colour(element) or BLACK
         for element in root.findall("link"):
             if element.get("name") in (None, *self.links):
                 raise Unclear(element.get("name"))
@@ -213,9 +79,9 @@ class Robot:
         link = Link()
         try:
             if (inertial := element.find("inertial")) is not None:
-                link.inertial = _inertial(inertial)
+                link.inertial = read_inertial(inertial)
             for visual in element.findall("visual"):
-                shape, material = _shape(visual), visual.find("material")
+                shape, material = read_shape(visual), visual.find("material")
                 if material is not None:
                     name = material.attrib["name"]
                     colour = self._colour(material)
@@ -232,7 +98,7 @@ class Robot:
         found = []
         for element in elements:
             try:
-                found.append(_shape(element))
+                found.append(read_shape(element))
             except Bad:
                 break
         return found
@@ -241,26 +107,29 @@ class Robot:
         name, kind, limit = element.get("name"), element.get("type"), element.find("limit")
         ends = [end.get("link") for tag in ("parent", "child") if (end := element.find(tag)) is not None]
         axis, mimic = element.find("axis"), element.find("mimic")
+        if kind not in TYPES or len(ends) != 2 or None in ends or name in (None, *(joint.name for joint in self.named)):
+            raise Unclear(name)
+        if name is None or (mimic is not None and mimic.get("joint") is None):
+            raise Unclear(name)
         try:
-            if name is None or kind not in _TYPES or len(ends) != 2 or None in ends:
-                raise Bad(name)
-            if any(joint.name == name for joint in self.named):
-                raise Bad(name)
-            origin = _origin(element)
+            origin = origin_of(element)
             direction = [1.0, 0.0, 0.0]
             if axis is not None and kind not in ("fixed", "floating"):
                 direction = numbers(axis.get("xyz"), 3) if axis.get("xyz") is not None else [0.0, 0.0, 0.0]
             follows = None
             if mimic is not None:
-                follows = (mimic.get("joint"), number(mimic, "multiplier", "1"), number(mimic, "offset", "0"))
-                if follows[0] is None:
-                    raise Bad(name)
+                follows = (mimic.attrib["joint"], number(mimic, "multiplier", "1"), number(mimic, "offset", "0"))
         except Bad as error:
             raise Unclear(name) from error
         limits = None
         if limit is not None:
             try:
-                limits = (number(limit, "lower", "0"), number(limit, "upper", "0"), number(limit, "effort"), number(limit, "velocity"))
+                limits = (
+                    number(limit, "lower", "0"),
+                    number(limit, "upper", "0"),
+                    number(limit, "effort"),
+                    number(limit, "velocity"),
+                )
             except Bad:
                 self.loads = False
         elif kind in ("revolute", "prismatic"):
