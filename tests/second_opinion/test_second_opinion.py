@@ -37,7 +37,7 @@ LIBRARIES = {
     "typing",
     "xml",
 }
-PART = 250
+PART = 120
 
 
 def test_the_checker_shares_no_code_with_the_grader() -> None:
@@ -51,8 +51,8 @@ def test_the_checker_shares_no_code_with_the_grader() -> None:
 
 
 def test_most_criteria_have_a_second_opinion() -> None:
-    """Of those that need a URDF only the elements for Gazebo have none."""
-    assert [len(Rubric(name).rows) for name in ("lab6", "arm", "sensors")] == [30, 60, 18]
+    """Of those that need a URDF only the elements for Gazebo have none: 32 of 32, 55 of 55, 18 of 34."""
+    assert [len(Rubric(name).rows) for name in ("lab6", "arm", "sensors")] == [32, 55, 18]
 
 
 @pytest.mark.parametrize("part", spread(range(8), 1))
