@@ -37,8 +37,11 @@ def span(shape: Shape, pose: Matrix, direction: Matrix) -> tuple[float, float]:
     return middle - far, middle + far
 
 
-def overlap(one: Shape, pose: Matrix, other: Shape, other_pose: Matrix) -> float:
-    """Return how far one of two solids has to move to leave the other; 0 or less if they do not overlap."""
+def overlap(one: Shape, pose: Matrix, other: Shape, other_pose: Matrix, enough: float) -> float:
+    """Return how far one of two solids has to move to leave the other; 0 or less if they do not overlap.
+
+    Anything that is not more than `enough` may be an upper bound.
+    """
     apart = other_pose[:3, 3] - pose[:3, 3]
 
     def depth(directions: Matrix) -> Matrix:
@@ -52,7 +55,7 @@ def overlap(one: Shape, pose: Matrix, other: Shape, other_pose: Matrix) -> float
     directions = np.vstack([directions, -directions])
     depths = depth(directions)
     best, order = float(depths.min()), np.argsort(depths)[:6]
-    if best <= 0:
+    if best <= enough:
         return best
     starts = directions[order]
     step = 0.1
@@ -64,7 +67,7 @@ def overlap(one: Shape, pose: Matrix, other: Shape, other_pose: Matrix) -> float
         starts = np.where(better[:, None], near[np.arange(len(starts)), found.argmin(axis=1)], starts)
         best = min(best, float(found.min()))
         step *= 1.0 if better.any() else 0.4
-        if best <= 0:
+        if best <= enough:
             break
     return best
 

@@ -30,6 +30,7 @@ class Rubric:
         solution = RUBRICS / rubric["reference"] / rubric["urdf"]
         self.reference = Robot(solution.read_bytes()) if solution.suffix == ".urdf" else None
         self.defaults = rubric.get("defaults", {}).get("with", {})
+        self._posed: dict[tuple[tuple[str, float], ...], Posed] = {}
         self.rows = [row for row in rubric["criterion"] if row["check"] in FACTS]
 
     def arguments(self, row: dict[str, Any]) -> dict[str, Any]:
@@ -40,6 +41,7 @@ class Rubric:
     def opinions(self, robot: Robot) -> dict[str, Opinion]:
         """Return an opinion on each criterion that a fact decides."""
         found: dict[str, Opinion] = {}
+        self._posed = {}
         missed: dict[tuple[str, ...], str] = {}
         for row in self.rows:
             try:
@@ -56,6 +58,12 @@ class Rubric:
                 opinion = self._carried(robot, row, carried, opinion, causes[0]) if causes else opinion
             found[row["id"]] = opinion
         return found
+
+    def _at(self, robot: Robot, positions: dict[str, float]) -> Posed:
+        key = tuple(positions.items())
+        if key not in self._posed:
+            self._posed[key] = Posed(robot, positions)
+        return self._posed[key]
 
     def _carried(
         self, robot: Robot, row: dict[str, Any], carried: dict[str, Any], opinion: Opinion, cause: str
@@ -82,7 +90,7 @@ class Rubric:
             arguments = {key: _resolved(robot, value) for key, value in self.arguments(row).items()}
             if row["check"] == "kinematics_match_reference":
                 arguments["reference"] = self.reference
-            fine, measured = FACTS[row["check"]](Posed(robot, positions), **arguments)
+            fine, measured = FACTS[row["check"]](self._at(robot, positions), **arguments)
         except Undecided:
             return Opinion("pending")
         except Unsure:

@@ -41,7 +41,7 @@ def centre_at(
     pose = posed.pose(link, relative_to) @ main.pose
     is_loose = rigid and any(joint.type != "fixed" for joint in posed.path(link, relative_to))
     tilt = angle_between(pose[:3, 2], axis)
-    is_turned = angle < 90 and main.kind != "sphere" and min(tilt, 180 - tilt) > angle + SLACK
+    is_turned = angle < 90 and min(tilt, 180 - tilt) > angle + SLACK
     return near(pose[:3, 3], xyz, tolerance) and not is_loose and not is_turned, None if is_loose else pose[:3, 3]
 
 
@@ -110,7 +110,7 @@ def clear_of(posed: Posed, link: str, of: str, tolerance: float) -> Fact:
     if any(shape.kind == "mesh" for shape in (*shapes, *others)):
         raise Undecided(link)
     pose = posed.pose(link, of)
-    depth = max(overlap(one, pose @ one.pose, other, other.pose) for one in shapes for other in others)
+    depth = max(overlap(one, pose @ one.pose, other, other.pose, tolerance) for one in shapes for other in others)
     return depth <= tolerance + SLACK, depth
 
 

@@ -102,7 +102,8 @@ class Posed:
         """Return the joints from a link up to another above it, or up to a common link and down."""
         self.link(link), self.link(base)
         ways = [self.way_up(link), self.way_up(base)]
-        self.pose(link, base)
+        if self.root(link) != self.root(base):
+            self.pose(link, base)
         shared = {joint.name for joint in ways[0]} & {joint.name for joint in ways[1]}
         return [joint for way in ways for joint in way if joint.name not in shared]
 

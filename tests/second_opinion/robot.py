@@ -145,6 +145,8 @@ class Robot:
             self.parents[joint.child] = joint
         roots = [name for name in self.links if name not in self.parents]
         self.loads = self.loads and len(roots) == 1 and self.joints == self.named
+        if _has_cycle(self.joints):
+            raise Unclear("a loop, which ROS 2 follows for ever")
         if not self.loads and len(self.parents) < len(self.joints):
             raise Unclear("a link with two parents")
         children: dict[str, list[Joint]] = {}
@@ -185,6 +187,17 @@ class Robot:
                 else:
                     found[link] = Placed(root, above.below, above.pose @ joint.origin @ moved)
         return found
+
+
+def _has_cycle(joints: list[Joint]) -> bool:
+    """Return whether some joints form a loop: they stay if joints are removed whose child has none below it."""
+    left = joints
+    while True:
+        parents = {joint.parent for joint in left}
+        kept = [joint for joint in left if joint.child in parents]
+        if len(kept) == len(left):
+            return bool(left)
+        left = kept
 
 
 def _moved(joint: Joint, position: float) -> Matrix | None:
