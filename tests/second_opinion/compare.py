@@ -14,11 +14,15 @@ from grader.grading.grade import grade
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric as GraderRubric
 from grader.grading.rubric import load_rubric
+from grader.mutation.mutation_test import mutants_of
+from grader.mutation.trial import Trial
 from grader.submission.opening import read_submission
 from tests.second_opinion.elements import Unclear
 from tests.second_opinion.opinion import Opinion, Rubric
 from tests.second_opinion.robot import Robot
 from tests.second_opinion.robots import random_robot
+from tests.xacro import oracle
+from tests.xacro.documents.document import Document
 
 MAX_SHOWN = 10
 _SAME = 1e-9
@@ -96,19 +100,24 @@ def compared_seeds(seeds: Iterable[int], processes: int = 1) -> Iterator[Compari
 
 
 def compared_mutants(rubric: str) -> Iterator[Comparison]:
-    """Yield the comparisons of all mutants of a rubric's reference whose URDF is plain."""
-    from grader.mutation.mutation_test import mutants_of
-    from grader.mutation.trial import Trial
-
+    """Yield the comparisons of all mutants of the robot of a rubric's reference; xacro itself expands those in xacro."""
     solution = _rubric(rubric)[1].solution
     assert solution is not None
     trial = Trial(grade(_rubric(rubric)[1], solution.submission), solution.submission)
-    if len(trial.robot_files) != 1:
-        return
+    texts = {path: trial.text(path) for path in trial.robot_files}
     for mutant in mutants_of(trial):
-        if mutant.path == trial.robot_files[0] and not (mutant.renamed or mutant.is_deleted):
-            text = mutant.applied(trial.text(mutant.path)).encode("utf-8", "surrogateescape")
-            yield compared(mutant.id, rubric, text)
+        submission = (
+            trial.submission(mutant) if mutant.path in texts and not (mutant.renamed or mutant.is_deleted) else None
+        )
+        if submission is None:
+            continue
+        files: dict[str, str | bytes] = {**texts, mutant.path: mutant.applied(texts[mutant.path])}
+        expanded = oracle.expand(Document(str(files[trial.robot_files[0]]), files, path=trial.robot_files[0]))
+        results = list(trial.results(mutant, submission, trial.expected))
+        if isinstance(expanded, oracle.Accepted):
+            yield compared(mutant.id, rubric, expanded.text.encode("utf-8", "surrogateescape"), results)
+        else:
+            yield Comparison(mutant.id, Counter({"no XML": 1}), [])
 
 
 def summary(comparisons: Iterable[Comparison]) -> tuple[list[str], int]:
@@ -123,7 +132,7 @@ def summary(comparisons: Iterable[Comparison]) -> tuple[list[str], int]:
     lines = [
         f"{robots} robots, {same + counts['different']} criteria compared, {same} agree ({counts['same value']} with the value), {number} differ",
         f"not compared: {counts['unsure']} criteria that depend on random positions",
-        f"not compared: all but the loading of {counts['only refused']} robots that ROS 2 refuses, all of {counts['no XML']} that are no XML",
+        f"not compared: all but the loading of {counts['only refused']} robots that ROS 2 refuses, all of {counts['no XML']} that are no XML, or that xacro refuses",
         f"{time.monotonic() - start:.0f} s",
     ]
     return lines + shown, number
