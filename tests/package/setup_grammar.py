@@ -114,14 +114,20 @@ class _Writer:
         ))  # fmt: skip
 
     def _sources(self, folder: str) -> str:
-        pattern, path = self._pick(_PATTERNS), f"{folder}/{self._pick(_PATTERNS)}"
+        # What ** finds in a missing folder depends on the version of Python: docs/packages.md.
+        patterns = tuple(pattern for pattern in _PATTERNS if folder != "missing" or "**" not in pattern)
+        pattern, path, there = (
+            self._pick(patterns),
+            f"{folder}/{self._pick(patterns)}",
+            folder.replace("missing", "urdf"),
+        )
         listed = ", ".join(repr(path) for path in self._random.sample(_LISTED, self._pick((1, 1, 2, 3))))
         if self._random.random() < 0.04:
             listed += self._pick((", 'missing.txt'", ", 'urdf'", ", 3"))
         return self._pick((
             f"glob('{path}')", f"glob('{path}')", f"glob(os.path.join('{folder}', '{pattern}'))", f"sorted(glob('{path}'))", f"[{listed}]", f"[{listed}]",
             f"files('{folder}')", f"files('{folder}', '{pattern}')", f"[path for path in glob('{path}') if os.path.isfile(path)]",
-            f"[path for path in sorted(glob('{folder}/**', recursive=True)) if not os.path.isdir(path)]", f"glob('{folder}/**/*.*', recursive=True)",
+            f"[path for path in sorted(glob('{there}/**', recursive=True)) if not os.path.isdir(path)]", f"glob('{there}/**/*.*', recursive=True)",
             f"[str(path) for path in Path('{folder}').glob('{pattern.replace('**', '*')}') if path.is_file()]", f"list(map(str, Path('{folder}').rglob('*.*')))",
             f"[os.path.join('{folder}', name) for name in os.listdir('{folder}')]", f"only('{folder}', '{self._pick(('.urdf', '.py', '', '.stl'))}')",
             f"glob('{path}') + glob('{self._folder()}/{self._pick(_PATTERNS)}')", f"[*glob('{path}'), {listed}]", f"glob('{path}') or [{listed}]",
