@@ -54,7 +54,7 @@ def overlap(one: Shape, pose: Matrix, other: Shape, other_pose: Matrix, enough: 
     directions = directions[lengths > 1e-9] / lengths[lengths > 1e-9][:, None]
     directions = np.vstack([directions, -directions])
     depths = depth(directions)
-    best, order = float(depths.min()), np.argsort(depths)[:6]
+    best, order = float(depths.min()), np.argsort(depths)[:40]
     if best <= enough:
         return best
     starts = directions[order]

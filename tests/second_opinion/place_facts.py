@@ -84,6 +84,7 @@ def _lows(posed: Posed, links: Sequence[str], relative_to: str) -> tuple[list[fl
     lows, missing = [], None
     for link in links:
         try:
+            posed.pose(link, relative_to)
             lows.append(_spans(posed, posed.visuals(link), link, relative_to, UP)[0])
         except (Missing, Undecided) as error:
             missing = missing or error

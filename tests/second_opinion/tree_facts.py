@@ -23,7 +23,7 @@ def joints_named(posed: Posed, parent: str, joints: Mapping[str, str]) -> Fact:
             return False, None
         way = posed.way_up(link)
         uppers = [joint.parent for joint in way]
-        way = way[: uppers.index(parent) + 1] if parent in uppers else way
+        way = way[: uppers.index(parent) + 1] if parent in uppers else way[:1]
         joints_of_link = way or [joint for joint in posed.robot.named if link in (joint.parent, joint.child)]
         if name not in [joint.name for joint in joints_of_link]:
             return False, None
@@ -32,8 +32,11 @@ def joints_named(posed: Posed, parent: str, joints: Mapping[str, str]) -> Fact:
 
 def root_of_tree(posed: Posed, link: str, holds: str) -> Fact:
     posed.link(link), posed.link(holds)
+    posed.link(link), posed.link(holds)
+    if link in posed.robot.parents:
+        return False, None
     way = below(posed, holds, link)
-    return way is not None and link not in posed.robot.parents and all(joint.type == "fixed" for joint in way), None
+    return way is not None and all(joint.type == "fixed" for joint in way), None
 
 
 def counts(posed: Posed, moving: int) -> Fact:
