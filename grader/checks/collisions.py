@@ -32,8 +32,8 @@ def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonN
     """The collision shapes of a link are the shapes that it shows, each in its place.
 
     They are compared as solids: turning a cylinder about its axis changes nothing. Shapes without a size do not count.
-    A mesh is the same if it is the same file at the same scale and pose; whether another file has the same shape needs
-    manual grading.
+    A negative size differs from a positive one, because simulators refuse it. A mesh is the same if it is the same file
+    at the same scale and pose; whether another file has the same shape needs manual grading.
 
     Args:
         link: The link that is examined.

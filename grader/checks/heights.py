@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 
 from grader.checks.check import About
-from grader.checks.outcome import Outcome, difference, in_degrees, judged, measured, place, point, within
+from grader.checks.outcome import SLACK, Outcome, difference, in_degrees, judged, measured, place, point, within
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, shape_name, span, visual_pose
 from grader.errors import MissingElement
@@ -97,7 +97,7 @@ def under_the_base(
     faults = []
     if not (within(x, 0.0, tolerance) and within(y, 0.0, tolerance)):
         faults.append(f"{base!r} is at x, y = {point((x, y))} m in it and should be at 0 0")
-    if turned > angle:
+    if turned > angle + SLACK:
         faults.append(f"{base!r} is turned by {in_degrees(turned)} in it and should not be turned")
     heights = {wheel: difference(value, "above", "below") for wheel, value in off.items()}
     faults += [f"the lowest point of {wheel!r} is {height} it" for wheel, height in heights.items()]

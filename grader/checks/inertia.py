@@ -65,7 +65,8 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
 
     The shapes are the collision shapes, or the visuals of a link without any; a mesh needs manual grading. The mass
     must be positive, the inertia positive definite, and no principal moment larger than the sum of the other two. The
-    centre of mass may be 2 mm or 2 % of the size off, whichever is more.
+    centre of mass may be 2 mm or 2 % of the size off, whichever is more; the size is the largest distance of two
+    points. If shapes overlap by more than 1 mm, their solid is not known, and what is off needs manual grading.
 
     Args:
         link: The link that is examined.

@@ -39,8 +39,8 @@ def rolls_forward(
 ) -> Outcome:
     """Turning a wheel's joint by a small positive angle drives the base forward, if the wheel rolls without slip.
 
-    The lowest point of the wheel must move opposite to `forward`. It must also move so relative to the wheel's highest
-    point: a wheel that swivels does not.
+    The lowest point of the wheel must move opposite to `forward`. It must also move relative to the wheel's highest
+    point, at least 0.7 times as far as on a level wheel: one that swivels does not.
 
     Args:
         link: The link of the wheel.

@@ -108,8 +108,13 @@ class _Grading:
         return other if other.outcome.status == "errored" else result
 
     def _cause_of(self, result: Result, causes: Sequence[str]) -> Result | None:
-        """Return the first of these criteria that failed, if the result is a failure or a skip because of one."""
-        names = [name for name in causes if result.because in (None, name)]
+        """Return the first of these criteria that failed, if the result is a failure or a skip because of one.
+
+        A skip because of a criterion that is itself carried from one of these counts, too.
+        """
+        because = result.because
+        origins = (because, self.results[because].carried) if because else causes
+        names = [name for name in causes if name in origins]
         before = (self.results[name] for name in names if name in self.results)
         return next((found for found in before if found.outcome.status == "failed"), None)
 

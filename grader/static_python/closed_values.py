@@ -118,12 +118,18 @@ class ClosedFunction:
 
 
 class Namespace:
-    """Names that are reached with a dot: math.pi. `find` raises ExpressionFails for other names."""
+    """Names that are reached with a dot: math.pi. `find` raises ExpressionFails for other names.
 
-    __slots__ = ("find", "name")
+    Like a dict, it is false if it has no names.
+    """
 
-    def __init__(self, name: str, find: Callable[[str], Value]) -> None:
-        self.name, self.find = name, find
+    __slots__ = ("find", "has_names", "name")
+
+    def __init__(self, name: str, find: Callable[[str], Value], has_names: Callable[[], bool] = lambda: True) -> None:
+        self.name, self.find, self.has_names = name, find, has_names
+
+    def __bool__(self) -> bool:
+        return self.has_names()
 
 
 class Items:

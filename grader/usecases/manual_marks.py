@@ -129,10 +129,7 @@ def key_and_name(student: Student) -> str:
 def _record(book: Gradebook, grade: StudentGrade, request: MarkRequest, most: Decimal, warn: Warn) -> marks.Mark | None:
     """Write what is requested, and return the mark that was the newest before."""
     if request.undo:
-        try:
-            return marks.undo_mark(book, grade, request.criterion, request.by)
-        except marks.NewerMarkError as error:
-            raise InputError(f"not undone: somebody has marked this since: {mark_text(error.mark)}") from None
+        return marks.undo_mark(book, grade, request.criterion, request.by)
     first = marks.newest_mark(book, grade.id, request.criterion) if request.second else None
     if first is not None and first.points is not None and first.by == request.by:
         mark = f"the mark of {request.criterion} is by {request.by}"

@@ -2,7 +2,16 @@
 
 from grader.static_python.closed_values import Undetermined
 from grader.xacro.expander import Expander, Scopes, TagFails
-from grader.xacro.macros import Macro, MacroError, bind_blocks, bind_defaults, bind_values, find_macro, read_parameters
+from grader.xacro.macros import (
+    Macro,
+    MacroError,
+    bind_blocks,
+    bind_defaults,
+    bind_values,
+    check_no_namespace,
+    find_macro,
+    read_parameters,
+)
 from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import Definition, UnknownName, XacroScope
 
@@ -28,6 +37,7 @@ def define_macro(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scop
     name = needed(node, "name").removeprefix("xacro:")
     if name == "call" or "." in name:
         raise TagFails(f"a macro cannot have the name {name}")
+    check_no_namespace(name, scopes.macros)
     macro = Macro(name, node, read_parameters(node.attributes.get("params", ""), expander.budget))
     scopes.macros.bind(name, macro, definition=Definition(name, "", node.place, "name", scopes.symbols))
 

@@ -75,6 +75,7 @@ def read_parameters(text: str, budget: Budget) -> tuple[MacroParameter, ...]:
 
 def find_macro(name: str, macros: XacroScope, symbols: XacroScope) -> tuple[Macro, XacroScope, XacroScope] | None:
     """Return the macro of a name, which may begin with namespaces, and the scopes in which it is defined."""
+    check_no_namespace(name, macros)
     holder = macros.holder(name)
     if holder is None and "." in name:
         *namespaces, name = name.split(".")
@@ -86,6 +87,12 @@ def find_macro(name: str, macros: XacroScope, symbols: XacroScope) -> tuple[Macr
         holder = macros.holder(name)
     macro = holder.properties[name].value if holder is not None else None
     return (macro, macros, symbols) if isinstance(macro, Macro) else None
+
+
+def check_no_namespace(name: str, macros: XacroScope) -> None:
+    """Raise MacroError for the namespace of an included file: xacro fails if a macro has the same name."""
+    if _namespace(name, macros) is not None:
+        raise MacroError(f"{name} is the namespace of an included file, so no macro can have this name")
 
 
 def _namespace(name: str, scope: XacroScope) -> XacroScope | None:

@@ -125,11 +125,15 @@ def _include(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes
     space = node.attributes.get("ns")
     inner = scopes
     if space:
-        space = texts.text(space, scopes.symbols)
+        value = texts.evaluate(space, scopes.symbols)
+        if isinstance(value, list | dict):
+            raise TagFails(f"<{node.tag}> needs a namespace that is a text, not {texts.written(value)[:60]}")
+        space = texts.written(value)
         inner = Scopes(XacroScope(is_namespace=True), XacroScope(scopes.symbols, is_namespace=True))
         scopes.macros.bind(f"{space}.", inner.macros)
         scopes.symbols.bind(f"{space}.", inner.symbols)
-        scopes.symbols.bind(space, Namespace(space, lambda wanted: texts.find(wanted, inner.symbols)))
+        found = Namespace(space, lambda name: texts.find(name, inner.symbols), lambda: bool(inner.symbols.properties))
+        scopes.symbols.bind(space, found)
     optional = node.attributes.get("optional")
     is_optional = optional is not None and _boolean(optional, optional)
     try:

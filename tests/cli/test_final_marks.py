@@ -99,24 +99,6 @@ def test_undo(top: Path) -> None:
         assert [author for (author,) in book.rows("SELECT author FROM mark ORDER BY id")][:3] == ["Kim", "Lee", "Max"]
 
 
-def test_undo_while_somebody_marks(top: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nothing is undone, and one line names the newer mark."""
-    mark(top, "anna", "essay", "3", "--by", "Lee")
-
-    def marks_of(*arguments: Any) -> list[marks.Mark]:
-        """Return the marks, and let Kim mark after they were read."""
-        found = original(*arguments)
-        monkeypatch.setattr(marks, "marks_of", original)
-        mark(top, "anna", "essay", "1", "--by", "Kim")
-        return found
-
-    original = marks.marks_of
-    monkeypatch.setattr(marks, "marks_of", marks_of)
-    undone = refusal(mark(top, "anna", "essay", "--undo", "--by", "Max"))
-    assert undone.startswith("not undone: somebody has marked this since: 1 point by Kim at 20")
-    assert [entry[3] for entry in entries(top)] == ["Lee", "Kim"]
-
-
 def test_undo_of_the_only_mark(top: Path) -> None:
     """It is withdrawn; without a mark there is nothing to undo."""
     assert refusal(mark(top, "dora", "total", "--undo")) == "there is no mark of total to undo for dora"

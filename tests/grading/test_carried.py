@@ -248,6 +248,14 @@ def test_a_misspelt_type_costs_once() -> None:
     assert lost(lab6(typo, axes)) == expected | {"left-wheel-forward": 6, "right-wheel-forward": 6}
 
 
+def test_a_wrong_type_costs_once() -> None:
+    """A skip because of a criterion that is itself carried is carried from the same mistake."""
+    report = lab6(('type="continuous"', 'type="planar"'))
+    assert lost(report) == {"left-wheel-continuous": 1, "right-wheel-continuous": 1}
+    found = {result.criterion.id: result.carried for result in report.results}
+    assert found["left-wheel-forward"] == found["left-wheel-spins"] == "left-wheel-continuous"
+
+
 def test_what_was_not_built_is_counted_where_it_is_missing() -> None:
     """A base without a box hides neither the wheels nor the lidar, but what is about the box itself is lost."""
     no_box = ('<box size="0.6 0.4 0.2"/>', '<box size="0.6, 0.4, 0.2"/>')

@@ -14,14 +14,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Robot
 from grader.robot.reader import read_urdf
 from tests.examples import examples
-from tests.oracles.example_robots import MISSING, each_robot
+from tests.oracles.example_robots import each_robot
+from tests.oracles.random_trees import KINDS, difference, followed, joints_of, pin, random_tree
 
 pytestmark = pytest.mark.exhaustive
-
-pin: Any = pytest.importorskip("pinocchio", reason=MISSING)
 
 _ANGLE, _CIRCLE = 1, 2  # how many numbers pinocchio keeps for a joint of one axis: its position, or cosine and sine
 
@@ -43,22 +41,9 @@ def assert_same_poses(model: Any, configuration: Configuration, positions: Mappi
         assert np.allclose(actual, expected, rtol=0, atol=1e-9), link.name
 
 
-def joints_of(model: Any) -> dict[str, Any]:
-    """Return the joints that move, by name: pinocchio's first one is the universe, and it merges fixed ones."""
-    return dict(list(zip(model.names, model.joints, strict=True))[1:])
-
-
 def random_positions(model: Any, random: Random) -> dict[str, float]:
     """Return a position for every joint that moves, mimic joints included."""
     return {name: random.uniform(-3.0, 3.0) for name in joints_of(model)}
-
-
-def followed(robot: Robot, positions: Mapping[str, float]) -> dict[str, float]:
-    """Return the positions of all joints with mimics applied; a missing joint is at 0, and no robot here mimics a mimic."""
-    rules = {joint.name: joint.mimic for joint in robot.joints if joint.mimic is not None}
-    leading = {name: position for name, position in positions.items() if name not in rules}
-    following = {name: rule.multiplier * leading.get(rule.joint, 0.0) + rule.offset for name, rule in rules.items()}
-    return leading | following
 
 
 @each_robot
@@ -154,80 +139,13 @@ def test_random_mimics(text: str, multiplier: float, offset: float, position: fl
     assert_same_poses(pin.buildModelFromXML(text), Configuration(read.robot, positions), expected)
 
 
-# --- 1,000 configurations ---------------------------------------------------------------------------------------------
-
-_KINDS = ("fixed", "continuous", "revolute", "prismatic", "planar", "floating")
+# --- Joints of all types ----------------------------------------------------------------------------------------------
 
 
-def _numbers(random: Random, size: float) -> str:
-    return _text(tuple(random.uniform(-size, size) for _ in range(3)))
-
-
-def _tree(random: Random) -> str:
-    """Return a URDF of 2 to 20 links with joints of all types, some of which mimic a joint of one position."""
-    count = random.randint(2, 20)
-    elements, leading = ['<link name="l0"/>'], list[str]()
-    for child in range(1, count):
-        kind = random.choice(_KINDS)
-        is_single = kind in ("continuous", "revolute", "prismatic")
-        rule = ""
-        if is_single and leading and random.random() < 0.4:
-            rule = f'<mimic joint="{random.choice(leading)}" multiplier="{random.uniform(-2, 2)!r}" offset="{random.uniform(-1, 1)!r}"/>'
-        elif is_single:
-            leading.append(f"j{child}")
-        axis = _numbers(random, 1.0) if kind != "planar" else "0 0 1"  # pinocchio knows planes across z only
-        elements.append(
-            f'<link name="l{child}"/><joint name="j{child}" type="{kind}"><parent link="l{random.randrange(child)}"/>'
-            f'<child link="l{child}"/><origin xyz="{_numbers(random, 1.0)}" rpy="{_numbers(random, 4.0)}"/>'
-            f'<axis xyz="{axis}"/><limit lower="-9" upper="9" effort="1" velocity="1"/>{rule}</joint>'
-        )
-    return f'<robot name="r">{"".join(elements)}</robot>'
-
-
-def _set(state: Any, joint: Any, kind: str, position: Any) -> None:
-    """Write the position of a joint as pinocchio keeps it: cosine and sine of an angle, a quaternion of a rotation."""
-    start, values = joint.idx_q, position
-    if kind == "floating":
-        values = (*position[:3], *pin.Quaternion(pin.rpy.rpyToMatrix(*position[3:])).coeffs())
-    elif kind == "planar":
-        values = (*position[:2], cos(position[2]), sin(position[2]))
-    elif joint.nq == _CIRCLE:
-        values = (cos(position), sin(position))
-    state[start : start + joint.nq] = values
-
-
-def test_a_thousand_configurations() -> None:
-    """Random trees with joints of all types and mimics, 10 random positions each: every pose is pinocchio's, to 1e-9."""
-    random, count = Random(1000), 0
-    kinds, mimics = set[str](), 0
-    for _ in range(100):
-        text = _tree(random)
-        robot = read_urdf(text.encode()).robot
-        assert robot is not None
-        model = pin.buildModelFromXML(text)
-        types = {joint.name: joint.type for joint in robot.joints}
-        kinds |= set(types.values())
-        mimics += sum(joint.mimic is not None for joint in robot.joints)
-        sizes = {"fixed": 0, "planar": 3, "floating": 6}
-        for _ in range(10):
-            given: dict[str, Any] = {}
-            for joint in robot.joints:
-                values = [random.uniform(-3.0, 3.0) for _ in range(sizes.get(joint.type, 1))]
-                if values and joint.mimic is None:
-                    given[joint.name] = values[0] if len(values) == 1 else tuple(values)
-            positions = followed(robot, given)
-            state = pin.neutral(model)
-            for name, moving in joints_of(model).items():
-                _set(state, moving, types[name], positions[name])
-            data = model.createData()
-            pin.framesForwardKinematics(model, data, state)
-            configuration = Configuration(robot, given)
-            for link in robot.links:
-                expected = data.oMf[model.getFrameId(link.name, pin.FrameType.BODY)].homogeneous
-                assert np.allclose(np.array(configuration.pose(link.name)), expected, rtol=0, atol=1e-9), (
-                    text,
-                    link.name,
-                )
-            count += 1
-    assert (count, kinds) == (1000, set(_KINDS))
-    assert mimics > 100
+def test_joints_of_all_types_and_mimics() -> None:
+    """100 random trees at 10 random positions each: every pose is pinocchio's, to 1e-9."""
+    random = Random(1000)
+    texts = [random_tree(random) for _ in range(100)]
+    assert [text for text in texts if difference(text, random, 10) is not None] == []
+    assert set(re.findall(r'type="(\w+)"', "".join(texts))) == set(KINDS)
+    assert "".join(texts).count("<mimic") > 100

@@ -1,5 +1,6 @@
 """The package around the samples of setup.py: its files, and what differs for a few samples."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 SAMPLES = {
@@ -50,7 +51,13 @@ def make_package(sample: str, folder: Path) -> dict[str, str]:
     texts = {path: text.format(path) for path, text in FILES.items() if path not in TAKEN_AWAY.get(sample, ())}
     texts |= {path: path + "\n" for path in ADDED.get(sample, ())}
     texts |= INSTEAD.get(sample, {})
-    texts["setup.py"] = SAMPLES[sample].read_text(encoding="utf-8")
+    return write_package(folder, SAMPLES[sample].read_text(encoding="utf-8"), texts)
+
+
+def write_package(folder: Path, setup: str, files: Mapping[str, str] | None = None) -> dict[str, str]:
+    """Write a package with this setup.py and these files, by default the usual ones; return their paths by their texts."""
+    texts = dict(files) if files is not None else {path: text.format(path) for path, text in FILES.items()}
+    texts["setup.py"] = setup
     for path, text in texts.items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / path).write_text(text, encoding="utf-8")

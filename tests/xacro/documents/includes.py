@@ -130,6 +130,10 @@ _NAMESPACES = bodies(
     ns_empty=include("ns.xacro", 'ns=""') + shown("${a}"),
     ns_of_math=include("ns.xacro", 'ns="math"') + shown("${math.a} ${math.pi}"),
     ns_index=include("ns.xacro", 'ns="n"') + shown("${n['a']}"),
+    ns_like_macro=include("ns.xacro", 'ns="n"') + "<xacro:macro name='n' params=''/>",
+    ns_like_earlier_macro="<xacro:macro name='n' params=''/>" + include("ns.xacro", 'ns="n"') + "<xacro:n/>",
+    ns_is_true=include("ns.xacro", 'ns="n"') + include("plain.xacro", 'ns="o"') + shown("${not n} ${not o}"),
+    ns_list=named("which", "${[1]}") + include("ns.xacro", 'ns="${which}"'),
     ns_with_dot=include("ns.xacro", 'ns="n.o"') + shown("1"),
 )  # fmt: skip
 

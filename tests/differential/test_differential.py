@@ -1,0 +1,50 @@
+"""The grader agrees with its oracles on random inputs; `python -m tests.differential` compares many more."""
+
+import pytest
+
+from tests.differential import setups, urdfs
+from tests.differential.__main__ import ORACLES, compared_part
+from tests.differential.compared import Compared, summary
+from tests.oracles import urdfdom
+from tests.robot.edge_cases import EDGE_CASES
+
+pytestmark = pytest.mark.skipif(not urdfdom.is_available(), reason="needs Linux on x86-64, and urdfdom: .[test]")
+
+
+def test_summary() -> None:
+    """Differences are counted, and shown with their seeds in order."""
+    assert summary([Compared(2, "accepted"), Compared(1, "accepted", "b"), Compared(0, "refused", "a")]) == [
+        "3 inputs (2 accepted, 1 refused): 1 agree, 2 differ",
+        "seed 0: a",
+        "seed 1: b",
+    ]
+
+
+def test_the_library_gives_the_verdicts_of_the_program() -> None:
+    """On every edge case: those that it rejects, that it accepts with errors, that crash it, and those with a loop."""
+    found = urdfdom.verdicts([case.text for case in EDGE_CASES])
+    wrong = [case.name for case, verdict in zip(EDGE_CASES, found, strict=True) if case.verdict != verdict]
+    assert wrong == []
+
+
+def test_mutated_urdfs() -> None:
+    """The verdict on each mutant is that of ROS 2; the mutants are the same in every run, and some of them load."""
+    results = list(urdfs.compare(range(400)))
+    assert summary(results)[1:] == []
+    assert {result.kind for result in results} == {"clean", "degraded", "rejected"}
+    assert urdfs.mutant(7) == urdfs.mutant(7)
+
+
+def test_random_setup_py() -> None:
+    """What is stated of a setup.py is what setuptools does; most are determined."""
+    results = list(setups.compare(range(12)))
+    assert summary(results)[1:] == []
+    assert sum(result.kind != "undetermined" for result in results) > 6
+
+
+@pytest.mark.exhaustive
+@pytest.mark.parametrize("oracle", ORACLES)
+def test_each_oracle(oracle: str) -> None:
+    """Some thousand inputs of another range of seeds agree; `pinocchio` needs the extra `oracle`."""
+    count = 100 if oracle == "setuptools" else 2000
+    assert summary(compared_part(oracle, range(5_000_000, 5_000_000 + count)))[1:] == []

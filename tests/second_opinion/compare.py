@@ -1,0 +1,138 @@
+"""Compare the grader's marks with the second opinion: `python -m tests.second_opinion N [FIRST SEED]`."""
+
+import time
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from functools import cache
+from multiprocessing import Pool
+from typing import NamedTuple
+from xml.etree import ElementTree as ET
+
+import numpy as np
+
+from grader.grading.grade import grade
+from grader.grading.report import Result
+from grader.grading.rubric import Rubric as GraderRubric
+from grader.grading.rubric import load_rubric
+from grader.mutation.mutation_test import mutants_of
+from grader.mutation.trial import Trial
+from grader.submission.opening import read_submission
+from tests.second_opinion.elements import Unclear
+from tests.second_opinion.opinion import Opinion, Rubric
+from tests.second_opinion.robot import Robot
+from tests.second_opinion.robots import random_robot
+from tests.xacro import oracle
+from tests.xacro.documents.document import Document
+
+MAX_SHOWN = 10
+_SAME = 1e-9
+# The grader measures an overlap in steps of a tenth of a millimetre, and none that is within the tolerance.
+_LESS_EXACT = {"clear_of": 1e-4}
+
+
+class Comparison(NamedTuple):
+    """What was compared of one robot: the numbers of criteria by kind of agreement, and the disagreements."""
+
+    name: str
+    counts: Counter[str]
+    different: list[str]
+
+
+@cache
+def _rubric(name: str) -> tuple[Rubric, GraderRubric]:
+    return Rubric(name), load_rubric(name)
+
+
+def compared(name: str, rubric: str, text: bytes, results: Iterable[Result] | None = None) -> Comparison:
+    """Compare the results of a robot, by default those of grading its text alone."""
+    own, graders = _rubric(rubric)
+    if results is None:
+        results = grade(graders, read_submission(text, identity="student", path="robot.urdf")).results
+    found = {result.criterion.id: result for result in results}
+    try:
+        opinions = own.opinions(Robot(text))
+    except ET.ParseError:
+        return Comparison(name, Counter({"no XML": 1}), [])
+    except Unclear:
+        status = found["urdf-loads"].outcome.status
+        return Comparison(
+            name, Counter({"only refused": 1}), [] if status == "failed" else [f"urdf-loads: {status}, not failed"]
+        )
+    verdicts = [(key, *_agreement(found[key], opinion)) for key, opinion in opinions.items()]
+    different = [f"{key}: {text}" for key, kind, text in verdicts if kind == "different"]
+    return Comparison(name, Counter(kind for _, kind, _ in verdicts), different)
+
+
+def _agreement(result: Result, opinion: Opinion) -> tuple[str, str]:
+    """Return the kind of agreement, and how a criterion differs."""
+    outcome = result.outcome
+    status = "carried" if result.carried else outcome.status
+    if opinion.status == "unsure":
+        return "unsure", ""
+    if status != opinion.status:
+        return (
+            "different",
+            f"{status} {outcome.measured}, opinion {opinion.status} {opinion.measured}: {outcome.message}",
+        )
+    check = result.criterion.check.name
+    if outcome.measured is None or opinion.measured is None or (check in _LESS_EXACT and status == "passed"):
+        return "same status", ""
+    limit = _LESS_EXACT.get(check, _SAME)
+    values = [np.ravel(np.asarray(value, float)) for value in (outcome.measured, opinion.measured)]
+    scale = max(1.0, float(np.abs(values[0]).max()))
+    if len(values[0]) == len(values[1]) and np.abs(values[0] - values[1]).max() <= limit * scale:
+        return "same value", ""
+    return "different", f"measured {outcome.measured}, opinion {opinion.measured}: {outcome.message}"
+
+
+def _of_seed(seed: int) -> Comparison:
+    robot = random_robot(seed)
+    return compared(f"seed {seed}", robot.rubric, robot.text)
+
+
+def compared_seeds(seeds: Iterable[int], processes: int = 1) -> Iterator[Comparison]:
+    """Yield the comparisons of the robots of seeds."""
+    if processes == 1:
+        yield from map(_of_seed, seeds)
+        return
+    with Pool(processes) as pool:
+        yield from pool.imap(_of_seed, seeds, chunksize=100)
+
+
+def compared_mutants(rubric: str) -> Iterator[Comparison]:
+    """Yield the comparisons of all mutants of the robot of a rubric's reference; xacro itself expands those in xacro."""
+    solution = _rubric(rubric)[1].solution
+    assert solution is not None
+    trial = Trial(grade(_rubric(rubric)[1], solution.submission), solution.submission)
+    texts = {path: trial.text(path) for path in trial.robot_files}
+    for mutant in mutants_of(trial):
+        submission = (
+            trial.submission(mutant) if mutant.path in texts and not (mutant.renamed or mutant.is_deleted) else None
+        )
+        if submission is None:
+            continue
+        files: dict[str, str | bytes] = {**texts, mutant.path: mutant.applied(texts[mutant.path])}
+        expanded = oracle.expand(Document(str(files[trial.robot_files[0]]), files, path=trial.robot_files[0]))
+        results = list(trial.results(mutant, submission, trial.expected))
+        if isinstance(expanded, oracle.Accepted):
+            yield compared(mutant.id, rubric, expanded.text.encode("utf-8", "surrogateescape"), results)
+        else:
+            yield Comparison(mutant.id, Counter({"no XML": 1}), [])
+
+
+def summary(comparisons: Iterable[Comparison]) -> tuple[list[str], int]:
+    """Return the lines that say how many robots and criteria agree, and the number of disagreements."""
+    start, robots, counts, shown, number = time.monotonic(), 0, Counter[str](), list[str](), 0
+    for comparison in comparisons:
+        robots += 1
+        counts += comparison.counts
+        number += len(comparison.different)
+        shown += [f"{comparison.name}: {text}" for text in comparison.different][: MAX_SHOWN - len(shown)]
+    same = counts["same value"] + counts["same status"]
+    lines = [
+        f"{robots} robots, {same + counts['different']} criteria compared, {same} agree ({counts['same value']} with the value), {number} differ",
+        f"not compared: {counts['unsure']} criteria that depend on random positions",
+        f"not compared: all but the loading of {counts['only refused']} robots that ROS 2 refuses, all of {counts['no XML']} that are no XML, or that xacro refuses",
+        f"{time.monotonic() - start:.0f} s",
+    ]
+    return lines + shown, number

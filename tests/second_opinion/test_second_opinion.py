@@ -1,0 +1,85 @@
+"""A checker that shares no code with the grader decides the geometric criteria of the shipped rubrics in the same way."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+from grader.submission.editing import content
+from grader.submission.urdf import Read
+from tests.examples import spread
+from tests.samples import SAMPLES
+from tests.second_opinion.compare import compared, compared_mutants, compared_seeds, summary
+from tests.second_opinion.opinion import Rubric
+
+CHECKER = (
+    "elements",
+    "robot",
+    "geometry",
+    "posed",
+    "tree_facts",
+    "body_facts",
+    "place_facts",
+    "motion_facts",
+    "facts",
+    "opinion",
+)
+LIBRARIES = {
+    "collections",
+    "copy",
+    "dataclasses",
+    "itertools",
+    "math",
+    "numpy",
+    "pathlib",
+    "re",
+    "tomllib",
+    "typing",
+    "xml",
+}
+PART = 120
+
+
+def test_the_checker_shares_no_code_with_the_grader() -> None:
+    """It imports numpy, the standard library and itself."""
+    for name in CHECKER:
+        tree = ast.parse(Path(__file__).with_name(f"{name}.py").read_text(encoding="utf-8"))
+        imported = {alias.name for node in ast.walk(tree) if isinstance(node, ast.Import) for alias in node.names}
+        imported |= {str(node.module) for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+        own = {f"tests.second_opinion.{module}" for module in CHECKER} | {"tests.second_opinion"}
+        assert {module.partition(".")[0] for module in imported - own} <= LIBRARIES, name
+
+
+def test_most_criteria_have_a_second_opinion() -> None:
+    """Of those that need a URDF only the elements for Gazebo have none: 32 of 32, 55 of 55, 18 of 34."""
+    assert [len(Rubric(name).rows) for name in ("lab6", "arm", "sensors")] == [32, 55, 18]
+
+
+@pytest.mark.parametrize("part", spread(range(40), 1))
+def test_random_robots(part: int) -> None:
+    """Status, carried points and measured values of random robots are the same."""
+    lines, different = summary(compared_seeds(range(part * PART, (part + 1) * PART)))
+    assert different == 0, "\n".join(lines)
+
+
+@pytest.mark.parametrize(
+    "rubric", [pytest.param(name, marks=pytest.mark.exhaustive) for name in ("lab6", "arm", "sensors")]
+)
+def test_all_mutants(rubric: str) -> None:
+    """All mutants of the reference that `grader rubric test` grades get the same results."""
+    lines, different = summary(compared_mutants(rubric))
+    assert different == 0, "\n".join(lines)
+
+
+def test_all_samples() -> None:
+    """All samples whose URDF is plain XML get the same results."""
+    found = []
+    for name, sample in SAMPLES.items():
+        urdf = sample.open().urdf
+        if isinstance(urdf, Read) and not urdf.is_expanded and sample.expected.rubric != "sensors":
+            text = content(sample.open(), urdf.path)
+            assert text is not None
+            found.append(compared(name, sample.expected.rubric, text, sample.grade().results))
+    lines, different = summary(found)
+    assert different == 0, "\n".join(lines)
+    assert len(found) > 150

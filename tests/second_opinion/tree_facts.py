@@ -1,0 +1,46 @@
+"""Facts about the tree of links: whether it loads, names and types of joints."""
+
+from collections.abc import Mapping
+
+from tests.second_opinion.posed import Fact, Missing, Posed, below
+
+
+def urdf_loads(posed: Posed) -> Fact:
+    return posed.robot.loads, None
+
+
+def held_by(posed: Posed, link: str, parent: str, joint_type: str) -> Fact:
+    way = below(posed, link, parent)
+    types = [joint.type for joint in way or () if joint.type != "fixed"]
+    if way and not types and joint_type != "fixed":
+        raise Missing("moving joint", link)
+    return way is not None and types == ([] if joint_type == "fixed" else [joint_type]), None
+
+
+def joints_named(posed: Posed, parent: str, joints: Mapping[str, str]) -> Fact:
+    for name, link in joints.items():
+        if link not in posed.robot.links:
+            return False, None
+        way = posed.way_up(link)
+        uppers = [joint.parent for joint in way]
+        way = way[: uppers.index(parent) + 1] if parent in uppers else way[:1]
+        joints_of_link = way or [joint for joint in posed.robot.named if link in (joint.parent, joint.child)]
+        if name not in [joint.name for joint in joints_of_link]:
+            return False, None
+    return True, None
+
+
+def root_of_tree(posed: Posed, link: str, holds: str) -> Fact:
+    posed.link(link), posed.link(holds)
+    posed.link(link), posed.link(holds)
+    if link in posed.robot.parents:
+        return False, None
+    way = below(posed, holds, link)
+    return way is not None and all(joint.type == "fixed" for joint in way), None
+
+
+def counts(posed: Posed, moving: int) -> Fact:
+    tree = max(posed.robot.trees.values(), key=len)
+    joints = [posed.robot.parents[link] for link in tree[1:]]
+    number = sum(joint.type != "fixed" and not joint.is_mimic for joint in joints)
+    return number == moving, (number,)
