@@ -4,11 +4,9 @@ import subprocess
 import zipfile
 from decimal import Decimal
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from grader.classroom.gradebook import marks
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from tests.classroom.gradebooks import batch, grader, lab_text, refusal

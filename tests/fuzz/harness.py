@@ -204,11 +204,12 @@ class Guard:
     @contextmanager
     def watching(self, *, is_active: bool = True) -> Iterator[None]:
         """Watch what the block does, or not."""
-        before, self.is_active = self.is_active, is_active
+        before = self.is_active, sys.dont_write_bytecode
+        self.is_active = sys.dont_write_bytecode = is_active
         try:
             yield
         finally:
-            self.is_active = before
+            self.is_active, sys.dont_write_bytecode = before
 
 
 GUARD = Guard()
