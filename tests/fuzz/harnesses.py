@@ -34,12 +34,12 @@ def _graded(run: Callable[..., None], rubric: str, words: str, size: int, *found
 
 HARNESSES: dict[str, Harness] = {
     "urdf": _row(robots.urdf, "xml urdf", 1024, seeds.urdfs),
-    "inspection": _row(robots.inspection, "urdf", 3072, seeds.urdfs, ["rubrics/**/*.urdf"]),
+    "inspection": _row(robots.inspection, "urdf", 1024, seeds.urdfs),
     "tinyxml2": _row(robots.tinyxml2, "xml urdf", 512, seeds.urdfs),
-    "syntax": _row(robots.syntax, "xml urdf", 2048, seeds.broken, ["rubrics/**/*.xacro"]),
+    "syntax": _row(robots.syntax, "xml urdf", 256, seeds.broken),
     "xacro": _row(robots.xacro, "xacro expression xacro-more", 1536, seeds.xacro, ["rubrics/**/*.xacro"]),
     "expressions": _row(robots.expressions, "expression", 200, seeds.expressions),
-    "yaml-values": _row(robots.yaml_values, "yaml yaml-values", 512, seeds.yaml_files),
+    "yaml-values": _row(robots.yaml_values, "yaml yaml-values", 192, seeds.yaml_files),
     "setup": _row(packages.setup, "python", 4096, found=["tests/package/setup_samples/*", "rubrics/**/setup.py"]),
     "launch-py": _launch("py", "python launch"),
     "launch-xml": _launch("xml", "xml frontend"),
