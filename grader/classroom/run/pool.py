@@ -100,7 +100,7 @@ class Processes(Executor):
         return ProcessPool(self._workers, 0, _start_worker, (self._memory,), self._context)
 
     def _watch_pool(self) -> None:
-        """Replace a broken pool: it never completes a task whose worker ended while it sent, or just before it began."""
+        """Replace a broken pool: it never completes a task whose worker ended while it sent, or before it began."""
         while not self._is_shut.wait(_CHECK_INTERVAL):
             with self._lock:
                 if self._pending:
