@@ -13,6 +13,7 @@ from unittest.mock import patch
 import pytest
 
 from grader.classroom.gradebook import marks
+from grader.classroom.intake.opening import open_class_submission
 from grader.classroom.run import pool, worker
 from grader.classroom.run.pool import Processes, WorkerError
 from tests.classroom.class_runs import is_sound, rows
@@ -98,7 +99,7 @@ def test_the_newest_mark_counts_although_the_clock_jumps_back(tmp_path: Path) ->
 @contextmanager
 def changed_before_reading(path: Path, data: bytes | None) -> Iterator[None]:
     """Give a file other bytes, or none, after the class has been listed and before it is read."""
-    opened = worker.open_class_submission
+    opened = open_class_submission
 
     def change_and_open(*arguments: object) -> object:
         if data is None:
