@@ -1,6 +1,6 @@
 """Fail the n-th call of every kind in every command, for all n, and print what does not hold afterwards.
 
-`python -m tests.faults [--sample N] [SCENARIO[:KIND] ...]`
+`python -m tests.faults [--sample N] [--lasting] [SCENARIO[:KIND] ...]`
 """
 
 import argparse
@@ -15,7 +15,7 @@ from tempfile import mkdtemp
 
 from tests.faults import scenarios
 from tests.faults.scenarios import SCENARIOS, Scenario
-from tests.faults.shim import ERRORS, KINDS, Shim, is_preloaded, run_preloaded
+from tests.faults.shim import ALWAYS, ERRORS, KINDS, Shim, is_preloaded, run_preloaded
 from tests.faults.trial import Bench, Expected, complaints
 
 _SHOWN = 3  # findings of one kind
@@ -26,6 +26,7 @@ def main(arguments: Sequence[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.faults", description=__doc__)
     parser.add_argument("--sample", type=int, default=0, metavar="N", help="only N calls of each kind and command")
     parser.add_argument("only", nargs="*", metavar="SCENARIO[:KIND]", help="default: all")
+    parser.add_argument("--lasting", action="store_true", help="fail all later calls of the kind, as a full disk does")
     parser.add_argument("--verbose", action="store_true", help="print the message of each run")
     given = parser.parse_args(arguments)
     if not is_preloaded():
@@ -43,7 +44,7 @@ def main(arguments: Sequence[str]) -> int:
     for scenario in SCENARIOS:
         kinds = [word.partition(":")[2] for word in given.only if word.partition(":")[0] == scenario.name]
         if kinds or not given.only:
-            counts, bad = _run(bench, scenario, [kind for kind in kinds if kind] or KINDS, given.sample, given.verbose)
+            counts, bad = _run(bench, scenario, [kind for kind in kinds if kind] or KINDS, given)
             total += counts
             found += bad
     print(f"{total.total()} calls failed in {time.monotonic() - began:.0f} s: {dict(total)}; {found} findings")
@@ -54,9 +55,7 @@ def _stop(*_: object) -> None:
     raise TimeoutError
 
 
-def _run(
-    bench: Bench, scenario: Scenario, kinds: Sequence[str], sample: int, verbose: bool
-) -> tuple[Counter[str], int]:
+def _run(bench: Bench, scenario: Scenario, kinds: Sequence[str], given: argparse.Namespace) -> tuple[Counter[str], int]:
     """Run a scenario with all faults of some kinds; return the number of each, and of findings."""
     bench.reset()
     before = bench.state()
@@ -69,12 +68,12 @@ def _run(
     findings: Counter[str] = Counter()
     began = time.monotonic()
     for kind in kinds:
-        for number in _numbers(whole.counts[kind], sample) if _concerns(scenario, kind) else ():
+        for number in _numbers(whole.counts[kind], given.sample) if _concerns(scenario, kind) else ():
             error = ERRORS[kind][number % len(ERRORS[kind])]
             done[kind] += 1
             bench.reset()
-            ran = bench.run(scenario, kind, number, number, error)
-            if verbose:
+            ran = bench.run(scenario, kind, number, ALWAYS if given.lasting else number, error)
+            if given.verbose:
                 print(f"{scenario.name}: {kind} {number} ({errno.errorcode[error]}): {ran.code} {ran.err}", flush=True)
             for complaint in complaints(bench, scenario, expected, ran, kind):
                 findings[complaint] += 1

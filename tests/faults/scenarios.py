@@ -18,6 +18,12 @@ Student,ID,SIS User ID,SIS Login ID,Section,A small lab (900)
 "Oh, Ben",102,,bo2,S,
 "Fi, Dora",104,,df4,S,
 """
+_MOODLE = """\
+Identifier,Full name,Email address,Status,Grade,Maximum grade,Grade can be changed,Last modified (submission),\
+Last modified (grade),Feedback comments
+Participant 501,Anna Ek,anna@example.org,Submitted for grading,,11.00,Yes,-,-,
+Participant 503,Cleo Ray,cleo@example.org,Submitted for grading,,11.00,Yes,-,-,
+"""
 _MARKS = "student,criterion,points,comment\nanna,essay,3,good\nemil,essay,1,short\nben,total,5,late\n"
 
 Fault = AbstractContextManager[object]  # armed while the command runs
@@ -57,6 +63,7 @@ def prepare(top: Path) -> None:
     shutil.rmtree(top / "zipped")
     assert batch(top, "--add").returncode == 0
     (top / "canvas.csv").write_text(_CANVAS)
+    (top / "moodle.csv").write_text(_MOODLE)
     (top / "marks.csv").write_text(_MARKS)
     (top / "report.json").write_text("old")
     shutil.copy(top / "book.db", top / "other.db")
@@ -78,6 +85,7 @@ def _mark_on_the_page(top: Path, fault: Fault) -> Done:
 
 _BOOK = ("--gradebook", "book.db")
 _BATCH = ("batch", "class", "--rubric", "small.toml", "--roster", "roster.csv", "--jobs", "2")
+_FEEDBACK = ("--feedback", "feedback.zip")
 _OUTPUT = ("--csv", "grades.csv", "--reports", "reports")
 
 SCENARIOS = (
@@ -93,7 +101,9 @@ SCENARIOS = (
     Scenario("export-csv", ("export", "csv", *_BOOK, "--output", "grades.csv")),
     Scenario("export-into", ("export", "canvas", *_BOOK, "--into", "canvas.csv", "--output", "upload.csv")),
     Scenario("export-html", ("export", "html", *_BOOK, "--output", "pages")),
-    Scenario("export-feedback", ("export", "canvas", *_BOOK, "--feedback", "feedback.zip")),
+    Scenario(
+        "export-feedback", ("export", "moodle", *_BOOK, "--into", "moodle.csv", "--output", "filled.csv", *_FEEDBACK)
+    ),
     Scenario("merge", ("gradebook", "merge", "book.db", "other.db")),
     Scenario("batch-workers", (*_BATCH, "--gradebook", "new.db", *_OUTPUT), is_process=True),
     Scenario("pages-workers", ("export", "html", *_BOOK, "--output", "pages"), is_process=True),

@@ -1,0 +1,152 @@
+"""Faults of the system: the harnesses find nothing, and the faults that they do not cover."""
+
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from concurrent.futures import Future
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from pathlib import Path
+from unittest.mock import patch
+
+import pytest
+
+from grader.classroom.gradebook import marks
+from grader.classroom.intake.opening import open_class_submission
+from grader.classroom.run import pool, worker
+from grader.classroom.run.pool import Processes, WorkerError
+from tests.classroom.class_runs import is_sound, rows
+from tests.classroom.gradebooks import batch, grader, make_class
+from tests.command_line import HANG_TIMEOUT, ROOT
+from tests.faults.shim import COMPILER
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux" or COMPILER is None, reason="needs Linux and a C compiler")
+_TEN_MARKS = """
+import sys
+from grader.cli.app import run
+from grader.__main__ import main
+for number in range(10):
+    assert run(["mark", "anna", "essay", str(number % 4), "--gradebook", sys.argv[1], "--by", f"{sys.argv[2]}.{number}"]) == 0
+"""
+
+
+def found(module: str, *arguments: str) -> str:
+    """Run a harness; return what it has printed if it has findings, else nothing."""
+    done = subprocess.run(
+        [sys.executable, "-m", module, *arguments],
+        cwd=ROOT, check=False, capture_output=True, text=True, timeout=4 * HANG_TIMEOUT,
+    )  # fmt: skip
+    return f"{done.stdout}{done.stderr}" if done.returncode else ""
+
+
+@pytest.mark.slow
+def test_a_failed_call_of_each_kind() -> None:
+    """The gradebook is sound, no mark is lost, no file is half written, and rerunning the command completes it."""
+    calls = ("batch:open", "batch:read", "batch:list", "grade:list", "merge:write", "merge:sync", "export-into:rename")
+    assert found("tests.faults", "--sample", "1", *calls) == ""
+
+
+@pytest.mark.exhaustive
+@pytest.mark.parametrize("arguments", [("--sample", "12"), ("--sample", "6", "--lasting")], ids=["once", "lasting"])
+def test_failed_calls_of_every_command(arguments: tuple[str, ...]) -> None:
+    """The same for all commands, and for faults that stay, as of a full disk."""
+    assert found("tests.faults", *arguments) == ""
+
+
+@pytest.mark.exhaustive
+def test_power_failures() -> None:
+    """Every acknowledged mark is on the disk, and every file is as before or complete."""
+    assert found("tests.faults.power") == ""
+
+
+@pytest.mark.exhaustive
+def test_a_soak() -> None:
+    """Memory and descriptors do not grow, and every submission has a result."""
+    assert found("tests.faults.soak", "3000") == ""
+
+
+@pytest.mark.exhaustive
+def test_a_hundred_processes_mark_at_once(tmp_path: Path) -> None:
+    """Each of their thousand marks is in the gradebook, once."""
+    make_class(tmp_path)
+    assert batch(tmp_path).returncode == 0
+    book = tmp_path / "book.db"
+    command = (sys.executable, "-W", "error", "-c", _TEN_MARKS, str(book))
+    processes = [
+        subprocess.Popen([*command, str(number)], cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        for number in range(100)
+    ]
+    assert [process.wait(HANG_TIMEOUT) for process in processes] == [0] * 100
+    names = [name for (name,) in rows(book, "SELECT grader_name FROM mark")]
+    assert sorted(names) == sorted(f"{process}.{number}" for process in range(100) for number in range(10))
+    assert is_sound(book)
+
+
+def test_the_newest_mark_counts_although_the_clock_jumps_back(tmp_path: Path) -> None:
+    """Marks are in the order in which they were saved, whatever their times say."""
+    make_class(tmp_path)
+    assert batch(tmp_path).returncode == 0
+    mark = ("mark", "anna", "essay")
+    assert grader(*mark, "3", "--gradebook", tmp_path / "book.db").returncode == 0
+    with patch.object(marks, "datetime") as clock:
+        clock.now.return_value = datetime(2001, 1, 1, tzinfo=UTC)
+        assert grader(*mark, "2", "--gradebook", tmp_path / "book.db").returncode == 0
+    (points,) = rows(tmp_path / "book.db", "SELECT points FROM current_mark WHERE criterion = 'essay'")
+    assert points == (20_000,)
+
+
+@contextmanager
+def changed_before_reading(path: Path, data: bytes | None) -> Iterator[None]:
+    """Give a file other bytes, or none, after the class has been listed and before it is read."""
+    opened = open_class_submission
+
+    def change_and_open(*arguments: object) -> object:
+        if data is None:
+            path.unlink(missing_ok=True)
+        else:
+            path.write_bytes(data)
+        return opened(*arguments)  # type: ignore[arg-type]
+
+    before = path.read_bytes()
+    with patch.object(worker, "open_class_submission", change_and_open):
+        yield
+    path.write_bytes(before)
+
+
+@pytest.mark.parametrize("data", [None, b"", b'<robot name="r">', b"PK\x03\x04"], ids=["gone", "empty", "cut", "other"])
+@pytest.mark.parametrize("name", ["ben.urdf", "anna/robot.urdf", "anna/answers.md"])
+def test_a_file_that_changes_while_it_is_read(tmp_path: Path, name: str, data: bytes | None) -> None:
+    """The run ends as usual, and the next one grades what is there then."""
+    make_class(tmp_path)
+    whole = "SELECT key, verdict, score, pending FROM grade ORDER BY key"
+    assert batch(tmp_path).returncode == 0
+    expected = rows(tmp_path / "book.db", whole)
+    (tmp_path / "book.db").unlink()
+    with changed_before_reading(tmp_path / "class" / name, data):
+        done = batch(tmp_path)
+    assert (done.returncode, "Traceback" in done.stderr) == (0, False)
+    assert batch(tmp_path).returncode == 0
+    assert rows(tmp_path / "book.db", whole) == expected
+
+
+def test_a_lost_task_is_noticed() -> None:
+    """A pool never completes a task whose worker ended before it began: it is given up, and can be tried again."""
+    with patch.object(pool, "_MAX_IDLE", 0.1), Processes(1, 0.1) as processes:
+        assert processes.submit_within(60, int, ("1",), {}).result(HANG_TIMEOUT) == 1
+        with patch.object(processes._pool, "schedule", lambda *_: Future()):
+            lost = processes.submit(int, "2")
+        with pytest.raises(WorkerError) as error:
+            lost.result(HANG_TIMEOUT)
+    assert not error.value.is_own_fault
+
+
+def test_reports_that_cannot_be_written(tmp_path: Path) -> None:
+    """A folder that is a file, or gone, is refused in one line, and the marks stay."""
+    make_class(tmp_path)
+    assert batch(tmp_path).returncode == 0
+    (tmp_path / "file").touch()
+    done = grader("export", "html", "--gradebook", tmp_path / "book.db", "--output", tmp_path / "file/pages")
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    shutil.rmtree(tmp_path / "class")
+    assert grader("export", "csv", "--gradebook", tmp_path / "book.db").returncode == 0
