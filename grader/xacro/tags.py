@@ -132,7 +132,7 @@ def _include(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes
         inner = Scopes(XacroScope(is_namespace=True), XacroScope(scopes.symbols, is_namespace=True))
         scopes.macros.bind(f"{space}.", inner.macros)
         scopes.symbols.bind(f"{space}.", inner.symbols)
-        found = Namespace(space, lambda name: texts.find(name, inner.symbols), lambda: bool(inner.symbols.properties))
+        found = Namespace(space, lambda name: texts.find(name, inner.symbols), lambda: _has_names(inner.symbols))
         scopes.symbols.bind(space, found)
     optional = node.attributes.get("optional")
     is_optional = optional is not None and _boolean(optional, optional)
@@ -149,6 +149,13 @@ def _include(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes
         if not isinstance(texts.names_open, Undetermined):
             texts.names_open = error
         raise
+
+
+def _has_names(namespace: XacroScope) -> bool:
+    """Return whether a namespace is true; without properties, it is for xacro once it has evaluated something in it."""
+    if not namespace.properties:
+        raise Undetermined("whether a namespace without properties is true is not supported")
+    return True
 
 
 def _insert_file(expander: Expander, path: str, out: XacroNode, scopes: Scopes) -> None:

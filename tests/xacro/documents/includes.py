@@ -132,7 +132,7 @@ _NAMESPACES = bodies(
     ns_index=include("ns.xacro", 'ns="n"') + shown("${n['a']}"),
     ns_like_macro=include("ns.xacro", 'ns="n"') + "<xacro:macro name='n' params=''/>",
     ns_like_earlier_macro="<xacro:macro name='n' params=''/>" + include("ns.xacro", 'ns="n"') + "<xacro:n/>",
-    ns_is_true=include("ns.xacro", 'ns="n"') + include("plain.xacro", 'ns="o"') + shown("${not n} ${not o}"),
+    ns_is_true=include("ns.xacro", 'ns="n"') + shown("${not n}"),
     ns_list=named("which", "${[1]}") + include("ns.xacro", 'ns="${which}"'),
     ns_with_dot=include("ns.xacro", 'ns="n.o"') + shown("1"),
 )  # fmt: skip
@@ -153,6 +153,8 @@ _OUTSIDE = merged(
         found_in_property=named("folder", "$(find my_robot)/urdf") + include("${folder}/finger.xacro"),
         found_in_expression=include("${'$(find my_robot)' + '/urdf/finger.xacro'}"),
         abs_filename=include("${xacro.abs_filename('finger.xacro')}"),
+        ns_without_names=include("plain.xacro", 'ns="o"') + shown("${not o}"),
+        ns_made_true_by_an_expression=include("text.xacro", 'ns="o"') + shown("${not o}"),
     ),
 )
 
