@@ -216,3 +216,12 @@ def test_long_lines(text: str) -> None:
     """A long line takes linear time."""
     with limited_work(1_000), suppress(YamlFault):
         read_yaml(text.encode(), "")
+
+
+@pytest.mark.parametrize("mark", ["", "\ufeff"])
+@pytest.mark.parametrize("separator", ["\u2028", "\x85", "\r"])
+def test_a_place_after_a_separator_is_that_of_an_editor(separator: str, mark: str) -> None:
+    """YAML ends a line at every separator; a place counts the lines that git and editors count."""
+    node = read_yaml(f'{mark}a: "x{separator}y"\nb: c\n'.encode(), "a.yaml").get("b")
+    assert node is not None
+    assert (node.location.line, node.location.column) == (2, 4)
