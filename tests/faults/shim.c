@@ -133,12 +133,15 @@ CALL(SEND, ssize_t, sendmsg, (int file, const struct msghdr *message, int flags)
 /* A vforked child must not return from here, so it is forked. */
 pid_t vfork(void) { return fork(); }
 
-/* Python's resource tracker is no worker: if it cannot be written to, CPython waits for its end, however long it lives. */
-static int is_for_tracker(const char *data, size_t size) { return size > 6 && (!memcmp(data, "PROBE:", 6) || memmem(data, size, "REGISTER:", 9)); }
+/* No messages to workers: those to Python's resource tracker, and the numbers of processes that its fork server sends.
+ * CPython waits forever if one is lost while the receiver lives. */
+static int is_of_python(const char *data, size_t size) {
+    return size == 8 || (size > 6 && (!memcmp(data, "PROBE:", 6) || memmem(data, size, "REGISTER:", 9)));
+}
 
 ssize_t write(int file, const void *data, size_t size) {
     int is_below_root = is_file(file);
-    if (is_below_root ? fails(WRITE) : is_channel(file) && !is_for_tracker(data, size) && fails(SEND)) return -1;
+    if (is_below_root ? fails(WRITE) : is_channel(file) && !is_of_python(data, size) && fails(SEND)) return -1;
     ssize_t written = syscall(SYS_write, file, data, size);
     if (is_below_root && control->is_recorded && written > 0)
         record_file(WRITE, file, end_of_write(file) - written, data, written);
