@@ -130,7 +130,7 @@ def main() -> int:
         flush=True,
     )
     rows = []
-    with ThreadPoolExecutor(options.jobs) as pool:
+    with TemporaryDirectory() as GUARD.folder, ThreadPoolExecutor(options.jobs) as pool:
         out = options.out.resolve()
         tasks = [pool.submit(search, name, out, options.seconds, options.runs) for name in names]
         for task in as_completed(tasks):
