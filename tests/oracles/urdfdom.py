@@ -5,12 +5,14 @@ The model that it returns is read where GCC's C++ library keeps its parts on x86
 """
 
 import ctypes
+import faulthandler
 import os
 import platform
 import re
 import resource
 import sys
 import tempfile
+import warnings
 from collections.abc import Sequence
 from functools import cache
 from itertools import takewhile
@@ -50,9 +52,12 @@ def verdicts(texts: Sequence[bytes]) -> list[str]:
 
 def _until_crash(texts: Sequence[bytes]) -> list[str]:
     reading, writing = os.pipe()
-    child = os.fork()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # of threads, which the child does not use
+        child = os.fork()
     if not child:
         try:
+            faulthandler.disable()  # a crash is a verdict
             os.close(reading)
             resource.setrlimit(resource.RLIMIT_CPU, (_SECONDS, _SECONDS))
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
