@@ -19,7 +19,7 @@ from grader.classroom.run import forks
 from grader.errors import GraderError
 
 MAX_MEMORY = 2 * 1024**3  # bytes for each worker
-NO_MEMORY = f"grading it needs more memory than a worker may use ({MAX_MEMORY // 1024**3} GiB)"
+NO_MEMORY = f"grading it needs more memory than a worker has (at most {MAX_MEMORY // 1024**3} GiB)"
 _NOT_STARTED = "the worker processes cannot be started: there may be too many processes, or too little memory"
 _POOL_ENDED = "the worker processes ended"
 # The exit codes of a worker that waited too long for the channel to its parent, or could not use it.
@@ -54,7 +54,6 @@ class Processes(Executor):
         self._lock = threading.RLock()
         self._pending: dict[Future[Any], float] = {}  # with the timeout of each
         self._progress = 0.0  # when a task was completed, or submitted to an idle pool
-        self._has_worked = self._is_useless = False  # whether a worker has ended a task; whether none can start
         self._is_shut = threading.Event()
         self._pool = self._new_pool()
         self._watch = threading.Thread(target=self._watch_pool, daemon=True)
@@ -71,7 +70,7 @@ class Processes(Executor):
         outer: Future[Any] = Future()
         with self._lock:
             forks.start_server()  # again if it has ended
-            for tries_left in reversed(range(0 if self._is_useless else _MAX_TRIES)):
+            for tries_left in reversed(range(_MAX_TRIES)):
                 try:
                     self._replace_broken_pool()
                     inner = self._pool.schedule(function, arguments, named, timeout)
@@ -80,8 +79,6 @@ class Processes(Executor):
                     if not tries_left or self._is_shut.is_set():
                         raise WorkerError(_NOT_STARTED, is_own_fault=False) from error
                     time.sleep(_CHECK_INTERVAL)  # a fork server that could not fork is about to end
-            else:
-                raise WorkerError(_NOT_STARTED, is_own_fault=False)
             self._progress = self._progress if self._pending else time.monotonic()
             self._pending[outer] = timeout
         inner.add_done_callback(lambda future: self._pass_on(future, outer, timeout))
@@ -119,12 +116,10 @@ class Processes(Executor):
         self._pool.stop()  # type: ignore[no-untyped-call]
         threading.Thread(target=self._pool.join, daemon=True).start()  # ends the workers that are left
         self._pool = self._new_pool()
-        self._is_useless = is_stuck and not self._has_worked
         for outer in tuple(self._pending):
             self._complete(outer, WorkerError(_POOL_ENDED, is_own_fault=False))
 
     def _pass_on(self, inner: "Future[Any]", outer: "Future[Any]", timeout: float) -> None:
-        self._has_worked = True
         try:
             self._complete(outer, result=inner.result())
         except TimeoutError:

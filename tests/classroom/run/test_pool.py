@@ -72,7 +72,7 @@ def _stop() -> None:
 @pytest.mark.exhaustive
 def test_no_more_memory_than_allowed(pool: Processes) -> None:
     """A task that needs more memory is lost, and its worker continues."""
-    assert lost(pool.submit(_eat)) == "grading it needs more memory than a worker may use (2 GiB)"
+    assert lost(pool.submit(_eat)) == "grading it needs more memory than a worker has (at most 2 GiB)"
     assert pool.submit(len, "abc").result(HANG_TIMEOUT) == 3
 
 
