@@ -71,6 +71,7 @@ def test_all_mutants(rubric: str) -> None:
     assert different == 0, "\n".join(lines)
 
 
+@pytest.mark.slow
 def test_all_samples() -> None:
     """All samples whose URDF is plain XML get the same results."""
     found = []
