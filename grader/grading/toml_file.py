@@ -26,7 +26,7 @@ _TOKEN = r"""(?sx)
     """
 # tomllib stores each beginning of a dotted key: memory that grows with the square of its parts.
 _LONG_KEY = re.compile(
-    rf"""(?m)(?:^|[\[{{,])[ \t]*+((?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{_MAX_DEPTH}}})"""
+    rf"""(?m)(?:^|[\[{{,])[ \t]*+((?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{_MAX_DEPTH}}})"""
 )
 _MAX_COMPLAINTS = 1000  # lines about one file
 _MAX_WIDTH = 200  # characters of a line that are looked at on each side of a mistake

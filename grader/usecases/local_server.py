@@ -24,7 +24,7 @@ from grader.text import printable
 HOST = "127.0.0.1"
 MAX_BODY = 64 * 1024  # bytes
 MAX_REQUEST = 2 * MAX_BODY  # bytes, with the headers
-MAX_STRANGERS = 64  # connections that have not sent the secret yet
+MAX_UNAUTHENTICATED = 64  # connections that have not sent the secret yet
 PATIENCE = 15.0  # seconds in which a client must send a whole request, and receive a whole response
 TEXT = "text/plain; charset=utf-8"
 _TOKEN_BYTES = 24
@@ -75,12 +75,12 @@ class LocalServer(ThreadingHTTPServer):
 
     daemon_threads = True  # a slow client does not delay the end of the server
     allow_reuse_address = True
-    request_queue_size = MAX_STRANGERS
+    request_queue_size = MAX_UNAUTHENTICATED
 
     def __init__(self, application: Application, worker: ThreadPoolExecutor, port: int = 0) -> None:
         self.application, self.worker = application, worker
         self.token = secrets.token_urlsafe(_TOKEN_BYTES)
-        self._strangers: dict[socket, None] = {}  # the oldest one first
+        self._unauthenticated: dict[socket, None] = {}  # the oldest one first
         self._lock = Lock()
         try:
             super().__init__((HOST, port), _Handler)
@@ -99,12 +99,12 @@ class LocalServer(ThreadingHTTPServer):
     def process_request(self, request: Any, client_address: Any) -> None:
         """Serve a connection in its own thread; of too many without the secret, the oldest one is disconnected."""
         with self._lock:
-            if len(self._strangers) >= MAX_STRANGERS:
-                oldest = next(iter(self._strangers))
-                del self._strangers[oldest]
+            if len(self._unauthenticated) >= MAX_UNAUTHENTICATED:
+                oldest = next(iter(self._unauthenticated))
+                del self._unauthenticated[oldest]
                 with suppress(OSError):  # it has ended
                     oldest.shutdown(SHUT_RDWR)
-            self._strangers[request] = None
+            self._unauthenticated[request] = None
         super().process_request(request, client_address)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
@@ -112,12 +112,12 @@ class LocalServer(ThreadingHTTPServer):
         try:
             super().process_request_thread(request, client_address)
         finally:
-            self.admit(request)
+            self.authenticated(request)
 
-    def admit(self, connection: socket) -> None:
+    def authenticated(self, connection: socket) -> None:
         """Count a connection no longer among those without the secret."""
         with self._lock:
-            self._strangers.pop(connection, None)
+            self._unauthenticated.pop(connection, None)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Ignore errors of broken connections."""
@@ -194,7 +194,7 @@ class _Handler(BaseHTTPRequestHandler):
         first, *rest = self.path.partition("?")[0].removeprefix("/").split("/")
         if not hmac.compare_digest(first.encode(), self.server.token.encode()) or not rest:
             raise _RefusedError(HTTPStatus.NOT_FOUND, "not found: use the whole address that the command has printed")
-        self.server.admit(self.connection)
+        self.server.authenticated(self.connection)
         return tuple(rest)
 
     def _body(self) -> bytes:

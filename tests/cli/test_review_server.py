@@ -21,7 +21,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.manual_queue import QueuedResult
 from grader.grading.rubric import Rubric
 from grader.usecases import local_server
-from grader.usecases.local_server import HOST, MAX_BODY, MAX_STRANGERS
+from grader.usecases.local_server import HOST, MAX_BODY, MAX_UNAUTHENTICATED
 from tests.classroom.gradebooks import (
     ENVIRONMENT,
     PNG,
@@ -345,21 +345,21 @@ def locked_page(*_: object) -> str:
 def test_idle_and_slow_clients_do_not_block_others(review: Review) -> None:
     """Of connections without the secret, the oldest one is disconnected; one with the secret stays."""
     own = HTTPConnection(HOST, review.port, timeout=HANG_TIMEOUT)
-    strangers = []
+    others = []
     try:
-        for number in range(MAX_STRANGERS + 6):
-            strangers.append(socket.create_connection((HOST, review.port), timeout=HANG_TIMEOUT))
-            strangers[-1].sendall(b"POST / HTTP/1.1\r\nContent-Le")
+        for number in range(MAX_UNAUTHENTICATED + 6):
+            others.append(socket.create_connection((HOST, review.port), timeout=HANG_TIMEOUT))
+            others[-1].sendall(b"POST / HTTP/1.1\r\nContent-Le")
             if number % 10 == 0:
                 own.request("GET", f"/{review.token}/1")
                 assert own.getresponse().read()
         assert [review.get("1").status for _ in range(3)] == [200] * 3
-        assert strangers[0].recv(1) == b""
-        strangers[-1].sendall(b"ngth: 0\r\n\r\n")
-        assert strangers[-1].recv(12) == b"HTTP/1.1 421"
+        assert others[0].recv(1) == b""
+        others[-1].sendall(b"ngth: 0\r\n\r\n")
+        assert others[-1].recv(12) == b"HTTP/1.1 421"
     finally:
         own.close()
-        for connection in strangers:
+        for connection in others:
             connection.close()
 
 

@@ -86,6 +86,7 @@ def test_a_mistake_is_explained(text: str, expected: str, tmp_path: Path) -> Non
         (b"b = 1\n" + b"a." * 20_000 + b"a = 1", "2: a key has more than 20 parts"),
         (b"[" + b" 'a' ." * 20 + b"a]", "1: a key has more than 20 parts"),
         (b"b = { c = 1, " + b'"a".' * 20 + b"a = 1 }", "1: a key has more than 20 parts"),
+        (b".".join([b'"\\""'] * 15_000) + b" = 1", "1: a key has more than 20 parts"),
         (b"a = " + b"[" * 5000, " lists or tables are nested too deeply"),
         (b"a = " + b"9" * 5000, " a number has too many digits"),
         (b"a = 1e" + b"9" * 30, " a number has too many digits"),

@@ -26,8 +26,6 @@ def prepare(connection: sqlite3.Connection, shown: str, read_only: str) -> None:
             f"{shown} is a gradebook of version {version}, and this grader reads version {VERSION}: "
             "use the grader that made it, or name another file"
         )
-    if tables:
-        _check_content(connection, shown)
     if read_only:
         return
     _enable_wal(connection)
@@ -37,19 +35,22 @@ def prepare(connection: sqlite3.Connection, shown: str, read_only: str) -> None:
         _create_tables(connection)
 
 
-def _check_content(connection: sqlite3.Connection, shown: str) -> None:
-    """Raise InputError if a table, trigger or view is not the grader's, or a value has another type than its column.
+def damage(connection: sqlite3.Connection) -> str:
+    """Return what another program has changed: a table, or a value that is not of its column; empty for nothing.
 
-    SQLite stores a value of any type in any column.
+    It reads the whole file, so it is called only where something is wrong, or where the whole file is copied.
     """
     with closing(sqlite3.connect(":memory:")) as own:
         own.executescript(TABLES + VIEWS)
-        if _definitions(connection) != _definitions(own):
-            raise InputError(f"{shown} has other tables than a gradebook of version {VERSION}: name another file")
+        found = _definitions(connection)
+        if other := [name for name, text in _definitions(own).items() if found.get(name) != text]:
+            return f"{other[0]} is not what the grader has made"
+        broken = connection.execute("PRAGMA integrity_check(1)").fetchone()[0]
         for (table,) in own.execute("SELECT name FROM sqlite_master WHERE type = 'table'"):
             wrong = " OR ".join(_is_wrong(*column) for column in own.execute(f"PRAGMA table_info({table})"))
             if connection.execute(f"SELECT 1 FROM {table} WHERE {wrong} LIMIT 1").fetchone():
-                raise InputError(f"{shown} is damaged: its table {table} has a value that the grader does not write")
+                return f"{table} has a value that the grader does not write"
+    return "" if broken == "ok" else str(broken)
 
 
 def _definitions(connection: sqlite3.Connection) -> dict[str, str]:
@@ -61,8 +62,12 @@ def _definitions(connection: sqlite3.Connection) -> dict[str, str]:
 def _is_wrong(_: int, name: str, kind: str, is_required: int, *__: object) -> str:
     """Return the SQL condition that is true for a value that a column cannot have."""
     nothing = "" if is_required else ", 'null'"
-    not_json = f" OR {name} <> '' AND NOT json_valid({name})" if name in JSON_COLUMNS else ""
-    return f"typeof({name}) NOT IN ('{kind.lower()}'{nothing}){not_json}"
+    wrong = f"typeof({name}) NOT IN ('{kind.lower()}'{nothing})"
+    if kind == "REAL":
+        wrong += f" OR abs({name}) > 1e9"  # infinite
+    if name in JSON_COLUMNS:
+        wrong += f" OR {name} <> '' AND (NOT json_valid({name}) OR json_type({name}) NOT IN ('array', 'object'))"
+    return wrong
 
 
 def _enable_wal(connection: sqlite3.Connection) -> None:
@@ -85,7 +90,7 @@ def _enable_wal(connection: sqlite3.Connection) -> None:
 def _create_tables(connection: sqlite3.Connection) -> None:
     """Create all tables, or, if that fails, none."""
     with transaction_of(connection):
-        if connection.execute("PRAGMA user_version").fetchone() == (VERSION,):
+        if connection.execute("SELECT 1 FROM sqlite_master").fetchone():
             return  # another process has created them meanwhile
         for statement in _statements(TABLES + VIEWS):
             connection.execute(statement)

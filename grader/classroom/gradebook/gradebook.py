@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from grader.classroom.gradebook.connection import BUSY_TIMEOUT, prepare, transaction_of
+from grader.classroom.gradebook.connection import BUSY_TIMEOUT, damage, prepare, transaction_of
 from grader.classroom.gradebook.result import StoredOutcome, decompressed
 from grader.classroom.gradebook.stored import STORED_SUBMISSIONS, STUDENT_COLUMNS, WITHOUT_SUBMISSION, StoredSubmission
 from grader.classroom.students import Student
@@ -83,8 +83,18 @@ class Gradebook(AbstractContextManager["Gradebook"]):
         if self.read_only:
             raise InputError(f"marks cannot be saved in the gradebook {self.shown}: {self.read_only}")
 
-    def __exit__(self, *_: object) -> None:
-        self.close()
+    def __exit__(self, kind: object, error: BaseException | None, _: object) -> None:
+        try:
+            if isinstance(error, Exception) and not isinstance(error, GraderError | OSError):
+                self.check_undamaged()
+        finally:
+            self.close()
+
+    def check_undamaged(self) -> None:
+        """Raise InputError if another program has changed the file, and this explains an error."""
+        with suppress(sqlite3.Error, UnicodeDecodeError):
+            if what := damage(self.connection):
+                raise InputError(f"the gradebook {self.shown} is damaged: {what}") from None
 
     def close(self) -> None:
         """Close the file; what was not committed is lost."""
@@ -101,6 +111,8 @@ class Gradebook(AbstractContextManager["Gradebook"]):
             is_refused = code & _PRIMARY in (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_CANTOPEN)
             if is_refused and self.read_only:
                 raise InputError(f"the gradebook {self.shown}: {self.read_only}") from None
+            if str(error).startswith("no such "):
+                self.check_undamaged()
             is_other_file = code in (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CANTOPEN)
             advice = "; name another file" if is_other_file else ""
             raise InputError(f"the gradebook {self.shown}: {error}{advice}") from None
@@ -116,7 +128,7 @@ class Gradebook(AbstractContextManager["Gradebook"]):
     def rows(self, query: str, *values: Any) -> Iterator[tuple[Any, ...]]:
         """Yield the rows of a query."""
         with self.input_errors():
-            for row in self.connection.execute(query, values):  # noqa: UP028  it would close the cursor: too late
+            for row in self.connection.execute(query, values):  # noqa: UP028  its cursor may outlive the book
                 yield row
 
     def records(self, query: str, *values: Any) -> Iterator[dict[str, Any]]:

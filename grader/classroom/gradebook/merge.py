@@ -48,6 +48,7 @@ def copy_of(path: Path) -> Iterator[Gradebook]:
         except sqlite3.DatabaseError as error:
             raise InputError(f"the gradebook {shown}: {error}") from None
         with Gradebook(copy, shown=shown) as book:
+            book.check_undamaged()
             yield book
 
 
