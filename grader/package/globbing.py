@@ -185,7 +185,7 @@ class _GlobSearch:
                     pending.append((_join(path, name), _join(real, name)))
 
     def _visible(self, folder: str, folders_only: bool, dotted: bool) -> list[str]:
-        names = [name for name in self.listing.names(folder) if dotted or self.hidden or name[0] != "."]
+        names = [name for name in self.listing.names(folder) if dotted or self.hidden or not name.startswith(".")]
         return [name for name in names if _join(folder, name) in self.listing.folders] if folders_only else names
 
     def _real(self, path: str, *, is_folder: bool = False) -> str | None:
