@@ -8,8 +8,8 @@ from grader.xacro.macros import (
     bind_blocks,
     bind_defaults,
     bind_values,
-    check_no_namespace,
     find_macro,
+    namespace_error,
     read_parameters,
 )
 from grader.xacro.nodes import XacroNode
@@ -37,7 +37,8 @@ def define_macro(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scop
     name = needed(node, "name").removeprefix("xacro:")
     if name == "call" or "." in name:
         raise TagFails(f"a macro cannot have the name {name}")
-    check_no_namespace(name, scopes.macros)
+    if f"{name}." in scopes.macros.properties:
+        raise namespace_error(name)
     macro = Macro(name, node, read_parameters(node.attributes.get("params", ""), expander.budget))
     scopes.macros.bind(name, macro, definition=Definition(name, "", node.place, "name", scopes.symbols))
 

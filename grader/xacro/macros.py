@@ -75,7 +75,8 @@ def read_parameters(text: str, budget: Budget) -> tuple[MacroParameter, ...]:
 
 def find_macro(name: str, macros: XacroScope, symbols: XacroScope) -> tuple[Macro, XacroScope, XacroScope] | None:
     """Return the macro of a name, which may begin with namespaces, and the scopes in which it is defined."""
-    check_no_namespace(name, macros)
+    if _namespace(name, macros) is not None:
+        raise namespace_error(name)
     holder = macros.holder(name)
     if holder is None and "." in name:
         *namespaces, name = name.split(".")
@@ -89,15 +90,17 @@ def find_macro(name: str, macros: XacroScope, symbols: XacroScope) -> tuple[Macr
     return (macro, macros, symbols) if isinstance(macro, Macro) else None
 
 
-def check_no_namespace(name: str, macros: XacroScope) -> None:
-    """Raise MacroError for the namespace of an included file: xacro fails if a macro has the same name."""
-    if _namespace(name, macros) is not None:
-        raise MacroError(f"{name} is the namespace of an included file, so no macro can have this name")
+def namespace_error(name: str) -> MacroError:
+    """Return why no macro has this name: xacro fails if it is the namespace of an included file in the same scope."""
+    return MacroError(f"{name} is the namespace of an included file, so no macro can have this name")
 
 
 def _namespace(name: str, scope: XacroScope) -> XacroScope | None:
+    """Return the namespace of a name, unless it is that of a macro or property in a nearer scope."""
     holder = scope.holder(f"{name}.")
-    value = holder.properties[f"{name}."].value if holder is not None else None
+    if holder is None or holder.holder(name) is not scope.holder(name):
+        return None
+    value = holder.properties[f"{name}."].value
     return value if isinstance(value, XacroScope) else None
 
 

@@ -8,7 +8,7 @@ from tests.differential.compared import Compared, summary
 from tests.oracles import urdfdom
 from tests.robot.edge_cases import EDGE_CASES
 
-pytestmark = pytest.mark.skipif(not urdfdom.is_available(), reason="needs Linux on x86-64, and urdfdom: .[test]")
+needs_urdfdom = pytest.mark.skipif(not urdfdom.is_available(), reason="needs Linux on x86-64, and urdfdom: .[test]")
 
 
 def test_summary() -> None:
@@ -20,6 +20,7 @@ def test_summary() -> None:
     ]
 
 
+@needs_urdfdom
 @pytest.mark.exhaustive
 def test_the_library_gives_the_verdicts_of_the_program() -> None:
     """On every edge case: those that it rejects, that it accepts with errors, that crash it, and those with a loop.
@@ -32,6 +33,7 @@ def test_the_library_gives_the_verdicts_of_the_program() -> None:
     assert wrong == []
 
 
+@needs_urdfdom
 def test_mutated_urdfs() -> None:
     """The verdict on each mutant is that of ROS 2; the mutants are the same in every run, and some of them load."""
     results = list(urdfs.compare(range(400)))
@@ -48,7 +50,9 @@ def test_random_setup_py() -> None:
 
 
 @pytest.mark.exhaustive
-@pytest.mark.parametrize("oracle", ORACLES)
+@pytest.mark.parametrize(
+    "oracle", [pytest.param(name, marks=needs_urdfdom if name == "check_urdf" else ()) for name in ORACLES]
+)
 def test_each_oracle(oracle: str) -> None:
     """Some thousand inputs of another range of seeds agree; `pinocchio` needs the extra `oracle`."""
     count = 100 if oracle == "setuptools" else 2000

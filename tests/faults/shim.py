@@ -111,7 +111,7 @@ class Shim:
 
     @contextmanager
     def recording(self, to: Path) -> Iterator[None]:
-        """Append the calls inside that change files to a record; `replay.py` reads it."""
+        """Append the calls inside that change files to a record; `power.py` reads it."""
         to.touch()
         self._control.record, self._control.is_recorded = os.fsencode(to), 1
         with self.armed():

@@ -21,7 +21,8 @@ from tests.classroom.gradebooks import batch, grader, make_class
 from tests.command_line import HANG_TIMEOUT, ROOT
 from tests.faults.shim import COMPILER
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux" or COMPILER is None, reason="needs Linux and a C compiler")
+needs_linux = pytest.mark.skipif(sys.platform != "linux", reason="needs Linux")
+needs_shim = pytest.mark.skipif(sys.platform != "linux" or COMPILER is None, reason="needs Linux and a C compiler")
 _TEN_MARKS = """
 import sys
 from grader.cli.app import run
@@ -40,6 +41,7 @@ def found(module: str, *arguments: str) -> str:
     return f"{done.stdout}{done.stderr}" if done.returncode else ""
 
 
+@needs_shim
 @pytest.mark.slow
 def test_a_failed_call_of_each_kind() -> None:
     """The gradebook is sound, no mark is lost, no file is half written, and rerunning the command completes it."""
@@ -47,6 +49,7 @@ def test_a_failed_call_of_each_kind() -> None:
     assert found("tests.faults", "--sample", "1", *calls) == ""
 
 
+@needs_shim
 @pytest.mark.exhaustive
 @pytest.mark.parametrize("arguments", [("--sample", "3"), ("--sample", "2", "--lasting")], ids=["once", "lasting"])
 def test_failed_calls_of_every_command(arguments: tuple[str, ...]) -> None:
@@ -54,12 +57,14 @@ def test_failed_calls_of_every_command(arguments: tuple[str, ...]) -> None:
     assert found("tests.faults", *arguments) == ""
 
 
+@needs_shim
 @pytest.mark.exhaustive
 def test_power_failures() -> None:
     """Every acknowledged mark is on the disk, and every file is as before or complete."""
     assert found("tests.faults.power") == ""
 
 
+@needs_linux
 @pytest.mark.exhaustive
 def test_a_soak() -> None:
     """Memory and descriptors do not grow, and every submission has a result."""

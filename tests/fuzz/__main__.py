@@ -1,4 +1,4 @@
-"""Search for inputs that a reader cannot bear, guided by coverage: `python -m tests.fuzz [NAME...] --seconds 60`.
+"""Search for inputs on which a reader fails or takes too long, guided by coverage: `python -m tests.fuzz [NAME...] --seconds 60`.
 
 Without a name the harnesses are listed. Each runs in a process of its own under atheris (the extra `fuzz`), with at most 5 s
 of processor time and 512 MiB for an input. The exit code is 1 if anything was found; `--json FILE` adds the figures of each harness to a file.
@@ -32,6 +32,8 @@ def search(name: str, out: Path, seconds: int, runs: int) -> dict[str, Any]:
     folder = out / name
     for part in ("corpus", "seeds"):
         (folder / part).mkdir(parents=True, exist_ok=True)
+    for path in _found(folder, "crash", "oom", "slow", "timeout"):  # by an earlier search
+        path.unlink()
     harness = HARNESSES[name]
     for number, data in enumerate(harness.inputs(name)):
         (folder / "seeds" / str(number)).write_bytes(data[: harness.size])
@@ -57,16 +59,18 @@ def search(name: str, out: Path, seconds: int, runs: int) -> dict[str, Any]:
     spent = time.monotonic() - start
     edges = [int(state[2]) for state in states] or [0]
     first = next((int(state[2]) for state in states if state[1] == "INITED"), 0)
-    late = [path for kind in ("slow", "timeout") for path in folder.glob(f"{kind}-*")]
-    findings = sorted(
-        path.name for kind in ("crash", "oom") for path in folder.glob(f"{kind}-*") if path.suffix != ".txt"
-    )
-    findings += [path.name for path in late if is_too_slow(name, path)]
+    findings = sorted(path.name for path in _found(folder, "crash", "oom") if path.suffix != ".txt")
+    findings += [path.name for path in _found(folder, "slow", "timeout") if is_too_slow(name, path)]
+    ends -= len(_found(folder, "oom", "timeout"))  # those of libFuzzer that have a reason
     slowest = folder / "slowest.txt"
     return {
         "harness": name, "inputs": done, "seconds": round(spent), "coverage": max(edges), "new": max(edges) - first,
-        "slowest": float(slowest.read_text()) if slowest.exists() else 0.0, "findings": findings, "failures": ends - len(late) - len([*folder.glob("oom-*")]),
+        "slowest": float(slowest.read_text()) if slowest.exists() else 0.0, "findings": findings, "failures": max(0, ends),
     }  # fmt: skip
+
+
+def _found(folder: Path, *kinds: str) -> list[Path]:
+    return [path for kind in kinds for path in folder.glob(f"{kind}-*")]
 
 
 def is_too_slow(name: str, path: Path) -> bool:

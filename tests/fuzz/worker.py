@@ -24,7 +24,7 @@ _SLOW = 0.5  # seconds of processor time, from which on an input is saved
 
 
 def signature(error: BaseException) -> str:
-    """Return what tells a kind of finding from others: the exception, and the last places in our own files."""
+    """Return the name of a kind of finding: the exception, and the last places in our own files."""
     frames = traceback.extract_tb(error.__traceback__)
     places = [
         f"{Path(frame.filename).stem}:{frame.name}:{frame.lineno}"

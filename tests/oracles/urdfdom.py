@@ -9,7 +9,6 @@ import faulthandler
 import os
 import platform
 import re
-import resource
 import sys
 import tempfile
 import warnings
@@ -57,6 +56,8 @@ def _until_crash(texts: Sequence[bytes]) -> list[str]:
         child = os.fork()
     if not child:
         try:
+            import resource  # not on Windows
+
             faulthandler.disable()  # a crash is a verdict
             os.close(reading)
             resource.setrlimit(resource.RLIMIT_CPU, (_SECONDS, _SECONDS))

@@ -46,7 +46,8 @@ def document(seed: int) -> Document:
     files: dict[str, str | bytes] = {f"urdf/{name}": part(writer.body(2)) for name in _FILES if random.random() < 0.6}
     writer.is_main = True
     arguments = {name: random.choice(_VALUES) for name in _NAMES if random.random() < 0.8}
-    body = "".join(writer.definition() for _ in range(random.randint(0, 3))) + writer.body(3)
+    body = writer.hidden_namespace() if random.random() < 0.2 else ""
+    body += "".join(writer.definition() for _ in range(random.randint(0, 3))) + writer.body(3)
     # These need manual grading: who starts xacro may give the argument, a name of a file may be a pattern, a namespace is no value.
     text = body + "".join(map(str, files.values()))
     is_open = len(arguments) < len(_NAMES) or _BY_NAME in text or " ns=" in text
@@ -67,6 +68,18 @@ class _Writer:
     def definition(self) -> str:
         """Return a property with a name that many expressions use."""
         return f"<xacro:property name='{self._pick(_NAMES)}' value={quoteattr(self._pick(('1', '2.50', 'x y', 'true', '${1 + 1}', '${[1, 2]}')))}/>"
+
+    def hidden_namespace(self) -> str:
+        """Return a macro that defines and calls another one, most often with the name of a namespace."""
+        space, outer = self._pick(("m", "a", "n", "o")), self._pick(_MACROS[:3])
+        name = self._pick((space, space, *_MACROS[:3]))
+        body = (
+            f"<xacro:macro name='{name}'><s/></xacro:macro><xacro:{name}/>{self._pick(('', '', f'<xacro:{space}.m/>'))}"
+        )
+        return (
+            f"<xacro:include filename='{self._pick(_FILES)}' ns='{space}'/>"
+            f"<xacro:macro name='{outer}'>{body}</xacro:macro><xacro:{outer}/>"
+        )
 
     def _text(self) -> str:
         """Return the text of an attribute: a value, an expression, or several of them."""

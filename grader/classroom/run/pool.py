@@ -109,9 +109,7 @@ class Processes(Executor):
                     self._replace_broken_pool(is_stuck=idle > max(self._pending.values()) + _MAX_IDLE)
 
     def _replace_broken_pool(self, *, is_stuck: bool = False) -> None:
-        # A thread of the pool ends if it cannot send, and the pool remains active.
-        is_working = self._pool.active and all(loop.is_alive() for loop in getattr(self._pool, "_loops", ()))
-        if (is_working and not is_stuck) or self._is_shut.is_set():
+        if (self._pool.active and not is_stuck) or self._is_shut.is_set():
             return
         self._pool.stop()  # type: ignore[no-untyped-call]
         threading.Thread(target=self._pool.join, daemon=True).start()  # ends the workers that are left

@@ -13,7 +13,7 @@ Note = Callable[[str, str, int], None]  # the kind of a difference from XML, its
 _BLANK = re.compile(r"[ \t\n\v\f\r]*")
 _NAME = re.compile(r"[A-Za-z_:\u0080-\U0010ffff][A-Za-z0-9_:.\-\u0080-\U0010ffff]*")
 _PLAIN_NAME = re.compile(r"(?!(?i:xml))[A-Za-z_][A-Za-z0-9_.\-]*")
-_MAX_NAME_LENGTH = 60  # the longest name that urdfdom knows has 17 letters
+MAX_NAME_LENGTH = 60  # the longest name that urdfdom knows has 17 letters
 
 # A bare & or an entity that XML does not define.
 REFERENCE = re.compile(r"&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
@@ -51,7 +51,7 @@ class MalformedTagError(Exception):
 
 
 def _is_plain(name: str) -> bool:
-    return len(name) < _MAX_NAME_LENGTH and _PLAIN_NAME.fullmatch(name) is not None
+    return len(name) < MAX_NAME_LENGTH and _PLAIN_NAME.fullmatch(name) is not None
 
 
 def skip_blank(text: str, position: int) -> int:

@@ -132,6 +132,10 @@ _NAMESPACES = bodies(
     ns_index=include("ns.xacro", 'ns="n"') + shown("${n['a']}"),
     ns_like_macro=include("ns.xacro", 'ns="n"') + "<xacro:macro name='n' params=''/>",
     ns_like_earlier_macro="<xacro:macro name='n' params=''/>" + include("ns.xacro", 'ns="n"') + "<xacro:n/>",
+    ns_like_inner_macro=include("ns.xacro", 'ns="n"')
+    + "<xacro:macro name='go'><xacro:macro name='n'><link name='q'/></xacro:macro><xacro:n/></xacro:macro><xacro:go/><xacro:n.m/>",
+    ns_hidden_by_inner_macro=include("ns.xacro", 'ns="n"')
+    + "<xacro:macro name='go'><xacro:macro name='n'/><xacro:n.m/></xacro:macro><xacro:go/>",
     ns_is_true=include("ns.xacro", 'ns="n"') + shown("${not n}"),
     ns_list=named("which", "${[1]}") + include("ns.xacro", 'ns="${which}"'),
     ns_with_dot=include("ns.xacro", 'ns="n.o"') + shown("1"),
