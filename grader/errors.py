@@ -7,6 +7,7 @@ _OF_FILES = (
     None, errno.EACCES, errno.EINVAL, errno.EISDIR, errno.ELOOP, errno.ENAMETOOLONG, errno.ENODEV, errno.ENOENT,
     errno.ENOTDIR, errno.ENXIO, errno.EILSEQ, errno.EOPNOTSUPP, errno.EPERM,
 )  # fmt: skip
+_ADVICE = "a fault of this machine's disk or network: try again"
 
 
 class GraderError(Exception):
@@ -42,7 +43,7 @@ class MachineError(GraderError):
         """Raise MachineError for the error of a file, or of an archive, if the file is not the cause."""
         while error is not None:
             if isinstance(error, OSError) and cls.is_cause(error):
-                raise cls(f"cannot read {shown}: {error.strerror}") from None
+                raise cls(f"cannot read {shown}: {error.strerror} ({_ADVICE})") from None
             error = error.__context__  # zipfile raises BadZipFile for a file that cannot be read
 
 
