@@ -7,6 +7,7 @@ _OF_FILES = (
     None, errno.EACCES, errno.EINVAL, errno.EISDIR, errno.ELOOP, errno.ENAMETOOLONG, errno.ENODEV, errno.ENOENT,
     errno.ENOTDIR, errno.ENXIO, errno.EILSEQ, errno.EOPNOTSUPP, errno.EPERM,
 )  # fmt: skip
+_ADVICE = "a fault of this machine's disk or network: try again"
 
 
 class GraderError(Exception):
@@ -32,12 +33,17 @@ class FileError(InputError):
 class MachineError(GraderError):
     """A fault of the machine while a submission is read, as of its disk: it says nothing about the submission."""
 
+    @staticmethod
+    def is_cause(error: BaseException) -> bool:
+        """Return whether an error is a fault of the machine, and not of a file."""
+        return isinstance(error, OSError) and error.errno not in _OF_FILES
+
     @classmethod
     def check(cls, error: BaseException | None, shown: str) -> None:
         """Raise MachineError for the error of a file, or of an archive, if the file is not the cause."""
         while error is not None:
-            if isinstance(error, OSError) and error.errno not in _OF_FILES:
-                raise cls(f"cannot read {shown}: {error.strerror}") from None
+            if isinstance(error, OSError) and cls.is_cause(error):
+                raise cls(f"cannot read {shown}: {error.strerror} ({_ADVICE})") from None
             error = error.__context__  # zipfile raises BadZipFile for a file that cannot be read
 
 

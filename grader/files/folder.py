@@ -1,5 +1,6 @@
 """A folder as a file tree: nothing outside of it is read, whatever its symlinks point to."""
 
+import errno
 import os
 import stat
 from contextlib import suppress
@@ -118,7 +119,8 @@ class _Walk:
         except OSError as error:
             if not where:
                 raise read_error(error, self._shown) from None
-            MachineError.check(error, printable_path(where))
+            if error.errno != errno.ENOTCONN:  # a mount of something else, which has ended
+                MachineError.check(error, printable_path(where))
             self._ignore(printable_path(where), f"is a folder that cannot be opened: {error.strerror}")
             return []
 

@@ -15,7 +15,7 @@ from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.run.pool import WorkerError, processors
 from grader.classroom.run.progress import Progress
 from grader.classroom.run.queue import Queue
-from grader.errors import InputError, RubricError
+from grader.errors import InputError, MachineError, RubricError
 from grader.grading.graded_submission import Grade, GradedSubmission
 from grader.grading.report import Report, Result
 from grader.report.formats import Format, render
@@ -128,7 +128,7 @@ def _give_up(named: tuple[str, str], error: Exception) -> tuple[str, str]:
     if isinstance(error, InputError | RubricError):
         raise error
     fault = f"the grader itself failed: {type(error).__name__}: {error}"
-    return named[0], str(error) if isinstance(error, WorkerError) else fault
+    return named[0], str(error) if isinstance(error, WorkerError | MachineError) else fault
 
 
 def _write_some(run: ReportRun, named: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from grader.errors import InputError, OutOfTime
+from grader.errors import InputError, MachineError, OutOfTime
 from grader.files.names import ROBOT_ENDINGS
 from grader.grading.hints.hinting import Fix, fixed, hinted
 from grader.grading.levels import LEVELS, HintLevel
@@ -41,7 +41,8 @@ def add_hints(
     try:
         found = hinted(report, submission, level)
     except (Exception, OutOfTime) as error:  # noqa: BLE001  a fault of the search must not cost the report
-        warn(f"no hints: the grader itself failed ({type(error).__name__}); please report it")
+        own = f"the grader itself failed ({type(error).__name__}); please report it"
+        warn(f"no hints: {error if isinstance(error, MachineError) else own}")
         return report, fix._replace(why_nothing="the search for edits failed")
     if found.faults:
         warn(f"some hints are missing: the grader itself failed ({found.faults[0]}); please report it")

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from rich.console import Console
 from rich.text import Text
 
-from grader.errors import GraderError, InputError, RubricError
+from grader.errors import GraderError, InputError, MachineError, RubricError
 from grader.files.folder import is_looked_at
 from grader.grading.report import Report
 from grader.grading.rubric import find_rubric, shipped_rubrics
@@ -54,7 +54,7 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
         for has_changed in changes:
             try:
                 result = grade_submission(request, terminal.warn, terminal.show_file)
-            except (InputError, RubricError) as error:
+            except (InputError, MachineError, RubricError) as error:
                 code = ExitCode.NOT_GRADED
                 if has_changed or str(error) != last_error:
                     _show_error(request.path, error, terminal.warn)

@@ -3,6 +3,7 @@
 None is written through a symlink of a submission, and none over the gradebook.
 """
 
+import errno
 import os
 import stat
 import sys
@@ -102,7 +103,7 @@ def _replace(target: Path, data: bytes, mode: int | None) -> None:
         with os.fdopen(os.open(temporary, flags, 0o666), "wb") as file:
             file.write(data)
             file.flush()
-            os.fsync(file.fileno())  # else a file may be empty under its new name after a power failure
+            _sync(file.fileno())
         if target.exists():
             mode = stat.S_IMODE(target.stat().st_mode)
         if mode is not None:
@@ -112,6 +113,15 @@ def _replace(target: Path, data: bytes, mode: int | None) -> None:
         with suppress(OSError):
             temporary.unlink(missing_ok=True)
         raise
+
+
+def _sync(handle: int) -> None:
+    """Write a file to the disk: else it may be empty under its new name after a power failure."""
+    try:
+        os.fsync(handle)
+    except OSError as error:
+        if error.errno not in (errno.EINVAL, errno.ENOTSUP):  # some file systems, such as those of FUSE, cannot
+            raise
 
 
 def refuse_symlinks(path: Path, submissions: Sequence[Path | str] = ()) -> None:

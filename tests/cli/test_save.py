@@ -1,5 +1,6 @@
 """grader grade --save: any number of reports from one run, each written completely or not at all."""
 
+import errno
 import os
 import re
 import shutil
@@ -196,3 +197,14 @@ def test_a_device_is_written_to(tmp_path: Path) -> None:
     done = saved("json=/dev/full")
     assert (done.returncode, done.stdout) == (2, b"")
     assert b"cannot write /dev/full: No space left on device" in done.stderr
+
+
+def test_a_file_system_that_cannot_sync(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The file is written all the same."""
+
+    def refused(_: int) -> None:
+        raise OSError(errno.EINVAL, "Invalid argument")
+
+    monkeypatch.setattr(os, "fsync", refused)
+    save(tmp_path / "report", "text")
+    assert (tmp_path / "report").read_text() == "text"
