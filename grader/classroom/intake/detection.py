@@ -15,7 +15,7 @@ from grader.classroom.intake.layouts.folders import FolderSubmissions
 from grader.classroom.intake.layouts.layout import ClassFolder, IgnoredFiles, Submissions
 from grader.classroom.intake.listing import Children, ClassListing, FolderListing, ZipListing
 from grader.classroom.intake.names import ending_of
-from grader.errors import InputError, MachineError
+from grader.errors import InputError
 from grader.files.names import ROBOT_ENDINGS
 from grader.files.opening import archive_kind
 from grader.files.reading import not_there, read_start
@@ -104,7 +104,7 @@ def find_download(path: Path, rubric_id: str) -> Download | None:
             return None
         layout = layout_of(folder)
         students = nbgrader.count_students(folder) if layout == "nbgrader" else len(LAYOUTS[layout](folder))
-    except (InputError, MachineError, OSError, ValueError):
+    except (InputError, OSError, ValueError):
         return None
     is_class = students > 1 and (layout != "canvas" or canvas.count_certain(folder.children) > 1)
     return Download(layout, students) if is_class else None

@@ -49,10 +49,9 @@ class FolderListing:
                     if not is_litter(entry.name):
                         _add(entry, found)
         except OSError as error:
+            refused = read_error(error, printable_path(folder or self._top))
             if not folder:
-                raise read_error(error, printable_path(self._top)) from None
-            if MachineError.is_cause(error):
-                found.refused.append(("", f"cannot be read: {error.strerror}"))  # the worker meets the error again
+                raise refused from None
         return found
 
     def first(self, folder: str) -> str | None:
@@ -61,7 +60,8 @@ class FolderListing:
             with os.scandir(f"{self._top}/{folder}") as entries:
                 return next((entry.name for entry in entries if not is_litter(entry.name)), None)
         except OSError as error:
-            return folder if MachineError.is_cause(error) else None  # it may not be empty
+            MachineError.check(error, printable_path(folder))
+            return None
 
     def starts(self, paths: Iterable[str], count: int) -> dict[str, bytes]:
         """Return the first bytes of those files that can be read and are not symlinks."""
@@ -83,10 +83,8 @@ def _add(entry: "os.DirEntry[str]", found: Children) -> None:
         else:
             found.refused.append((entry.name, "is not a regular file"))
     except OSError as error:
-        if MachineError.is_cause(error):
-            found.folders.append(entry.name)  # the worker meets the error again
-        else:
-            found.refused.append((entry.name, f"cannot be read: {error.strerror}"))
+        MachineError.check(error, printable_path(entry.name))
+        found.refused.append((entry.name, f"cannot be read: {error.strerror}"))
 
 
 class ZipListing:

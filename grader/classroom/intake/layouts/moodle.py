@@ -96,6 +96,5 @@ def _files_below(listing: ClassListing, top: str) -> list[str]:
         folder = folders.pop()
         children = listing.children(folder, _MAX_FILES + 1)
         found += [f"{folder}/{name}" for name in children.files]
-        found += [folder for name, _ in children.refused if not name]  # a fault of the machine: the worker meets it
         folders += [f"{folder}/{name}" for name in children.folders]
     return sorted(found)
