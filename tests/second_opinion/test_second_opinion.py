@@ -1,6 +1,7 @@
 """A checker that shares no code with the grader decides the geometric criteria of the shipped rubrics in the same way."""
 
 import ast
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,7 @@ from grader.submission.editing import content
 from grader.submission.urdf import Read
 from tests.examples import spread
 from tests.samples import SAMPLES
-from tests.second_opinion.compare import compared, compared_mutants, compared_seeds, summary
+from tests.second_opinion.compare import Comparison, compared, compared_mutants, compared_seeds, summary
 from tests.second_opinion.opinion import Rubric
 
 CHECKER = (
@@ -40,6 +41,14 @@ LIBRARIES = {
 PART = 120
 
 
+def assert_alike(comparisons: Iterable[Comparison], least: int) -> None:
+    """Assert that nothing differs, and that at least so many criteria are compared."""
+    found = list(comparisons)
+    lines, different = summary(found)
+    assert different == 0, "\n".join(lines)
+    assert sum(one.counts["same value"] + one.counts["same status"] for one in found) >= least, lines[0]
+
+
 def test_the_checker_shares_no_code_with_the_grader() -> None:
     """It imports numpy, the standard library and itself."""
     for name in CHECKER:
@@ -58,8 +67,7 @@ def test_most_criteria_have_a_second_opinion() -> None:
 @pytest.mark.parametrize("part", spread(range(40), 1))
 def test_random_robots(part: int) -> None:
     """Status, carried points and measured values of random robots are the same."""
-    lines, different = summary(compared_seeds(range(part * PART, (part + 1) * PART)))
-    assert different == 0, "\n".join(lines)
+    assert_alike(compared_seeds(range(part * PART, (part + 1) * PART)), 3_000)
 
 
 @pytest.mark.parametrize(
@@ -67,8 +75,7 @@ def test_random_robots(part: int) -> None:
 )
 def test_all_mutants(rubric: str) -> None:
     """All mutants of the reference that `grader rubric test` grades get the same results."""
-    lines, different = summary(compared_mutants(rubric))
-    assert different == 0, "\n".join(lines)
+    assert_alike(compared_mutants(rubric), 500)
 
 
 @pytest.mark.slow
@@ -77,10 +84,9 @@ def test_all_samples() -> None:
     found = []
     for name, sample in SAMPLES.items():
         urdf = sample.open().urdf
-        if isinstance(urdf, Read) and not urdf.is_expanded and sample.expected.rubric != "sensors":
+        if isinstance(urdf, Read) and not urdf.is_expanded:
             text = content(sample.open(), urdf.path)
             assert text is not None
             found.append(compared(name, sample.expected.rubric, text, sample.grade().results))
-    lines, different = summary(found)
-    assert different == 0, "\n".join(lines)
+    assert_alike(found, 3_000)
     assert len(found) > 150
