@@ -24,7 +24,7 @@ from tests.second_opinion.robots import random_robot
 from tests.xacro import oracle
 from tests.xacro.documents.document import Document
 
-MAX_SHOWN = 10
+MAX_SHOWN = 100
 _SAME = 1e-9
 # The grader measures an overlap in steps of a tenth of a millimetre, and none that is within the tolerance.
 _LESS_EXACT = {"clear_of": 1e-4}

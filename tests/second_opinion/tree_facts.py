@@ -21,10 +21,12 @@ def joints_named(posed: Posed, parent: str, joints: Mapping[str, str]) -> Fact:
     for name, link in joints.items():
         if link not in posed.robot.links:
             return False, None
-        way = posed.way_up(link)
-        uppers = [joint.parent for joint in way]
-        way = way[: uppers.index(parent) + 1] if parent in uppers else way[:1]
-        joints_of_link = way or [joint for joint in posed.robot.named if link in (joint.parent, joint.child)]
+        up, other = posed.way_up(link), posed.way_up(parent) if parent in posed.robot.links else []
+        tops = [way[-1].parent if way else start for way, start in ((up, link), (other, parent))]
+        between = [joint for joint in (*up, *other) if (joint in up) != (joint in other)] if tops[0] == tops[1] else []
+        joints_of_link = (
+            [*up[:1], *between] if up else [joint for joint in posed.robot.named if link in (joint.parent, joint.child)]
+        )
         if name not in [joint.name for joint in joints_of_link]:
             return False, None
     return True, None
