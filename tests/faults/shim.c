@@ -133,10 +133,11 @@ CALL(SEND, ssize_t, sendmsg, (int file, const struct msghdr *message, int flags)
 /* A vforked child must not return from here, so it is forked. */
 pid_t vfork(void) { return fork(); }
 
-/* No messages to workers: those to Python's resource tracker, and the numbers of processes that its fork server sends.
+/* No messages to workers: those to Python's resource tracker, the numbers of processes that its fork server
+ * sends, and the signals that it sends to itself (one byte).
  * CPython waits forever if one is lost while the receiver lives. */
 static int is_of_python(const char *data, size_t size) {
-    return size == 8 || (size > 6 && (!memcmp(data, "PROBE:", 6) || memmem(data, size, "REGISTER:", 9)));
+    return size == 1 || size == 8 || (size > 6 && (!memcmp(data, "PROBE:", 6) || memmem(data, size, "REGISTER:", 9)));
 }
 
 ssize_t write(int file, const void *data, size_t size) {
