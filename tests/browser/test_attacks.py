@@ -13,7 +13,7 @@ from tests.report.attacks import ATTACKS, AttackedClass, make_attacked_class
 from tests.review_server import running
 
 pytestmark = pytest.mark.exhaustive
-# Opens what is folded, and looks at each link and group; then returns what no page of ours has.
+# Opens what is folded, and looks at each link and group; then returns what no page should have.
 LOOK = """
 for (const one of document.querySelectorAll('details')) one.open = true;
 for (const one of document.querySelectorAll('#links option, #find')) {
@@ -43,7 +43,7 @@ def attacked(tmp_path_factory: pytest.TempPathFactory) -> AttackedClass:
 
 @pytest.fixture(params=["chromium", "firefox"])
 def visit(request: pytest.FixtureRequest) -> Iterator[Visit]:
-    """Yield a function that opens an address and returns what no page of ours has; at the end, the console is empty."""
+    """Yield a function that opens an address and returns what no page should have; at the end, the console is empty."""
     if request.param == "chromium":
         opened: OpenPage = request.getfixturevalue("open_page")("about:blank")
 
@@ -64,7 +64,7 @@ def visit(request: pytest.FixtureRequest) -> Iterator[Visit]:
 
 
 def test_the_look_finds_what_runs(visit: Visit, tmp_path: Path) -> None:
-    """The test can fail: it finds each kind of element and attribute that no page of ours has."""
+    """The test can fail: it finds each kind of element and attribute that no page should have."""
     page = tmp_path / "page.html"
     page.write_text(
         "<!DOCTYPE html><meta charset=utf-8><title>run</title><iframe></iframe><b onclick=''></b><a href='javascript:x'></a><p style=''></p>"

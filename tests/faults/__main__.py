@@ -68,7 +68,7 @@ def _run(bench: Bench, scenario: Scenario, kinds: Sequence[str], given: argparse
     findings: Counter[str] = Counter()
     began = time.monotonic()
     for kind in kinds:
-        for number in _numbers(whole.counts[kind], given.sample) if _concerns(scenario, kind) else ():
+        for number in _numbers(whole.counts[kind], given.sample) if _concerns(scenario, kind, given.lasting) else ():
             error = ERRORS[kind][number % len(ERRORS[kind])]
             done[kind] += 1
             bench.reset()
@@ -83,8 +83,9 @@ def _run(bench: Bench, scenario: Scenario, kinds: Sequence[str], given: argparse
     return done, findings.total()
 
 
-def _concerns(scenario: Scenario, kind: str) -> bool:
-    return (kind in scenarios.IN_PROCESSES) == scenario.is_process
+def _concerns(scenario: Scenario, kind: str, is_lasting: bool) -> bool:
+    is_of_processes = kind in scenarios.IN_PROCESSES  # where none can be started, a test cannot start one either
+    return is_of_processes == scenario.is_process and not (is_of_processes and is_lasting)
 
 
 def _numbers(count: int, sample: int) -> Iterator[int]:
