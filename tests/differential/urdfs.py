@@ -53,7 +53,7 @@ def seeds() -> tuple[bytes, ...]:
 
 
 def mutant(seed: int) -> bytes:
-    """Return the text of a seed: one of ours with one to four changes."""
+    """Return the text of a seed: a sample with one to four changes."""
     random = Random(seed)
     text = random.choice(seeds())
     for _ in range(random.choice((1, 1, 1, 1, 1, 2, 2, 3, 4))):
