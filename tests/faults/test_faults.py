@@ -51,7 +51,7 @@ def test_a_failed_call_of_each_kind() -> None:
 
 @needs_shim
 @pytest.mark.exhaustive
-@pytest.mark.parametrize("arguments", [("--sample", "3"), ("--sample", "2", "--lasting")], ids=["once", "lasting"])
+@pytest.mark.parametrize("arguments", [("--sample", "1"), ("--sample", "1", "--lasting")], ids=["once", "lasting"])
 def test_failed_calls_of_every_command(arguments: tuple[str, ...]) -> None:
     """The same for all commands, and for faults that stay, as of a full disk."""
     assert found("tests.faults", *arguments) == ""
