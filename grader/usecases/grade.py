@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -42,7 +42,7 @@ class GradeRequest:
     saves: Saves
     fail_under: str | None
     max_size: int
-    answers: bool = False
+    answers: Path | None = None  # the file with the model answers, which the report then shows
     arguments: tuple[str, ...] = ()  # of xacro, as NAME=VALUE
     verbose: bool = False
     hints: HintLevel | None = None  # the most that hints tell; None for what the rubric allows
@@ -81,14 +81,14 @@ class GradeRun(NamedTuple):
 
 def grade_and_save(request: GradeRequest, warn: Warn, show_file: ShowFile) -> GradeRun:
     """Grade a submission and save its reports. Raises GraderError."""
-    modes = remove_reports(request.saves, request.rubric, request.path)
+    modes = remove_reports(request.saves, files_of(request.rubric, request.answers), request.path)
     run = grade_submission(request, warn, show_file)
     if request.fix is None or run.fix is None:
         save_reports(request, run, modes)
         return run
     from grader.usecases.hints import files_to_fix, write_fix  # late: few ask for it
 
-    others = [*files_of(request.rubric), *(file for _, file in request.saves)]
+    others = [*files_of(request.rubric, request.answers), *(file for _, file in request.saves)]
     files = files_to_fix(request.fix, request.path, run.report, run.fix, run.besides, others)
     save_reports(request, run, modes)
     warn(write_fix(request.fix, request.path, run.report, run.fix, files))
@@ -112,7 +112,7 @@ def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> 
     from grader.submission.opening import open_submission
     from grader.submission.submission import Opening
 
-    rubric = requested_rubric(request, warn)
+    rubric = requested_rubric(request)
     if not request.path.lower().endswith(ROBOT_ENDINGS):
         from grader.usecases.several_students import refuse_class  # late: most submissions are one URDF
 
@@ -141,7 +141,7 @@ def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> 
     return GradeRun(report, base_of(request.path, folder), exit_code(report, threshold), fix, besides)
 
 
-def remove_reports(saves: Saves, rubric: str, *paths: str) -> dict[Path, int]:
+def remove_reports(saves: Saves, rubric: Sequence[Path], *paths: str) -> dict[Path, int]:
     """Remove the files that `--save` names and return their permissions.
 
     They may be of an earlier run, or forged by a student: if this run is refused, they must not be mistaken for its
@@ -154,7 +154,7 @@ def remove_reports(saves: Saves, rubric: str, *paths: str) -> dict[Path, int]:
     refusals: list[InputError] = []
     modes: dict[Path, int | None] = {}
     # os.path.isdir is False for a name that is too long, for which Path.is_dir raises before Python 3.14.
-    inputs = [*files_of(rubric), *(Path(path) for path in paths if not os.path.isdir(path))]  # noqa: PTH112
+    inputs = [*rubric, *(Path(path) for path in paths if not os.path.isdir(path))]  # noqa: PTH112
     for _, file in saves:
         try:
             refuse_symlinks(file, paths)
@@ -180,14 +180,14 @@ def save_reports(request: GradeRequest, run: GradeRun, modes: Mapping[Path, int]
         save(file, text, (request.path,), modes.get(file))
 
 
-def requested_rubric(request: GradeRequest, warn: Warn) -> "Rubric":
+def requested_rubric(request: GradeRequest) -> "Rubric":
     """Return the rubric. Raises GraderError if it is not the expected one or lacks a part that is named."""
     expected = request.expected_rubric
     if expected is not None and not re.fullmatch(_SHA256, expected):
         raise GraderError(
             f"--expect-rubric takes the 64 digits that `grader rubric show` prints as sha256, not {expected!r}"
         )
-    rubric = load(request.rubric, warn, answers=request.answers)
+    rubric = load(request.rubric, request.answers)
     if expected is not None and expected.lower() != rubric.sha256:
         raise InputError(
             f"the rubric {rubric.id} is not the expected one: its sha256 is {rubric.sha256}, not {expected.lower()}"
