@@ -128,12 +128,12 @@ def find_rubric(name: str) -> Path:
     raise RubricError((f"there is no rubric {name!r}{guess} {_LIST}",))
 
 
-def load_rubric(name: str) -> Rubric:
+def load_rubric(name: str | Path) -> Rubric:
     """Load a rubric by its id or path, without model answers (see `grader.grading.answers`).
 
     Raises RubricError with one line for each mistake in it, InputError if it cannot be read.
     """
-    path = find_rubric(name)
+    path = find_rubric(str(name))
     return read_rubric(read_capped(path, advice=""), path)
 
 

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from grader.grading.report import Report
     from grader.grading.rubric import Rubric
     from grader.source import Base
+    from grader.submission.submission import Opening, Submission
 
 _KEPT = (*ROBOT_ENDINGS, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # files that a report may not remove first
 _SHA256 = r"[0-9a-fA-F]{64}"
@@ -109,24 +110,11 @@ def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> 
     for kind in (request.format, *(kind for kind, _ in request.saves)):
         inputs_of(kind)  # as well
     from grader.grading.grade import grade
-    from grader.submission.opening import open_submission
     from grader.submission.submission import Opening
 
     rubric = requested_rubric(request)
-    if not request.path.lower().endswith(ROBOT_ENDINGS):
-        from grader.usecases.several_students import refuse_class  # late: most submissions are one URDF
-
-        refuse_class(request.path, rubric, request.choice)
-    submission = open_submission(
-        request.path,
-        rubric.lab,
-        Opening(request.max_size, _arguments(request), show_file=show_file),
-        with_neighbours=True,
-    )
-    if submission.students:
-        from grader.usecases.several_students import refusal  # late: few submissions are several
-
-        raise refusal(request.path, submission.students, rubric, request.choice)
+    opening = Opening(request.max_size, _arguments(request), show_file=show_file)
+    submission = open_one(request.path, rubric, opening, request.choice)
     report = grade(rubric, submission, request.parts)
     for result in report.results:
         if result.traceback:
@@ -139,6 +127,23 @@ def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> 
     folder = folder_of(request.path, submission.path) if submission.is_single else None
     besides = tuple(folder / path for path in submission.besides) if folder is not None else ()
     return GradeRun(report, base_of(request.path, folder), exit_code(report, threshold), fix, besides)
+
+
+def open_one(path: str, rubric: "Rubric", opening: "Opening | None" = None, options: str = "") -> "Submission":
+    """Return the submission of one student; raises InputError for a class, with the command that has these options."""
+    from grader.submission.opening import open_submission
+    from grader.submission.submission import DEFAULTS
+
+    if not path.lower().endswith(ROBOT_ENDINGS):
+        from grader.usecases.several_students import refuse_class  # late: most submissions are one URDF
+
+        refuse_class(path, rubric, options)
+    submission = open_submission(path, rubric.lab, opening or DEFAULTS, with_neighbours=True)
+    if submission.students:
+        from grader.usecases.several_students import refusal  # late: few submissions are several
+
+        raise refusal(path, submission.students, rubric, options)
+    return submission
 
 
 def remove_reports(saves: Saves, rubric: Sequence[Path], *paths: str) -> dict[Path, int]:
