@@ -1,6 +1,7 @@
 """Each problem code and each check has a wrong and a right example, in which the grader finds what they show."""
 
 import re
+import runpy
 import tomllib
 from pathlib import Path, PurePath
 from textwrap import indent
@@ -162,3 +163,14 @@ def test_an_explanation_shows_the_example() -> None:
             assert f"\n{title}:\n\n{indent(block, '    ')}\n" in text
     assert "Wrong:" not in explanation("lidar-frame", rubric)
     assert "`grader explain frame_at`" in explanation("lidar-frame", rubric)
+
+
+def test_the_pages_of_a_site_show_every_example() -> None:
+    """docs/make.py makes a section of each code and check, with its example in code blocks."""
+    pages = runpy.run_path(str(ROOT / "docs/make.py"))["catalogue_pages"]()
+    for page, names, heading in (("problems.md", CODES, "## {}"), ("checks.md", CHECKS, "### `{}`")):
+        for name in names:
+            place = pages[page].index(f"\n{heading.format(name)}\n")
+            for title, _, text in example_blocks(name):
+                place = pages[page].find(f"\n{text}\n```\n", place)
+                assert place > 0, (name, title)
