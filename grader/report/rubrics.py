@@ -97,10 +97,7 @@ def explanation(name: str, rubric: Rubric) -> str:
 
 
 def example_blocks(name: str) -> Iterator[tuple[str, str, str]]:
-    """Yield title, file name and text of the row of a rubric with a check, of what is wrong, and of what is right.
-
-    Nothing for a check of another package.
-    """
+    """Yield title, file name and text of a check's row in a rubric, of what is wrong and of what is right, if known."""
     family = name.rstrip(digits).lower() if name.isupper() else "checks"
     path = shipped_folder("docs", "examples") / f"{family}.toml"
     examples = read_toml(path.read_bytes(), path)[1] if path.is_file() else {}
@@ -167,12 +164,9 @@ def toml_text(value: object) -> str:
         case list() | tuple():
             return f"[{', '.join(map(toml_text, value))}]"
         case dict():
-            return "{ " + ", ".join(f"{_key(key)} = {toml_text(item)}" for key, item in value.items()) + " }"
+            items = (f"{key if key.isidentifier() else toml_text(key)} = {toml_text(it)}" for key, it in value.items())
+            return f"{{ {', '.join(items)} }}"
     return "not checked" if value is None else str(value)
-
-
-def _key(key: str) -> str:
-    return key if key.isascii() and key.isidentifier() else toml_text(key)
 
 
 def _fill(text: str, width: int = _WIDTH) -> str:

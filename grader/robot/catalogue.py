@@ -12,9 +12,7 @@ RAW_XACRO = warns(
     "ROS 2's URDF reader does not support xacro: it ignores <xacro:...> tags, and ${...} is not a number. Expand the "
     "file first: `ros2 run xacro xacro my_robot.urdf.xacro > my_robot.urdf`.",
 )
-ROBOT_WITHOUT_NAME = rejects(
-    "URDF020", "A robot without a name", 'ROS 2 requires <robot name="...">; the name may be empty.'
-)
+ROBOT_WITHOUT_NAME = rejects("URDF020", "A robot without a name", "ROS 2 requires a name, which may be empty.")
 BAD_VERSION = rejects(
     "URDF021",
     "An unsupported URDF version",
@@ -26,18 +24,15 @@ LINK_WITHOUT_NAME = drops(
     "A link without a name",
     "ROS 2 logs an error and keeps an empty link named '', without its visuals. Two of them are duplicates.",
 )
-DUPLICATE_LINK = rejects(
-    "URDF031", "Two links with the same name", "The usual cause is copy and paste: rename the copy."
-)
-DUPLICATE_JOINT = rejects(
-    "URDF032", "Two joints with the same name", "The usual cause is copy and paste: rename the copy."
-)
+_COPIED = "The usual cause is copy and paste: rename the copy."
+DUPLICATE_LINK = rejects("URDF031", "Two links with the same name", _COPIED)
+DUPLICATE_JOINT = rejects("URDF032", "Two joints with the same name", _COPIED)
 DUPLICATE_MATERIAL = rejects(
     "URDF033",
     "Two materials with the same name directly under <robot>",
     "A material name may be defined under <robot> only once. Materials without a name count as having the same name.",
 )
-JOINT_WITHOUT_NAME = rejects("URDF034", "A joint without a name", 'ROS 2 requires <joint name="..." type="...">.')
+JOINT_WITHOUT_NAME = rejects("URDF034", "A joint without a name", "ROS 2 requires a name.")
 BAD_INERTIAL = drops(
     "URDF040",
     "An invalid <inertial>",
@@ -80,8 +75,7 @@ BAD_COLOUR = drops(
 COLOUR_COUNT = warns(
     "URDF053",
     "A colour without exactly four numbers",
-    "rgba takes four numbers: red, green, blue, opacity. With another count ROS 2 silently shows black. Add the "
-    "opacity: 1.",
+    "rgba takes four numbers: red, green, blue, opacity. With another count ROS 2 silently shows black.",
 )
 COLOURLESS_MATERIAL = drops(
     "URDF054",
@@ -112,7 +106,7 @@ LIMIT_MISSING = rejects(
 BAD_LIMIT = rejects(
     "URDF065",
     "An incomplete or invalid joint limit",
-    "Every <limit>, even of a fixed or continuous joint, needs effort and velocity, and only plain numbers.",
+    "Every <limit>, of any joint, needs effort and velocity, as numbers.",
 )
 BAD_DYNAMICS = rejects(
     "URDF066", "An empty or invalid <dynamics>", "<dynamics> needs damping, friction or both, as plain numbers."
@@ -120,12 +114,10 @@ BAD_DYNAMICS = rejects(
 BAD_MIMIC = rejects(
     "URDF067",
     "A <mimic> without a joint, or with an invalid number",
-    "<mimic> needs the name of a joint; multiplier and offset are plain numbers.",
+    "A joint is required; multiplier and offset are numbers.",
 )
 BAD_SAFETY = rejects(
-    "URDF068",
-    "An incomplete or invalid <safety_controller>",
-    "<safety_controller> needs k_velocity; all its values are plain numbers.",
+    "URDF068", "An incomplete or invalid <safety_controller>", "k_velocity is required; all values are plain numbers."
 )
 BAD_CALIBRATION = rejects("URDF069", "An invalid <calibration>", "rising and falling are plain numbers.")
 NO_PARENT_OR_CHILD = rejects(
