@@ -109,7 +109,10 @@ def is_there(link: str) -> bool:
         name = re.sub(r"(\.html)?(#.*)?$", "", link.removeprefix(SITE))
         return (ROOT / "docs" / f"{name or 'index'}.md").exists()
     found = re.match(rf"(?:{re.escape(REPOSITORY)}/(?:blob|tree)|{re.escape(RAW)})/main/([^#]+)", link)
-    return (ROOT / found[1]).exists() if found else link in URLS.values() or not link.startswith((REPOSITORY, RAW))
+    if found:
+        return (ROOT / found[1]).exists()
+    own = re.fullmatch(rf"{re.escape(REPOSITORY)}/(security/(policy|advisories/new)|releases/tag/v[0-9.]+)", link)
+    return own is not None or link in URLS.values() or not link.startswith((REPOSITORY, RAW))
 
 
 def test_addresses_of_the_project_exist() -> None:
