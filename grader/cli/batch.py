@@ -88,7 +88,7 @@ def batch(
 
       Teams: a column group in the roster.
 
-      See https://urdf-grader.github.io/urdf-grader/troubleshooting.html for more.
+      See https://urdf-grader.github.io/urdf-grader/grade-a-class.html for more.
     """
     options = locals()  # named like the fields of the request
     if cluster is None and path.exists() and not gradebook.exists():  # a class that is graded may need no workers
