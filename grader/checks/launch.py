@@ -116,7 +116,7 @@ def launch_finds_files(package: Package, *, name: str, built: bool = True) -> Ou
     if any(it.state == "missing" for it in places):
         return passed("the launch file looks for files of the package")
     found = dict.fromkeys(it.text for it in places if it.text)
-    return passed(f"a build installs {enumerated(found)}, where the launch file looks for them")
+    return passed(f"a build installs {enumerated(found)}, where the launch file looks")
 
 
 def _wrong(package: Package, wrong: Sequence[FilePlace]) -> Outcome:

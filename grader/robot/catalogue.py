@@ -56,9 +56,7 @@ FORMAT_DIRECTIVE = rejects(
     "ROS 2 prints a value that it cannot read through printf, where %n writes to memory: the program can crash.",
 )
 UNNAMED_MATERIAL = drops(
-    "URDF050",
-    "A material without a name",
-    "ROS 2 logs an error. No link can use the material, because links refer to it by its name.",
+    "URDF050", "A material without a name", "It has no effect: links refer to a material by its name."
 )
 UNDEFINED_MATERIAL = drops(
     "URDF051",
@@ -78,9 +76,7 @@ COLOUR_COUNT = warns(
     "rgba takes four numbers: red, green, blue, opacity. With another count ROS 2 silently shows black.",
 )
 COLOURLESS_MATERIAL = drops(
-    "URDF054",
-    "A material under <robot> without a colour",
-    "ROS 2 logs an error and makes it black. Add <color rgba> or <texture filename>.",
+    "URDF054", "A material under <robot> without a colour", "It becomes black. Add <color rgba> or <texture filename>."
 )
 REDEFINED_MATERIAL = warns(
     "URDF055",
@@ -108,9 +104,7 @@ BAD_LIMIT = rejects(
     "An incomplete or invalid joint limit",
     "Every <limit>, of any joint, needs effort and velocity, as numbers.",
 )
-BAD_DYNAMICS = rejects(
-    "URDF066", "An empty or invalid <dynamics>", "<dynamics> needs damping, friction or both, as plain numbers."
-)
+BAD_DYNAMICS = rejects("URDF066", "An empty or invalid <dynamics>", "It needs damping, friction or both, as numbers.")
 BAD_MIMIC = rejects(
     "URDF067",
     "A <mimic> without a joint, or with an invalid number",
@@ -157,11 +151,7 @@ UNPUBLISHED_JOINT = notes(
     "robot_state_publisher does not publish floating joints and treats planar joints as fixed: another node has to "
     "publish the transform.",
 )
-NEGATIVE_SIZE = warns(
-    "URDF078",
-    "A negative size",
-    "ROS 2 does not check sizes. How a negative size is shown depends on the program that draws it.",
-)
+NEGATIVE_SIZE = warns("URDF078", "A negative size", "ROS 2 does not check sizes: what is shown depends on the program.")
 LIMIT_IN_DEGREES = notes(
     "URDF079",
     "A joint limit that looks like degrees",

@@ -10,7 +10,7 @@ NAME = "my_robot_rviz.launch.py"
 STATES = "joint_state_publisher or joint_state_publisher_gui"
 NODES = ["robot_state_publisher", STATES, "rviz2"]
 STARTED = "the launch file starts joint_state_publisher_gui, robot_state_publisher, rviz2"
-FOUND = "a build installs share/my_robot/my_robot.urdf and share/my_robot/my_robot.rviz, where the launch file looks for them"
+FOUND = "a build installs share/my_robot/my_robot.urdf and share/my_robot/my_robot.rviz, where the launch file looks"
 URDF_PATH, RVIZ_PATH = "os.path.join(share, 'my_robot.urdf')", "os.path.join(share, 'my_robot.rviz')"
 READ = """    with open(os.path.join(share, 'my_robot.urdf')) as file:
         robot_description = file.read()
@@ -378,7 +378,7 @@ def test_xml_and_yaml_that_cannot_be_read(submitted: Submitted, path: str, messa
 # --- What it names ----------------------------------------------------------------------------------------------------
 
 
-OF_URDF = "a build installs share/my_robot/my_robot.urdf, where the launch file looks for them"
+OF_URDF = "a build installs share/my_robot/my_robot.urdf, where the launch file looks"
 ANOTHER_NAME = REFERENCE.replacing("my_robot/package.xml", ">my_robot<", ">robot_lab<")
 
 
