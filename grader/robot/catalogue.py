@@ -102,13 +102,13 @@ LIMIT_MISSING = rejects(
 BAD_LIMIT = rejects(
     "URDF065",
     "An incomplete or invalid joint limit",
-    "Every <limit>, of any joint, needs effort and velocity, as numbers.",
+    "Every <limit>, even of a fixed or continuous joint, needs effort and velocity, and only plain numbers.",
 )
 BAD_DYNAMICS = rejects("URDF066", "An empty or invalid <dynamics>", "It needs damping, friction or both, as numbers.")
 BAD_MIMIC = rejects(
     "URDF067",
     "A <mimic> without a joint, or with an invalid number",
-    "A joint is required; multiplier and offset are numbers.",
+    "<mimic> needs the name of a joint; multiplier and offset are plain numbers.",
 )
 BAD_SAFETY = rejects(
     "URDF068", "An incomplete or invalid <safety_controller>", "k_velocity is required; all values are plain numbers."
