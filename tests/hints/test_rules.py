@@ -1,11 +1,16 @@
 """What a hint may say: the cause first, alone if possible, never to please a tolerance, and nothing that makes the robot worse."""
 
+import re
+from dataclasses import replace
+
 import pytest
 
+from grader.grading.grade import grade
+from grader.grading.hints.hinting import hinted
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from tests.hints.trials import BASES, Hints, hints_for
-from tests.samples import SAMPLES
+from tests.samples import LAB6, SAMPLES
 
 REFERENCE = BASES["reference"].text
 MACROS = BASES["equivalent-xacro-macros"]
@@ -129,3 +134,14 @@ def test_exchanged_expressions_are_exchanged() -> None:
     hints = hints_for(base.changed(base.text.replace(right, wrong)))
     assert hints.is_full
     assert edits_of(hints) == [[(f'xyz="{wrong}"', f'xyz="{right}"')]]
+
+
+def test_a_link_of_the_reference_is_not_removed() -> None:
+    """A link without a joint gets that of the reference, though the URDF would load without the link, too."""
+    joint = re.search(r'  <joint name="base_lidar_joint".*?</joint>\n', REFERENCE, re.DOTALL)
+    assert joint is not None
+    submission = changed((joint[0], ""))
+    report = grade(replace(LAB6, criteria=LAB6.criteria[:1]), submission)
+    hint = hinted(report, submission, "edit").report.results[0].hint
+    assert hint is not None
+    assert hint.message.startswith('Insert `<joint name="base_lidar_joint" type="fixed">')

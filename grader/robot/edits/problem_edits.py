@@ -62,7 +62,7 @@ def _pieces(difference: RobotDifference, element: Element, attribute: str | None
     if element.tag in ("joint", *ENDS) or (element.tag == "link" and attribute is None):
         yield from _connections(difference, owner)
     for around in (element, *element.iterancestors()):
-        if around.tag in TAGS and around.tag not in _KEPT:
+        if around.tag in TAGS and around.tag not in _KEPT and around.get("name") not in difference.names:
             edits = difference.draft.remove(around)
             yield difference.piece(around, f"an error in <{around.tag}>", f"remove the <{around.tag}>", edits)
 
