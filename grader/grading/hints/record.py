@@ -79,4 +79,5 @@ def _hint(stored: dict[str, Any]) -> Hint:
         tuple(Edit(*edit) for edit in stored["edits"]),
         stored["action"],
         stored["shown_by"],
+        stored.get("certainty", "preferred"),  # of a version that did not store it
     )
