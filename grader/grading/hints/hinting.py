@@ -111,7 +111,8 @@ def _entry(
 def _hint(found: FoundHint, text: str, shown_by: str, *, keeps_edits: bool) -> Hint:
     first = found.edits[0]
     at = Location(first.path, first.line, first.column)
-    return Hint(text, at, found.gains, found.edits if keeps_edits else (), found.proposal.action, shown_by)
+    shown = (found.edits, found.proposal.action) if keeps_edits else ((), "")
+    return Hint(text, at, found.gains, *shown, shown_by)
 
 
 def _draft(reference: ReferenceSolution | None) -> Draft | None:
