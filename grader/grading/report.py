@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader import __version__
 from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome
+from grader.edits import Certainty
 from grader.grading.criterion import Criterion, Evidence
 from grader.grading.graded_submission import Grade, GradedSubmission
 from grader.grading.rubric import Rubric
@@ -40,9 +41,10 @@ class ManualComment(NamedTuple):
 class Hint(NamedTuple):
     """A change of the submission that was tried: with it the criteria in `gains` pass, and nothing that passed fails.
 
-    `message` says it in a sentence, and `at` is where it is. `edits` is empty where the rubric does not want to show
-    them. `action` is the change without names and lines of the submission: "negate the roll of the joint of
-    'right_wheel'". `shown_by` is the criterion that shows the hint; the others that it fixes name that one.
+    `message` says it in a sentence, and `at` is where it is. `edits` and `action` are empty where the rubric does not
+    want to show them. `action` is the change without names and lines of the submission: "negate the roll of the joint
+    of 'right_wheel'". `shown_by` is the criterion that shows the hint; the others that it fixes name that one.
+    `certainty` says whether other edits were proven.
     """
 
     message: str
@@ -51,6 +53,7 @@ class Hint(NamedTuple):
     edits: Edits = ()
     action: str = ""
     shown_by: str = ""
+    certainty: Certainty = "preferred"
 
 
 class Result(NamedTuple):

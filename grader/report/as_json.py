@@ -1,7 +1,8 @@
 """A report as JSON, schema grader/report/v1: its records, from which `grader schema report` follows."""
 
-from typing import Any
+from typing import Any, get_args
 
+from grader.edits import Certainty
 from grader.grading.report import Hint, Report, Result
 from grader.report.json_data import (
     ADJUSTMENT,
@@ -41,7 +42,16 @@ PROBLEM = Record(
         "location": _LOCATION,
     }
 )
-_HINT = Record({"message": TEXT, "edits": Many(EDIT), "gains": mapping(POINTS), "verified": (FLAG, lambda _: True)})
+_CERTAINTY = {"enum": list(get_args(Certainty))}
+_HINT = Record(
+    {
+        "message": TEXT,
+        "edits": Many(EDIT),
+        "gains": mapping(POINTS),
+        "verified": (FLAG, lambda _: True),
+        "certainty": _CERTAINTY,
+    }
+)
 KINDS: dict[str, KeyType] = {"bonus": {"const": True}, "adjustment": ADJUSTMENT}  # absent of most criteria
 ADDITIONS = Record(  # the keys that few criteria have: those of the rubric, a manual mark, a comment without points
     {

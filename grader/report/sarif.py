@@ -96,6 +96,7 @@ def _fix(hint: Hint, base: Base) -> dict[str, Any]:
             {"artifactLocation": _artifact(base.folder + path), "replacements": list(map(_replacement, edits))}
             for path, edits in changes
         ],
+        "properties": {"certainty": hint.certainty},
     }
 
 

@@ -78,6 +78,16 @@ def test_levels(level: str, says: str) -> None:
         assert ("-1.57" in text) == (level == "edit"), kind
 
 
+@pytest.mark.parametrize("level", ["place", "cause"])
+def test_a_long_hint_says_no_more_than_its_level(level: str) -> None:
+    """Where a hint needs many lines of a narrow terminal, the edit is not said in words instead."""
+    text = run(("grade", MISTAKES, "--hints", level), COLUMNS="24").stdout.decode()
+    assert "  Check " in text
+    for said in ("Negate", "Double", "--verbose shows the edits"):
+        assert said not in text
+    assert "--verbose shows the edits" in run(("grade", MISTAKES), COLUMNS="24").stdout.decode()
+
+
 def test_level_none() -> None:
     """It has no hints, and searches none."""
     assert hints(MISTAKES, "--hints", "none") == {}

@@ -1,29 +1,34 @@
 """Choose the edit that makes a failed criterion pass: a piece of the difference, a solved number, or few pieces."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from decimal import Decimal
-from itertools import islice
+from itertools import chain, islice
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.checks.registry import declared
-from grader.edits import Proposal
+from grader.edits import Certainty, Proposal
 from grader.grading.criterion import Criterion
 from grader.grading.hints.slots import slots
 from grader.grading.hints.solving import Solver
 from grader.grading.hints.state_edits import StateEdits
-from grader.grading.hints.trials import State, Trials, as_one, join
+from grader.grading.hints.trials import NoTrialsLeft, State, Trials, as_one, join
 from grader.robot.edits.conventions import conventions, other_frames
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.pieces import KNOWN, SOLVED, STRUCTURE, Piece
 from grader.source import Edits
+from grader.submission.editing import edited_files
+from grader.submission.submission import Submission
 
 if TYPE_CHECKING:
     from grader.package.package import Package
 
 _MAX_OPTIONS = 4  # edits that are proven for one criterion, to choose the best
 _MAX_FIRST = 3  # edits that make a criterion pass and others fail, which a second edit may repair
+_MAX_WRITINGS = 3  # of a change in xacro
 _WAYS = 4  # before numbers are solved for
 _MIN_WHOLE = 4  # criteria that fail where a convention of the robot is wrong
+_MAX_LOOK_STEPS = 150  # for other edits than those that were found, of one submission
 _MAX_PLACES = 3  # that a hint changes: more are no single mistake
 
 
@@ -40,6 +45,7 @@ class EditChoice:
     def __init__(self, trials: Trials, reference: Draft | None, package: "Callable[[], Package | None]") -> None:
         self._trials, self._reference, self._package = trials, reference, package
         self._options: tuple[State, StateEdits] | None = None
+        self._chosen: dict[Proposal, tuple[Proven, StateEdits, Criterion]] = {}
         self.causes: dict[str, list[str]] = {}  # what is wrong where more has to change than a hint may say
 
     def _options_of(self, state: State) -> StateEdits:
@@ -52,10 +58,10 @@ class EditChoice:
         options, name = self._options_of(state), criterion.id
         ways: Sequence[Callable[[], Iterable[Proposal]]] = (
             lambda: self._passing(options, options.relevant(criterion), name),
-            lambda: self._suggestions(options, criterion),
+            lambda: self._passing(options, self._suggested(options, criterion), name),
             lambda: self._package_edits(options, criterion),
             lambda: self._repairs(options, criterion, SOLVED),
-            lambda: self._solutions(options, criterion),
+            lambda: self._passing(options, self._solved(options, criterion), name),
             lambda: self._other_frames(options, criterion),
             lambda: self._repairs(options, criterion, STRUCTURE),
             lambda: self._together(options, criterion),
@@ -65,7 +71,45 @@ class EditChoice:
             if best is None or best.proposal.rank >= STRUCTURE:
                 with self._trials.isolated():
                     best = min(filter(None, (best, self._best(state, name, way()))), key=_order, default=None)
-        return best.proposal if best is not None else None
+        if best is None:
+            return None
+        self._chosen[best.proposal] = best, options, criterion
+        return best.proposal
+
+    def certainties(self, found: Iterable[Proposal]) -> dict[Proposal, Certainty]:
+        """Return how sure chosen edits are: looks at other places with a budget of its own, after the search."""
+        certainties: dict[Proposal, Certainty] = dict.fromkeys(found, "preferred")
+        chosen = [proposal for proposal in certainties if proposal in self._chosen]
+        for proposal in chosen:
+            self._trials.left = _MAX_LOOK_STEPS // len(chosen)
+            with suppress(NoTrialsLeft), self._trials.isolated():
+                certainties[proposal] = self._certainty(*self._chosen[proposal])
+        return certainties
+
+    def _certainty(self, chosen: Proven, options: StateEdits, criterion: Criterion) -> Certainty:
+        mine, submission = chosen.proposal, options.state.submission
+        text, has_mine, has_others = _text_after(submission, mine.edits), False, False
+        for proposal in self._all_passing(options, criterion):
+            if has_others and proposal.rank > mine.rank:
+                break
+            if proposal.places >= mine.places or _text_after(submission, proposal.edits) == text:
+                has_mine |= proposal.places == mine.places
+                continue
+            other = self._proven(options.state, proposal, criterion.id)
+            if other is not None and _order(other) <= _order(chosen):
+                return "one of several"
+            has_others |= other is not None
+        return "only" if has_mine and not has_others else "preferred"  # edits of several places are not looked through
+
+    def _all_passing(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:
+        """Yield the edits of one place with which a criterion passes, of all that are known."""
+        for piece in chain(
+            options.relevant(criterion), self._suggested(options, criterion), self._solved(options, criterion)
+        ):
+            passes = options.passing(piece)
+            if criterion.id in passes:
+                yield from islice(options.proposals(options.shrunk(piece, passes)), _MAX_WRITINGS)
+        yield from self._package_edits(options, criterion)
 
     def convention(self, state: State) -> Proposal | None:
         """Return the edit that changes a convention of the whole robot, if many criteria pass with it."""
@@ -105,34 +149,35 @@ class EditChoice:
                 break
         batch.sort(key=lambda piece: -len(options.passing(piece)))
         for piece in batch:
-            yield from islice(options.proposals(piece), 3)
+            yield from islice(options.proposals(piece), _MAX_WRITINGS)
 
     def _other_frames(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:
         if options.draft is not None and criterion.check.subject == "robot":
             yield from self._passing(options, other_frames(options.difference), criterion.id)
 
-    def _suggestions(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:
-        """Yield the edits that the check suggests itself."""
+    def _suggested(self, options: StateEdits, criterion: Criterion) -> Iterable[Piece]:
+        """Return the pieces that the check suggests itself."""
         place = criterion.check.about.suggests
-        if options.draft is not None and place:
-            make = declared(place)
-            failed = [options.with_links(it) for it in self._trials.rubric.criteria if it.id in options.lost]
-            own = options.with_links(criterion).arguments
-            others = [it.arguments for it in failed if it.arguments.get("link") == own.get("link")]
-            arguments = {key: value for given in (*others, own) for key, value in given.items()}
-            yield from self._passing(options, make(options.difference, arguments), criterion.id)
+        if options.draft is None or not place:
+            return ()
+        failed = [options.with_links(it) for it in self._trials.rubric.criteria if it.id in options.lost]
+        own = options.with_links(criterion).arguments
+        others = [it.arguments for it in failed if it.arguments.get("link") == own.get("link")]
+        arguments = {key: value for given in (*others, own) for key, value in given.items()}
+        found: Iterable[Piece] = declared(place)(options.difference, arguments)
+        return found
 
     def _package_edits(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:
         for proposal in options.of_package(criterion):
             if self._trials.passing(options.state, proposal.edits, (criterion.id,)):
                 yield proposal
 
-    def _solutions(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:
+    def _solved(self, options: StateEdits, criterion: Criterion) -> Iterable[Piece]:
         if options.draft is None or criterion.check.subject != "robot":
-            return
+            return ()
         shown, moved = options.targets(criterion)
         solver = Solver(options.quick, options.difference, criterion.id, options.state.results[criterion.id].outcome)
-        yield from self._passing(options, solver.pieces(slots(options.draft, shown, moved)), criterion.id)
+        return solver.pieces(slots(options.draft, shown, moved))
 
     def _repairs(self, options: StateEdits, criterion: Criterion, rank: int) -> Iterator[Proposal]:
         """Yield two edits up to a rank: the first makes a criterion pass and others fail, which the second repairs."""
@@ -192,6 +237,12 @@ class EditChoice:
 
 def _order(one: Proven) -> tuple[Decimal, int, int, int]:
     return -one.gain, one.proposal.rank, one.proposal.way, one.proposal.size
+
+
+def _text_after(submission: Submission, edits: Edits) -> dict[str, bytes | None]:
+    """Return the files that edits change, without white space: several edits may write the same."""
+    files = edited_files(submission, edits) or {}
+    return {path: data and b"".join(data.split()) for path, data in files.items()}
 
 
 def _compatible(pieces: Iterable[Piece], rank: int) -> list[Piece]:

@@ -54,11 +54,13 @@ def hinted(report: Report, submission: Submission, level: HintLevel, *, keep_edi
     def shown_by(found: FoundHint) -> str:
         return _entry(found, shown, results, costs)
 
+    certainties = search.certainties(found.proposal for found in shown.values())
     hints: dict[str, Hint] = {}
     for name, found in shown.items():
         with trials.isolated():
             text = message(found, level, submission, shown_by)
-            hints[name] = _hint(found, text, shown_by(found), keeps_edits=keep_edits or level == "edit")
+            hint = _hint(found, text, shown_by(found), keeps_edits=keep_edits or level == "edit")
+            hints[name] = hint._replace(certainty=certainties[found.proposal])
     causes = search.causes if level in ("cause", "edit") else {}
     with_hints = [_explain(result, hints.get(result.criterion.id), causes) for result in report.results]
     is_complete = search.is_complete or submission.is_costly
@@ -109,7 +111,8 @@ def _entry(
 def _hint(found: FoundHint, text: str, shown_by: str, *, keeps_edits: bool) -> Hint:
     first = found.edits[0]
     at = Location(first.path, first.line, first.column)
-    return Hint(text, at, found.gains, found.edits if keeps_edits else (), found.proposal.action, shown_by)
+    shown = (found.edits, found.proposal.action) if keeps_edits else ((), "")
+    return Hint(text, at, found.gains, *shown, shown_by)
 
 
 def _draft(reference: ReferenceSolution | None) -> Draft | None:

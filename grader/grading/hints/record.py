@@ -50,9 +50,10 @@ def add_stored_hints(report: Report, text: str) -> Report:
     hints: dict[str, Hint] = {}
     for stored in record["hints"]:
         hint = _hint(stored)
-        edits = tuple(_with_path(edit, main) for edit in hint.edits) if level == "edit" else ()
+        is_shown = level == "edit"
+        edits = tuple(_with_path(edit, main) for edit in hint.edits) if is_shown else ()
         at = replace(hint.at, path=hint.at.path or main)
-        hints |= dict.fromkeys(stored["criteria"], hint._replace(at=at, edits=edits))
+        hints |= dict.fromkeys(stored["criteria"], hint._replace(at=at, edits=edits, action=hint.action * is_shown))
     results = tuple(result._replace(hint=hints.get(result.criterion.id)) for result in report.results)
     return replace(report, results=results, hints_complete=record["complete"])
 
@@ -79,4 +80,5 @@ def _hint(stored: dict[str, Any]) -> Hint:
         tuple(Edit(*edit) for edit in stored["edits"]),
         stored["action"],
         stored["shown_by"],
+        stored.get("certainty", "preferred"),  # of a version that did not store it
     )

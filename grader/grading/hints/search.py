@@ -57,6 +57,7 @@ class HintSearch:
         is_small = robot is not None and 2 * len(robot.links) < len(rubric.links)
         self._is_another_robot = is_small and is_another_robot(rubric, robot)
         self.causes = self._choice.causes
+        self.certainties = self._choice.certainties
         self.found: list[FoundHint] = []
         self.final = trials.start
         self.is_complete = True  # whether all was searched that may help
