@@ -14,7 +14,7 @@ from grader.grading.hints.hinting import hinted
 from grader.grading.keys import ADJUSTMENT, CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
-from grader.report.rubrics import EVERY_KIND
+from grader.report.rubrics import EFFECTS, EVERY_KIND, example_blocks, toml_text
 from grader.report.terminal import render_terminal
 from grader.submission.opening import open_submission
 
@@ -29,6 +29,16 @@ KEYS = {
     "[adjust.CRITERION]": ADJUSTMENT,
     "[test]": TEST,
     "[[test.ignore]]": IGNORE,
+}
+LANGUAGES = {
+    ".md": "markdown",
+    ".py": "python",
+    ".rviz": "yaml",
+    ".toml": "toml",
+    ".txt": "text",
+    ".urdf": "xml",
+    ".xacro": "xml",
+    ".xml": "xml",
 }
 DOCS = Path(__file__).resolve().parent
 SAMPLE = DOCS.parent / "submissions" / "lidar-offset-in-visual" / "my_robot.urdf"
@@ -77,6 +87,41 @@ def keys() -> Iterator[str]:
         yield ""
 
 
+def catalogue_pages() -> dict[str, str]:
+    """Return the two pages of the catalogue for a site, in the long form: each problem and check with its example."""
+    return {"problems.md": filled("problems.md", long_problems()), "checks.md": filled("checks.md", long_checks())}
+
+
+def long_problems() -> Iterator[str]:
+    """Yield a section for each problem."""
+    for kind in EVERY_KIND:
+        effect = f" {EFFECTS[kind.effect]}".rstrip()
+        yield from (f"## {kind.code}", "", f"{escaped(kind.title)} ({kind.severity}).", "")
+        yield from (escaped(kind.explanation) + effect, "", *example(kind.code))
+
+
+def long_checks() -> Iterator[str]:
+    """Yield a section for each check."""
+    for check in own_checks():
+        yield from (f"### `{check.name}`", "")
+        for paragraph in check.documentation.paragraphs:
+            yield from (escaped(paragraph), "")
+        if check.parameters:
+            yield from ("| argument | meaning | type | default |", "|---|---|---|---|")
+        for name, parameter in check.parameters.items():
+            default = "required" if parameter.required else f"`{toml_text(parameter.default)}`"
+            meaning = escaped(check.documentation.arguments[name])
+            yield f"| `{name}` | {meaning} | {parameter.type.name} | {default} |"
+        yield ""
+        yield from example(check.name)
+
+
+def example(name: str) -> Iterator[str]:
+    """Yield the code blocks of the example of a problem or a check."""
+    for title, file, text in example_blocks(name):
+        yield from (f"{title}:", "", f"```{LANGUAGES[Path(file).suffix]}", text, "```", "")
+
+
 def sample_report() -> Report:
     """Return the report on a sample submission."""
     rubric = load_rubric("lab6")
@@ -102,8 +147,10 @@ def picture(report: Report) -> str:
 
 
 def escaped(text: str) -> str:
-    """Return text in which tags are not HTML and bars do not end a table cell."""
-    return re.sub(r"(`[^`]*`)|<", lambda found: found[1] or "&lt;", text).replace("|", "\\|")
+    """Return text in which tags are not HTML, asterisks are no emphasis, and bars do not end a table cell."""
+    return re.sub(r"(`[^`]*`)|([<*])", lambda found: found[1] or {"<": "&lt;", "*": r"\*"}[found[2]], text).replace(
+        "|", "\\|"
+    )
 
 
 if __name__ == "__main__":

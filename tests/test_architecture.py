@@ -25,7 +25,7 @@ LAYERS = (
     ("classroom", "bundle", "drawing"),
     ("report",),
     ("usecases",),
-    ("cli",),
+    ("cli", "api"),
     ("__main__",),
 )
 # The layers inside a package that is large enough to have its own.

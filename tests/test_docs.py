@@ -6,6 +6,7 @@ import runpy
 import tomllib
 from collections.abc import Iterator
 from inspect import signature
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -111,6 +112,17 @@ def keys(schema: Any) -> Iterator[str]:
         yield from schema.get("properties", {})
     for part in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
         yield from keys(part)
+
+
+def test_every_dependency_has_a_reason_and_a_licence() -> None:
+    """Each package in pyproject.toml has a line in docs/decisions.md, and one of users its licence."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = project["optional-dependencies"]
+    of_users = [*project["dependencies"], *extras["documents"], *extras["cluster"]]
+    for page, needed in (("decisions", [*of_users, *chain(*extras.values())]), ("dependencies", of_users)):
+        text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
+        names = {re.split(r"[<>=,;\[]", requirement)[0] for requirement in needed}
+        assert [name for name in sorted(names) if not re.search(rf"\| .*\b{name}\b.*\|", text)] == []
 
 
 LIMITS: dict[str, dict[str, tuple[float, ...]]] = {

@@ -37,6 +37,12 @@ SAMPLE = """CASES = (
         mesh_status="failed",
     ),
 """
+EXAMPLE = """
+[shows_cube]
+with = { link = "base", distance = 0.2, tolerance = 0.002 }
+wrong = '<link name="base"><visual><geometry><box size="0.2 0.2 0.3"/></geometry></visual></link>'
+right = '<link name="base"><visual><geometry><box size="0.2 0.2 0.2"/></geometry></visual></link>'
+"""
 RUBRIC = """\
 id = "lab0"
 title = "Lab 0: one box"
@@ -110,9 +116,10 @@ def add_to_changelog(project: Path, line: str) -> None:
 
 
 def test_a_new_check(project: Path) -> None:
-    """A check is a function, a line of the registry, a sample and a line of the changelog; the catalogue is generated."""
-    with (project / "grader/checks/appearance.py").open("a", encoding="utf-8") as family:
-        family.write(CHECK)
+    """A check is a function, a line of the registry, a sample, an example and a line of the changelog; the catalogue is generated."""
+    for file, text in (("grader/checks/appearance.py", CHECK), ("docs/examples/checks.toml", EXAMPLE)):
+        with (project / file).open("a", encoding="utf-8") as family:
+            family.write(text)
     replace(project / "grader/checks/registry.py", "CHECKS = (\n", 'CHECKS = (\n    "appearance.shows_cube",\n')
     replace(project / "tests/checks/cases.py", "CASES = (\n", SAMPLE)
     python(project, "tests/golden/update.py")
@@ -121,6 +128,7 @@ def test_a_new_check(project: Path) -> None:
     passes(
         project,
         "tests/test_registry.py",
+        "tests/test_catalogue_examples.py",
         "tests/test_architecture.py",
         "tests/test_docs.py",
         "tests/checks",

@@ -62,8 +62,9 @@ def _reference(rubric: Rubric) -> dict[PurePosixPath, bytes]:
 
 
 def package_files() -> dict[str, bytes]:
-    """Return the files of the package by their paths in a wheel: with the rubrics, without their references."""
-    own = {path: data for path, data in _files_of(_PACKAGE, _PACKAGE).items() if path.parts[0] != "rubrics"}
+    """Return the files of the package by their paths in a wheel: with the rubrics, without references and examples."""
+    data = ("rubrics", "examples")  # in a wheel; in a checkout they are outside of the package
+    own = {path: content for path, content in _files_of(_PACKAGE, _PACKAGE).items() if path.parts[0] not in data}
     rubrics = {PurePosixPath("rubrics", path.name): path.read_bytes() for path in shipped_rubrics().values()}
     return {str(_PACKAGE.name / path): data for path, data in (own | rubrics).items()}
 

@@ -56,7 +56,7 @@ def mass_is(robot: Configuration, *, link: str, mass: NonNegative, tolerance: No
     if not fine:
         unit = ": is it in grams?" if 0.99 * mass < actual / 1000.0 < 1.01 * mass else ""
         side = "large" if actual > mass else "small"
-        message += f"; it should be {mass:.6g} kg ({abs(actual - mass):.3g} kg too {side}){unit}"
+        message += f"; it should be {mass:.6g} kg ({abs(actual - mass):.6g} kg too {side}){unit}"
     return judged(fine, message, actual, mass, tolerance, "kg", at=place(inertial.location, "value", "mass"))
 
 

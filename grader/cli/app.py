@@ -15,6 +15,7 @@ import typer
 
 from grader import __version__
 from grader.cli.ending import outer_limits, quiet_interrupts
+from grader.cli.options import Commands
 from grader.cli.terminal import warn
 from grader.errors import GraderError
 from grader.text import printable_path, shell_quoted
@@ -63,7 +64,7 @@ def _root(
 
 def make_app(names: Collection[str]) -> typer.Typer:
     """Return the command line with these commands: importing all of them takes longer than to grade a URDF."""
-    app = typer.Typer(
+    app = Commands(
         name="grader",
         no_args_is_help=True,
         add_completion=len(names) > 1,
@@ -103,6 +104,7 @@ def _discard_reports(words: Sequence[str]) -> None:
     from typer.main import get_command
 
     from grader.usecases.grade import remove_reports
+    from grader.usecases.rubrics import files_of
     from grader.usecases.saves import read_saves
 
     command: Any = get_command(make_app(["grade"]))
@@ -117,7 +119,8 @@ def _discard_reports(words: Sequence[str]) -> None:
         with suppress(GraderError, OSError):
             saves += read_saves([text])
     with suppress(GraderError, OSError):
-        remove_reports(tuple(saves), given["rubric"] or DEFAULT_RUBRIC, *(word for word in words if word[:1] != "-"))
+        rubric = files_of(given["rubric"] or DEFAULT_RUBRIC, given["answers"])
+        remove_reports(tuple(saves), rubric, *(word for word in words if word[:1] != "-"))
 
 
 def _run(arguments: Sequence[str]) -> int:

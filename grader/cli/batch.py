@@ -8,6 +8,7 @@ import typer
 
 from grader.classroom.run import forks
 from grader.cli.options import (
+    AnswersOption,
     ClassVerboseOption,
     DueOption,
     FormatOption,
@@ -36,6 +37,7 @@ def batch(
         str | None, typer.Option(metavar="ID|FILE", help=_RUBRIC, show_default=False, autocompletion=rubric_ids)
     ] = None,
     part: PartOption = None,
+    answers: AnswersOption = None,
     jobs: Annotated[
         int | None, typer.Option(metavar="N", min=1, help="Worker processes; default: one per processor.")
     ] = None,
@@ -80,14 +82,13 @@ def batch(
 
       Late submissions: [late] in the rubric, --due, grader extend, or columns due and extension in the roster.
 
-      Unmatched submissions: add the student's login, email address or LMS number to the roster, and rerun with
-      --roster.
+      Unmatched submissions: add the student's login, email address or LMS number to the roster file, and rerun.
 
       A student without a submission, or with a wrong result: grader mark.
 
       Teams: a column group in the roster.
 
-      Troubleshooting: see docs/grade-a-class.md.
+      See https://urdf-grader.github.io/urdf-grader/grade-a-class.html for more.
     """
     options = locals()  # named like the fields of the request
     if cluster is None and path.exists() and not gradebook.exists():  # a class that is graded may need no workers

@@ -33,7 +33,7 @@ def export(
     any_maximum: Annotated[bool, typer.Option("--any-maximum", help=_MAXIMUM)] = False,
     only: Annotated[bool, typer.Option("--only", help=_ONLY)] = False,
     excel: Annotated[bool, typer.Option("--excel", help=_EXCEL)] = False,
-    feedback: Annotated[Path | None, typer.Option("--feedback", "--comments", metavar="ZIP", help=_FEEDBACK)] = None,
+    feedback: Annotated[Path | None, typer.Option(metavar="ZIP", help=_FEEDBACK)] = None,
     feedback_format: Annotated[
         Literal["markdown", "html"], typer.Option(metavar="markdown|html", help="The format of these reports.")
     ] = "markdown",
@@ -54,7 +54,7 @@ def export(
 
       grader export canvas --gradebook lab6.db --into canvas.csv > upload.csv
 
-      grader export canvas --gradebook lab6.db --comments feedback.zip
+      grader export canvas --gradebook lab6.db --feedback feedback.zip
 
       grader export moodle --gradebook lab6.db --feedback feedback.zip
 
@@ -62,7 +62,7 @@ def export(
 
     Recipes:
 
-      Publish in Canvas: --into and --only, then import the file. Upload the zip of --comments with "Upload
+      Publish in Canvas: --into and --only, then import the file. Upload the zip of --feedback with "Upload
       Submissions".
 
       Publish in Moodle: --into, then "Upload grading worksheet". Upload the zip of --feedback with "Upload multiple

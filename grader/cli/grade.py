@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from grader.cli.options import ArgOption, MaxSizeOption, PartOption, RubricOption, save_formats
+from grader.cli.options import AnswersOption, ArgOption, MaxSizeOption, PartOption, RubricOption, save_formats
 from grader.cli.terminal import TERMINAL, screen, warn, write_stderr
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
@@ -40,9 +40,7 @@ def grade(
     fail_under: Annotated[str | None, typer.Option(metavar="N|N%", help=_FAIL_UNDER)] = None,
     max_size: MaxSizeOption = URDF_LIMIT,
     arg: ArgOption = None,
-    answers: Annotated[
-        bool, typer.Option("--answers", help="Also show model answers (terminal, markdown, html, json).")
-    ] = False,
+    answers: AnswersOption = None,
     verbose: Annotated[
         bool, typer.Option("--verbose", help="Also show what passed, answers and notes (terminal).")
     ] = False,

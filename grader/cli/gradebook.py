@@ -7,18 +7,20 @@ from typing import Annotated, Literal
 
 import typer
 
-from grader.cli.options import ClassVerboseOption, DueOption, FormatOption, GradebookOption
+from grader.classroom.gradebook.sections import Grouping
+from grader.cli.options import ClassVerboseOption, Commands, DueOption, FormatOption, GradebookOption
 from grader.cli.terminal import TERMINAL, screen
 from grader.report.formats import OutputFormat
 from grader.usecases.writing import write_stdout
 
 _KEEP = "Whose marks count in every conflict: those of A or B."
-_BY = "Compare the sections, or the students of each marker."
+_FIRST = "The gradebook, in place of the first argument."
+_COMPARE = "Compare the sections, or the students of each marker."
 
 
 def stats(
     gradebook: GradebookOption,
-    by: Annotated[Literal["section", "marker"] | None, typer.Option(metavar="section|marker", help=_BY)] = None,
+    compare: Annotated[Grouping | None, typer.Option(metavar="section|marker", help=_COMPARE)] = None,
     due: DueOption = None,
     verbose: ClassVerboseOption = False,
     output_format: FormatOption = OutputFormat.TERMINAL,
@@ -30,8 +32,8 @@ def stats(
     students who earned the rest of the grade earned them, too: a correlation from -1 to 1. An edit is shown with the
     number of students who need it: it was tried on one of their robots.
 
-    With --by, the output compares the sections or markers of the roster instead: students, grades, late submissions,
-    and the criteria that differ most. JSON has both.
+    With --compare, the output compares the sections or markers of the roster instead: students, grades, late
+    submissions, and the criteria that differ most. JSON has both.
 
     Examples:
 
@@ -39,7 +41,7 @@ def stats(
 
       grader stats --gradebook lab6.db --format json
 
-      grader stats --gradebook lab6.db --by section
+      grader stats --gradebook lab6.db --compare section
 
     Recipes:
 
@@ -47,21 +49,24 @@ def stats(
 
       A criterion that most students fail: a low share, and the common mistakes.
 
-      A criterion that is wrong: "Regrade after a rubric fix" in docs/grade-a-class.md.
+      A criterion that is wrong: fix the rubric, and rerun `grader batch`.
 
       Prepare the next lecture: see the edits that would fix the most.
     """
     from grader.usecases.class_summary import SummaryRequest, class_statistics
 
-    request = SummaryRequest(output_format, with_fixes=True, verbose=verbose, by=by, due=due)
+    request = SummaryRequest(output_format, with_fixes=True, verbose=verbose, by=compare, due=due)
     return class_statistics(gradebook, request, TERMINAL)
 
 
 def diff(
-    gradebook: Annotated[Path, typer.Argument(metavar="GRADEBOOK", help="A gradebook.")],
-    other: Annotated[Path | None, typer.Argument(metavar="[GRADEBOOK]", help="A newer gradebook.")] = None,
-    before: Annotated[int | None, typer.Option("--from", metavar="RUN", help="The number of the older run.")] = None,
-    after: Annotated[int | None, typer.Option("--to", metavar="RUN", help="The number of the newer run.")] = None,
+    gradebooks: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="[GRADEBOOK] [GRADEBOOK]", help="A gradebook; of two, the older one first."),
+    ] = None,
+    gradebook: Annotated[Path | None, typer.Option("--gradebook", metavar="FILE", help=_FIRST)] = None,
+    before: Annotated[int | None, typer.Option(metavar="RUN", help="The number of the older run.")] = None,
+    after: Annotated[int | None, typer.Option(metavar="RUN", help="The number of the newer run.")] = None,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> str:
     """Show whose grade changed between two runs, and why.
@@ -75,6 +80,8 @@ def diff(
 
       grader diff lab6.db
 
+      grader diff --gradebook lab6.db --before 3 --after 5
+
       grader diff before.db after.db --format json
 
     Recipes:
@@ -86,7 +93,8 @@ def diff(
     from grader.usecases.two_gradebooks import DiffRequest
     from grader.usecases.two_gradebooks import diff as compare
 
-    return compare(DiffRequest(gradebook, other, before, after), output_format, screen())
+    books = [gradebook, *(gradebooks or ())] if gradebook is not None else gradebooks or []
+    return compare(DiffRequest(tuple(books), before, after), output_format, screen())
 
 
 _HELP = """Merge the manual marks of two gradebooks.
@@ -95,7 +103,7 @@ Examples:
 
   grader gradebook merge lab6.db lab6-lee.db
 """
-gradebook = typer.Typer(help=_HELP, no_args_is_help=True)
+gradebook = Commands(help=_HELP, no_args_is_help=True)
 
 
 @gradebook.callback()

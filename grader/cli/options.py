@@ -1,16 +1,56 @@
-"""Options that several commands share, and the values that shell completion suggests."""
+"""Options that several commands share, their headings in the help, and the values that shell completion suggests."""
 
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
+from typer.core import TyperCommand
 
 from grader.report.formats import Format, OutputFormat
 from grader.usecases.rubrics import DEFAULT_RUBRIC
 
 if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
+
+# The headings of the help; an option is under the same one in all commands.
+_GROUPS = {
+    "Gradebook and rubric": "gradebook rubric expect-rubric part answers hints keep from",
+    "Input": "roster layout assignment ignore-file add arg joint relative-to max-size",
+    "Selection": "criterion section mine anonymous before after compare",
+    "Grades": "due pending-as-zero",
+    "Marks": "comment list-comments excused undo second by missing import",
+    "File of the LMS": "into strict column feedback-column any-maximum only",
+    "Run": "jobs timeout force cluster fail-under watch mutants seed html port",
+    "Output": "format output save fix excel reports report-format csv feedback feedback-format pictures verbose",
+}
+_GROUP_OF = {f"--{name}": group for group, names in _GROUPS.items() for name in names.split()}
+_OTHER = "Options"
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+class _Command(TyperCommand):
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Write the arguments, then the options of each group."""
+        groups = defaultdict[str, list[tuple[str, str]]](list)
+        for parameter in self.get_params(ctx):
+            record = parameter.get_help_record(ctx)
+            is_argument = parameter.param_type_name == "argument"
+            group = "Arguments" if is_argument else _GROUP_OF.get(parameter.opts[-1], _OTHER)
+            groups[group] += [record] if record is not None else []
+        for group in ("Arguments", *_GROUPS, _OTHER):
+            if groups[group]:
+                with formatter.section(group):
+                    formatter.write_dl(groups[group])
+
+
+class Commands(typer.Typer):
+    """A group of commands whose help lists the options under headings."""
+
+    def command(self, name: str | None = None, **settings: Any) -> Callable[[_Function], _Function]:
+        """Add a function as a command, as typer does."""
+        return super().command(name, cls=_Command, **settings)
 
 
 def rubric_ids() -> list[str]:
@@ -56,6 +96,9 @@ RubricOption = Annotated[
 ]
 GradebookOption = Annotated[Path, typer.Option("--gradebook", metavar="FILE", help="The gradebook, a SQLite file.")]
 MaxSizeOption = Annotated[int, typer.Option(metavar="BYTES", min=1, help="Maximum size of a URDF.")]
+AnswersOption = Annotated[
+    Path | None, typer.Option("--answers", metavar="FILE", help="The .toml file with the model answers.")
+]
 ArgOption = Annotated[
     list[str] | None,
     typer.Option("--arg", metavar="NAME=VALUE", help="The value of an argument of a xacro file; repeatable."),

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from grader.cli.options import ByOption, GradebookOption
+from grader.cli.options import AnswersOption, ByOption, GradebookOption
 from grader.cli.terminal import TERMINAL, warn
 from grader.errors import InputError
 from grader.usecases.writing import write_stdout
@@ -24,14 +24,14 @@ def mark(
         str | None, typer.Argument(metavar="[POINTS]", help="The points, or - to withdraw a mark.")
     ] = None,
     comment: Annotated[
-        str, typer.Option(metavar="TEXT", help="For the student; #2 repeats comment 2 of --comments.")
+        str, typer.Option(metavar="TEXT", help="For the student; #2 repeats comment 2 of --list-comments.")
     ] = "",
     excused: Annotated[bool, typer.Option("--excused", help="With total: the student needs no grade.")] = False,
     undo: Annotated[bool, typer.Option("--undo", help="Restore the mark before the newest one.")] = False,
     second: Annotated[
         bool, typer.Option("--second", help="Record a second opinion, which changes no grade; needs --by.")
     ] = False,
-    comments: Annotated[bool, typer.Option("--comments", help="List the earlier comments of the criterion.")] = False,
+    list_comments: Annotated[bool, typer.Option("--list-comments", help="List the comments on the criterion.")] = False,
     missing: Annotated[bool, typer.Option("--missing", help="All who submitted nothing, not STUDENT.")] = False,
     file: Annotated[Path | None, typer.Option("--import", metavar="CSV", help="The marks of many students.")] = None,
     by: ByOption = "",
@@ -65,7 +65,7 @@ def mark(
 
     if missing:  # in place of the student
         student, criterion, points = "", student, points or criterion or None
-    request = MarkRequest(student, criterion, points, comment, by, excused, undo, second, comments, missing)
+    request = MarkRequest(student, criterion, points, comment, by, excused, undo, second, list_comments, missing)
     if file is not None:
         if request != MarkRequest("", "", by=by):
             raise InputError("--import takes no argument and no other option but --by")
@@ -107,6 +107,7 @@ def review(
     ] = False,
     anonymous: Annotated[bool, typer.Option("--anonymous", help="Show no names, ids or paths of students.")] = False,
     by: ByOption = "",
+    answers: AnswersOption = None,
     pictures: Annotated[
         Path | None, typer.Option(metavar="DIR", help="First write all pictures into this folder.")
     ] = None,
@@ -120,7 +121,8 @@ def review(
 ) -> int:
     """Grade what needs manual grading, one item at a time.
 
-    Each item shows the student's answer beside the model answer, or the paths of the pictures. Type the points and a
+    Each item shows the student's answer beside the model answer, or the paths of the pictures. The gradebook keeps the
+    model answers of --answers, also of batch. Type the points and a
     comment: 3.5 the roots are missing. 3.5 #2 repeats comment 2. You can stop at any time: marks are kept, and the next
     review continues with the rest.
 
@@ -149,6 +151,10 @@ def review(
 
     if section is not None and not section.strip():
         raise InputError("--section is empty: name a section, or omit it to review all")
+    if answers is not None:
+        from grader.usecases.class_inputs import keep_answers
+
+        keep_answers(gradebook, answers)
     scope = ReviewScope(criterion, by, section or "", mine, second, anonymous)
     if html:
         from grader.usecases.review_page import review_in_browser

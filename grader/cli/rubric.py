@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from grader.cli.options import FormatOption, RubricOption, rubric_ids
+from grader.cli.options import AnswersOption, Commands, FormatOption, RubricOption, rubric_ids
 from grader.cli.terminal import screen, show_class, warn
 from grader.report.formats import OutputFormat
 from grader.usecases import rubrics
@@ -26,9 +26,10 @@ Examples:
 
   grader rubric test my_lab.toml
 """
+RubricFormat = Literal["terminal", "markdown"]
 _FOLDER = "A folder with samples: submissions with an expected.toml."
 _LEAST = "Exit 1 if the mutation score is less, in percent."
-rubric = typer.Typer(help=_HELP, no_args_is_help=True)
+rubric = Commands(help=_HELP, no_args_is_help=True)
 RubricArgument = Annotated[
     str, typer.Argument(metavar="ID|FILE", help="The rubric: an id or a .toml file.", autocompletion=rubric_ids)
 ]
@@ -48,22 +49,23 @@ def list_rubrics() -> str:
 @rubric.command("show")
 def show_rubric(
     name: RubricArgument,
-    answers: Annotated[bool, typer.Option("--answers", help="Also show the model answers.")] = False,
-    markdown: Annotated[bool, typer.Option("--markdown", help="Print tables for the lab's handout.")] = False,
+    answers: AnswersOption = None,
+    output_format: Annotated[RubricFormat, typer.Option("--format", help="Output format.")] = "terminal",
 ) -> str:
     """Show the parts and criteria of a rubric with their points.
 
-    With --markdown, the tables are for students: they have no arguments of checks, no feedback and no model answers.
+    With --format markdown, it prints tables for the lab's handout, without arguments of checks, feedback and model
+    answers.
 
     Examples:
 
       grader rubric show lab6
 
-      grader rubric show lab6 --answers
+      grader rubric show my_lab.toml --answers my_lab.answers.toml
 
-      grader rubric show my_lab.toml --markdown
+      grader rubric show my_lab.toml --format markdown
     """
-    return rubrics.show_rubric(name, warn, answers=answers, markdown=markdown)
+    return rubrics.show_rubric(name, answers, markdown=output_format == "markdown")
 
 
 @rubric.command("checks")
@@ -163,7 +165,7 @@ def run_test(
     from grader.usecases.rubric_making import TestRequest, test
 
     request = TestRequest(name, folder, fail_under, seed, mutants, output_format)
-    text, code = test(request, screen(), warn, show_class)
+    text, code = test(request, screen(), show_class)
     write_stdout(text)
     return code
 

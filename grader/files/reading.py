@@ -26,6 +26,12 @@ _MAX_SIBLINGS = 1000  # names in a folder that are compared with a missing one
 _ADVICE = " for a URDF (--max-size raises it)"
 
 
+def shipped_folder(*names: str) -> Path:
+    """Return a folder that comes with the grader: in a wheel it is in the package, in a checkout next to it."""
+    package = Path(__file__).resolve().parent.parent
+    return next(filter(Path.is_dir, (package / names[-1], package.parent.joinpath(*names))), package)
+
+
 def read_capped(
     path: Path | str, limit: int = URDF_LIMIT, *, shown: str = "", top: str = "", advice: str = _ADVICE
 ) -> bytes:

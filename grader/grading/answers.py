@@ -14,19 +14,33 @@ from grader.names import did_you_mean
 from grader.text import printable_path
 
 
-def load_with_answers(name: str) -> Rubric:
+def load_with_answers(name: str, file: Path | None = None) -> Rubric:
     """Load a rubric by its id or path with its model answers; raise RubricError or InputError.
 
-    A rubric without its file of answers loads, too: see `missing_answers`.
+    Those outside of the rubric are in a file, or in the one that the rubric names, which may not exist: see
+    `missing_answers`.
     """
     path = find_rubric(name)
     rubric = read_rubric(read_capped(path, advice=""), path, answers=True)
+    if file is not None:
+        return read_answers(rubric, file)
     if not rubric.answers or missing_answers(rubric):
         return rubric
-    file = _file(rubric)
-    if not file.resolve().is_relative_to(path.parent.resolve()):
-        raise RubricError((f"{printable_path(file)}: the answers file must be in the rubric's folder",))
-    text, table = read_toml(read_capped(file, advice=""), file)
+    own = _file(rubric)
+    if not own.resolve().is_relative_to(path.parent.resolve()):
+        raise RubricError((f"{printable_path(own)}: the answers file must be in the rubric's folder",))
+    return read_answers(rubric, own)
+
+
+def read_answers(rubric: Rubric, file: Path) -> Rubric:
+    """Return a rubric with the model answers in a file as well, which can be the rubric itself.
+
+    Raises RubricError or InputError.
+    """
+    data = read_capped(file, advice="")
+    if data == rubric.data:
+        return rubric
+    text, table = read_toml(data, file)
     complain_of(_complaints(rubric, table), text, file)
     return with_answers(rubric, table)
 

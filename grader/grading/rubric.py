@@ -11,7 +11,7 @@ from typing import Any
 from grader.checks.check import LINK_ARGUMENTS
 from grader.checks.manual import answered
 from grader.errors import InputError, RubricError
-from grader.files.reading import read_capped, sha256_of
+from grader.files.reading import read_capped, sha256_of, shipped_folder
 from grader.grading.criterion import Adjustment, Carried, Criterion, Evidence, Ignored, Late, Part
 from grader.grading.levels import HintLevel
 from grader.grading.reference import ReferenceSolution
@@ -108,10 +108,8 @@ class Rubric:
 @cache
 def shipped_rubrics() -> Mapping[str, Path]:
     """Return the rubrics that come with the grader, by id."""
-    package = Path(__file__).resolve().parent.parent
-    # In a wheel they are inside the package, in a checkout next to it.
-    folder = next(filter(Path.is_dir, (package / "rubrics", package.parent / "rubrics")), package)
-    return {path.stem: path for path in sorted(folder.glob("*.toml")) if not path.name.endswith(_ANSWERS)}
+    paths = sorted(shipped_folder("rubrics").glob("*.toml"))
+    return {path.stem: path for path in paths if not path.name.endswith(_ANSWERS)}
 
 
 def find_rubric(name: str) -> Path:
@@ -128,12 +126,12 @@ def find_rubric(name: str) -> Path:
     raise RubricError((f"there is no rubric {name!r}{guess} {_LIST}",))
 
 
-def load_rubric(name: str) -> Rubric:
+def load_rubric(name: str | Path) -> Rubric:
     """Load a rubric by its id or path, without model answers (see `grader.grading.answers`).
 
     Raises RubricError with one line for each mistake in it, InputError if it cannot be read.
     """
-    path = find_rubric(name)
+    path = find_rubric(str(name))
     return read_rubric(read_capped(path, advice=""), path)
 
 

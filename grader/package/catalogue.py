@@ -23,7 +23,7 @@ STILL_TO_DO = _kind(
 )  # fmt: skip
 OLD_FORMAT = _kind(
     "PKG004", "note", "Old format of package.xml",
-    'ROS 2 packages use format 2 or 3: <package format="3">. Format 1 has no test_depend and no exec_depend.',
+    "ROS 2 packages use format 2 or 3. Format 1 has no test_depend and no exec_depend.",
 )  # fmt: skip
 OTHER_NAME = _kind(
     "PKG005", "warning", "Different package names in package.xml and setup.py",
@@ -32,13 +32,12 @@ OTHER_NAME = _kind(
 )  # fmt: skip
 SETUP_SYNTAX = _kind(
     "PKG010", "error", "Syntax error in setup.py",
-    "The build stops at a syntax error. The message is Python's own; the mistake is often just before the location "
-    "that it names, such as a bracket that is not closed.",
+    "The message is Python's own; the mistake is often just before the location that it names, such as a bracket that "
+    "is not closed.",
 )  # fmt: skip
 SETUP_NAME = _kind(
     "PKG011", "error", "Undefined name in setup.py",
-    "Python stops at a name that is not defined, and nothing is installed. Most often an import is missing, such as "
-    "`import os` or `from glob import glob`.",
+    "Python stops at a name that is not defined, and nothing is installed. Most often an import is missing.",
 )  # fmt: skip
 SETUP_STOPS = _kind(
     "PKG012", "error", "Entry of data_files that cannot be installed",
@@ -77,9 +76,8 @@ LAUNCH_FAULT = _kind(
 )  # fmt: skip
 HARD_CODED = _kind(
     "LCH003", "warning", "Path that exists on one machine only",
-    "A path such as /home/me/... is valid on one machine only. Let ROS 2 find the package: "
-    "get_package_share_directory('my_robot') in Python, FindPackageShare as a substitution, $(find-pkg-share my_robot) "
-    "in XML.",
+    "Let ROS 2 find the package: get_package_share_directory or FindPackageShare in Python, $(find-pkg-share my_robot) "
+    "in XML and YAML.",
 )  # fmt: skip
 LAUNCH_UNKNOWN = _kind(
     "LCH004", "note", "Cannot be determined statically in a launch file",
@@ -92,7 +90,6 @@ BAD_RVIZ = _kind(
 )  # fmt: skip
 ROS1_CLASS = _kind(
     "RVZ002", "warning", "Display class of ROS 1",
-    "Classes such as rviz/RobotModel exist in ROS 1 only. In ROS 2 the class is rviz_default_plugins/RobotModel, and "
     "RViz shows an error instead of the display. Add the display in RViz of ROS 2 and save the file again.",
 )  # fmt: skip
 NO_TF = _kind(

@@ -2,13 +2,16 @@
 
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from string import digits
 
 from grader.checks.check import Check
 from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.registry import check_names, find_check, unused_checks
 from grader.errors import InputError
+from grader.files.reading import shipped_folder
 from grader.grading.criterion import Criterion, Part, worth
 from grader.grading.rubric import Rubric
+from grader.grading.toml_file import read_toml
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.problems import Kind
@@ -75,7 +78,7 @@ def explanation(name: str, rubric: Rubric) -> str:
     kind = kind_of(name.upper())
     if kind is not None:
         texts = [f"{kind.code} ({kind.severity}): {kind.title}", _fill(kind.explanation), EFFECTS[kind.effect]]
-        return _paragraphs(texts)
+        return _paragraphs([*texts, *_example(kind.code)])
     for criterion in rubric.criteria:
         if criterion.id == name:
             return _paragraphs(_criterion_texts(criterion, rubric))
@@ -83,7 +86,7 @@ def explanation(name: str, rubric: Rubric) -> str:
     if check is not None:
         source = f", from the package {check.distribution}" if check.distribution else ""
         texts = [f"{check.name}: a check for rubrics{source}", *map(_fill, check.documentation.paragraphs)]
-        return _paragraphs([*texts, _arguments(check).rstrip("\n")])
+        return _paragraphs([*texts, _arguments(check).rstrip("\n"), *_example(check.name)])
     known = [kind.code for kind in EVERY_KIND] + [criterion.id for criterion in rubric.criteria] + check_names()
     lists = (
         f"`{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, and reports show the codes"
@@ -91,6 +94,25 @@ def explanation(name: str, rubric: Rubric) -> str:
     raise InputError(
         f"there is no problem code, criterion or check {name!r}{did_you_mean(name, known) or f'; {lists}'}"
     )
+
+
+def example_blocks(name: str) -> Iterator[tuple[str, str, str]]:
+    """Yield title, file name and text of a check's row in a rubric, of what is wrong and of what is right, if known."""
+    family = name.rstrip(digits).lower() if name.isupper() else "checks"
+    path = shipped_folder("docs", "examples") / f"{family}.toml"
+    examples = read_toml(path.read_bytes(), path)[1] if path.is_file() else {}
+    example = examples.get(name, {})
+    if "wrong" in example:
+        if family == "checks":
+            given = f"\nwith = {toml_text(example['with'])}" if "with" in example else ""
+            yield "In a rubric", "rubric.toml", f'check = "{name}"{given}'
+        file = example.get("frame", next(iter(examples["frames"]))).rpartition("/")[2]
+        yield "Wrong", file, example["wrong"].rstrip() or "(an empty file)"
+        yield "Right", file, example["right"].rstrip()
+
+
+def _example(name: str) -> Iterator[str]:
+    return (f"{title}:\n\n{textwrap.indent(text, '    ')}" for title, _, text in example_blocks(name))
 
 
 def _paragraphs(texts: Iterable[str]) -> str:
@@ -117,6 +139,7 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
 def _check_text(title: str, check: Check, arguments: Mapping[str, object], *more: str) -> str:
     given = ", ".join(f"{key} = {toml_text(value)}" for key, value in arguments.items())
     texts = (f"{title}: {check.name}. {check.documentation.fact}", f"With {given}." if given else "", *more)
+    texts += (f"`grader explain {check.name}` explains the check.",)
     return "\n".join(map(_fill, filter(None, texts)))
 
 
@@ -141,7 +164,8 @@ def toml_text(value: object) -> str:
         case list() | tuple():
             return f"[{', '.join(map(toml_text, value))}]"
         case dict():
-            return "{ " + ", ".join(f"{key} = {toml_text(item)}" for key, item in value.items()) + " }"
+            items = (f"{key if key.isidentifier() else toml_text(key)} = {toml_text(it)}" for key, it in value.items())
+            return f"{{ {', '.join(items)} }}"
     return "not checked" if value is None else str(value)
 
 

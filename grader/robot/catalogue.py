@@ -12,14 +12,11 @@ RAW_XACRO = warns(
     "ROS 2's URDF reader does not support xacro: it ignores <xacro:...> tags, and ${...} is not a number. Expand the "
     "file first: `ros2 run xacro xacro my_robot.urdf.xacro > my_robot.urdf`.",
 )
-ROBOT_WITHOUT_NAME = rejects(
-    "URDF020", "A robot without a name", 'ROS 2 requires <robot name="...">; the name may be empty.'
-)
+ROBOT_WITHOUT_NAME = rejects("URDF020", "A robot without a name", "ROS 2 requires a name, which may be empty.")
 BAD_VERSION = rejects(
     "URDF021",
     "An unsupported URDF version",
-    "The `version` of <robot> must be of the form x.y, and ROS 2 Jazzy supports only 1.0. Remove it, or write "
-    'version="1.0".',
+    "The `version` of <robot> must be of the form x.y, and ROS 2 Jazzy supports only 1.0. It may be missing.",
 )
 NO_LINKS = rejects("URDF022", "A robot without links", "ROS 2 requires at least one <link>.")
 LINK_WITHOUT_NAME = drops(
@@ -27,22 +24,15 @@ LINK_WITHOUT_NAME = drops(
     "A link without a name",
     "ROS 2 logs an error and keeps an empty link named '', without its visuals. Two of them are duplicates.",
 )
-DUPLICATE_LINK = rejects(
-    "URDF031",
-    "Two links with the same name",
-    "Link names must be unique. The usual cause is copy and paste: rename the copy.",
-)
-DUPLICATE_JOINT = rejects(
-    "URDF032",
-    "Two joints with the same name",
-    "Joint names must be unique. The usual cause is copy and paste: rename the copy.",
-)
+_COPIED = "The usual cause is copy and paste: rename the copy."
+DUPLICATE_LINK = rejects("URDF031", "Two links with the same name", _COPIED)
+DUPLICATE_JOINT = rejects("URDF032", "Two joints with the same name", _COPIED)
 DUPLICATE_MATERIAL = rejects(
     "URDF033",
     "Two materials with the same name directly under <robot>",
     "A material name may be defined under <robot> only once. Materials without a name count as having the same name.",
 )
-JOINT_WITHOUT_NAME = rejects("URDF034", "A joint without a name", 'ROS 2 requires <joint name="..." type="...">.')
+JOINT_WITHOUT_NAME = rejects("URDF034", "A joint without a name", "ROS 2 requires a name.")
 BAD_INERTIAL = drops(
     "URDF040",
     "An invalid <inertial>",
@@ -79,14 +69,13 @@ UNDEFINED_MATERIAL = drops(
 BAD_COLOUR = drops(
     "URDF052",
     "An invalid colour",
-    'rgba takes four numbers from 0 to 1: red, green, blue, opacity, as in rgba="0 0.6 0 1". ROS 2 logs an error; a '
-    "material under <robot> becomes black, one inside a link stays undefined. Divide values in 0..255 by 255.",
+    "rgba takes four numbers from 0 to 1: red, green, blue, opacity. ROS 2 logs an error; a material under <robot> "
+    "becomes black, one inside a link stays undefined. Divide values in 0..255 by 255.",
 )
 COLOUR_COUNT = warns(
     "URDF053",
     "A colour without exactly four numbers",
-    "rgba takes four numbers: red, green, blue, opacity. With another count ROS 2 silently shows black. Add the "
-    "opacity: 1.",
+    "rgba takes four numbers: red, green, blue, opacity. With another count ROS 2 silently shows black.",
 )
 COLOURLESS_MATERIAL = drops(
     "URDF054",
@@ -98,36 +87,26 @@ REDEFINED_MATERIAL = warns(
     "A second definition of a material, which is ignored",
     "ROS 2 uses the first definition of a material name; those under <robot> come before those in links.",
 )
-TYPE_MISSING = rejects(
-    "URDF060",
-    "A joint without a type",
-    "ROS 2 requires a type: fixed, continuous, revolute, prismatic, floating or planar.",
-)
-TYPE_UNKNOWN = rejects(
-    "URDF061",
-    "An unknown joint type",
-    "The types are fixed, continuous, revolute, prismatic, floating and planar, in lower case without spaces.",
-)
+_TYPES = "The types are fixed, continuous, revolute, prismatic, floating and planar, in lower case without spaces."
+TYPE_MISSING = rejects("URDF060", "A joint without a type", _TYPES)
+TYPE_UNKNOWN = rejects("URDF061", "An unknown joint type", _TYPES)
 BAD_JOINT_ORIGIN = rejects(
-    "URDF062",
-    "An invalid joint origin",
-    'xyz and rpy take three numbers each, separated by spaces: <origin xyz="0.15 0 0.225" rpy="0 0 0"/>.',
+    "URDF062", "An invalid joint origin", "xyz and rpy take three numbers each, separated by spaces."
 )
 BAD_AXIS = rejects(
     "URDF063",
     "An invalid joint axis",
-    'An axis takes three numbers: <axis xyz="0 0 1"/>. ROS 2 ignores the axis of fixed and floating joints.',
+    "An axis takes three numbers. ROS 2 ignores the axis of fixed and floating joints.",
 )
 LIMIT_MISSING = rejects(
     "URDF064",
     "A revolute or prismatic joint without limits",
-    "These joints require <limit lower upper effort velocity>. For a wheel that turns without end use "
-    'type="continuous".',
+    'These joints require <limit>. For a wheel that turns without end use type="continuous".',
 )
 BAD_LIMIT = rejects(
     "URDF065",
     "An incomplete or invalid joint limit",
-    "Every <limit>, even of a fixed or continuous joint, needs effort and velocity, and only plain numbers.",
+    "Every <limit>, of any joint, needs effort and velocity, as numbers.",
 )
 BAD_DYNAMICS = rejects(
     "URDF066", "An empty or invalid <dynamics>", "<dynamics> needs damping, friction or both, as plain numbers."
@@ -135,18 +114,14 @@ BAD_DYNAMICS = rejects(
 BAD_MIMIC = rejects(
     "URDF067",
     "A <mimic> without a joint, or with an invalid number",
-    "<mimic> needs the name of a joint; multiplier and offset are plain numbers.",
+    "A joint is required; multiplier and offset are numbers.",
 )
 BAD_SAFETY = rejects(
-    "URDF068",
-    "An incomplete or invalid <safety_controller>",
-    "<safety_controller> needs k_velocity; all its values are plain numbers.",
+    "URDF068", "An incomplete or invalid <safety_controller>", "k_velocity is required; all values are plain numbers."
 )
 BAD_CALIBRATION = rejects("URDF069", "An invalid <calibration>", "rising and falling are plain numbers.")
 NO_PARENT_OR_CHILD = rejects(
-    "URDF070",
-    "A joint without parent or child",
-    'A joint connects two links: it needs <parent link="..."/> and <child link="..."/>.',
+    "URDF070", "A joint without parent or child", "A joint connects two links: it needs the names of both."
 )
 UNKNOWN_LINK = rejects(
     "URDF071", "A joint with a link that does not exist", "Names must match exactly, including upper and lower case."

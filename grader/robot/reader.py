@@ -58,13 +58,14 @@ class Reading:
         return next((problem.message for problem in self.problems if problem.kind.effect == "undetermined"), "")
 
 
-def read_urdf(data: bytes, path: str = "robot.urdf") -> Reading:
-    """Read the bytes of a URDF; `path` only appears in locations.
+def read_urdf(data: bytes | str, path: str = "robot.urdf") -> Reading:
+    """Read the bytes or the text of a URDF; `path` only appears in locations.
 
     The verdict is ROS 2 Jazzy's (urdfdom on TinyXML2): `clean`; `degraded`, if content is dropped or links are omitted
     of the tree; `rejected`. Every problem is reported, sorted by location. Never raises for any input.
     """
-    return read_robot(read_document(data, path))
+    given = data.encode("utf-8", "surrogatepass") if isinstance(data, str) else data
+    return read_robot(read_document(given, path))
 
 
 def read_robot(document: XmlDocument) -> Reading:

@@ -9,7 +9,7 @@ from grader.problems import Problem
 from grader.robot.catalogue import RAW_XACRO
 from grader.robot.reader import Reading, find_xacro, read_robot, read_urdf
 from grader.source import Source
-from grader.xml.catalogue import NOT_WELL_FORMED
+from grader.xml.catalogue import DOCTYPE, NOT_WELL_FORMED
 
 if TYPE_CHECKING:
     from grader.submission.surroundings import Surroundings
@@ -81,7 +81,7 @@ def read_as_ros(data: bytes, path: str, surroundings: "Surroundings | None" = No
     """
     if not _needs_xacro(data):
         reading = read_urdf(data, path)
-        if not any(problem.kind is NOT_WELL_FORMED for problem in reading.problems):
+        if not any(problem.kind in (DOCTYPE, NOT_WELL_FORMED) for problem in reading.problems):
             return Read(path, data, reading)
     name = path.rpartition("/")[2].lower()
     if surroundings is None:

@@ -6,11 +6,12 @@ from pathlib import Path
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import EXTENSION
+from grader.classroom.gradebook.run_writer import save_answers
 from grader.classroom.intake.roster import Roster, roster_from_json
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.run.worker import work_hashes
 from grader.errors import InputError
-from grader.grading.answers import load_with_answers
+from grader.grading.answers import load_with_answers, read_answers
 from grader.grading.rubric import Rubric
 from grader.submission.opening import open_submission
 from grader.text import counted, enumerated, named, people_text, printable, printable_path, shell_quoted
@@ -30,7 +31,7 @@ def handed_out_hashes(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
         yield from hashes
 
 
-def rubric_of(name: str | None, gradebook: Path, warn: Warn) -> Rubric:
+def rubric_of(name: str | None, gradebook: Path, answers: Path | None, warn: Warn) -> Rubric:
     """Return the rubric with answers, so that `review` has them on any machine; without a name that of the last run.
 
     If the file of the last run no longer exists, its text in the gradebook counts.
@@ -40,11 +41,23 @@ def rubric_of(name: str | None, gradebook: Path, warn: Warn) -> Rubric:
             run = book.newest_run()
             last = book.rubric(run.rubric, answers=True) if run is not None else None
         if last is not None:
-            rubric = load_with_answers(str(last.path)) if last.path.exists() else last
+            if last.path.exists():
+                rubric = load_with_answers(str(last.path), answers)
+            else:
+                rubric = read_answers(last, answers) if answers is not None else last
             if not rubric.is_shipped:
                 warn(f"rubric of the last run: {printable_path(rubric.path)}")
             return rubric
-    return load_with_answers(name or DEFAULT_RUBRIC)
+    return load_with_answers(name or DEFAULT_RUBRIC, answers)
+
+
+def keep_answers(gradebook: Path, answers: Path) -> None:
+    """Save the model answers in a file in a gradebook, for this review and later ones. Raises InputError."""
+    with Gradebook(gradebook) as book:
+        rubric = read_answers(Grades(book).newest_rubric(), answers)
+        book.check_writable()
+        with book.transaction():
+            save_answers(book, rubric)
 
 
 def warn_of_parts(book: Gradebook, wanted: tuple[str, ...], rubric: Rubric, warn: Warn) -> None:

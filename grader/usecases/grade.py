@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from grader.grading.report import Report
     from grader.grading.rubric import Rubric
     from grader.source import Base
+    from grader.submission.submission import Opening, Submission
 
 _KEPT = (*ROBOT_ENDINGS, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # files that a report may not remove first
 _SHA256 = r"[0-9a-fA-F]{64}"
@@ -42,7 +43,7 @@ class GradeRequest:
     saves: Saves
     fail_under: str | None
     max_size: int
-    answers: bool = False
+    answers: Path | None = None  # the file with the model answers, which the report then shows
     arguments: tuple[str, ...] = ()  # of xacro, as NAME=VALUE
     verbose: bool = False
     hints: HintLevel | None = None  # the most that hints tell; None for what the rubric allows
@@ -81,14 +82,14 @@ class GradeRun(NamedTuple):
 
 def grade_and_save(request: GradeRequest, warn: Warn, show_file: ShowFile) -> GradeRun:
     """Grade a submission and save its reports. Raises GraderError."""
-    modes = remove_reports(request.saves, request.rubric, request.path)
+    modes = remove_reports(request.saves, files_of(request.rubric, request.answers), request.path)
     run = grade_submission(request, warn, show_file)
     if request.fix is None or run.fix is None:
         save_reports(request, run, modes)
         return run
     from grader.usecases.hints import files_to_fix, write_fix  # late: few ask for it
 
-    others = [*files_of(request.rubric), *(file for _, file in request.saves)]
+    others = [*files_of(request.rubric, request.answers), *(file for _, file in request.saves)]
     files = files_to_fix(request.fix, request.path, run.report, run.fix, run.besides, others)
     save_reports(request, run, modes)
     warn(write_fix(request.fix, request.path, run.report, run.fix, files))
@@ -109,24 +110,11 @@ def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> 
     for kind in (request.format, *(kind for kind, _ in request.saves)):
         inputs_of(kind)  # as well
     from grader.grading.grade import grade
-    from grader.submission.opening import open_submission
     from grader.submission.submission import Opening
 
-    rubric = requested_rubric(request, warn)
-    if not request.path.lower().endswith(ROBOT_ENDINGS):
-        from grader.usecases.several_students import refuse_class  # late: most submissions are one URDF
-
-        refuse_class(request.path, rubric, request.choice)
-    submission = open_submission(
-        request.path,
-        rubric.lab,
-        Opening(request.max_size, _arguments(request), show_file=show_file),
-        with_neighbours=True,
-    )
-    if submission.students:
-        from grader.usecases.several_students import refusal  # late: few submissions are several
-
-        raise refusal(request.path, submission.students, rubric, request.choice)
+    rubric = requested_rubric(request)
+    opening = Opening(request.max_size, _arguments(request), show_file=show_file)
+    submission = open_one(request.path, rubric, opening, request.choice)
     report = grade(rubric, submission, request.parts)
     for result in report.results:
         if result.traceback:
@@ -141,7 +129,24 @@ def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> 
     return GradeRun(report, base_of(request.path, folder), exit_code(report, threshold), fix, besides)
 
 
-def remove_reports(saves: Saves, rubric: str, *paths: str) -> dict[Path, int]:
+def open_one(path: str, rubric: "Rubric", opening: "Opening | None" = None, options: str = "") -> "Submission":
+    """Return the submission of one student; raises InputError for a class, with the command that has these options."""
+    from grader.submission.opening import open_submission
+    from grader.submission.submission import DEFAULTS
+
+    if not path.lower().endswith(ROBOT_ENDINGS):
+        from grader.usecases.several_students import refuse_class  # late: most submissions are one URDF
+
+        refuse_class(path, rubric, options)
+    submission = open_submission(path, rubric.lab, opening or DEFAULTS, with_neighbours=True)
+    if submission.students:
+        from grader.usecases.several_students import refusal  # late: few submissions are several
+
+        raise refusal(path, submission.students, rubric, options)
+    return submission
+
+
+def remove_reports(saves: Saves, rubric: Sequence[Path], *paths: str) -> dict[Path, int]:
     """Remove the files that `--save` names and return their permissions.
 
     They may be of an earlier run, or forged by a student: if this run is refused, they must not be mistaken for its
@@ -154,7 +159,7 @@ def remove_reports(saves: Saves, rubric: str, *paths: str) -> dict[Path, int]:
     refusals: list[InputError] = []
     modes: dict[Path, int | None] = {}
     # os.path.isdir is False for a name that is too long, for which Path.is_dir raises before Python 3.14.
-    inputs = [*files_of(rubric), *(Path(path) for path in paths if not os.path.isdir(path))]  # noqa: PTH112
+    inputs = [*rubric, *(Path(path) for path in paths if not os.path.isdir(path))]  # noqa: PTH112
     for _, file in saves:
         try:
             refuse_symlinks(file, paths)
@@ -180,14 +185,14 @@ def save_reports(request: GradeRequest, run: GradeRun, modes: Mapping[Path, int]
         save(file, text, (request.path,), modes.get(file))
 
 
-def requested_rubric(request: GradeRequest, warn: Warn) -> "Rubric":
+def requested_rubric(request: GradeRequest) -> "Rubric":
     """Return the rubric. Raises GraderError if it is not the expected one or lacks a part that is named."""
     expected = request.expected_rubric
     if expected is not None and not re.fullmatch(_SHA256, expected):
         raise GraderError(
             f"--expect-rubric takes the 64 digits that `grader rubric show` prints as sha256, not {expected!r}"
         )
-    rubric = load(request.rubric, warn, answers=request.answers)
+    rubric = load(request.rubric, request.answers)
     if expected is not None and expected.lower() != rubric.sha256:
         raise InputError(
             f"the rubric {rubric.id} is not the expected one: its sha256 is {rubric.sha256}, not {expected.lower()}"

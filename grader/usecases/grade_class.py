@@ -53,6 +53,7 @@ class ClassRequest:
     cluster: str | None
     add: bool
     max_size: int
+    answers: Path | None
     part: tuple[str, ...]
     ignore_file: tuple[Path, ...]
     reports: Path | None
@@ -73,7 +74,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     gc.enable()  # unlike other commands, this one may run for long
     if not isfinite(request.timeout):
         raise InputError(f"--timeout takes a number of seconds, not {request.timeout}")
-    rubric = rubric_of(request.rubric, request.gradebook, warn)
+    rubric = rubric_of(request.rubric, request.gradebook, request.answers, warn)
     for name in request.part:
         rubric.part(name)
     deadline = read_deadline(request.due)
@@ -195,7 +196,7 @@ def _refuse_targets(request: ClassRequest) -> None:
 def _refuse_inputs(csv: Path, request: ClassRequest) -> None:
     """Raise InputError if the grades would replace a file that the command reads, or be in the class folder."""
     roster = [request.roster] if request.roster is not None else []
-    refuse_inputs("--csv", csv, [*roster, *files_of(request.rubric or ""), *request.ignore_file])
+    refuse_inputs("--csv", csv, [*roster, *files_of(request.rubric or "", request.answers), *request.ignore_file])
     if request.root in (csv.resolve(), *csv.resolve().parents):
         raise InputError(
             f"cannot write {printable_path(csv)}: the next run would take it for a submission; "

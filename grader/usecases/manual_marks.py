@@ -38,7 +38,7 @@ class MarkRequest(NamedTuple):
     excused: bool = False
     undo: bool = False
     second: bool = False
-    comments: bool = False
+    list_comments: bool = False
     missing: bool = False
 
     @property
@@ -56,7 +56,7 @@ class MarkRequest(NamedTuple):
         has_points = self.points is not None
         has_entry = bool(has_points or self.comment or self.excused or self.second)
         rules = (
-            (self.comments and (has_entry or self.undo), "--comments lists comments and records nothing: use it alone"),
+            (self.list_comments and (has_entry or self.undo), "--list-comments records nothing: use it alone"),
             (not (self.submission or self.missing) or not self.criterion, "name a STUDENT and a CRITERION"),
             (self.missing and not (self.is_total and self.is_points), f"write it as --missing {TOTAL} POINTS"),
             (self.undo and has_entry, "--undo takes no POINTS and no other option but --by"),
@@ -66,7 +66,7 @@ class MarkRequest(NamedTuple):
             (self.second and self.is_total, "--second is for one criterion, not for the whole submission"),
             (self.second and not has_points, "--second needs POINTS"),
             (self.second and not self.by, "--second needs --by, your name"),
-            (not (has_entry or self.undo or self.comments), "give POINTS, --comment, --excused or --undo"),
+            (not (has_entry or self.undo or self.list_comments), "give POINTS, --comment, --excused or --undo"),
         )
         for is_broken, message in rules:
             if is_broken:
@@ -80,7 +80,7 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
         grades = Grades(book)
         grade = grades.find(request.submission)
         criterion, most = marked_criterion(grades, grade, request)
-        if request.comments:
+        if request.list_comments:
             comments = numbered_comments(book, request.criterion).items()
             lines = (printable(f"#{number} {' '.join(comment.split())}") for number, comment in comments)
             return "".join(f"{line}\n" for line in lines) or "no comments yet\n"
@@ -161,7 +161,7 @@ def _comment(book: Gradebook, request: MarkRequest, warn: Warn) -> str:
     if comment is None:
         raise InputError(
             f"{request.criterion} has no comment {number[0]}: "
-            f"`grader mark STUDENT {request.criterion} --comments` lists the earlier comments"
+            f"`grader mark STUDENT {request.criterion} --list-comments` lists the earlier comments"
         )
     warn(printable(f"comment {number[0]}: {' '.join(comment.split())}"))
     return comment

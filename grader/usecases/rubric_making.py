@@ -152,10 +152,10 @@ class TestRequest(NamedTuple):
     format: OutputFormat
 
 
-def test(request: TestRequest, screen: Screen, warn: Warn, show_class: ShowClass) -> tuple[str, ExitCode]:
+def test(request: TestRequest, screen: Screen, show_class: ShowClass) -> tuple[str, ExitCode]:
     """Return the result as text and the exit code; raises GraderError for a broken rubric or without a reference."""
     least = _least(request.fail_under)
-    rubric = load(request.rubric, warn, answers=False)
+    rubric = load(request.rubric)
     samples = read_samples(request.folder) if request.folder is not None else None
     with show_class(f"Testing {rubric.id}") as show, _workers(rubric) as grade_all:
         result = run_rubric_test(

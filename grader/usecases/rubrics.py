@@ -18,27 +18,24 @@ if TYPE_CHECKING:
 DEFAULT_RUBRIC = "lab6"  # of the command line
 
 
-def load(name: str, warn: Warn, *, answers: bool = True) -> "Rubric":
-    """Return a rubric with or without its model answers; warn if their file is missing."""
-    from grader.grading.rubric import load_rubric
+def load(name: str, answers: Path | None = None) -> "Rubric":
+    """Return a rubric, with model answers if their file is named. Raises RubricError or InputError."""
+    if answers is None:
+        from grader.grading.rubric import load_rubric
 
-    if not answers:
         return load_rubric(name)
-    from grader.grading.answers import load_with_answers, missing_answers
+    from grader.grading.answers import load_with_answers
 
-    rubric = load_with_answers(name)
-    if missing_answers(rubric):
-        warn(missing_answers(rubric))
-    return rubric
+    return load_with_answers(name, answers)
 
 
-def show_rubric(name: str, warn: Warn, *, answers: bool, markdown: bool) -> str:
+def show_rubric(name: str, answers: Path | None, *, markdown: bool) -> str:
     """Return the parts and criteria of a rubric: with or without its model answers, or in Markdown for students."""
     from grader.report.rubrics import render_handout, rubric_overview
 
-    if answers and markdown:
-        raise GraderError("--markdown is for students, so it shows no model answers: leave out --answers")
-    rubric = load(name, warn, answers=answers)
+    if answers is not None and markdown:
+        raise GraderError("--format markdown is for students, so it shows no model answers: omit --answers")
+    rubric = load(name, answers)
     return render_handout(rubric) if markdown else rubric_overview(rubric)
 
 
@@ -60,14 +57,14 @@ def _size(rubric: "Rubric") -> str:
     return f"{counted(len(rubric.criteria), 'criterion', 'criteria')}, {worth(rubric.criteria).text}"
 
 
-def files_of(name: str) -> list[Path]:
+def files_of(name: str, answers: Path | None = None) -> list[Path]:
     """Return the files and folders that a rubric is read from: its own file, its model answers, its reference.
 
     It is only its own file if there is a mistake in it. Of a reference in the rubric's own folder it is only the URDF.
     """
     from grader.grading.rubric import find_rubric, load_rubric
 
-    found: list[Path] = []
+    found = [answers] if answers is not None else []
     with suppress(GraderError):
         file = find_rubric(name)
         found.append(file)
@@ -103,9 +100,12 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
 
     Raises RubricError if the reference loses points.
     """
+    from grader.grading.answers import load_with_answers, missing_answers
     from grader.grading.grade import grade
 
-    rubric = load(name, warn)
+    rubric = load_with_answers(name)
+    if missing_answers(rubric) and not rubric.is_shipped:
+        warn(missing_answers(rubric))
     found = f"{rubric.id}: {_size(rubric)}, no mistakes found"
     if rubric.solution is None:
         return f"{found}\n", ExitCode.PASSED

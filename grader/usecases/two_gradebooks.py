@@ -20,26 +20,29 @@ from grader.text import counted, printable, printable_path
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.terminal import Terminal
 
+_MAX_COMPARED = 2
+
 
 class DiffRequest(NamedTuple):
     """A gradebook and a newer one, or two runs of one gradebook; default: its last two."""
 
-    gradebook: Path
-    other: Path | None
+    gradebooks: tuple[Path, ...]
     before: int | None
     after: int | None
 
 
 def diff(request: DiffRequest, kind: OutputFormat, screen: Screen) -> str:
     """Return whose grade changed between two runs, by how much, and why. Raises GraderError."""
-    if request.other is not None and (request.before or request.after):
-        raise GraderError("--from and --to choose runs of one gradebook: give one gradebook, or omit them")
+    if not 1 <= len(request.gradebooks) <= _MAX_COMPARED:
+        raise GraderError(f"give one gradebook, or two to compare, not {len(request.gradebooks)}")
+    if len(request.gradebooks) > 1 and (request.before or request.after):
+        raise GraderError("--before and --after choose runs of one gradebook: give one gradebook, or omit them")
     with ExitStack() as opened:
-        book = opened.enter_context(Gradebook(request.gradebook))
-        if request.other is None:
-            sides = last_two(book, request.before, request.after)
+        books = [opened.enter_context(Gradebook(path)) for path in request.gradebooks]
+        if len(books) == 1:
+            sides = last_two(books[0], request.before, request.after)
         else:
-            sides = Snapshot(book), Snapshot(opened.enter_context(Gradebook(request.other)))
+            sides = Snapshot(books[0]), Snapshot(books[1])
         found = changes(*sides)
         runs = sides[0].newest_run, sides[1].newest_run
     if kind is OutputFormat.JSON:

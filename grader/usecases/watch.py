@@ -22,6 +22,7 @@ from grader.report.screen import draw
 from grader.text import printable_path
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.grade import GradeRequest, grade_submission, remove_reports, requested_rubric, save_reports
+from grader.usecases.rubrics import files_of
 from grader.usecases.terminal import Terminal, Warn
 
 _POLL = 0.1  # seconds between two looks
@@ -42,8 +43,8 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
             a report that cannot be saved.
     """
     besides: set[Path] = set()
-    changes = _changes(request, besides, terminal.warn)
-    modes = remove_reports(request.saves, request.rubric, request.path)
+    changes = _changes(request, besides)
+    modes = remove_reports(request.saves, files_of(request.rubric, request.answers), request.path)
     _ = request.threshold  # refuse a wrong one at once
     gc.enable()  # unlike other commands, this one may run for hours
     code: ExitCode | None = None
@@ -71,7 +72,7 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
     return ExitCode.NOT_GRADED if code is None else code
 
 
-def _changes(request: GradeRequest, besides: set[Path], warn: Warn) -> Iterator[bool]:
+def _changes(request: GradeRequest, besides: set[Path]) -> Iterator[bool]:
     """Return an iterator that yields before each grading, whether a file has changed. Raises GraderError.
 
     `besides` has the files that the last grading read besides a single one.
@@ -84,17 +85,17 @@ def _changes(request: GradeRequest, besides: set[Path], warn: Warn) -> Iterator[
         )
     if request.fix is not None:
         raise GraderError("--watch writes no fix: use --fix without it")
-    rubric = _rubric_file(request, warn)
+    rubric = _rubric_file(request)
     own = frozenset(os.path.realpath(file) for _, file in request.saves)
     return file_changes(Watched(Path(request.path), rubric, own, besides))
 
 
-def _rubric_file(request: GradeRequest, warn: Warn) -> Path | None:
+def _rubric_file(request: GradeRequest) -> Path | None:
     """Return the rubric's file, None for a shipped rubric. Raises GraderError for an unknown rubric or part."""
     file = find_rubric(request.rubric)
     if file not in shipped_rubrics().values():
         return file
-    requested_rubric(request, warn)
+    requested_rubric(request)
     return None
 
 

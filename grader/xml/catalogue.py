@@ -5,9 +5,8 @@ from grader.problems import Kind, notes, rejects, warns
 MALFORMED_TAG = rejects(
     "URDF001",
     "A malformed tag",
-    'ROS 2 stops at a tag that is not of the form <name attribute="value" ...>. Usual causes: a missing attribute name '
-    '(<parent="base_link"/> instead of <parent link="base_link"/>), a comma between attributes, a missing or '
-    "typographic quote, a duplicate attribute.",
+    'ROS 2 stops at a tag that is not of the form <name attribute="value" ...>. Usual causes: a missing attribute '
+    "name, a comma between attributes, a missing or typographic quote, a duplicate attribute.",
 )
 MISMATCHED_TAG = rejects(
     "URDF002",
@@ -19,8 +18,7 @@ EMPTY_DOCUMENT = rejects("URDF003", "An empty file", "The file contains no XML, 
 UNTERMINATED = rejects(
     "URDF004",
     "A comment, CDATA section or declaration without an end",
-    "A comment ends at -->, a CDATA section at ]]>, a declaration at ?>. Without it the rest of the file is part of it."
-    "",
+    "A comment ends at -->, a CDATA section at ]]>, a declaration at ?>. Else the rest of the file is part of it.",
 )
 MISPLACED_DECLARATION = rejects(
     "URDF005",

@@ -60,7 +60,9 @@ def scaled(inertia: Tensor, factor: float) -> list[float]:
 def test_grams_are_recognised() -> None:
     """A mass that is a thousand times too large looks like grams."""
     message = fails(mass_is, arm((1.0,) * 6, mass=500.0), at='value="500.0"', **MASS)
-    assert message == "the mass of 'arm' is 500 kg; it should be 0.5 kg (500 kg too large): is it in grams?"
+    assert message == "the mass of 'arm' is 500 kg; it should be 0.5 kg (499.5 kg too large): is it in grams?"
+    message = fails(mass_is, arm((1.0,) * 6, mass=4000.0), link="arm", mass=4.0, tolerance=0.01)
+    assert message.endswith("it should be 4 kg (3996 kg too large): is it in grams?")
     for mass, is_in_grams in ((496.0, True), (504.0, True), (494.0, False), (506.0, False)):
         message = fails(mass_is, arm((1.0,) * 6, mass=mass), **MASS)
         assert message.endswith("grams?") == is_in_grams

@@ -236,7 +236,7 @@ def test_rubric_commands(tmp_path: Path) -> None:
     assert "(7.5 points and 2.5 bonus points)" in shown
     assert "About box (bonus)\n" in shown
     assert f"About picture\n    {DROPPED}\n" in shown
-    handout = grader("rubric", "show", lab, "--markdown").stdout
+    handout = grader("rubric", "show", lab, "--format", "markdown").stdout
     assert "| 2.5 bonus |" in handout
     assert DROPPED.removesuffix(".") in handout
     assert "box (2.5 bonus points, part robot of small)" in grader("explain", "box", "--rubric", lab).stdout

@@ -67,8 +67,9 @@ def test_no_report_of_grade_or_batch_contains_one(graded_class: Path, tmp_path: 
 def test_those_who_grade_see_them(top: Path) -> None:
     """`rubric show --answers`, `grade --answers` in three formats, and `review` show them, also without the rubric."""
     rubric = with_separate_answers(top)
-    assert f"    Model answer: {SECRET}\n" in grader("rubric", "show", rubric, "--answers").stdout
-    anna = ("grade", top / "class" / "anna", "--rubric", rubric, "--answers", "--format")
+    file = top / "small.answers.toml"
+    assert f"    Model answer: {SECRET}\n" in grader("rubric", "show", rubric, "--answers", file).stdout
+    anna = ("grade", top / "class" / "anna", "--rubric", rubric, "--answers", file, "--format")
     assert SECRET in grader(*anna, "terminal").stdout
     assert f"\n  {SECRET}\n  ```\n" in grader(*anna, "markdown").stdout
     (essay,) = [result for result in json.loads(grader(*anna, "json").stdout)["results"] if result["id"] == "essay"]
@@ -80,11 +81,52 @@ def test_those_who_grade_see_them(top: Path) -> None:
     assert f"Model answer:\n  {SECRET}\n" in done.stdout
 
 
+@pytest.mark.parametrize("command", ["batch", "review"])
+def test_a_file_that_the_rubric_does_not_name(graded_class: Path, tmp_path: Path, command: str) -> None:
+    """`batch --answers` and `review --answers` keep them in the gradebook, where later reviews find them."""
+    top = tmp_path / "small"
+    shutil.copytree(graded_class, top)
+    rubric = with_separate_answers(top)
+    file = (top / "small.answers.toml").rename(tmp_path / "elsewhere.toml")
+    book = ("--gradebook", top / "book.db")
+    assert batch(top, *(("--answers", file) if command == "batch" else ())).returncode == 0
+    if command == "review":
+        before = grader("review", *book, stdin="q\n")
+        assert "Model answer" not in before.stdout
+        assert before.stderr == ""
+        assert SECRET in grader("review", *book, "--answers", file, stdin="q\n").stdout
+    assert SECRET in grader("review", *book, stdin="q\n").stdout
+    assert rubric.exists()
+
+
+def test_the_file_can_be_the_rubric(top: Path) -> None:
+    """`--answers` shows the model answers in the rubric if it names the rubric; a file with mistakes is refused."""
+    rubric = top / "small.toml"
+    rubric.write_text(lab_text(), encoding="utf-8")
+    assert f"    Model answer: {SECRET}\n" in grader("rubric", "show", rubric, "--answers", rubric).stdout
+    (top / "wrong.toml").write_text("esay = ''", encoding="utf-8")
+    for command in (("rubric", "show", rubric), ("grade", top / "class" / "anna", "--rubric", rubric)):
+        assert "has no question 'esay'" in refusal(grader(*command, "--answers", top / "wrong.toml"))
+    assert "has no question 'esay'" in refusal(
+        grader("review", "--gradebook", top / "book.db", "--answers", top / "wrong.toml")
+    )
+
+
+def test_the_file_is_never_overwritten(top: Path) -> None:
+    """`--save` refuses it."""
+    with_separate_answers(top)
+    file = top / "small.answers.toml"
+    anna = ("grade", top / "class" / "anna", "--rubric", top / "small.toml", "--answers", file)
+    assert "the command also reads" in refusal(grader(*anna, "--save", f"json={file}"))
+    assert SECRET in file.read_text(encoding="utf-8")
+
+
 def test_formats_for_students_never_contain_them(top: Path, tmp_path: Path) -> None:
     """Neither Gradescope's results nor a job's summary, which students read, contains them with --answers."""
     summary = tmp_path / "summary"
     shown = grader(
-        "grade", top / "class" / "anna", "--rubric", with_separate_answers(top), "--answers", "--format", "gradescope",
+        "grade", top / "class" / "anna", "--rubric", with_separate_answers(top),
+        "--answers", top / "small.answers.toml", "--format", "gradescope",
         GITHUB_ACTIONS="true", GITHUB_STEP_SUMMARY=str(summary),
     )  # fmt: skip
     assert shown.returncode == 0, shown.stderr
@@ -93,18 +135,17 @@ def test_formats_for_students_never_contain_them(top: Path, tmp_path: Path) -> N
 
 
 def test_the_rubric_works_without_the_file(top: Path) -> None:
-    """The hash and grades are the same, and `rubric check` and `--answers` say that there are no model answers."""
+    """The hash and grades are the same, and `rubric check` says that there are no model answers."""
     rubric = with_separate_answers(top)
     before, shown = load_rubric(str(rubric)).sha256, grader("rubric", "show", rubric)
-    graded = grader("grade", top / "class" / "anna", "--rubric", rubric, "--format", "json")
+    anna = ("grade", top / "class" / "anna", "--rubric", rubric, "--format", "json")
+    graded = grader(*anna)
     (top / "small.answers.toml").unlink()
     assert load_rubric(str(rubric)).sha256 == before
     assert grader("rubric", "show", rubric).stdout == shown.stdout
-    anna = ("grade", top / "class" / "anna", "--rubric", rubric, "--format", "json")
-    assert grader(*anna).stdout == graded.stdout == grader(*anna, "--answers").stdout
+    assert grader(*anna).stdout == graded.stdout
     note = f"grader: small: the answers file {top}/small.answers.toml does not exist, so no model answers are shown\n"
-    for arguments in (("rubric", "check", rubric), ("rubric", "show", rubric, "--answers"), (*anna, "--answers")):
-        assert grader(*arguments).stderr == note
+    assert grader("rubric", "check", rubric).stderr == note
     assert batch(top, "--force").returncode == 0
     done = grader("review", "--gradebook", top / "book.db", stdin="q\n")
     assert (done.returncode, "Model answer" in done.stdout) == (0, False)
@@ -155,14 +196,14 @@ def test_a_symlink_to_another_file_is_not_followed(tmp_path: Path) -> None:
     rubric = with_separate_answers(tmp_path / "lab")
     (tmp_path / "lab" / "small.answers.toml").rename(tmp_path / "elsewhere.toml")
     (tmp_path / "lab" / "small.answers.toml").symlink_to(tmp_path / "elsewhere.toml")
-    assert "must be in the rubric's folder" in refusal(grader("rubric", "show", rubric, "--answers"))
+    assert "must be in the rubric's folder" in refusal(grader("rubric", "check", rubric))
 
 
 def test_lab6_has_a_separate_file() -> None:
     """The file is no rubric, its answers are shown on request, and the rubric that students may have contains none."""
     assert "lab6" in shipped_rubrics()
     assert "lab6.answers" not in shipped_rubrics()
-    shown = grader("rubric", "show", "lab6", "--answers").stdout
+    shown = grader("rubric", "show", "lab6", "--answers", ROOT / "rubrics" / "lab6.answers.toml").stdout
     assert all(answer in " ".join(shown.split()) for answer in OF_LAB6)
     text = " ".join((ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8").split())
     for arguments in (("rubric", "show", "lab6"), ("grade", REFERENCE), ("grade", REFERENCE, "--format", "json")):

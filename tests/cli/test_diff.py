@@ -67,8 +67,8 @@ def test_all_reasons(top: Path) -> None:
         "\nthe rubric changed; manual marks changed (1 student)\n  loads: points 3 to 4\n  extra: added\n"
         "  Dora Fi (dora): 6 to 11 (+5)\n    loads: 3 to 4 (+1)\n    essay: none to 3\n    extra: none to 1\n"
     )
-    assert diff(top, "--to", 2) == "nothing changed\n"
-    assert refusal(grader("diff", top / "book.db", "--from", 9)) == "there is no run 9; the runs are: 1, 2, 3, 4"
+    assert diff(top, "--after", 2) == "nothing changed\n"
+    assert refusal(grader("diff", top / "book.db", "--before", 9)) == "there is no run 9; the runs are: 1, 2, 3, 4"
 
 
 def test_a_renamed_criterion(top: Path) -> None:
@@ -120,9 +120,13 @@ def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
     ]
     back = as_json(top / "book.db", tmp_path / "before.db")["students"]
     assert [change["reasons"] for change in back] == [["manual marks changed"], ["no longer there"]]
-    both = refusal(grader("diff", top / "book.db", tmp_path / "before.db", "--from", 1))
-    assert both == "--from and --to choose runs of one gradebook: give one gradebook, or omit them"
+    both = refusal(grader("diff", top / "book.db", tmp_path / "before.db", "--before", 1))
+    assert both == "--before and --after choose runs of one gradebook: give one gradebook, or omit them"
     assert "there is no gradebook" in refusal(grader("diff", top / "book.db", tmp_path / "none.db"))
+    named = grader("diff", "--gradebook", top / "book.db", tmp_path / "before.db", "--format", "json").stdout
+    assert json.loads(named)["students"] == back
+    for books in ((), [top / "book.db"] * 3, ["--gradebook", *[top / "book.db"] * 3]):
+        assert "give one gradebook, or two to compare" in refusal(grader("diff", *books))
 
 
 def test_one_damaged_zip_is_a_few_lines(tmp_path: Path) -> None:
@@ -240,8 +244,8 @@ def test_an_interrupted_run_is_not_compared_by_default(tmp_path: Path) -> None:
     run = re.compile(r"From run (\d).* to run (\d)")
     for arguments, runs, students in (
         ((), ("1", "3"), {"ash", "birch"}),
-        (("--from", 2), ("2", "3"), {"birch"}),
-        (("--to", 2), ("1", "2"), {"ash"}),
+        (("--before", 2), ("2", "3"), {"birch"}),
+        (("--after", 2), ("1", "2"), {"ash"}),
     ):
         done = grader("diff", tmp_path / "book.db", *arguments)
         assert (found := run.match(done.stdout)), done

@@ -228,7 +228,7 @@ def test_a_file_name_that_is_not_utf_8(tmp_path: Path) -> None:
     for name in (b"anna_101_555_robot.urdf", b"bob_102_556_ro\xffbot.urdf"):
         Path(os.fsdecode(os.path.join(os.fsencode(tmp_path), b"class", name))).write_text(urdf())
     assert batch(tmp_path).returncode == 0
-    done = export(tmp_path, "canvas", "--comments", tmp_path / "feedback.zip")
+    done = export(tmp_path, "canvas", "--feedback", tmp_path / "feedback.zip")
     assert done.returncode == 0, done.stderr
     why = "Canvas would find another student, or none, by the name 'bob_102_556_ro\\udcffbot.urdf'"
     assert f"no feedback for Ben Oh (ben): {why}\n" in done.stderr
@@ -255,24 +255,24 @@ def test_strict_writes_no_feedback(top: Path) -> None:
         ),
         (("canvas", "--excel", "--into", "x.csv"), "export canvas does not take --excel; csv does"),
         (("csv", "--feedback", "f.zip"), "export csv does not take --feedback; moodle and canvas do"),
-        (("blackboard", "--comments", "f.zip"), "export blackboard does not take --feedback; moodle and canvas do"),
+        (("blackboard", "--feedback", "f.zip"), "export blackboard does not take --feedback; moodle and canvas do"),
         (("blackboard",), "export blackboard fills in a file that the LMS exported: give it with --into"),
         (
-            ("canvas", "--comments", "f.zip", "--output", "o.csv"),
+            ("canvas", "--feedback", "f.zip", "--output", "o.csv"),
             "--output is the filled file of the LMS, which needs --into; --feedback names the zip",
         ),
-        (("canvas", "--comments", "{top}/link.zip"), "cannot write {top}/link.zip: it is a symlink"),
-        (("canvas", "--comments", "{top}/class"), "cannot write {top}/class: it is a folder"),
+        (("canvas", "--feedback", "{top}/link.zip"), "cannot write {top}/link.zip: it is a symlink"),
+        (("canvas", "--feedback", "{top}/class"), "cannot write {top}/class: it is a folder"),
         (
-            ("canvas", "--comments", "{top}/roster.csv"),
+            ("canvas", "--feedback", "{top}/roster.csv"),
             "cannot write {top}/roster.csv: it exists and is not a zip; name another file",
         ),
-        (("canvas", "--comments", "{top}/book.db"), "cannot write {top}/book.db: this would overwrite the gradebook"),
+        (("canvas", "--feedback", "{top}/book.db"), "cannot write {top}/book.db: this would overwrite the gradebook"),
         (
             ("moodle", "--feedback", "{top}/roster.csv", "--into", "{top}/roster.csv", "--output", "{top}/o.csv"),
             "cannot write {top}/roster.csv: it is also the file of --into or --output",
         ),
-        (("canvas", "--comments", "{top}/f.zip"), "no student would get a report in Canvas: "),
+        (("canvas", "--feedback", "{top}/f.zip"), "no student would get a report in Canvas: "),
         (
             ("moodle", "--feedback", "{top}/f.zip"),
             "no student would get a report in Moodle: the gradebook has no ",
@@ -293,6 +293,6 @@ def test_a_symlink_in_a_submission_is_not_followed(top: Path) -> None:
     """A folder that a student linked is no place for the zip."""
     assert batch(top).returncode == 0  # the gradebook comes from a copy of the class
     (top / "class" / "anna" / "out").symlink_to(top)
-    why = refusal(export(top, "canvas", "--comments", top / "class" / "anna" / "out" / "f.zip"))
+    why = refusal(export(top, "canvas", "--feedback", top / "class" / "anna" / "out" / "f.zip"))
     assert why.endswith(" is a symlink in the submission; choose a file outside of it")
     assert not (top / "f.zip").exists()

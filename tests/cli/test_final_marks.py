@@ -134,17 +134,17 @@ def test_a_second_opinion_changes_no_grade(top: Path) -> None:
 
 
 def test_comments_are_numbered(top: Path) -> None:
-    """`--comments` lists them by first use, also those that no longer count; `#2` repeats one, and says which."""
-    assert mark(top, "anna", "essay", "--comments").stdout == "no comments yet\n"
+    """`--list-comments` lists them by first use, also those that no longer count; `#2` repeats one, and says which."""
+    assert mark(top, "anna", "essay", "--list-comments").stdout == "no comments yet\n"
     for points, comment in (("1", "one root"), ("2", "two\nroots"), ("3", "one root")):
         mark(top, "anna", "essay", points, "--comment", comment)
     mark(top, "anna", "essay", "3", "--second", "--by", "Lee", "--comment", "blind")
-    assert mark(top, "emil", "essay", "--comments").stdout == "#1 one root\n#2 two roots\n"
+    assert mark(top, "emil", "essay", "--list-comments").stdout == "#1 one root\n#2 two roots\n"
     used = mark(top, "emil", "essay", "2", "--comment", "#2")
     assert used.stderr == "grader: comment #2: two roots\n"
     assert entries(top)[-1][2] == "two\nroots"
     assert refusal(mark(top, "emil", "essay", "2", "--comment", "#3")) == (
-        "essay has no comment #3: `grader mark STUDENT essay --comments` lists the earlier comments"
+        "essay has no comment #3: `grader mark STUDENT essay --list-comments` lists the earlier comments"
     )
     assert mark(top, "emil", "essay", "2", "--comment", "#3 is wrong").returncode == 0
 
@@ -170,7 +170,7 @@ def test_a_repeated_comment_is_printable(top: Path) -> None:
         (("essay", "--second", "--by", "Lee"), "--second needs POINTS"),
         (("total", "1", "--second", "--by", "Lee"), "--second is for one criterion, not for the whole submission"),
         (("total", "--excused", "--second", "--by", "Lee"), "--second cannot be used with --excused"),
-        (("essay", "1", "--comments"), "--comments lists comments and records nothing: use it alone"),
+        (("essay", "1", "--list-comments"), "--list-comments records nothing: use it alone"),
         (("total", "11.5"), "total is worth 0 to 11 points, not 11.5"),
         (("total", "-1"), "total is worth 0 to 11 points, not -1"),
     ],

@@ -1,4 +1,4 @@
-"""`grader rubric show --markdown`: the table of a lab's handout, for students."""
+"""`grader rubric show --format markdown`: the table of a lab's handout, for students."""
 
 import re
 from html import unescape
@@ -85,7 +85,7 @@ def lab(tmp_path: Path) -> Path:
 
 def test_the_table_of_a_file(lab: Path) -> None:
     """Parts, criteria and points; text of the rubric is never markup, and nothing else of the rubric is shown."""
-    done = run(("rubric", "show", lab, "--markdown"))
+    done = run(("rubric", "show", lab, "--format", "markdown"))
     assert (done.returncode, done.stderr) == (0, b"")
     text = done.stdout.decode()
     assert text.replace("| `first` | x | First | 0 |\n", "") == EXPECTED
@@ -96,7 +96,7 @@ def test_the_table_of_a_file(lab: Path) -> None:
 @pytest.mark.parametrize("name", sorted(shipped_rubrics()))
 def test_the_table_of_a_shipped_rubric(name: str) -> None:
     """As HTML, the tables have a row for each criterion with its id, title and points."""
-    text = run(("rubric", "show", name, "--markdown")).stdout.decode()
+    text = run(("rubric", "show", name, "--format", "markdown")).stdout.decode()
     html = cmarkgfm.github_flavored_markdown_to_html(text)
     cells = [
         tuple(unescape(re.sub(r"<[^>]*>|\u2060", "", cell)) for cell in re.findall(r"<td[^>]*>(.*?)</td>", row))
@@ -116,6 +116,6 @@ def test_the_table_of_a_shipped_rubric(name: str) -> None:
 
 def test_answers_are_not_for_students(lab: Path) -> None:
     """Both options together are refused."""
-    done = run(("rubric", "show", lab, "--markdown", "--answers"))
+    done = run(("rubric", "show", lab, "--format", "markdown", "--answers", lab))
     assert (done.returncode, done.stdout) == (2, b"")
-    assert done.stderr == b"grader: --markdown is for students, so it shows no model answers: leave out --answers\n"
+    assert done.stderr == b"grader: --format markdown is for students, so it shows no model answers: omit --answers\n"

@@ -23,8 +23,10 @@ def test_a_copy_works_as_it_is(name: str, tmp_path: Path) -> None:
     checked = grader("rubric", "check", copy)
     assert (checked.returncode, checked.stderr) == (0, "")
     assert checked.stdout.endswith("its reference gets full marks\n")
-    shown = [grader("rubric", "show", which, "--answers").stdout.splitlines()[1:] for which in (name, copy)]
+    shown = [grader("rubric", "show", which).stdout.splitlines()[1:] for which in (name, copy)]
     assert shown[0] == shown[1]
+    answers = sorted(file.name for file in (tmp_path / "mine").glob("*.answers.toml"))
+    assert answers == sorted(file.name for file in (ROOT / "rubrics").glob(f"{name}.answers.toml"))
 
 
 def test_a_copy_grades_like_the_rubric(tmp_path: Path) -> None:

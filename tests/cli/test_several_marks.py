@@ -138,7 +138,7 @@ def test_a_final_mark_and_an_excuse_stay(given: tuple[str], top: Path) -> None:
         (("--missing", "total", "0", "--excused"), "--excused has no POINTS"),
         (("--missing", "total", "0", "--undo"), "--undo takes no POINTS and no other option but --by"),
         (("--missing", "total", "0", "--second"), "--second is for one criterion, not for the whole submission"),
-        (("--missing", "total", "0", "--comments"), "--comments lists comments and records nothing: use it alone"),
+        (("--missing", "total", "0", "--list-comments"), "--list-comments records nothing: use it alone"),
         (("dora",), "name a STUDENT and a CRITERION"),
         ((), "name a STUDENT and a CRITERION"),
         (("--import", "marks.csv", "dora"), "--import takes no argument and no other option but --by"),

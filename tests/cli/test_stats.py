@@ -159,7 +159,7 @@ def sections(path: Path) -> None:
 def test_sections_side_by_side(tmp_path: Path) -> None:
     """Students, grades, lateness, and the criteria that differ most between named sections."""
     sections(tmp_path / "book.db")
-    lines = stats(tmp_path / "book.db", "--by", "section").splitlines()
+    lines = stats(tmp_path / "book.db", "--compare", "section").splitlines()
     assert lines[:5] == [
         "Grades out of 11 (scaled up from the points that need no manual grading)",
         "section       students  graded  mean  median  late  late penalty",
@@ -184,7 +184,7 @@ def test_final_marks_and_excuses_are_not_late(tmp_path: Path, entry: str) -> Non
     assert "1 submission late: 2.2 points lost" in grader("stats", "--gradebook", book).stdout
     assert grader("mark", "birch", "total", entry, "--gradebook", book).returncode == 0
     assert " late: " not in grader("stats", "--gradebook", book).stdout
-    (section,) = (line for line in stats(book, "--by", "section").splitlines() if line.startswith("A "))
+    (section,) = (line for line in stats(book, "--compare", "section").splitlines() if line.startswith("A "))
     assert section.split()[-2:] == ["0", "0"]
 
 
@@ -192,7 +192,7 @@ def test_sections_in_json(tmp_path: Path) -> None:
     """The comparison is added to the data of the class, which are otherwise the same."""
     sections(tmp_path / "book.db")
     book = ("--gradebook", tmp_path / "book.db", "--format", "json")
-    plain, data = (json.loads(grader("stats", *more, *book).stdout) for more in ((), ("--by", "marker")))
+    plain, data = (json.loads(grader("stats", *more, *book).stdout) for more in ((), ("--compare", "marker")))
     jsonschema.validate(data, json.loads(grader("schema", "class").stdout))
     comparison = data.pop("comparison")
     assert data == plain

@@ -2,9 +2,12 @@
 
 import pytest
 
+from grader.grading.grade import grade
 from grader.grading.hints.hinting import hinted
 from grader.report.order import failures
-from tests.samples import SAMPLES
+from grader.submission.opening import read_submission
+from tests.hints.trials import BASES
+from tests.samples import LAB6, SAMPLES
 
 
 @pytest.mark.parametrize("name", ["links-without-joints", "wheel-axes-along-x", "truncated-file", "caster-misnamed"])
@@ -27,3 +30,14 @@ def test_an_earlier_edit_is_named_by_the_entry_that_shows_it(name: str) -> None:
 
 def _names(text: str, criterion: str) -> bool:
     return criterion in text.replace(",", " ").replace(".", " ").split()
+
+
+@pytest.mark.parametrize(("break_", "place"), [("\n      ", "(after line 17)"), ("", "(line 17, column 13)")])
+def test_an_insertion_in_a_line_has_its_column(break_: str, place: str) -> None:
+    """If more of the line follows, "after line 17" would be outside of the visual, where ROS 2 ignores an origin."""
+    before, origin, after = BASES["reference"].text.partition('\n      <origin xyz="0 0 0.1" rpy="0 0 0"/>\n      ')
+    submission = read_submission((before + break_ + after).encode(), identity="test", path="robot.urdf")
+    hints = (result.hint for result in hinted(grade(LAB6, submission), submission, "edit").report.results)
+    messages = [hint.message for hint in hints if hint is not None]
+    assert origin
+    assert f'Insert `<origin xyz="0 0 0.1"/>` {place}.' in messages

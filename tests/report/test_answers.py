@@ -84,5 +84,5 @@ def test_a_model_answer_of_several_lines(tmp_path: Path) -> None:
     """The overview of a rubric shows it in one paragraph, the review line by line, both without signs of Markdown."""
     answer = '"""\n# Roots\n\n- **two** roots\n"""'
     (tmp_path / "small.toml").write_text(lab_text().replace('"Because of the roots."', answer), encoding="utf-8")
-    shown = grader("rubric", "show", tmp_path / "small.toml", "--answers").stdout
+    shown = grader("rubric", "show", tmp_path / "small.toml", "--answers", tmp_path / "small.toml").stdout
     assert "    Model answer: Roots - two roots\n" in shown

@@ -134,9 +134,13 @@ def _save_rubric(book: Gradebook, rubric: Rubric) -> None:
             "is_manual": criterion.check.function in MANUAL_CHECKS,
         }
         book.insert("criterion", own | row, unless_known=True)
-        if criterion.answer:
-            query = "INSERT OR REPLACE INTO model_answer VALUES (?, ?, ?)"
-            book.connection.execute(query, (rubric.sha256, criterion.id, storable(criterion.answer)))
+    save_answers(book, rubric)
+
+
+def save_answers(book: Gradebook, rubric: Rubric) -> None:
+    """Save the model answers that a rubric was loaded with, for those who grade."""
+    answers = [(rubric.sha256, row.id, storable(row.answer)) for row in rubric.criteria if row.answer]
+    book.connection.executemany("INSERT OR REPLACE INTO model_answer VALUES (?, ?, ?)", answers)
 
 
 def _now() -> str:

@@ -85,32 +85,40 @@ def _moves(edits: list[Edit], submission: Submission) -> list[str]:
     if len(edits) != 2 or len(texts) > 1 or {bool(edit.old) for edit in edits} != {True, False}:
         return []
     old, new = sorted(edits, key=lambda edit: not edit.old)
-    return [f"move {_quote(old.old)} ({_where(old, submission)}) to after {_at(new, submission.path)}"]
+    return [f"move {_quote(old.old)} ({_where(old, submission)}) to {_insertion(new, submission)}"]
 
 
 def _change(edit: Edit, submission: Submission) -> str:
-    old, new, where = _quote(edit.old), _quote(edit.new), _where(edit, submission)
+    old, new = _quote(edit.old), _quote(edit.new)
     if edit.renamed:
         return f"rename `{edit.path}` to `{edit.renamed}`"
     if creates(submission, edit):
         return f"create {'' if edit.new else 'the empty file '}`{edit.path}` (--fix writes it)"
     if not edit.old:
-        is_line, is_below = edit.new.endswith("\n"), edit.new.lstrip(" \r").startswith("\n")
-        side = "before" if is_line else "after" if is_below else ""
-        return f"insert {new} ({f'{side} {_at(edit, submission.path)}' if side else f'{where}, column {edit.column}'})"
-    if not edit.new:
-        return f"remove {old} ({where})"
-    return f"change {old} to {new} ({where})"
+        return f"insert {new} ({_insertion(edit, submission)})"
+    where = _where(edit, submission)
+    return f"change {old} to {new} ({where})" if edit.new else f"remove {old} ({where})"
+
+
+def _insertion(edit: Edit, submission: Submission) -> str:
+    """Return the line before or after which a text is inserted, or the column, if more of that line follows."""
+    is_below = edit.new.lstrip(" \r").startswith("\n") and not _line(edit, submission)[edit.column - 1 :].strip()
+    side, at = "before " if edit.new.endswith("\n") else "after " if is_below else "", _at(edit, submission.path)
+    return f"{side}{at}" if side else f"{at}, column {edit.column}"
 
 
 def _where(edit: Edit, submission: Submission) -> str:
     """Return the line of an edit; the column too if its text is there several times."""
-    lines = (content(submission, edit.path) or b"").decode("utf-8", "surrogateescape").split("\n")
-    line = lines[edit.line - 1].removeprefix("\ufeff") if edit.line <= len(lines) else ""
+    line = _line(edit, submission)
     number = line.count(edit.old) if edit.old else 0
     nth = line.count(edit.old, 0, edit.column - 1) + 1
     which = f", column {edit.column}: number {nth} of {number}" if number > 1 else ""
     return f"{_at(edit, submission.path)}{which}"
+
+
+def _line(edit: Edit, submission: Submission) -> str:
+    lines = (content(submission, edit.path) or b"").decode("utf-8", "surrogateescape").split("\n")
+    return lines[edit.line - 1].removeprefix("\ufeff") if edit.line <= len(lines) else ""
 
 
 def _quote(text: str) -> str:

@@ -103,7 +103,8 @@ class Scanner:
         else:
             end = self._skip_to(position, "<!", ">", "<!")
             if end is not None and "doctype" not in self._noted:
-                self._noted.add("doctype")
+                entities = {"text", "reference"} if "[" in text[position:end] else set()  # XML may define them there
+                self._noted |= {"doctype", *entities}
                 message = "ROS 2 skips a DOCTYPE and does not expand the entities that it defines"
                 self._add(catalogue.DOCTYPE, message, position)
         return end

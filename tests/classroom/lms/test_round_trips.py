@@ -241,7 +241,7 @@ def test_moodle_gives_each_student_the_report(kind: str, book: Path, tmp_path: P
 def test_canvas_gives_each_student_the_report(book: Path, tmp_path: Path) -> None:
     """Each gets the own report by the name of the submitted file; a group has one, unless the reports of its members differ."""
     for name in ("a.zip", "b.zip"):
-        done = grader("export", "canvas", "--gradebook", book, "--comments", tmp_path / name)
+        done = grader("export", "canvas", "--gradebook", book, "--feedback", tmp_path / name)
         assert (done.returncode, done.stdout) == (0, ""), done.stderr
     data = (tmp_path / "a.zip").read_bytes()
     assert data == (tmp_path / "b.zip").read_bytes()

@@ -1,0 +1,32 @@
+"""The function of the Python API that no command has: see docs/python.md."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from grader.grading.grade import grade as grade_submission
+from grader.grading.report import Report
+from grader.grading.rubric import Rubric, load_rubric
+from grader.usecases.grade import open_one
+from grader.usecases.hints import add_hints
+from grader.usecases.rubrics import DEFAULT_RUBRIC
+
+
+def grade(path: str | Path, rubric: str | Path | Rubric = DEFAULT_RUBRIC, *, parts: Iterable[str] = ()) -> Report:
+    """Grade one submission: a URDF, a package, a workspace, a repository or an archive. Nothing of it is executed.
+
+    Args:
+        path: The file or folder.
+        rubric: The id of a rubric that comes with the grader, the path of a rubric, or a loaded one.
+        parts: The ids of the parts to grade; default: all that the submission can meet.
+
+    Returns:
+        The report that `grader grade` prints, with its hints.
+
+    Raises:
+        GraderError: The submission cannot be read or is a whole class, or the rubric is broken.
+    """
+    loaded = rubric if isinstance(rubric, Rubric) else load_rubric(rubric)
+    chosen = tuple(loaded.part(name).id for name in parts)
+    submission = open_one(str(path), loaded)
+    report = grade_submission(loaded, submission, chosen)
+    return add_hints(report, submission, None, lambda _: None, is_fixed=False)[0]

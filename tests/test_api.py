@@ -1,0 +1,103 @@
+"""The Python API: docs/python.md lists it, its examples run, and a type checker accepts them."""
+
+import ast
+import contextlib
+import io
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import grader
+from grader.report.formats import Format, render
+from tests.command_line import ROOT, run
+
+PAGE = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+EXAMPLES = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", PAGE, re.DOTALL)
+SAMPLES = ROOT / "submissions"
+
+
+def test_the_stub_and_the_page_name_what_there_is() -> None:
+    """Every public name can be used, is typed in the stub, and is on the page, and these have no other name."""
+    public = {name for name in vars(grader)["_MODULES"] if getattr(grader, name)}
+    stub = ast.parse((ROOT / "grader" / "__init__.pyi").read_text(encoding="utf-8"))
+    typed = {alias.name for node in stub.body if isinstance(node, ast.ImportFrom) for alias in node.names}
+    assert typed == public == {name for name in public if re.search(rf"`{name}\b", PAGE)} | {"Reading", "Rubric"}
+    assert public <= set(dir(grader))
+    with pytest.raises(AttributeError, match="has no attribute 'grad'"):
+        grader.grad  # type: ignore[attr-defined]  # noqa: B018
+
+
+@pytest.mark.parametrize(("code", "shown"), EXAMPLES)
+def test_the_examples_print_what_the_page_shows(code: str, shown: str, tmp_path: Path) -> None:
+    """With a sample as my_robot.urdf."""
+    shutil.copy(SAMPLES / "lidar-offset-in-visual" / "my_robot.urdf", tmp_path)
+    with contextlib.chdir(tmp_path), contextlib.redirect_stdout(io.StringIO()) as printed:
+        exec(code, {})
+    assert printed.getvalue() == shown
+
+
+@pytest.mark.parametrize(
+    "path", ["several-mistakes", "reference", "pictures-only", "lidar-over-the-edge/my_robot.urdf"]
+)
+def test_a_report_is_that_of_the_command(path: str) -> None:
+    """Points, messages and hints, with a rubric by id, by path, and loaded."""
+    printed = json.loads(run(("grade", SAMPLES / path, "--format", "json")).stdout)
+    for rubric in ("lab6", ROOT / "rubrics" / "lab6.toml", grader.load_rubric("lab6")):
+        assert json.loads(render(grader.grade(SAMPLES / path, rubric), Format.JSON)) == printed
+
+
+def test_parts_are_graded_alone() -> None:
+    """As with --part; an unknown one is refused."""
+    report = grader.grade(SAMPLES / "reference", parts=["task2"])
+    assert f"{report.score}/{report.max_score}" == "20/20"
+    with pytest.raises(grader.GraderError, match="has no part 'task9'"):
+        grader.grade(SAMPLES / "reference", parts=["task9"])
+
+
+def test_what_cannot_be_graded_raises_one_error(tmp_path: Path) -> None:
+    """A class, a missing file and a broken rubric."""
+    for name in ("anna_1_2_my_robot.urdf", "ben_3_4_my_robot.urdf"):
+        shutil.copy(SAMPLES / "lidar-missing" / "my_robot.urdf", tmp_path / name)
+    (tmp_path / "lab.toml").write_text("id = 3", encoding="utf-8")
+    with pytest.raises(grader.GraderError, match="download of Canvas"):
+        grader.grade(tmp_path)
+    with pytest.raises(grader.GraderError, match="does not exist"):
+        grader.grade(tmp_path / "none.urdf")
+    with pytest.raises(grader.RubricError):
+        grader.grade(SAMPLES / "reference", tmp_path / "lab.toml")
+
+
+@pytest.mark.parametrize("text", ["", "<robot", "\ud800", '<robot name="a"><link name="b"/></robot>'])
+def test_a_urdf_is_read_from_text(text: str) -> None:
+    """As from its bytes, whatever is in it."""
+    read, same = grader.read_urdf(text), grader.read_urdf(text.encode("utf-8", "surrogatepass"))
+    assert (read.verdict, read.robot, read.problems) == (same.verdict, same.robot, same.problems)
+
+
+def test_the_import_is_light() -> None:
+    """`import grader` loads no other module of the grader and no library."""
+    code = "import sys, grader; print([name for name in sys.modules if name[:7] == 'grader.' or name == 'lxml'])"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True, capture_output=True, text=True)
+    assert done.stdout == "[]\n"
+
+
+@pytest.mark.exhaustive
+def test_a_type_checker_accepts_the_examples(tmp_path: Path) -> None:
+    """`mypy --strict` knows all types as a user has them, and finds a wrong name and a wrong type."""
+    pytest.importorskip("mypy")
+    for number, (code, _) in enumerate(EXAMPLES):
+        (tmp_path / f"example_{number}.py").write_text(code, encoding="utf-8")
+    wrong = 'import grader\ngrader.grade(3)\ngrader.grade("a").scor\nscore: str = grader.grade("a").score\n'
+    (tmp_path / "wrong.py").write_text(wrong, encoding="utf-8")
+    checked = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "--cache-dir", os.devnull, "."]
+    done = subprocess.run(checked, cwd=tmp_path, check=False, capture_output=True, text=True)
+    lines = [re.match(r"(\S+?:\d+): error.*\[([\w-]+)\]$", line) for line in done.stdout.splitlines()]
+    assert [line and line.groups() for line in lines] == [
+        ("wrong.py:2", "arg-type"), ("wrong.py:3", "attr-defined"), ("wrong.py:4", "assignment"),
+    ], done.stdout + done.stderr  # fmt: skip

@@ -1,0 +1,183 @@
+"""Each problem code and each check has a wrong and a right example, in which the grader finds what they show."""
+
+import re
+import runpy
+import tomllib
+from pathlib import Path, PurePath
+from textwrap import indent
+from typing import Any
+
+import pytest
+
+from grader.checks.manual import MANUAL_CHECKS
+from grader.checks.registry import own_checks
+from grader.grading.grade import grade
+from grader.grading.rubric import load_rubric
+from grader.package.problems import package_problems
+from grader.report.rubrics import EVERY_KIND, example_blocks, explanation
+from grader.submission.opening import open_submission
+from grader.submission.submission import Lab, Submission
+from grader.submission.urdf import Read
+from tests.checks.submissions import png
+from tests.command_line import ROOT
+from tests.oracles.check_urdf import check_urdf
+
+FILES = {path.stem: tomllib.loads(path.read_text(encoding="utf-8")) for path in (ROOT / "docs/examples").glob("*.toml")}
+FRAMES = {name: file["frames"] for file in FILES.values() for name in file if name != "frames"}
+ENTRIES: dict[str, Any] = {name: entry for file in FILES.values() for name, entry in file.items() if name != "frames"}
+CODES = {kind.code: kind for kind in EVERY_KIND}
+CHECKS = {check.name: check for check in own_checks()}
+SIDES = pytest.mark.parametrize("side", ["wrong", "right"])
+# What comes with a problem: an assumption, a consequence, another rule that the same mistake breaks.
+ALSO = {
+    "URDF001": "URDF015", "URDF002": "URDF015", "URDF010": "URDF041", "URDF011": "URDF009", "URDF015": "URDF002",
+    "URDF031": "URDF071", "URDF041": "URDF091", "URDF043": "URDF062", "URDF070": "URDF080", "URDF082": "URDF084",
+    "URDF085": "URDF084", "URDF099": "URDF031",
+}  # fmt: skip
+FOLDERS = {".urdf": "urdf", ".xacro": "urdf", ".rviz": "rviz"}
+WHEEL = """\
+<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:macro name="wheel" params="name"><link name="${name}"/></xacro:macro>
+</robot>
+"""
+INSTALLED = """\
+('share/rover/urdf', glob('urdf/*')),
+('share/rover/launch', glob('launch/*')),
+('share/rover/rviz', glob('rviz/*')),
+"""
+
+
+def framed(name: str, text: str, frame: str = "") -> tuple[str, range]:
+    """Return a file with a text in a frame of this example, and the lines of the text."""
+    inside = "\n\n".join(map(repeated, text.strip("\n").split("\n\n")))
+    before, space, after = re.split(r"(?m)^( *)EXAMPLE$", FRAMES[name][frame or frame_of(name)].rstrip("\n"))
+    first = before.count("\n") + 1
+    return before + indent(inside, space) + after, range(first, first + inside.count("\n") + 1)
+
+
+def frame_of(name: str) -> str:
+    """Return the name of the frame of an example."""
+    return str(ENTRIES[name].get("frame", next(iter(FRAMES[name]))))
+
+
+def repeated(paragraph: str) -> str:
+    """Return the lines that a paragraph stands for: each copy has numbers that are one higher."""
+    *block, times = re.split(r"\n *<!-- \.\.\. (\d+) times -->$", paragraph)[:2]
+    if not block:
+        return paragraph
+    return "\n".join(re.sub(r"\d+", lambda it: str(int(it[0]) + copy), block[0]) for copy in range(int(times)))
+
+
+PACKAGE = {
+    "package.xml": framed("PKG001", ENTRIES["PKG001"]["right"])[0],
+    "setup.py": framed("PKG010", INSTALLED)[0],
+    "resource/rover": "",
+    "rover/__init__.py": "",
+    "urdf/rover.urdf": '<robot name="rover"><link name="base_link"/></robot>',
+    "launch/rover.launch.py": framed("LCH001", "")[0],
+    "rviz/rover.rviz": ENTRIES["RVZ003"]["right"],
+}
+
+
+def files_of(name: str, side: str) -> tuple[dict[str, bytes], range]:
+    """Return the files of a submission with one side of an example, its own file first, and the lines of the example there."""
+    text, lines = framed(name, ENTRIES[name][side])
+    file = frame_of(name).rpartition("/")[2]
+    if file == "files.txt":
+        contents = {PurePath(path).suffix: content.encode() for path, content in PACKAGE.items()} | {".png": png()}
+        return {path: contents[PurePath(path).suffix] for path in text.split("\n") if path}, lines
+    encoding = re.match(r'<\?xml .*encoding="([^"]*)"', text)
+    own = text.encode(encoding[1] if encoding else "utf-8")
+    if file.endswith((".urdf", ".md")):
+        return {file: own}, lines
+    folder = "launch" if file.endswith(".launch.py") else FOLDERS.get(PurePath(file).suffix, "")
+    others = {path: content.encode() for path, content in PACKAGE.items() if not (folder == "urdf" == path[:4])}
+    return {str(PurePath("rover", folder, file)): own} | {
+        f"rover/{path}": content for path, content in others.items() if path != str(PurePath(folder, file))
+    } | ({"rover/urdf/wheel.xacro": WHEEL.encode()} if folder == "urdf" else {}), lines
+
+
+def opened(folder: Path, files: dict[str, bytes]) -> Submission:
+    """Return the submission that consists of these files."""
+    for path, data in files.items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_bytes(data)
+    return open_submission(str(folder), Lab("urdf/rover.urdf", "rover"))
+
+
+def test_every_code_and_check_has_an_example() -> None:
+    """No example is missing, and none is of something else; each is short and shows a difference."""
+    assert sorted(ENTRIES) == sorted([*CODES, *CHECKS])
+    for name, entry in ENTRIES.items():
+        assert entry["wrong"] != entry["right"], name
+        for text in (entry["wrong"], entry["right"]):
+            assert text.count("\n") <= 16, name
+            assert max(map(len, text.split("\n"))) <= 110, name
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_path: Path) -> None:
+    """The problem is at a line of the example, and the right file has no problem at all."""
+    for side in ("wrong", "right"):
+        files, lines = files_of(code, side)
+        submission = opened(tmp_path / side, files)
+        found = list(submission.urdf.problems) if isinstance(submission.urdf, Read) else []
+        found += package_problems(submission.package) if submission.package else []
+        if side == "right":
+            assert found == []
+        else:
+            assert any(it.code == code and it.location.line in lines for it in found), (found, lines)
+            assert {it.code for it in found} == {code, ALSO.get(code, code)}
+
+
+@pytest.mark.parametrize("name", CHECKS)
+def test_a_check_fails_what_is_wrong_and_passes_what_is_right(name: str, tmp_path: Path) -> None:
+    """The row of a rubric is the one that `explain` shows; a check that needs manual grading finds nothing or something."""
+    row = next(example_blocks(name))[2]
+    (tmp_path / "lab.toml").write_text(
+        'id = "lab"\ntitle = "Lab"\nurdf = "rover.urdf"\nreference = "right"\n[[part]]\nid = "all"\ntitle = "All"\n'
+        f'[[criterion]]\nid = "only"\npart = "all"\ntitle = "Only"\npoints = 1\n{row}\n'
+    )
+    right, wrong = (opened(tmp_path / side, files_of(name, side)[0]) for side in ("right", "wrong"))
+    rubric = load_rubric(str(tmp_path / "lab.toml"))
+    passed, failed = (grade(rubric, submission).results[0].outcome for submission in (right, wrong))
+    if CHECKS[name].function in MANUAL_CHECKS:
+        assert (passed.status, failed.status) == ("pending", "pending")
+        assert passed.problem == ""
+        assert failed.problem != ""
+    else:
+        assert (passed.status, failed.status) == ("passed", "failed"), (passed, failed)
+
+
+@pytest.mark.exhaustive
+@pytest.mark.parametrize("code", [code for code in CODES if code.startswith("URDF")])
+def test_ros_2_agrees(code: str) -> None:
+    """ROS 2 loads the right file, and of the wrong one no more than the effect of the problem says."""
+    verdicts = ["clean", "degraded", "rejected"]
+    effects = {"loads": "clean", "drops": "degraded"}
+    wrong, right = (next(iter(files_of(code, side)[0].values())) for side in ("wrong", "right"))
+    assert check_urdf(right).verdict == "clean"
+    least = verdicts.index(effects.get(CODES[code].effect, "rejected"))
+    assert verdicts.index(check_urdf(wrong).verdict) >= least
+
+
+def test_an_explanation_shows_the_example() -> None:
+    """`explain` shows a code and a check with their examples, and a criterion with the check to explain."""
+    rubric = load_rubric("lab6")
+    for name in ("URDF063", "axis_along"):
+        text = explanation(name, rubric)
+        for title, _, block in example_blocks(name):
+            assert f"\n{title}:\n\n{indent(block, '    ')}\n" in text
+    assert "Wrong:" not in explanation("lidar-frame", rubric)
+    assert "`grader explain frame_at`" in explanation("lidar-frame", rubric)
+
+
+def test_the_pages_of_a_site_show_every_example() -> None:
+    """docs/make.py makes a section of each code and check, with its example in code blocks."""
+    pages = runpy.run_path(str(ROOT / "docs/make.py"))["catalogue_pages"]()
+    for page, names, heading in (("problems.md", CODES, "## {}"), ("checks.md", CHECKS, "### `{}`")):
+        for name in names:
+            place = pages[page].index(f"\n{heading.format(name)}\n")
+            for title, _, text in example_blocks(name):
+                place = pages[page].find(f"\n{text}\n```\n", place)
+                assert place > 0, (name, title)
