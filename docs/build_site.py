@@ -38,7 +38,7 @@ SETTINGS = {
     "myst_heading_anchors": 4,
     "nitpicky": True,
     "smartquotes": False,  # ROS 2 rejects typographic ones
-    "suppress_warnings": ["misc.highlighting_failure"],  # wrong examples are no XML
+    "suppress_warnings": ["misc.highlighting_failure"],  # the wrong examples are wrong
 }
 _SKIPPED = re.compile(r"^( *)```.*?^\1```$|`[^`\n]+`", re.DOTALL | re.MULTILINE)
 _LINK = re.compile(r"(?<=\]\()(?!https?://|#)([^)#\s]+)")
@@ -48,7 +48,7 @@ def build(output: Path) -> None:
     """Build the site into a folder.
 
     Raises:
-        SphinxError: There is a warning, such as a link without a target or a page in no section.
+        sphinx.errors.SphinxError: There is a warning, such as a link without a target or a page in no section.
     """
     with TemporaryDirectory() as work:
         source = Path(work, "source")
