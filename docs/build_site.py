@@ -37,6 +37,7 @@ SETTINGS = {
     "highlight_language": "text",
     "myst_heading_anchors": 4,
     "nitpicky": True,
+    "smartquotes": False,  # ROS 2 rejects typographic ones
     "suppress_warnings": ["misc.highlighting_failure"],  # the wrong examples are wrong
 }
 _SKIPPED = re.compile(r"^( *)```.*?^\1```$|`[^`\n]+`", re.DOTALL | re.MULTILINE)

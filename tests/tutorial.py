@@ -34,7 +34,7 @@ def follow(page: str, folder: Path) -> tuple[str, list[Step]]:
         kind, _, text = pieces[index].removeprefix("```").removesuffix("```\n").partition("\n")
         name = _NAME.search(pieces[index - 1])
         if kind == "sh":
-            printed, code = _run(text, folder)
+            printed, code = run_commands(text, folder)
             is_shown = pieces[index + 1] == "\n" and pieces[index + 2].startswith("```\n")
             shown = pieces[index + 2][4:-4] if is_shown else None
             if shown is not None and not _matches(shown, printed):
@@ -47,7 +47,7 @@ def follow(page: str, folder: Path) -> tuple[str, list[Step]]:
     return "".join(pieces), steps
 
 
-def _run(commands: str, folder: Path) -> tuple[str, int]:
+def run_commands(commands: str, folder: Path) -> tuple[str, int]:
     """Return what commands print in a folder, and the exit code of the last one."""
     printed, code = "", 0
     for command in commands.splitlines():

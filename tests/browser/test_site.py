@@ -56,8 +56,8 @@ def test_links_and_anchors_lead_somewhere(builder: ModuleType, site: Path) -> No
     links = [(page, link) for page, link in references(site, "//@href | //@src") if not link.startswith("data:")]
     assert len(links) > 1000
     for page, link in links:
-        if link.startswith(builder.REPOSITORY):
-            assert (ROOT / link.removeprefix(f"{builder.REPOSITORY}/").split("/", 2)[2]).exists(), (page.name, link)
+        if file := re.match(rf"{builder.REPOSITORY}/(?:blob|tree)/main/([^#]+)", link):
+            assert (ROOT / file[1]).exists(), (page.name, link)
         elif not urlsplit(link).scheme:
             path, anchor = unquote(urlsplit(link).path), unquote(urlsplit(link).fragment)
             target = site / path if path else page

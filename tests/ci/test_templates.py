@@ -17,7 +17,10 @@ SCHEMAS = {
     "docs/ci/gitlab-ci.yml": "vendor.gitlab-ci",
     ".github/dependabot.yml": "vendor.dependabot",
     ".github/ISSUE_TEMPLATE/config.yml": "vendor.github-issue-config",
-    **{f".github/ISSUE_TEMPLATE/{name}.yml": "vendor.github-issue-forms" for name in ("bug", "feature", "wrong-mark")},
+    **{
+        f".github/ISSUE_TEMPLATE/{name}.yml": "vendor.github-issue-forms"
+        for name in ("bug", "feature", "rubric-question", "wrong-mark")
+    },
     **{str(path.relative_to(ROOT)): "vendor.github-workflows" for path in (ROOT / ".github" / "workflows").iterdir()},
 }
 
