@@ -1,13 +1,14 @@
 """How sure a hint is: whether another edit that the search knows works as well."""
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from grader.edits import Proposal
 from grader.grading.hints.hinting import hinted
-from grader.grading.hints.record import own_edits
+from grader.grading.hints.record import add_stored_hints, hints_to_record, own_edits
 from grader.grading.hints.slots import slots
 from grader.grading.hints.solving import Solver
 from grader.grading.hints.state_edits import StateEdits
@@ -25,11 +26,13 @@ CASES = {
     "lidar-missing": {"only"},
     "right-wheel-mirrored-into-base": {"preferred"},  # the axis may be negated as well, which gains less
     "caster-at-the-back": {"preferred"},  # the shape may be moved as well
+    "caster-too-small": {"preferred"},  # two values together, of which not all pairs are tried
+    "folder-misspelt-in-setup": {"only"},  # the other edit writes the same text
     "tag-not-closed": {"preferred"},  # repairs of the syntax are not all graded
     "setup-syntax-error": {"one of several"},  # the bracket belongs to this line or to the next one
     "several-mistakes": {"only", "preferred"},
 }
-ROBOTS = [name for name, certain in CASES.items() if "only" in certain]
+ROBOTS = ["lidar-buried", "green-0-1-0", "lidar-missing", "several-mistakes"]
 
 
 def hints_of(name: str, *options: str) -> list[dict[str, Any]]:
@@ -45,6 +48,21 @@ def test_real_mistakes(name: str, certain: set[str]) -> None:
         assert {hint["certainty"] for hint in hints_of(name, "--hints", level)} == certain
         shown = " ".join(run(("grade", ROOT / "submissions" / name, "--hints", level)).stdout.decode().split())
         assert ("Other edits are as good." in shown) == ("one of several" in certain)
+
+
+def test_stored_hints_say_no_more_than_the_level() -> None:
+    """Hints of a gradebook keep their certainty below the level edit, but no edit, not in words either."""
+    sample = SAMPLES["several-mistakes"]
+    report = sample.grade()
+    found = hinted(report, sample.open(), "edit").report
+    lowered = replace(report, rubric=replace(report.rubric, hints="cause"))
+    before = [result.hint for result in found.results if result.hint is not None]
+    after = [
+        result.hint for result in add_stored_hints(lowered, hints_to_record(found)).results if result.hint is not None
+    ]
+    assert [hint.certainty for hint in after] == [hint.certainty for hint in before] != []
+    assert all(hint.action for hint in before)
+    assert {(hint.edits, hint.action) for hint in after} == {((), "")}
 
 
 def test_sarif_has_it_in_the_properties_of_a_fix() -> None:

@@ -63,6 +63,7 @@ def test_nothing_is_raised(raw: bytes) -> None:
 
 @examples(30)
 @given(raw=data)
+@example(robot(links("a", "b", "c") + joint("b", "c") + joint("c", "b", "k")).encode())
 def test_every_link_has_a_pose_or_a_reason(raw: bytes) -> None:
     """Every link of a robot that was read has a pose or a reason for having none."""
     read = read_urdf(raw)
