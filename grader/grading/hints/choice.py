@@ -28,7 +28,7 @@ _MAX_FIRST = 3  # edits that make a criterion pass and others fail, which a seco
 _MAX_WRITINGS = 3  # of a change in xacro
 _WAYS = 4  # before numbers are solved for
 _MIN_WHOLE = 4  # criteria that fail where a convention of the robot is wrong
-_MAX_LOOK_STEPS = 150  # for other edits than those that were found, of one submission
+_MAX_LOOK_STEPS = 100  # for other edits than those that were found, of one submission
 _MAX_PLACES = 3  # that a hint changes: more are no single mistake
 
 
@@ -80,10 +80,12 @@ class EditChoice:
         """Return how sure chosen edits are: looks at other places with a budget of its own, after the search."""
         certainties: dict[Proposal, Certainty] = dict.fromkeys(found, "preferred")
         chosen = [proposal for proposal in certainties if proposal in self._chosen]
-        for proposal in chosen:
-            self._trials.left = _MAX_LOOK_STEPS // len(chosen)
+        left = _MAX_LOOK_STEPS
+        for others, proposal in zip(reversed(range(len(chosen))), chosen, strict=True):
+            share = self._trials.left = left // (others + 1)
             with suppress(NoTrialsLeft), self._trials.isolated():
                 certainties[proposal] = self._certainty(*self._chosen[proposal])
+            left -= share - max(self._trials.left, 0)
         return certainties
 
     def _certainty(self, chosen: Proven, options: StateEdits, criterion: Criterion) -> Certainty:
