@@ -7,19 +7,13 @@ edits to a submission.
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from os.path import commonprefix
-from typing import Literal, NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple, Protocol, runtime_checkable
 
 from grader import markup
 from grader.source import Edit, Edits, Location, Source
 
 _SAME = 1e-5  # numbers that differ by less are the same
 _PIECE = re.compile(r"(\s*)(\S+)")
-
-
-# How sure a proven edit is. "only": all other places that the search knows were tried, and no edit there is proven.
-# "one of several": a proven edit of another place gains as much, is as plausible and not larger. "preferred": the best
-# of those that were tried; others gain less, are less plausible or larger, or were not all tried.
-Certainty = Literal["only", "preferred", "one of several"]
 
 
 class Proposal(NamedTuple):

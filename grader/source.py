@@ -4,7 +4,7 @@ import re
 from bisect import bisect_right
 from functools import cached_property
 from itertools import accumulate
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from grader.values import dataclass
 
@@ -43,6 +43,11 @@ class Edit(NamedTuple):
 
 
 Edits = tuple[Edit, ...]
+
+# How sure a proven edit is. "only": all other places that the search knows were tried, and no edit there is proven.
+# "one of several": a proven edit of another place gains as much, is as plausible and not larger. "preferred": the best
+# of those that were tried; others gain less, are less plausible or larger, or were not all tried.
+Certainty = Literal["only", "preferred", "one of several"]
 
 
 class Source:

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader import __version__
 from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome
-from grader.edits import Certainty
 from grader.grading.criterion import Criterion, Evidence
 from grader.grading.graded_submission import Grade, GradedSubmission
 from grader.grading.rubric import Rubric
 from grader.problems import Problem
-from grader.source import Edits, Location
+from grader.source import Certainty, Edits, Location
 from grader.values import dataclass
 
 if TYPE_CHECKING:

@@ -2,7 +2,6 @@
 
 from typing import Any, get_args
 
-from grader.edits import Certainty
 from grader.grading.report import Hint, Report, Result
 from grader.report.json_data import (
     ADJUSTMENT,
@@ -31,6 +30,7 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
+from grader.source import Certainty
 
 _CALL = Record({"macro": (TEXT, lambda call: call[0]), "location": (Record(PLACE), lambda call: call[1])})
 _LOCATION = Record({**PLACE, "calls": Many(_CALL)}, ("calls",))

@@ -7,7 +7,7 @@ from itertools import chain, islice
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.checks.registry import declared
-from grader.edits import Certainty, Proposal
+from grader.edits import Proposal
 from grader.grading.criterion import Criterion
 from grader.grading.hints.slots import slots
 from grader.grading.hints.solving import Solver
@@ -16,7 +16,7 @@ from grader.grading.hints.trials import NoTrialsLeft, State, Trials, as_one, joi
 from grader.robot.edits.conventions import conventions, other_frames
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.pieces import KNOWN, SOLVED, STRUCTURE, Piece
-from grader.source import Edits
+from grader.source import Certainty, Edits
 from grader.submission.editing import edited_files
 from grader.submission.submission import Submission
 
