@@ -68,7 +68,8 @@ def read_roster(path: Path) -> Roster:
     fields = _fields(header, shown) if header else []
     mistakes: list[tuple[int, str]] = []
     read = list(_by_field(rows, fields, mistakes))
-    is_from_canvas = _is_from_canvas(header, fields) and any(row["id"].isdecimal() for _, row in read)
+    has_columns = {"student", "id"} <= set(map(plain_title, header)) and not {"sis", "login"}.isdisjoint(fields)
+    is_from_canvas = has_columns and any(row["id"].isdecimal() for _, row in read)
     if is_from_canvas:  # Canvas has rows of points and comments above the students, and a row of its test student
         read = [(line, row) for line, row in read if row["id"] and row["name"].casefold() not in CANVAS_TEST_STUDENT]
     reader = RowReader(is_from_canvas=is_from_canvas)
@@ -100,10 +101,6 @@ def _by_field(
             continue
         filled = {field: cell for field, cell in reversed(list(zip(fields, cells, strict=False))) if cell}
         yield line, dict.fromkeys(_ALIASES, "") | filled
-
-
-def _is_from_canvas(header: list[str], fields: list[str]) -> bool:
-    return {"student", "id"} <= set(map(plain_title, header)) and not {"sis", "login"}.isdisjoint(fields)
 
 
 def _duplicates(entries: Iterable[tuple[int, RosterEntry]], shown: str) -> list[str]:
