@@ -20,7 +20,7 @@ from grader.robot.inertia import (
     with_volume,
 )
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Geometry, Inertial, Mesh
+from grader.robot.model import INERTIA, Geometry, Inertial, Mesh
 from grader.robot.separation import penetration
 from grader.robot.shapes import Shape, UnknownShape, bounding_radius
 from grader.robot.transforms import IDENTITY, Transform, minus
@@ -38,7 +38,6 @@ _ROUNDING = 0.01
 _CENTRE = 0.002  # metres that a centre of mass may be off
 _CENTRE_SHARE = 0.02  # of the size that a centre of mass may be off
 _OVERLAP = 0.001  # metres; shapes that overlap by less are side by side
-_COMPONENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 def mass_is(robot: Configuration, *, link: str, mass: NonNegative, tolerance: NonNegative) -> Outcome:
@@ -168,7 +167,7 @@ def _components(inertial: Inertial, solid: MassProperties, T_link_inertial: Tran
     expected = turned(solid.inertia, T_link_inertial.inverse().rotation)
     # Of a symmetric matrix that is more off, one number is.
     allowed = tolerance / 100.0 * principal_moments(expected)[2] / 3.0
-    pairs = zip(_COMPONENTS, inertial.inertia, expected, strict=True)
+    pairs = zip(INERTIA, inertial.inertia, expected, strict=True)
     off = [(name, actual, wanted) for name, actual, wanted in pairs if not abs(actual - wanted) <= allowed]
     return ", ".join(f"{name} is {actual:.3g}, not {wanted + 0.0:.3g}" for name, actual, wanted in off)
 
