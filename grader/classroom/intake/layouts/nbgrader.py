@@ -11,8 +11,8 @@ from grader.classroom.intake.layouts.layout import ClassFolder, Submissions
 from grader.classroom.intake.listing import ClassListing
 from grader.classroom.intake.names import utc_time
 from grader.classroom.students import ClassSubmission, Student
-from grader.classroom.tables import plain_title
 from grader.errors import InputError
+from grader.names import folded
 from grader.text import enumerated, printable_path
 
 _SUBMITTED = "submitted"
@@ -45,7 +45,7 @@ def count_students(folder: ClassFolder) -> int:
 def _has_evidence(folder: ClassFolder, start: str) -> bool:
     """Return whether there is a submission with a timestamp, or for the lab."""
     found = _assignments(folder.listing, start)
-    has_lab = any(plain_title(name) == plain_title(folder.rubric_id) for name in found)
+    has_lab = any(folded(name) == folded(folder.rubric_id) for name in found)
     return has_lab or any(
         _TIMESTAMP in folder.listing.children(f"{start}{students[0]}/{name}").files for name, students in found.items()
     )
@@ -99,7 +99,7 @@ def _choose(found: dict[str, list[str]], assignment: str, rubric_id: str) -> str
         if assignment in found:
             return assignment
         raise InputError(f"there is no submission for the assignment {printable_path(assignment)}; there are: {named}")
-    similar = [name for name in found if plain_title(name) == plain_title(rubric_id)]
+    similar = [name for name in found if folded(name) == folded(rubric_id)]
     for names in ([name for name in found if name == rubric_id], similar, list(found)):
         if len(names) == 1:
             return names[0]
