@@ -55,13 +55,11 @@ def draft(solution: Solution, head: Head, path: Path) -> RubricDraft:
             if not fact.otherwise:
                 why = outcome.mistake if outcome.status == "pending" else outcome.message
                 omissions.append(Omission(name, _SEE_BELOW if is_odd else why))
-        kept = ([fact] if name not in lost else _instead(fact) for name, fact in rows.items())
+        kept = (
+            [fact] if name not in lost else [replace(instead, about=fact.about) for instead in fact.otherwise]
+            for name, fact in rows.items()
+        )
         facts = _usable(chain.from_iterable(kept))
-
-
-def _instead(fact: Fact) -> list[Fact]:
-    """Return the facts that count instead of one that the reference does not pass."""
-    return [replace(it, about=fact.about) for it in fact.otherwise]
 
 
 def _losses(rubric: Rubric) -> dict[str, Outcome]:

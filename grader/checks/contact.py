@@ -11,13 +11,11 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Geometry, Mesh
 from grader.robot.separation import penetration
 from grader.robot.shapes import UnknownShape, extent
-from grader.robot.transforms import Transform, Vector
+from grader.robot.transforms import X_AXIS, Z_AXIS, Transform, Vector
 
 ABOUT = dict.fromkeys(("stands_on", "clear_of"), About(picture="outline"))
 
-_AHEAD: Vector = (1.0, 0.0, 0.0)
 _LEFT: Vector = (0.0, 1.0, 0.0)
-_UP: Vector = (0.0, 0.0, 1.0)
 _MAX_PAIRS = 2_000
 
 
@@ -33,8 +31,8 @@ def stands_on(robot: Configuration, *, link: str, on: str, tolerance: NonNegativ
     support = main_visual(robot, on, shape)
     T_on_support = visual_pose(robot, on, support, on)
     placed = [(visual.geometry, visual_pose(robot, link, visual, on)) for visual in visuals(robot, link)]
-    bottom = min(extent(geometry, pose, _UP)[0] for geometry, pose in placed)
-    _, top = extent(support.geometry, T_on_support, _UP)
+    bottom = min(extent(geometry, pose, Z_AXIS)[0] for geometry, pose in placed)
+    _, top = extent(support.geometry, T_on_support, Z_AXIS)
     beyond = _overhang(placed, support.geometry, T_on_support)
     message = f"{link!r} stands on the top of {on!r}, at z = {point((top,))} m in {on!r}"
     touches = within(bottom, top, tolerance)
@@ -82,9 +80,9 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
 
 def _overhang(placed: list[tuple[Geometry, Transform]], support: Geometry, T_on_support: Transform) -> float:
     """Return how far shapes reach beyond the outline of the one below, seen from above, in metres."""
-    directions = [_AHEAD, _LEFT]
+    directions = [X_AXIS, _LEFT]
     if isinstance(support, Box):  # its own edges: it may be turned about the vertical
-        axes = [T_on_support.rotate(axis) for axis in (_AHEAD, _LEFT, _UP)]
+        axes = [T_on_support.rotate(axis) for axis in (X_AXIS, _LEFT, Z_AXIS)]
         directions = sorted(axes, key=lambda axis: abs(axis[2]))[:2]
     beyond = 0.0
     for direction in directions:

@@ -10,7 +10,7 @@ from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.likeness import turn_between
 from grader.robot.shapes import UnknownShape, extent
-from grader.robot.transforms import IDENTITY_ROTATION, Vector
+from grader.robot.transforms import IDENTITY_ROTATION, Z_AXIS
 from grader.source import LazyLocation
 from grader.text import enumerated
 
@@ -19,8 +19,6 @@ ABOUT = {
     "bottoms_at_height": About(picture="outline"),
     "under_the_base": About(picture="frame"),
 }
-
-_UP: Vector = (0.0, 0.0, 1.0)
 
 
 def bottom_at_height(
@@ -43,9 +41,9 @@ def bottom_at_height(
     """
     visual = main_visual(robot, link, shape)
     if shape == "any" or shape_name(visual.geometry) != f"a {shape}":
-        lowest, _ = span(robot, link, relative_to, _UP)
+        lowest, _ = span(robot, link, relative_to, Z_AXIS)
     else:
-        lowest, _ = extent(visual.geometry, visual_pose(robot, link, visual, relative_to), _UP)
+        lowest, _ = extent(visual.geometry, visual_pose(robot, link, visual, relative_to), Z_AXIS)
     what = f"the bottom of {link!r} in the frame {relative_to!r} is at z ="
     at = place(visual.origin.location, "xyz") or visual.location
     return measured(what, lowest, height, tolerance, sides=("too high", "too low"), at=at)
@@ -63,7 +61,7 @@ def bottoms_at_height(
         tolerance: How far each height may be off, in metres.
     """
     robot.link(relative_to)
-    lowest, missing = _measure_each(links, lambda link: span(robot, link, relative_to, _UP)[0])
+    lowest, missing = _measure_each(links, lambda link: span(robot, link, relative_to, Z_AXIS)[0])
     wrong = {link: value for link, value in lowest.items() if not within(value, height, tolerance)}
     actual = tuple(lowest.values())
     if not wrong and missing is not None:
@@ -92,7 +90,7 @@ def under_the_base(
     T_link_base = robot.pose(base, relative_to=link)
     x, y, _ = T_link_base.translation
     turned = turn_between(T_link_base.rotation, IDENTITY_ROTATION)
-    lowest, missing = _measure_each(wheels, lambda wheel: span(robot, wheel, link, _UP)[0])
+    lowest, missing = _measure_each(wheels, lambda wheel: span(robot, wheel, link, Z_AXIS)[0])
     off = {wheel: value for wheel, value in lowest.items() if not within(value, 0.0, tolerance)}
     faults = []
     if not (within(x, 0.0, tolerance) and within(y, 0.0, tolerance)):

@@ -20,7 +20,7 @@ from grader.robot.inertia import (
     with_volume,
 )
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Geometry, Inertial, Link, Mesh
+from grader.robot.model import INERTIA, Geometry, Inertial, Mesh
 from grader.robot.separation import penetration
 from grader.robot.shapes import Shape, UnknownShape, bounding_radius
 from grader.robot.transforms import IDENTITY, Transform, minus
@@ -38,7 +38,6 @@ _ROUNDING = 0.01
 _CENTRE = 0.002  # metres that a centre of mass may be off
 _CENTRE_SHARE = 0.02  # of the size that a centre of mass may be off
 _OVERLAP = 0.001  # metres; shapes that overlap by less are side by side
-_COMPONENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 def mass_is(robot: Configuration, *, link: str, mass: NonNegative, tolerance: NonNegative) -> Outcome:
@@ -103,7 +102,7 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
         at = at if wrong else place(inertial.origin.location, "xyz") or place(inertial.location)
         centres = f"at {point(given.centre)} m; it should be at {point(solid.centre)} m"
         wrong.append(f"the centre of mass of {link!r} is {centres} in {link!r} ({in_millimetres(distance)} off)")
-    if wrong and _overlapping(shapes):
+    if wrong and any(penetration(*one, *other, _OVERLAP) > 0.0 for one, other in combinations(shapes, 2)):
         reason = f"the {what} of a link overlap, so their solid is not known"
         raise NotDecided(f"{'; '.join(wrong)}, but the {what} overlap", reason)
     message = (
@@ -153,7 +152,8 @@ def _solid_shapes(robot: Configuration, link: str) -> tuple[str, list[tuple[Shap
         shapes = [(_measurable(geometry), placed_by(IDENTITY, origin)) for geometry, origin in placed]
         if shapes:
             return word + "s" * (len(shapes) > 1), shapes
-    raise _without_volume(found)
+    message = f"link {link!r} has no visual or collision shape with a volume"
+    raise MissingElement("visual", link, message=message, location=place(found.location))
 
 
 def _measurable(geometry: Geometry) -> Shape:
@@ -162,19 +162,12 @@ def _measurable(geometry: Geometry) -> Shape:
     return geometry
 
 
-def _without_volume(link: Link) -> MissingElement:
-    """Return the error for a link without any shape that has a volume."""
-    message = f"link {link.name!r} has no visual or collision shape with a volume"
-    return MissingElement("visual", link.name, message=message, location=place(link.location))
-
-
 def _components(inertial: Inertial, solid: MassProperties, T_link_inertial: Transform, tolerance: float) -> str:
     """Return which numbers of an <inertia> are off, along the axes in which it is given."""
     expected = turned(solid.inertia, T_link_inertial.inverse().rotation)
-    allowed = (
-        tolerance / 100.0 * principal_moments(expected)[2] / 3.0
-    )  # of a symmetric matrix that is more off, one number is
-    pairs = zip(_COMPONENTS, inertial.inertia, expected, strict=True)
+    # Of a symmetric matrix that is more off, one number is.
+    allowed = tolerance / 100.0 * principal_moments(expected)[2] / 3.0
+    pairs = zip(INERTIA, inertial.inertia, expected, strict=True)
     off = [(name, actual, wanted) for name, actual, wanted in pairs if not abs(actual - wanted) <= allowed]
     return ", ".join(f"{name} is {actual:.3g}, not {wanted + 0.0:.3g}" for name, actual, wanted in off)
 
@@ -183,7 +176,3 @@ def _size(shapes: Sequence[tuple[Shape, Transform]]) -> float:
     """Return an upper bound on the distance of two points of shapes, in metres: of a single shape, that distance."""
     pairs = combinations_with_replacement([(pose.translation, bounding_radius(shape)) for shape, pose in shapes], 2)
     return max(hypot(*minus(one, other)) + radius + reach for (one, radius), (other, reach) in pairs)
-
-
-def _overlapping(shapes: Sequence[tuple[Shape, Transform]]) -> bool:
-    return any(penetration(*one, *other, _OVERLAP) > 0.0 for one, other in combinations(shapes, 2))

@@ -12,7 +12,7 @@ from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration, last_moving
 from grader.robot.model import Cylinder, Joint
 from grader.robot.shapes import extent, farthest, volume
-from grader.robot.transforms import Vector, cross, degrees_between, dot, minus, unit
+from grader.robot.transforms import Z_AXIS, Vector, cross, degrees_between, dot, minus, unit
 
 ABOUT = {
     "rolls_forward": About(picture="wheel"),
@@ -24,7 +24,6 @@ _SMALL_ANGLE = 1e-3  # radians
 _STANDSTILL = 1e-9  # metres
 # The smallest relative motion of lowest and highest point, as a share of that of a level wheel: 45 degrees off level.
 _ROLLING = 0.7
-_Z_AXIS = (0.0, 0.0, 1.0)
 
 
 def rolls_forward(
@@ -105,7 +104,7 @@ def axis_along(
     pose = robot.pose(link, relative_to=relative_to)
     actual, expected = pose.rotate(unit(axis) or axis), unit(direction) or direction
     off = degrees_between(actual, expected)
-    names = {(1.0, 0.0, 0.0): "the x axis", (0.0, 1.0, 0.0): "the y axis", _Z_AXIS: "the z axis"}
+    names = {(1.0, 0.0, 0.0): "the x axis", (0.0, 1.0, 0.0): "the y axis", Z_AXIS: "the z axis"}
     name = names.get(axis, f"the direction {point(axis)}")
     message = f"{name} of the frame {link!r} points along {point(actual)} in {relative_to!r}"
     fine = off <= tolerance + SLACK

@@ -10,7 +10,7 @@ from grader.robot.kinematics import Configuration
 from grader.robot.likeness import turn_between
 from grader.robot.model import Mesh, Visual
 from grader.robot.shapes import UnknownShape
-from grader.robot.transforms import Vector, dot, minus, rotation_from_rpy, unit
+from grader.robot.transforms import Z_AXIS, Vector, dot, minus, rotation_from_rpy, unit
 from grader.source import LazyLocation
 
 _METRES_AND_DEGREES = Usual({"tolerance": 0.002, "angle": 1.0}, "metres, degrees")
@@ -22,7 +22,6 @@ ABOUT = {
 }
 
 _ALONG = 0.9  # the least cosine of the angle between two vectors that count as one direction
-_UP: Vector = (0.0, 0.0, 1.0)
 _NOT_TURNED: Vector = (0.0, 0.0, 0.0)
 _ANY_ANGLE = 180.0  # degrees: no two orientations are farther apart
 _ANY_AXIS = 90.0  # degrees: no two lines are farther apart
@@ -66,7 +65,7 @@ def centre_at(
     tolerance: NonNegative,
     rigid: bool = False,
     shape: ShapeName = "any",
-    axis: Direction = _UP,
+    axis: Direction = Z_AXIS,
     angle: NonNegative = _ANY_AXIS,
 ) -> Outcome:
     """The centre of a link's visual is at a point in another link's frame (m); if rigid, only fixed joints are between.
@@ -93,7 +92,7 @@ def centre_at(
     placed = measured_point(f"the centre of the visual of {link!r}", actual, xyz, tolerance, relative_to, at=at)
     if angle >= _ANY_AXIS:
         return placed
-    cosine = abs(dot(pose.rotate(_UP), unit(axis) or axis))
+    cosine = abs(dot(pose.rotate(Z_AXIS), unit(axis) or axis))
     return _with_orientation(placed, degrees(acos(min(1.0, cosine))), angle, at)
 
 

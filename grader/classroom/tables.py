@@ -113,11 +113,6 @@ def rows_with_lines(data: bytes, shown: str) -> Iterator[tuple[int, list[str]]]:
         line += 1 + sum(len(cell.raw.splitlines()) - 1 for cell in row.cells if cell.raw)
 
 
-def plain_title(title: str) -> str:
-    """Return the letters and digits of a column's title, in lower case."""
-    return "".join(letter for letter in title.casefold() if letter.isalnum())
-
-
 def _decode(data: bytes, shown: str) -> tuple[bytes, str, str]:
     bom, encoding = next((pair for pair in _BOMS if data.startswith(pair[0])), (b"", ""))
     for candidate in (encoding,) if encoding else ("utf-8", "windows-1252"):

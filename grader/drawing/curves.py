@@ -33,7 +33,6 @@ def _view(name: str, origin: str, rotation: Rotation) -> View:
 TOP = _view("top", "+z", (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0))
 SIDE = _view("side", "-y", (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -1.0, 0.0))
 FRONT = _view("front", "+x", (0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0))
-AXES: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 VIEWER: Vector = (0.0, 0.0, 1.0)  # the direction to the viewer, in a view
 
 

@@ -13,7 +13,7 @@ from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Mesh, Sphere, Visual
 from grader.robot.shapes import Shape, UnknownShape, extent, is_empty
-from grader.robot.transforms import Transform, Vector
+from grader.robot.transforms import Z_AXIS, Transform, Vector
 from grader.text import counted, enumerated, quoted
 from grader.values import dataclass
 
@@ -24,7 +24,6 @@ _MAX_COORDINATE = 1e4  # metres
 _MAX_NAMED = 4
 _WITHOUT_MATERIAL: Rgba = (1.0, 0.0, 0.0, 1.0)  # RViz shows such a shape in red
 _LEVEL = 0.005  # metres: shapes whose bottoms differ by less stand on the same ground
-_UP: Vector = (0.0, 0.0, 1.0)
 _MESHES, _UNKNOWN = "mesh files are not opened", "the size or place of a shape is zero, too large or not known"
 _NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
 
@@ -168,7 +167,7 @@ def _wheels(scene: Scene, meant: Collection[str]) -> Iterator[Wheel]:
     robot = scene.robot
     bottoms: dict[str, float] = {}
     for body in scene.bodies:
-        bottom, _ = extent(body.shape, scene.pose(body), _UP)
+        bottom, _ = extent(body.shape, scene.pose(body), Z_AXIS)
         bottoms[body.link] = min(bottom, bottoms.get(body.link, inf))
     ground = min(bottoms.values(), default=0.0) + _LEVEL
     for joint in robot.parent_joints.values():
@@ -195,7 +194,7 @@ def _wheel(scene: Scene, link: str) -> Iterator[Wheel]:
         if link not in scene.poses:
             return
         centre = placed_by(scene.poses[link], main_visual(robot, link).origin).translation
-        travel, _ = travel_of(robot, link, joint, frame, _UP)
+        travel, _ = travel_of(robot, link, joint, frame, Z_AXIS)
     except _NOT_KNOWN:
         return
     if is_drawable(centre):

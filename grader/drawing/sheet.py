@@ -9,11 +9,11 @@ from itertools import islice
 from math import floor, log10
 from typing import NamedTuple
 
-from grader.drawing.curves import AXES, FRONT, SIDE, TOP, Curve, Extents, View, outline
+from grader.drawing.curves import FRONT, SIDE, TOP, Curve, Extents, View, outline
 from grader.drawing.picture import Picture
 from grader.drawing.scene import Body, Scene
 from grader.robot.shapes import extent
-from grader.robot.transforms import Transform, Vector
+from grader.robot.transforms import AXES, Transform, Vector
 
 _TRANSPARENT = 0.05  # a body with less alpha hides nothing
 _SAME = 1e-6  # metres

@@ -72,7 +72,7 @@ def _of_criterion(name: str, old: Criterion | None, new: Criterion | None) -> It
         return
     if old.adjustment != new.adjustment:
         yield RubricChange(name, "adjust", old.adjustment, new.adjustment)
-    if old.points != new.points and not any(_is_dropped(row) for row in (old, new)):
+    if old.points != new.points and not any(row.adjustment is not None and not row.is_given for row in (old, new)):
         yield RubricChange(name, "points", old.points, new.points)
     yield from _different(name, _KEYS_OF_CRITERION, old, new)
     arguments = {**old.arguments, **new.arguments}
@@ -81,10 +81,6 @@ def _of_criterion(name: str, old: Criterion | None, new: Criterion | None) -> It
 
 def _argument(key: str, criterion: Criterion) -> object:
     return criterion.arguments.get(key)
-
-
-def _is_dropped(criterion: Criterion) -> bool:
-    return criterion.adjustment is not None and not criterion.is_given
 
 
 def _different(name: str, keys: Mapping[str, _Values], old: object, new: object) -> Iterator[RubricChange]:

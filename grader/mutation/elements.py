@@ -5,7 +5,7 @@ The text is read here, not by the grader's own reader: a fault of the reader mus
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import NamedTuple
 
 _TOKEN = re.compile(
@@ -62,7 +62,10 @@ def elements(text: str) -> list[Element]:
         if token[1]:
             parent = open_ones[-1] if open_ones else -1
             tags = (*(found[parent].tags if parent >= 0 else ()), token[1])
-            attributes = tuple(_attributes(text, token))
+            attributes = tuple(
+                AttributeSpan(it[1], it.start(1), it.span(2 if it[2] is not None else 3), it.end())
+                for it in _ATTRIBUTE.finditer(text, token.start(), token.end())
+            )
             found.append(Element(token[1], token.start(), token.end(), token.end(), parent, attributes, "", tags))
             if not token[0].endswith("/>"):
                 open_ones.append(len(found) - 1)
@@ -86,11 +89,6 @@ def names_of_tag(text: str, found: Iterable[Element], tag: str) -> list[str]:
     """Return the names of the elements with a tag, each once."""
     own = (attribute for element in found if element.tag == tag for attribute in element.attributes)
     return list(dict.fromkeys(text[slice(*attribute.value)] for attribute in own if attribute.name == "name"))
-
-
-def _attributes(text: str, token: re.Match[str]) -> Iterator[AttributeSpan]:
-    for found in _ATTRIBUTE.finditer(text, token.start(), token.end()):
-        yield AttributeSpan(found[1], found.start(1), found.span(2 if found[2] is not None else 3), found.end())
 
 
 def _label(text: str, found: list[Element]) -> list[Element]:

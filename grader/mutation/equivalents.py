@@ -126,9 +126,10 @@ class Equivalents:
     def _make(self, family: str, number: int) -> Equivalent | None:
         random = Random(f"{self._seed} {family} {number}")
         tree = copied(self._root)
-        before = _plain(tree)
+        before = Style(Random(0)).text(tree)
         names = [family] if family != SEVERAL else self._several(random)
-        done = [name for name in names if name not in _STEPS or _STEPS[name](random, tree, self._around)]
+        rules = RewritingRules(self._named, self._may_move)
+        done = [name for name in names if name not in _STEPS or _STEPS[name](random, tree, rules)]
         text = self._restyle(random, tree, done)
         for name in [name for name in done if name in _AS_XACRO]:
             rewritten = _AS_XACRO[name](random, text)
@@ -150,10 +151,6 @@ class Equivalents:
             return Style(random, blanks, "\"'", _SPELLING in families, comments=True, orders=True).text(tree)
         return Style(random, numbers=_SPELLING in families).text(tree)
 
-    @property
-    def _around(self) -> RewritingRules:
-        return RewritingRules(self._named, self._may_move)
-
     def _may_move(self, link: str) -> bool:
         """Return whether nothing refers to the frame of a link; @root, @tip and @moved:2 name links by structure."""
         parents = [joint for joint in self._robot.joints if joint.child == link]
@@ -161,7 +158,3 @@ class Equivalents:
             return False
         is_tip = all(joint.parent != link for joint in self._robot.joints)
         return not self._is_structural or (parents[0].type == "fixed" and not is_tip)
-
-
-def _plain(tree: Element) -> str:
-    return Style(Random(0)).text(tree)

@@ -4,12 +4,11 @@ from collections.abc import Iterable, Iterator
 from math import hypot
 from typing import Any
 
-from grader.drawing.curves import AXES
 from grader.drawing.labels import AROUND, Labels
 from grader.drawing.picture import Picture
 from grader.drawing.sheet import Panel, Place, project
 from grader.report.svg_elements import circle, path_data, put, segments
-from grader.robot.transforms import Transform, Vector
+from grader.robot.transforms import AXES, Transform, Vector
 
 _AXIS = 20.0  # pixels
 _LONG_AXIS = 32.0  # of a frame of the reference, so that it is visible beside the robot's own

@@ -44,7 +44,8 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
     lines += _losses("These samples differ from their expected.toml:", test.samples.different if test.samples else ())
     lines += _losses("On these mutants a check is faulty:", test.mutants.faults)
     lines += [*_survivors(test.mutants.survivors), *_idle(test.mutants), *_near(test.mutants.margins)]
-    lines += ["", f"Mutation score: {_percent(test.mutants)} %"]
+    percent = int(test.mutants.score * 10) / 10  # rounded down: 100 only where nothing survived
+    lines += ["", f"Mutation score: {percent:g} %"]
     text = "\n".join(folded for line in lines for folded in _fold(printable(line), width))
     return without_commands(f"{text}\n")
 
@@ -57,11 +58,6 @@ def _fold(line: str, width: int) -> list[str]:
     if line.lstrip()[:1] in "+-@" or len(indent) > _DEEPEST:
         return [f"{line[: width - 3]}..."]
     return textwrap.wrap(line, width, subsequent_indent=indent + "  ", break_long_words=False, break_on_hyphens=False)
-
-
-def _percent(found: MutantResults) -> str:
-    """Return the score, rounded down: 100 only where nothing survived."""
-    return f"{int(found.score * 10) / 10:g}"
 
 
 def _counts(test: RubricTest) -> Iterator[str]:

@@ -6,7 +6,7 @@ from grader.robot import catalogue
 from grader.robot.diagnostics import FULL_TURN, ElementReader, Problems, first_children
 from grader.robot.joint_elements import Calibration, Dynamics, Limit, Mimic, SafetyController
 from grader.robot.model import Joint, Robot
-from grader.robot.transforms import Vector, unit
+from grader.robot.transforms import X_AXIS, Vector, unit
 from grader.text import quoted
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import JOINT_TYPES
@@ -14,7 +14,6 @@ from grader.xml.urdf_format import JOINT_TYPES
 MOVING_TYPES = ("continuous", "revolute", "prismatic", "planar", "floating")
 _WITH_LIMIT = ("revolute", "prismatic")
 _REJECTED = "ROS 2 rejects the file"
-_X_AXIS = (1.0, 0.0, 0.0)
 _MAX_NAMED = 12  # links in a message
 _MAX_STEPS = 20  # of a loop in a message
 _MAX_DEGREES = 720.0  # more is no range in degrees, but a large number that stands for "no limit"
@@ -84,12 +83,12 @@ def _link_name(element: Element, inside: dict[str, Element], role: str, label: s
 
 def _read_axis(element: Element, axis: Element | None, kind: str, problems: Problems) -> Vector | None:
     if kind in ("fixed", "floating"):
-        return _X_AXIS  # urdfdom ignores it, well-formed or not
+        return X_AXIS  # urdfdom ignores it, well-formed or not
     if axis is None:
         if kind in MOVING_TYPES:
             message = "this joint has no <axis>; ROS 2 uses the x axis, 1 0 0"
             problems.add(catalogue.DEFAULT_AXIS, message, element)
-        return _X_AXIS
+        return X_AXIS
     reader = ElementReader(problems, catalogue.BAD_AXIS)
     direction = reader.vector(axis, "xyz")
     if reader.failed:

@@ -43,11 +43,6 @@ class Configuration:
         self._frames = Frames(robot, self.parent_joints, self.positions)
         self._relative: dict[tuple[str, str | None], Transform] = {}
 
-    @property
-    def holding(self) -> Mapping[str, Joint]:
-        """The parent joints, by the name that plug-in checks know."""
-        return self.parent_joints
-
     def link(self, name: str) -> Link:
         """Return the link of this name; raises MissingElement."""
         return self.robot.link(name)

@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape
-from grader.robot.transforms import Rotation, Transform, Vector, dot, minus
+from grader.robot.transforms import AXES, Rotation, Transform, Vector, dot, minus
 
-_AXES: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _CORNERS = tuple(product((1.0,), (1.0, -1.0), (1.0, -1.0)))  # the signs of four; the others are opposite to these
 
 
@@ -55,10 +54,10 @@ def ways(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> Iterator[tup
             yield _off(a.radius, b.radius), 0.0, 0.0
         case Cylinder(), Cylinder():
             size = max(_off(a.radius, b.radius), _off(a.length, b.length))
-            lean = _between(T_w_a.rotate(_AXES[2]), T_w_b.rotate(_AXES[2]))
+            lean = _between(T_w_a.rotate(AXES[2]), T_w_b.rotate(AXES[2]))
             yield size, hypot(*lean) * hypot(a.radius, a.length / 2.0), _angle(lean)
         case Box(), Box():
-            ours, theirs = ([T.rotate(axis) for axis in _AXES] for T in (T_w_a, T_w_b))
+            ours, theirs = ([T.rotate(axis) for axis in AXES] for T in (T_w_a, T_w_b))
             for order in permutations(range(3)):
                 size = max(_off(edge, b.size[other]) for edge, other in zip(a.size, order, strict=True))
                 leans = [_between(axis, theirs[other]) for axis, other in zip(ours, order, strict=True)]

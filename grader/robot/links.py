@@ -6,12 +6,11 @@ The colour is that of `parseMaterial` in `link.cpp` and of `assignMaterial` in `
 from grader.robot import catalogue
 from grader.robot.diagnostics import ElementReader, Problems, first_children
 from grader.robot.materials import Materials
-from grader.robot.model import Box, Collision, Cylinder, Geometry, Inertial, Link, Mesh, Sphere, Visual
+from grader.robot.model import INERTIA, Box, Collision, Cylinder, Geometry, Inertial, Link, Mesh, Sphere, Visual
 from grader.source import LazyLocation
 from grader.xml.parsing import Element
 
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
-_INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 # What is lost with an element that has a defect.
 _INERTIAL_LOST = "ROS 2 drops all visuals and collisions of link {}"
 _VISUAL_LOST = "ROS 2 drops this visual of link {}, the visuals after it and all collisions"
@@ -46,7 +45,7 @@ def _read_inertial(element: Element, problems: Problems, link: str) -> Inertial 
     inside = first_children(element)
     origin = reader.origin(inside.get("origin"))
     values: list[float] = []
-    for tag, attributes in (("mass", ("value",)), ("inertia", _INERTIA)):
+    for tag, attributes in (("mass", ("value",)), ("inertia", INERTIA)):
         if tag in inside:
             values += [reader.number(inside[tag], attribute) for attribute in attributes]
         else:

@@ -16,6 +16,7 @@ from grader.text import quoted
 from grader.values import dataclass
 
 Vector = tuple[float, float, float]
+INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")  # the components, in the order of Inertial.inertia
 
 
 class UnresolvedPart(NamedTuple):

@@ -13,9 +13,10 @@ if TYPE_CHECKING:
     import numpy as np
 
 Vector = tuple[float, float, float]
+AXES: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+X_AXIS, _, Z_AXIS = AXES
 Rotation = tuple[float, float, float, float, float, float, float, float, float]  # a 3 x 3 matrix, row by row
 
-_AXES = frozenset({(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)})
 IDENTITY_ROTATION: Rotation = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 
@@ -137,7 +138,7 @@ def rotation_about(axis: Vector, angle: float) -> Rotation:
 
 def unit(vector: Vector) -> Vector | None:
     """Return the unit vector of a direction, or None for length zero. Safe from overflow and underflow."""
-    if vector in _AXES:  # the most frequent case
+    if vector in AXES:  # the most frequent case
         return vector
     largest = max(abs(vector[0]), abs(vector[1]), abs(vector[2]))
     if not 0.0 < largest < inf:

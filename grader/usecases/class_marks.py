@@ -11,10 +11,11 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.lateness import read_time
 from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.classroom.tables import SIZE_LIMIT, plain_title, rows_with_lines
+from grader.classroom.tables import SIZE_LIMIT, rows_with_lines
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import TOTAL
+from grader.names import folded
 from grader.text import counted, enumerated, first_lines, printable, printable_path
 from grader.usecases.manual_marks import MarkRequest, entry_of, give_mark, key_and_name, marked_criterion
 from grader.usecases.terminal import Warn
@@ -37,7 +38,7 @@ def import_marks(gradebook: Path, file: Path, by: str) -> str:
 def _requests(file: Path, shown: str) -> Iterator[tuple[int, MarkRequest]]:
     """Yield the line of each row with points or a comment, and what it asks for."""
     rows = rows_with_lines(read_capped(file, SIZE_LIMIT, advice=""), shown)
-    titles = [plain_title(title) for title in next(rows, (1, []))[1]]
+    titles = [folded(title) for title in next(rows, (1, []))[1]]
     if not {*_COLUMNS[:2]} <= {*titles} or {*_COLUMNS[2:]}.isdisjoint(titles):
         raise InputError(f"the first line of {shown} must name the columns {enumerated(_COLUMNS)}")
     for line, cells in rows:

@@ -79,7 +79,7 @@ class Candidates:
                 yield kind, other
         if len({use.new for use in uses}) == 1 and fits(plain := _plain(site, uses[0].new)):
             yield _LITERAL if "$" in text else NUMBER, plain
-        for slot in _numbers(text):
+        for slot in _NUMBER.finditer(text):
             is_plain = not any(it.start() < slot.start() < it.end() for it in EXPRESSION.finditer(text))
             solutions = ((digits, other) for digits, other in self._solutions(site, root, slot, uses) if fits(other))
             for digits, other in islice(solutions, 1):
@@ -157,11 +157,6 @@ def near(text: str | None, wanted: str, tolerance: float = _TOLERANCE) -> bool:
 def is_equal_value(one: str, other: str) -> bool:
     """Return whether two texts are equal, or their numbers nearly are."""
     return near(one, other, 1e-9)
-
-
-def _numbers(text: str) -> list[re.Match[str]]:
-    """Return the numbers in a text, those outside of expressions with their signs."""
-    return list(_NUMBER.finditer(text))
 
 
 def _with_number(text: str, slot: re.Match[str], number: str) -> str:

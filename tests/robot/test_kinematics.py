@@ -72,12 +72,6 @@ def near(one: Transform, other: Transform, within: float = 1e-9) -> bool:
 # --- Joints -----------------------------------------------------------------------------------------------------------
 
 
-def test_plugin_checks_know_parent_joints_as_holding() -> None:
-    """The older name gives the same joints."""
-    configuration = Configuration(robot(joint("ab")))
-    assert configuration.holding is configuration.parent_joints
-
-
 @given(kind=st.sampled_from(("continuous", "revolute")), axis=axes, scale=scales, angle=angles, origin=origins)
 def test_a_turning_joint_turns_about_its_origin(
     kind: str, axis: Vector, scale: float, angle: float, origin: Origin

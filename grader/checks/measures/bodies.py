@@ -7,7 +7,7 @@ from typing import Any
 
 from grader.checks.measures.fact import Fact, Omission, exact, in_title, length, lengths, of_links, whole_angle
 from grader.checks.visuals import MAX_SHAPES
-from grader.robot.model import Box, Collision, Cylinder, Inertial, Link, Mesh, Sphere
+from grader.robot.model import INERTIA, Box, Collision, Cylinder, Inertial, Link, Mesh, Sphere
 from grader.robot.shapes import is_empty
 from grader.xml.wanted_element import readable
 
@@ -16,7 +16,6 @@ _SHARE = 0.01  # of a mass for which the default tolerance is too much
 _LOOSE_INERTIA = 5.0  # percent, for a solution with rounded numbers
 _INERTIA_SHARE = 0.005  # of the largest moment, where the inertia is that of a mesh
 _CENTRE_TOLERANCE = 0.002  # m
-_MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 _DIAGONAL = (0, 3, 5)
 
 
@@ -83,7 +82,7 @@ def _inertia(link: Link, inertial: Inertial) -> Fact:
 def _numbers_of(link: str, inertial: Inertial) -> Iterator[Fact]:
     if min(inertial.inertia[index] for index in _DIAGONAL) <= 0:
         return
-    moments = dict(zip(_MOMENTS, map(exact, inertial.inertia), strict=True))
+    moments = dict(zip(INERTIA, map(exact, inertial.inertia), strict=True))
     parts = ", ".join(f"{key} {in_title([value])}" for key, value in moments.items())
     title = f"The inertia of {link} is {parts} kg m^2"
     tolerance = exact(max(map(abs, moments.values())) * _INERTIA_SHARE)

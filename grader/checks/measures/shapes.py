@@ -18,9 +18,8 @@ from grader.checks.mesh_files import mesh_file
 from grader.checks.visuals import MAX_SHAPES
 from grader.robot.model import Box, Cylinder, Geometry, Link, Mesh, Sphere, Visual
 from grader.robot.shapes import is_empty, volume
-from grader.robot.transforms import rotation_from_rpy
+from grader.robot.transforms import Z_AXIS, rotation_from_rpy
 
-_Z = (0.0, 0.0, 1.0)
 _CLEARLY_SMALLER = 0.95  # of the largest volume: more could be the largest in an equivalent robot
 
 
@@ -159,7 +158,7 @@ def _place(link: str, visual: Visual, kind: str, selected: Mapping[str, Any]) ->
         axis = direction((x, y, z))
         arguments = {"axis": axis} if not is_same_number(abs(z), 1.0) else {}
         arguments["angle"] = 1.0
-        title += f", its axis along {in_title(axis if arguments.get('axis') else _Z)}"
+        title += f", its axis along {in_title(axis if arguments.get('axis') else Z_AXIS)}"
     place = {"link": link, **selected, "relative_to": link, "xyz": xyz, **arguments}
     return Fact(link, f"{kind}-place" if selected else "place", title, "centre_at", place)
 

@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from math import sqrt
 from typing import NamedTuple
@@ -58,15 +58,13 @@ def criteria_statistics(rubric: Rubric, students: Sequence[GradedStudent]) -> It
     """Yield the figures of the criteria that were graded; of all, if none was."""
     # Most students have the same results as others: the figures of criteria add up these few rows.
     worth = [row.position for row in rubric.criteria if row.points]
-    patterns = Counter(_pattern(student, worth) for student in students)
+    patterns = Counter(
+        _Pattern(tuple(it.statuses), tuple(it.earned), it.marked, sum(it.earned[position] or 0 for position in worth))
+        for it in students
+    )
     graded = {at for pattern in patterns for at, status in enumerate(pattern.statuses) if status != "ungraded"}
     criteria = [row for row in rubric.criteria if row.position in graded]
     yield from (_criterion(criterion, patterns) for criterion in criteria or rubric.criteria)
-
-
-def _pattern(student: GradedStudent, worth: Iterable[int]) -> _Pattern:
-    total = sum(student.earned[position] or 0 for position in worth)
-    return _Pattern(tuple(student.statuses), tuple(student.earned), student.marked, total)
 
 
 def _criterion(criterion: Criterion, patterns: Mapping[_Pattern, int]) -> CriterionStatistics:

@@ -9,9 +9,10 @@ from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.intake.roster_values import RowReader
 from grader.classroom.matching import plain_word
 from grader.classroom.students import CANVAS_TEST_STUDENT
-from grader.classroom.tables import SIZE_LIMIT, plain_title, rows_with_lines
+from grader.classroom.tables import SIZE_LIMIT, rows_with_lines
 from grader.errors import InputError
 from grader.files.reading import read_capped
+from grader.names import folded
 from grader.text import counted, first_lines, printable_path
 
 _ALIASES = {
@@ -68,7 +69,8 @@ def read_roster(path: Path) -> Roster:
     fields = _fields(header, shown) if header else []
     mistakes: list[tuple[int, str]] = []
     read = list(_by_field(rows, fields, mistakes))
-    is_from_canvas = _is_from_canvas(header, fields) and any(row["id"].isdecimal() for _, row in read)
+    has_columns = {"student", "id"} <= set(map(folded, header)) and not {"sis", "login"}.isdisjoint(fields)
+    is_from_canvas = has_columns and any(row["id"].isdecimal() for _, row in read)
     if is_from_canvas:  # Canvas has rows of points and comments above the students, and a row of its test student
         read = [(line, row) for line, row in read if row["id"] and row["name"].casefold() not in CANVAS_TEST_STUDENT]
     reader = RowReader(is_from_canvas=is_from_canvas)
@@ -102,10 +104,6 @@ def _by_field(
         yield line, dict.fromkeys(_ALIASES, "") | filled
 
 
-def _is_from_canvas(header: list[str], fields: list[str]) -> bool:
-    return {"student", "id"} <= set(map(plain_title, header)) and not {"sis", "login"}.isdisjoint(fields)
-
-
 def _duplicates(entries: Iterable[tuple[int, RosterEntry]], shown: str) -> list[str]:
     """Return a message for each student with an id or address that another student has."""
     entries, found = tuple(entries), dict[int, str]()
@@ -132,7 +130,7 @@ def _notes(reader: RowReader, shown: str) -> Iterator[str]:
 
 def _fields(header: list[str], shown: str) -> list[str]:
     """Return the field of each column, empty for an unknown column."""
-    fields = [_FIELD_OF.get(plain_title(cell), "") for cell in header]
+    fields = [_FIELD_OF.get(folded(cell), "") for cell in header]
     if _WHO.isdisjoint(fields):
         named = ", ".join(cell for cell in header if cell)[:200]
         raise InputError(f"{shown} has no column for an id, login, name or email in its first line, only: {named}")

@@ -14,13 +14,11 @@ from grader.robot.edits.numbers import format_number
 from grader.robot.edits.pieces import KNOWN, Piece
 from grader.robot.frames import placed_by
 from grader.robot.inertia import MassProperties, turned, uniform_solid, with_volume
-from grader.robot.model import Link, Mesh
+from grader.robot.model import INERTIA, Link, Mesh
 from grader.robot.shapes import is_empty
 from grader.robot.transforms import IDENTITY
 from grader.source import Edits
 from grader.xml.parsing import Element
-
-_INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 def body_pieces(difference: RobotDifference, arguments: Mapping[str, Any]) -> Iterator[Piece]:
@@ -42,14 +40,14 @@ def _inertial(difference: RobotDifference, own: Element, link: Link, mass: float
         return
     centre = " ".join(map(format_number, solid.centre))
     if element is None or inertial is None:  # ROS 2 drops what a link shows with an <inertial> that it cannot read
-        values = empty_element("inertia", dict(zip(_INERTIA, map(format_number, solid.inertia), strict=True)))
+        values = empty_element("inertia", dict(zip(INERTIA, map(format_number, solid.inertia), strict=True)))
         text = f'<inertial>\n  <origin xyz="{centre}"/>\n  <mass value="{solid.mass:.6g}"/>\n  {values}\n</inertial>'
         edits = difference.draft.insert(own, text)
         yield difference.piece(own, "the <inertial> of {} is missing", "add the <inertial> of {}", edits)
     else:
         T_link_inertial = placed_by(IDENTITY, inertial.origin)
         moments = turned(solid.inertia, T_link_inertial.inverse().rotation)
-        known = zip(_INERTIA, moments, inertial.inertia, strict=True)
+        known = zip(INERTIA, moments, inertial.inertia, strict=True)
         of_inertia = tuple(
             Set(element, "inertia", name, format_number(value)) for name, value, old in known if value != old
         )

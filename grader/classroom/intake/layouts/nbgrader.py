@@ -12,6 +12,7 @@ from grader.classroom.intake.listing import ClassListing
 from grader.classroom.intake.names import utc_time
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
+from grader.names import folded
 from grader.text import enumerated, printable_path
 
 _SUBMITTED = "submitted"
@@ -44,7 +45,7 @@ def count_students(folder: ClassFolder) -> int:
 def _has_evidence(folder: ClassFolder, start: str) -> bool:
     """Return whether there is a submission with a timestamp, or for the lab."""
     found = _assignments(folder.listing, start)
-    has_lab = any(_normalise(name) == _normalise(folder.rubric_id) for name in found)
+    has_lab = any(folded(name) == folded(folder.rubric_id) for name in found)
     return has_lab or any(
         _TIMESTAMP in folder.listing.children(f"{start}{students[0]}/{name}").files for name, students in found.items()
     )
@@ -98,12 +99,8 @@ def _choose(found: dict[str, list[str]], assignment: str, rubric_id: str) -> str
         if assignment in found:
             return assignment
         raise InputError(f"there is no submission for the assignment {printable_path(assignment)}; there are: {named}")
-    similar = [name for name in found if _normalise(name) == _normalise(rubric_id)]
+    similar = [name for name in found if folded(name) == folded(rubric_id)]
     for names in ([name for name in found if name == rubric_id], similar, list(found)):
         if len(names) == 1:
             return names[0]
     raise InputError(f"name the assignment to grade with --assignment; there are: {named}")
-
-
-def _normalise(name: str) -> str:
-    return "".join(letter for letter in name.casefold() if letter.isalnum())
