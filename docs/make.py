@@ -14,7 +14,8 @@ from grader.grading.hints.hinting import hinted
 from grader.grading.keys import ADJUSTMENT, CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
-from grader.report.rubrics import EFFECTS, EVERY_KIND, example_blocks, toml_text
+from grader.report.examples import example_blocks, explanation_of, toml_text
+from grader.report.rubrics import EFFECTS, EVERY_KIND
 from grader.report.terminal import render_terminal
 from grader.submission.opening import open_submission
 
@@ -97,7 +98,7 @@ def long_problems() -> Iterator[str]:
     for kind in EVERY_KIND:
         effect = f" {EFFECTS[kind.effect]}".rstrip()
         yield from (f"## {kind.code}", "", f"{escaped(kind.title)} ({kind.severity}).", "")
-        yield from (escaped(kind.explanation) + effect, "", *example(kind.code))
+        yield from (escaped(explanation_of(kind)) + effect, "", *example(kind.code))
 
 
 def long_checks() -> Iterator[str]:

@@ -13,7 +13,7 @@ Effect = Literal["rejects", "undetermined", "drops", "loads", "other"]
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """One kind of problem: a code that never changes, its title, what ROS 2 does and how to fix the file.
+    """One kind of problem: a code that never changes, and its title. docs/examples/ says how to fix the file.
 
     The effect of a URDF's problems decides the verdict: ROS 2 rejects the file, drops content of it, or loads all of
     it. The effect of a problem of another file is `other`. `is_consequence`: another problem of the same file usually
@@ -23,7 +23,6 @@ class Kind:
 
     code: str
     title: str
-    explanation: str
     severity: Severity
     effect: Effect
     is_consequence: bool = False

@@ -14,7 +14,8 @@ from grader.checks.registry import own_checks
 from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric
 from grader.package.problems import package_problems
-from grader.report.rubrics import EVERY_KIND, example_blocks, explanation
+from grader.report.examples import example_blocks
+from grader.report.rubrics import EVERY_KIND, explanation
 from grader.submission.opening import open_submission
 from grader.submission.submission import Lab, Submission
 from grader.submission.urdf import Read
@@ -106,8 +107,9 @@ def opened(folder: Path, files: dict[str, bytes]) -> Submission:
 
 
 def test_every_code_and_check_has_an_example() -> None:
-    """No example is missing, and none is of something else; each is short and shows a difference."""
+    """No example is missing, and none is of something else; each is short and shows a difference. Codes are explained."""
     assert sorted(ENTRIES) == sorted([*CODES, *CHECKS])
+    assert all(ENTRIES[code].get("explanation") for code in CODES)
     for name, entry in ENTRIES.items():
         assert entry["wrong"] != entry["right"], name
         for text in (entry["wrong"], entry["right"]):

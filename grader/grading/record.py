@@ -103,7 +103,7 @@ def _submission(stored: dict[str, Any], originals: Originals | None = None) -> G
 
 
 def _problem(stored: dict[str, Any]) -> Problem:
-    kind = Kind(stored["code"], "", "", stored["severity"], "other")
+    kind = Kind(stored["code"], "", stored["severity"], "other")
     return Problem(kind, stored["message"], _location(stored["location"]))
 
 

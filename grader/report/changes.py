@@ -14,6 +14,7 @@ from grader.classroom.gradebook.lateness import time_text
 from grader.grading.criterion import Adjustment
 from grader.grading.rubric_changes import RubricChange
 from grader.report.console import wrapped
+from grader.report.examples import toml_text
 from grader.report.json_data import (
     COUNT,
     GRADER,
@@ -33,7 +34,6 @@ from grader.report.json_data import (
     to_json,
 )
 from grader.report.order import alike
-from grader.report.rubrics import toml_text
 from grader.text import counted, enumerated, format_points, named, printable, signed_points
 
 _MAX_NAMED, _MAX_LINES = 3, 12

@@ -2,20 +2,18 @@
 
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from string import digits
 
 from grader.checks.check import Check
 from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.registry import check_names, find_check, unused_checks
 from grader.errors import InputError
-from grader.files.reading import shipped_folder
 from grader.grading.criterion import Criterion, Part, worth
 from grader.grading.rubric import Rubric
-from grader.grading.toml_file import read_toml
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.problems import Kind
 from grader.report.details import model_lines, sentence
+from grader.report.examples import examples, explanation_of, toml_text
 from grader.report.markdown import code, escape
 from grader.robot.catalogue import CATALOGUE
 from grader.text import enumerated, format_points, printable
@@ -77,8 +75,8 @@ def explanation(name: str, rubric: Rubric) -> str:
     """Return the explanation of a code, a criterion or a check. Raises InputError for another name."""
     kind = kind_of(name.upper())
     if kind is not None:
-        texts = [f"{kind.code} ({kind.severity}): {kind.title}", _fill(kind.explanation), EFFECTS[kind.effect]]
-        return _paragraphs([*texts, *_example(kind.code)])
+        texts = [f"{kind.code} ({kind.severity}): {kind.title}", _fill(explanation_of(kind)), EFFECTS[kind.effect]]
+        return _paragraphs([*texts, *examples(kind.code)])
     for criterion in rubric.criteria:
         if criterion.id == name:
             return _paragraphs(_criterion_texts(criterion, rubric))
@@ -86,7 +84,7 @@ def explanation(name: str, rubric: Rubric) -> str:
     if check is not None:
         source = f", from the package {check.distribution}" if check.distribution else ""
         texts = [f"{check.name}: a check for rubrics{source}", *map(_fill, check.documentation.paragraphs)]
-        return _paragraphs([*texts, _arguments(check).rstrip("\n"), *_example(check.name)])
+        return _paragraphs([*texts, _arguments(check).rstrip("\n"), *examples(check.name)])
     known = [kind.code for kind in EVERY_KIND] + [criterion.id for criterion in rubric.criteria] + check_names()
     lists = (
         f"`{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, and reports show the codes"
@@ -94,25 +92,6 @@ def explanation(name: str, rubric: Rubric) -> str:
     raise InputError(
         f"there is no problem code, criterion or check {name!r}{did_you_mean(name, known) or f'; {lists}'}"
     )
-
-
-def example_blocks(name: str) -> Iterator[tuple[str, str, str]]:
-    """Yield title, file name and text of a check's row in a rubric, of what is wrong and of what is right, if known."""
-    family = name.rstrip(digits).lower() if name.isupper() else "checks"
-    path = shipped_folder("docs", "examples") / f"{family}.toml"
-    examples = read_toml(path.read_bytes(), path)[1] if path.is_file() else {}
-    example = examples.get(name, {})
-    if "wrong" in example:
-        if family == "checks":
-            given = f"\nwith = {toml_text(example['with'])}" if "with" in example else ""
-            yield "In a rubric", "rubric.toml", f'check = "{name}"{given}'
-        file = example.get("frame", next(iter(examples["frames"]))).rpartition("/")[2]
-        yield "Wrong", file, example["wrong"].rstrip() or "(an empty file)"
-        yield "Right", file, example["right"].rstrip()
-
-
-def _example(name: str) -> Iterator[str]:
-    return (f"{title}:\n\n{textwrap.indent(text, '    ')}" for title, _, text in example_blocks(name))
 
 
 def _paragraphs(texts: Iterable[str]) -> str:
@@ -150,23 +129,6 @@ def _arguments(check: Check) -> str:
         meaning = _fill(check.documentation.arguments.get(parameter.name, ""), _WIDTH - 6)
         lines += [f"    {parameter.name}: {parameter.type.name}{default}\n", textwrap.indent(f"{meaning}\n", " " * 6)]
     return "".join(line for line in lines if line.strip())
-
-
-def toml_text(value: object) -> str:
-    """Return a value as a rubric has it, one that is not given as `not checked`."""
-    match value:
-        case bool():
-            return str(value).lower()
-        case str():
-            return f'"{value}"'
-        case float():
-            return f"{value:g}"
-        case list() | tuple():
-            return f"[{', '.join(map(toml_text, value))}]"
-        case dict():
-            items = (f"{key if key.isidentifier() else toml_text(key)} = {toml_text(it)}" for key, it in value.items())
-            return f"{{ {', '.join(items)} }}"
-    return "not checked" if value is None else str(value)
 
 
 def _fill(text: str, width: int = _WIDTH) -> str:

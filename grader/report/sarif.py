@@ -10,6 +10,7 @@ from grader.grading.report import Hint, Report
 from grader.report.as_json import GRADE
 from grader.report.content import explain_command, submission_lines
 from grader.report.details import criterion_lines
+from grader.report.examples import explanation_of
 from grader.report.findings import Finding, findings
 from grader.report.json_data import exact, to_json
 from grader.report.locations import RepositoryLocation, archive_around
@@ -51,7 +52,7 @@ def _rule(name: str, report: Report) -> dict[str, Any]:
             return _describe(name, title, fact, printable(criterion.feedback) or fact, "error", command)
     kind = kind_of(name)
     if kind is not None:
-        explanation = " ".join(kind.explanation.split())
+        explanation = explanation_of(kind)
         return _describe(name, kind.title, explanation, explanation, kind.severity, f"grader explain {name}")
     return _describe(name, name, name, name, "warning", f"grader explain {name}")
 
