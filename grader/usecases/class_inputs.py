@@ -1,10 +1,12 @@
 """The rubric, roster and handed-out robots of a class: from the command, else from the last run into the gradebook."""
 
 from collections.abc import Iterator, Sequence
+from datetime import datetime
 from pathlib import Path
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.lateness import read_time, time_text
 from grader.classroom.gradebook.marks import EXTENSION
 from grader.classroom.gradebook.run_writer import save_answers
 from grader.classroom.intake.roster import Roster, roster_from_json
@@ -15,6 +17,7 @@ from grader.grading.answers import load_with_answers, read_answers
 from grader.grading.rubric import Rubric
 from grader.submission.opening import open_submission
 from grader.text import counted, enumerated, named, people_text, printable, printable_path, shell_quoted
+from grader.usecases.class_summary import read_deadline
 from grader.usecases.rubrics import DEFAULT_RUBRIC
 from grader.usecases.terminal import Warn
 
@@ -49,6 +52,18 @@ def rubric_of(name: str | None, gradebook: Path, answers: Path | None, warn: War
                 warn(f"rubric of the last run: {printable_path(rubric.path)}")
             return rubric
     return load_with_answers(name or DEFAULT_RUBRIC, answers)
+
+
+def deadline_of(due: str | None, gradebook: Path, warn: Warn) -> datetime | None:
+    """Return the deadline of `--due`, else that of the last run. Raises InputError."""
+    if due is None and gradebook.exists():
+        with Gradebook(gradebook) as book:
+            run = book.newest_run()
+        if run is not None and run.deadline:
+            deadline = read_time(run.deadline)
+            warn(f"deadline of the last run: {time_text(deadline, deadline.tzinfo)} (--due changes it)")
+            return deadline
+    return read_deadline(due)
 
 
 def keep_answers(gradebook: Path, answers: Path) -> None:

@@ -21,8 +21,8 @@ from grader.errors import InputError
 from grader.report.formats import Format, OutputFormat
 from grader.text import counted, first_lines, printable, printable_path
 from grader.usecases.class_hints import HintOptions, search_class_hints
-from grader.usecases.class_inputs import handed_out_hashes, roster_of, rubric_of, warn_of_parts
-from grader.usecases.class_summary import SummaryRequest, class_summary, read_deadline, warn_of_due
+from grader.usecases.class_inputs import deadline_of, handed_out_hashes, roster_of, rubric_of, warn_of_parts
+from grader.usecases.class_summary import SummaryRequest, class_summary, warn_of_due
 from grader.usecases.rubrics import files_of
 from grader.usecases.terminal import Terminal, Warn, one_total
 from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_inputs, refuse_symlinks, save
@@ -77,7 +77,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     rubric = rubric_of(request.rubric, request.gradebook, request.answers, warn)
     for name in request.part:
         rubric.part(name)
-    deadline = read_deadline(request.due)
+    deadline = deadline_of(request.due, request.gradebook, warn)
     warn_of_due(request.due, rubric, warn)
     handed_out = tuple(handed_out_hashes(request.ignore_file, rubric))
     roster = roster_of(request.roster, request.gradebook, warn)

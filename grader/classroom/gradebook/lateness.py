@@ -29,18 +29,22 @@ class Lateness:
 
 @dataclass(frozen=True, slots=True)
 class SubmissionTimes:
-    """When something was submitted and was due: ISO 8601, empty or None where unknown. `extension` is in days."""
+    """When something was submitted and was due: ISO 8601, empty or None where unknown. `extension` is in days.
+
+    `is_extended`: the deadline is that of `grader extend`.
+    """
 
     is_late: bool = False
     submitted: str = ""
     deadline: str = ""
     extension: float = 0.0
     days_late: float | None = None
+    is_extended: bool = False
 
     def extended(self, deadline: str) -> "SubmissionTimes":
         """Return the times with the deadline of `grader extend`, empty for none, in place of the roster's."""
         days = None if self.submitted and self.days_late else self.days_late  # without a time no days can be counted
-        return replace(self, deadline=deadline, extension=0.0, days_late=days) if deadline else self
+        return replace(self, deadline=deadline, extension=0.0, days_late=days, is_extended=True) if deadline else self
 
 
 def lateness(rubric: Rubric, times: SubmissionTimes, score: Decimal, deadline: datetime | None = None) -> Lateness:
@@ -113,9 +117,9 @@ def _of_flag(times: SubmissionTimes, of_class: datetime | None) -> tuple[int, st
     The LMS does not know the extensions in the roster.
     """
     own = read_time(times.deadline) if times.deadline else None
-    if own is not None and of_class is not None:
-        own = own.replace(tzinfo=own.tzinfo or of_class.tzinfo)
-        if own > of_class.replace(tzinfo=of_class.tzinfo or own.tzinfo):
+    if own is not None:
+        own = own.replace(tzinfo=own.tzinfo or (of_class.tzinfo if of_class is not None else None))
+        if times.is_extended if of_class is None else own > of_class.replace(tzinfo=of_class.tzinfo or own.tzinfo):
             return 0, f"late for the LMS, on time with the student's own deadline {time_text(own, own.tzinfo)}"
     if times.extension > 0:
         return 0, f"late for the LMS, on time with the {_extension(times)}"

@@ -218,6 +218,9 @@ def test_an_own_deadline_needs_that_of_the_class() -> None:
     times = SubmissionTimes(is_late=True, deadline="2026-09-12")
     assert lateness(lab(POLICY), times, Decimal(11)).days == 1
     assert lateness(lab(POLICY), times, Decimal(11), read_time("2026-09-11")).days == 0
+    extended = SubmissionTimes(is_late=True).extended("2026-09-12")
+    assert lateness(lab(POLICY), extended, Decimal(11)).days == 0  # `grader extend` gives no earlier one
+    assert lateness(lab(POLICY), extended, Decimal(11), read_time("2026-09-13")).days == 1
 
 
 def test_the_grace_period_applies_to_fractions_of_days() -> None:

@@ -139,7 +139,7 @@ def test_grades_by_an_older_rubric_are_not_exported(top: Path) -> None:
 
 
 def test_the_deadline_is_remembered(tmp_path: Path) -> None:
-    """The deadline given to batch applies to later exports, and can be changed."""
+    """The deadline given to batch applies to later exports and runs, and can be changed."""
     text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8")
     policy = text.replace('reference = "lab6/my_robot"', "", 1) + "\n[late]\npercent_per_day = 10\n"
     (tmp_path / "lab6.toml").write_text(policy, encoding="utf-8")
@@ -149,6 +149,13 @@ def test_the_deadline_is_remembered(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert students(tmp_path)["102"]["total"] == 52
     assert students(tmp_path, "--due", "2026-11-22T00:00+01:00")["102"]["total"] == 62
+    again = batch(tmp_path, "--rubric", tmp_path / "lab6.toml")
+    assert (
+        "grader: deadline of the last run: 2026-11-20 23:59 (UTC+01:00) (--due changes it)\n" in again.stderr
+    )
+    assert students(tmp_path)["102"]["total"] == 52
+    assert batch(tmp_path, "--rubric", tmp_path / "lab6.toml", "--due", "2026-11-22").returncode == 0
+    assert students(tmp_path)["102"]["total"] == 62
 
 
 @pytest.mark.parametrize(
