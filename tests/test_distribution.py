@@ -71,7 +71,13 @@ def test_the_wheel_has_no_model_answers_and_no_samples(built: Path) -> None:
     }
     with tarfile.open(sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
-    assert {"submissions/reference/answers.md", "rubrics/lab6.toml", "LICENSE", "README.md", "pyproject.toml"} <= names
+    assert {
+        "submissions/reference/expected.toml",
+        "rubrics/lab6.toml",
+        "LICENSE",
+        "README.md",
+        "pyproject.toml",
+    } <= names
     assert not [
         name for name in names if re.match(r"tests|benchmarks|submissions/(?!reference/)|.*\.answers\.toml", name)
     ]

@@ -78,7 +78,7 @@ def files_of(name: str, answers: Path | None = None) -> list[Path]:
 
 def copy(name: str, folder: Path) -> str:
     """Copy the files of a shipped rubric; return what was written, and the next step. Raises GraderError."""
-    from shutil import copyfile, copytree
+    from shutil import copyfile, copytree, ignore_patterns
 
     from grader.grading.rubric import shipped_rubrics
 
@@ -90,7 +90,10 @@ def copy(name: str, folder: Path) -> str:
         raise GraderError(f"{printable_path(there[0])} exists already: nothing was copied")
     for source, target in copies.items():
         make_folder(target.parent)
-        (copytree if source.is_dir() else copyfile)(source, target)
+        if source.is_dir():
+            copytree(source, target, ignore=ignore_patterns("__pycache__"))  # pip compiles the files of a package
+        else:
+            copyfile(source, target)
     lines = [*map(str, copies.values()), f"next: change it, then `grader rubric check {shell_quoted(copies[file])}`"]
     return "".join(f"{printable(line)}\n" for line in lines)
 

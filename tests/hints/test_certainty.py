@@ -27,7 +27,7 @@ CASES = {
     "right-wheel-mirrored-into-base": {"preferred"},  # the axis may be negated as well, which gains less
     "caster-at-the-back": {"preferred"},  # the shape may be moved as well
     "caster-too-small": {"preferred"},  # two values together, of which not all pairs are tried
-    "folder-misspelt-in-setup": {"only"},  # the other edit writes the same text
+    "folder-misspelt-in-setup": {"preferred"},  # a package can be written in other ways
     "tag-not-closed": {"preferred"},  # repairs of the syntax are not all graded
     "setup-syntax-error": {"one of several"},  # the bracket belongs to this line or to the next one
     "several-mistakes": {"only", "preferred"},

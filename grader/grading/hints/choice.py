@@ -101,7 +101,9 @@ class EditChoice:
             if other is not None and _order(other) <= _order(chosen):
                 return "one of several"
             has_others |= other is not None
-        return "only" if has_mine and not has_others else "preferred"  # edits of several places are not looked through
+        # Edits of several places are not looked through; a package can be written in ways that the search does not know.
+        is_only = has_mine and not has_others and criterion.check.subject == "robot"
+        return "only" if is_only else "preferred"
 
     def _all_passing(self, options: StateEdits, criterion: Criterion) -> Iterator[Proposal]:
         """Yield the edits of one place with which a criterion passes, of all that are known."""

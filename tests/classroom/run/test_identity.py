@@ -150,9 +150,7 @@ def test_the_deadline_is_remembered(tmp_path: Path) -> None:
     assert students(tmp_path)["102"]["total"] == 52
     assert students(tmp_path, "--due", "2026-11-22T00:00+01:00")["102"]["total"] == 62
     again = batch(tmp_path, "--rubric", tmp_path / "lab6.toml")
-    assert (
-        "grader: deadline of the last run: 2026-11-20 23:59 (UTC+01:00) (--due changes it)\n" in again.stderr
-    )
+    assert "grader: deadline of the last run: 2026-11-20 23:59 (UTC+01:00) (--due changes it)\n" in again.stderr
     assert students(tmp_path)["102"]["total"] == 52
     assert batch(tmp_path, "--rubric", tmp_path / "lab6.toml", "--due", "2026-11-22").returncode == 0
     assert students(tmp_path)["102"]["total"] == 62
