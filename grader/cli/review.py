@@ -74,7 +74,7 @@ def mark(
 
 
 def extend(
-    student: Annotated[str, typer.Argument(metavar="STUDENT", help="The key, login, email address or name.")],
+    student: Annotated[str, typer.Argument(metavar="STUDENT", help="The id, login, email address or name.")],
     time: Annotated[str, typer.Argument(metavar="TIME", help="The new deadline, as 2026-11-25; - withdraws it.")],
     gradebook: GradebookOption,
     by: ByOption = "",
