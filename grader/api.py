@@ -1,5 +1,6 @@
-"""The function of the Python API that no command has: see docs/python.md."""
+"""Grade a submission from Python: see docs/python.md."""
 
+import os
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -15,9 +16,9 @@ def grade(path: str | Path, rubric: str | Path | Rubric = DEFAULT_RUBRIC, *, par
     """Grade one submission: a URDF, a package, a workspace, a repository or an archive. Nothing of it is executed.
 
     Args:
-        path: The file or folder.
+        path: The file or folder; `-` for a URDF on standard input.
         rubric: The id of a rubric that comes with the grader, the path of a rubric, or a loaded one.
-        parts: The ids of the parts to grade; default: all that the submission can meet.
+        parts: The id or ids of the parts to grade; default: all that the submission can meet.
 
     Returns:
         The report that `grader grade` prints, with its hints.
@@ -26,7 +27,7 @@ def grade(path: str | Path, rubric: str | Path | Rubric = DEFAULT_RUBRIC, *, par
         GraderError: The submission cannot be read or is a whole class, or the rubric is broken.
     """
     loaded = rubric if isinstance(rubric, Rubric) else load_rubric(rubric)
-    chosen = tuple(loaded.part(name).id for name in parts)
-    submission = open_one(str(path), loaded)
+    chosen = tuple(loaded.part(name).id for name in ((parts,) if isinstance(parts, str) else parts))
+    submission = open_one(os.fsdecode(path), loaded)
     report = grade_submission(loaded, submission, chosen)
     return add_hints(report, submission, None, lambda _: None, is_fixed=False)[0]

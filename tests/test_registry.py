@@ -77,6 +77,7 @@ def test_every_argument_is_documented(check: Check) -> None:
 @every_check
 def test_a_check_has_samples(check: Check) -> None:
     """Every check has a sample that passes and one that fails, with arguments that a rubric can give."""
+    assert check.name in {*PENDING_CASE, *CASE, *PACKAGE_CASE}, "add a sample to tests/checks/cases.py"
     if check.name in PENDING_CASE:
         pending = PENDING_CASE[check.name]
         of: tuple[AnyCheck, Mapping[str, Any]] = (pending.check, pending.arguments)
@@ -137,7 +138,8 @@ def test_every_check_is_tested() -> None:
     """A file of tests names each check whose sample lacks an edge for a tolerance."""
     text = "".join(path.read_text(encoding="utf-8") for path in (Path(__file__).parent / "checks").glob("test_*.py"))
     for name in (name for path in families() for name in checks_in(path)):
-        assert (name in CASE and CASE[name].edges) or re.search(rf"\b{name}\b", text), f"no file tests {name}"
+        is_tested = bool((name in CASE and CASE[name].edges) or re.search(rf"\b{name}\b", text))
+        assert is_tested, f"no file tests {name}"
 
 
 def test_an_unknown_check_is_not_found() -> None:

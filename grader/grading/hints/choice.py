@@ -101,7 +101,7 @@ class EditChoice:
             if other is not None and _order(other) <= _order(chosen):
                 return "one of several"
             has_others |= other is not None
-        # Edits of several places are not looked through; a package can be written in ways that the search does not know.
+        # Edits of several places are not looked through, and a package can be written in ways that are not known here.
         is_only = has_mine and not has_others and criterion.check.subject == "robot"
         return "only" if is_only else "preferred"
 
