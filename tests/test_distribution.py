@@ -85,7 +85,7 @@ def test_the_wheel_has_no_model_answers_and_no_samples(built: Path) -> None:
 
 @pytest.mark.exhaustive
 def test_the_sdist_builds_the_same_wheel(built: Path, tmp_path: Path) -> None:
-    """Whoever packages it gets the files of the checkout."""
+    """A packager gets the files of the checkout."""
     with tarfile.open(next(built.glob("*.tar.gz"))) as archive:
         archive.extractall(tmp_path, filter="data")
     again = build(next(tmp_path.iterdir()), tmp_path / "dist", "wheel")
