@@ -112,7 +112,7 @@ def passes(project: Path, *tests: str) -> None:
 
 def add_to_changelog(project: Path, line: str) -> None:
     """Add a line to the unreleased changes."""
-    replace(project / "CHANGELOG.md", "### Added\n", f"### Added\n\n- {line}\n")
+    replace(project / "CHANGELOG.md", "## [Unreleased]\n", f"## [Unreleased]\n\n- {line}\n")
 
 
 def test_a_new_check(project: Path) -> None:
