@@ -65,8 +65,6 @@ class Solver:
             return
         columns = [self._jacobian_column(residual_of, slot.values, index) for index in range(len(slot.values))]
         touched = [index for index, column in enumerate(columns) if column is None or any(column)]
-        if not touched:
-            return
         if _is_nonlinear(slot):
             for values in plausible(slot.unit, slot.values):
                 if self._is_exact(residual_of(values)):
