@@ -1,12 +1,25 @@
-"""Did you mean: the known name that is closest to a mistyped one."""
+"""The known name that is closest to a mistyped one: to suggest it, or to read it in its place."""
 
+import re
 from collections.abc import Iterable
 from itertools import islice
 
 from grader.text import quoted
 
 _MAX_CANDIDATES = 300
+_MAX_KNOWN = 1000
 MAX_LENGTH = 60  # characters of names that are compared
+_CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
+_WORD = re.compile(r"\d+|[^\W\d_]+")
+_LETTER_BORDER = re.compile(r"(?<!\d) (?!\d)")
+# Words of side, place, axis and measure: none is a misspelling of another one.
+_DISTINCT = frozenset(
+    (
+        "left right front rear back fore top bottom upper lower inner outer middle center centre side first second"
+        " third last start end forward backward minimum maximum roll pitch yaw width length height depth thickness"
+        " radius diameter size mass weight"
+    ).split()
+)
 
 
 def closest(name: str, known: Iterable[str]) -> str | None:
@@ -36,3 +49,52 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
 def folded(name: str) -> str:
     """Return the letters and digits of a name in lower case: my_robot, My-Robot and MYROBOT are one name."""
     return "".join(filter(str.isalnum, name.casefold()))
+
+
+def near(name: str, known: Iterable[str], suffix: str = "") -> str | None:
+    """Return the known name that another one surely stands for; None if none is near, or several are equally near.
+
+    Words are compared one by one, whatever their case: one letter, or one exchanged pair, may differ in a known word of
+    four letters or more, two in seven or more. `suffix`, the kind of thing that is named, may be missing at the end.
+    """
+    own, others = _words(name), set(islice(known, _MAX_KNOWN + 1)) - {name}
+    if len(others) > _MAX_KNOWN:
+        return None
+    distances = {other: _distance(own, _words(other), suffix) for other in others}
+    nearest = min(filter(None, distances.values()), default=None)
+    found = [other for other, distance in distances.items() if distance is not None and distance == nearest]
+    return found[0] if len(found) == 1 else None
+
+
+def _words(name: str) -> list[str]:
+    return _WORD.findall(_CAMEL.sub(" ", name[: MAX_LENGTH + 1]).casefold())
+
+
+def _distance(name: list[str], known: list[str], suffix: str) -> tuple[int, bool] | None:
+    """Return how many letters differ, and whether the suffix is missing; None for names that are not near."""
+    texts = [_LETTER_BORDER.sub("", " ".join(words)) for words in (name, known)]
+    if not all(texts) or max(map(len, texts)) > MAX_LENGTH:
+        return None
+    if texts[0] == texts[1]:
+        return 0, False
+    shorter, longer = sorted((name, known), key=len)
+    is_cut = len(longer) == len(shorter) + 1 and longer[-1] == suffix
+    letters = [_letters(*pair) for pair in zip(name, known, strict=False)]
+    if None in letters or not (is_cut or len(name) == len(known)):
+        return None
+    return sum(filter(None, letters)), is_cut
+
+
+def _letters(word: str, known: str) -> int | None:
+    """Return how many letters or exchanged pairs differ in two words; None if these are too many."""
+    most = 0 if len(known) < 4 or known.isdigit() or {word, known} <= _DISTINCT else 1 if len(known) < 7 else 2
+    if word == known or abs(len(word) - len(known)) > most:
+        return 0 if word == known else None
+    before, row = [0], [*range(len(known) + 1)]
+    for i, letter in enumerate(word):
+        earlier, before, row = before, row, [i + 1]
+        for j, other in enumerate(known):
+            is_exchanged = i and j and (letter, other) == (known[j - 1], word[i - 1])
+            costs = (before[j] + (letter != other), before[j + 1] + 1, row[j] + 1)
+            row.append(min(*costs, earlier[j - 1] + 1) if is_exchanged else min(costs))
+    return row[-1] if row[-1] <= most else None

@@ -22,6 +22,7 @@ ABOUT = {
     "root_of_tree": About(measure=f"{MEASURES}.joints:roots"),
 }
 
+_MAX_ASSUMED = 3  # that a message names
 _OF_XML = kinds_in(vars(xml_catalogue).values())
 
 
@@ -42,7 +43,12 @@ def urdf_loads(urdf: Reading) -> Outcome:
     causes = [problem for problem in problems if not problem.kind.is_consequence]
     first = (causes or problems or list(urdf.problems))[0]
     others = f" (and {counted(len(problems) - 1, 'more such problem')})" if len(problems) > 1 else ""
-    outcome = failed(f"{first.message}{others}", first.location, problem=first.message)
+    assumed = [f"{it.message} (line {it.location.line})" for it in urdf.problems if it.kind is xml_catalogue.RECOVERED]
+    message = f"{first.message}{others}"
+    if assumed:
+        end = "" if message.endswith("?") else "."
+        message += f"{end} Not deducted elsewhere: {enumerated(assumed, _MAX_ASSUMED)}"
+    outcome = failed(message, first.location, problem=first.message)
     return outcome._replace(mistake=f"{first.code}: {first.kind.title}")
 
 

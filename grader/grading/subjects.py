@@ -35,7 +35,8 @@ class Subjects:
             self._known["reference"] = rubric.solution.robot
         if isinstance(submission.urdf, Read):
             urdf = submission.urdf.reading
-            self.problems, self.source = urdf.problems, urdf.source
+            self.source = urdf.source
+            self.problems = tuple(it for it in urdf.problems if not (urdf.is_meant and it.kind.effect == "rejects"))
             self.robot = Configuration(urdf.robot) if urdf.robot is not None else None
             self._known["urdf"] = submission.urdf.loaded
         if self.robot is not None:

@@ -4,12 +4,14 @@ from collections.abc import Iterator
 from decimal import Decimal
 from itertools import groupby
 
+from grader.checks.tree import urdf_loads
 from grader.grading.criterion import worth
 from grader.grading.report import EvidenceResult, Report
 from grader.problems import Problem
 from grader.report.locations import location_text
 from grader.report.order import earned_text, failures, sum_text
 from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted
+from grader.xml.catalogue import RECOVERED
 
 UNDECIDED = "xacro that cannot be determined statically"
 VERDICTS = {
@@ -58,6 +60,7 @@ def grade_line(report: Report) -> str:
 def graded_line(report: Report) -> str:
     """Return the version of the grader, the rubric, and the URDF, or the submission without one."""
     graded = printable(report.submission.path or report.submission.id)
+    graded += ", which ROS 2 rejects" if report.submission.verdict == "rejected" else ""
     return f"grader {report.version}, {printable(report.rubric.id)}: {graded}"
 
 
@@ -191,9 +194,11 @@ def problem_line(problem: Problem) -> str:
 
 def other_problems(report: Report) -> list[Problem]:
     """Return the problems that no failed criterion has reported."""
-    failed = (result.outcome for result in report.results if result.outcome.status == "failed")
-    reported = {(outcome.location, outcome.problem or outcome.message) for outcome in failed}
-    return [problem for problem in report.problems if (problem.location, problem.message) not in reported]
+    failed = [result for result in report.results if result.outcome.status == "failed"]
+    reported = {(it.outcome.location, it.outcome.problem or it.outcome.message) for it in failed}
+    told = [RECOVERED for it in failed if it.criterion.check.function is urdf_loads]
+    left = (problem for problem in report.problems if problem.kind not in told)
+    return [problem for problem in left if (problem.location, problem.message) not in reported]
 
 
 def other_problems_title(report: Report) -> str:

@@ -13,6 +13,7 @@ from grader.robot.numbers import NumberError, number, vector
 from grader.robot.transforms import Vector
 from grader.source import LazyLocation
 from grader.text import cut, quoted
+from grader.xml.catalogue import RECOVERED
 from grader.xml.parsing import Element, XmlDocument
 from grader.xml.urdf_format import TAGS
 
@@ -104,6 +105,10 @@ class Problems:
             self.listed.append(Problem(kind, message, location, subject))
         else:
             self.unlisted += 1
+
+    def assumed(self, element: Element, attribute: str | None, sentence: str) -> Problem:
+        """Return what is assumed about a tag or an attribute for which ROS 2 rejects the file."""
+        return Problem(RECOVERED, sentence, self.source.tag(self._indices[element], attribute))
 
     def duplicate(self, kind: Kind, element: Element, first: Element) -> None:
         """Add that an element has the name of an earlier one of its kind."""

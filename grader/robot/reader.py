@@ -1,11 +1,12 @@
 """Read a URDF as ROS 2 (Jazzy) does, and report everything that is wrong with it."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import field, replace
+from functools import partial
 from typing import Literal
 
-from grader.problems import Problem
+from grader.problems import Effect, Problem
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems
 from grader.robot.joints import check_references, read_joint
@@ -22,7 +23,7 @@ from grader.xml.parsing import Element, Unresolved, XmlDocument, read_document
 
 Verdict = Literal["clean", "degraded", "rejected"]
 
-_FATAL = ("rejects", "undetermined")
+_FATAL: frozenset[Effect] = frozenset({"rejects", "undetermined"})
 _XACRO = re.compile(r"<xacro:|\$\{|\$\(")
 
 
@@ -31,7 +32,8 @@ class Reading:
     """ROS 2's verdict on a URDF. `robot` is as much as could be read, also of a rejected file; None if nothing could.
 
     `root` is the element that it was read from, None where the text is not XML; then it was read from `recovered`, if
-    that is not None. `unresolved` has what xacro leaves open in it.
+    that is not None. `unresolved` has what xacro leaves open in it. If ROS 2 rejects the file, `is_meant` says whether
+    it would load the robot, which is read with the tags and words undone for which it rejects the file.
     """
 
     verdict: Verdict
@@ -41,6 +43,7 @@ class Reading:
     root: Element | None = field(default=None, compare=False, repr=False)
     unresolved: Mapping[Element, Unresolved] = field(default_factory=dict, compare=False, repr=False)
     recovered: Element | None = field(default=None, compare=False, repr=False)
+    is_meant: bool = False
 
     @property
     def elements(self) -> Element | None:
@@ -71,23 +74,11 @@ def read_urdf(data: bytes | str, path: str = "robot.urdf") -> Reading:
 def read_robot(document: XmlDocument) -> Reading:
     """Read a document as `read_urdf` does; its list of problems is extended."""
     root, source, listed = document.root, document.source, document.problems
-    robot = None
+    content = root if root is not None and root.tag == "robot" else document.recovered
+    if content is not None:
+        return _read_content(document, content)
     effects = {problem.kind.effect for problem in listed}
-    if root is not None and root.tag == "robot":
-        problems = Problems(document, root)
-        robot = _read_robot(root, problems)
-        _check_text(problems, is_expanded=document.is_expanded)
-        listed += problems.listed
-        effects |= problems.effects
-        if problems.unlisted:
-            message = f"{problems.unlisted} more problems of this file are not listed"
-            listed.append(Problem(catalogue.UNLISTED, message, source.at(len(source.text))))
-    elif document.recovered is not None:
-        problems = Problems(document, document.recovered)
-        robot = _read_robot(document.recovered, problems)
-        broken = {problem.location.line for problem in listed}
-        listed += [it for it in problems.listed if not it.kind.is_consequence and it.location.line not in broken]
-    elif effects.isdisjoint(_FATAL):
+    if effects.isdisjoint(_FATAL):
         effects.add("rejects")
         message = "the file has no <robot> at its top level; ROS 2 rejects it"
         if root is not None:
@@ -95,14 +86,57 @@ def read_robot(document: XmlDocument) -> Reading:
         listed.append(
             Problem(catalogue.NO_ROBOT, message, source.at(document.first_tag) if root is None else source.tag(0))
         )
-    verdict: Verdict = "rejected" if not effects.isdisjoint(_FATAL) else "degraded" if "drops" in effects else "clean"
-    listed.sort(key=lambda problem: (problem.location.line, problem.location.column, problem.code))
-    if robot is not None and verdict == "rejected":
-        robot = replace(robot, rejected=True, incomplete=_incomplete(document, robot))
-    return Reading(verdict, robot, tuple(listed), source, root, document.unresolved, document.recovered)
+    return Reading(_verdict(effects), None, in_order(listed), source, root, document.unresolved)
 
 
-def _read_robot(root: Element, problems: Problems) -> Robot:
+def _read_content(document: XmlDocument, root: Element) -> Reading:
+    """Return what is read of a robot: if ROS 2 rejects it for words that surely stand for others, with these undone."""
+    listed = document.problems
+    effects = {problem.kind.effect for problem in listed}
+    robot, problems = _read_robot(document, root)
+    effects |= problems.effects
+    found, incomplete = problems.listed, _incomplete(document, robot) if effects.intersection(_FATAL) else ""
+    is_meant = document.is_meant and "rejects" not in problems.effects
+    if document.is_meant and not is_meant and not incomplete:
+        from grader.robot.meant import read_as_meant  # late: few files are rejected
+
+        meant = read_as_meant(root, robot, partial(_read_robot, document, root))
+        if meant is not None:
+            is_meant, robot = True, meant.robot
+            found = [*causes(found), *meant.problems]
+    if document.root is None:
+        broken = {problem.location.line for problem in listed}
+        found = [it for it in found if not it.kind.is_consequence and it.location.line not in broken]
+    listed += found
+    if problems.unlisted:
+        message = f"{problems.unlisted} more problems of this file are not listed"
+        listed.append(Problem(catalogue.UNLISTED, message, document.source.at(len(document.source.text))))
+    verdict = _verdict(effects)
+    if verdict == "rejected":
+        is_as_loaded = is_meant and "undetermined" not in effects
+        robot = replace(robot, rejected=not is_as_loaded, incomplete=incomplete)
+    return Reading(
+        verdict, robot, in_order(listed), document.source, document.root, document.unresolved, document.recovered, is_meant
+    )
+
+
+def _verdict(effects: Collection[Effect]) -> Verdict:
+    return "rejected" if not _FATAL.isdisjoint(effects) else "degraded" if "drops" in effects else "clean"
+
+
+def in_order(problems: Iterable[Problem]) -> tuple[Problem, ...]:
+    """Return problems in the order of their locations."""
+    return tuple(sorted(problems, key=lambda problem: (problem.location.line, problem.location.column, problem.code)))
+
+
+def causes(problems: Iterable[Problem]) -> list[Problem]:
+    """Return the problems for which ROS 2 rejects a file; only those of xacro if that stops before."""
+    found = [problem for problem in problems if problem.kind.effect == "rejects" and not problem.kind.is_consequence]
+    return [problem for problem in found if problem.kind.is_before_ros] or found
+
+
+def _read_robot(document: XmlDocument, root: Element) -> tuple[Robot, Problems]:
+    problems = Problems(document, root)
     if root.get("name") is None:
         problems.add(catalogue.ROBOT_WITHOUT_NAME, "<robot> has no name; ROS 2 rejects the file", root)
     version = root.get("version")
@@ -129,7 +163,9 @@ def _read_robot(root: Element, problems: Problems) -> Robot:
     check_tree(robot, elements, problems)
     check_spelling(root, problems)
     _check_root_inertia(robot, elements, problems)
-    return robot
+    if root is document.root:
+        _check_text(problems, is_expanded=document.is_expanded)
+    return robot, problems
 
 
 def _incomplete(document: XmlDocument, robot: Robot) -> str:

@@ -34,14 +34,16 @@ def read_threshold(text: str) -> tuple[Decimal, bool]:
 def exit_code(report: "Report", threshold: tuple[Decimal, bool] | None) -> ExitCode:
     """Return the exit code for a report.
 
-    A faulty check takes precedence. With a threshold, only the score decides. Without one, every automatic criterion
-    must have passed, except extra credit and adjusted criteria. A criterion that could not be decided has not passed.
+    A faulty check takes precedence. With a threshold, only the score decides, but a file that ROS 2 rejects never
+    passes. Without one, every automatic criterion must have passed, except extra credit and adjusted criteria. A
+    criterion that could not be decided has not passed.
     """
     if report.fault:
         return ExitCode.FAULT
     if threshold is not None:
         least, is_percent = threshold
         is_passed = report.score * 100 >= least * (report.max_score if is_percent else 100)
+        is_passed = is_passed and report.submission.verdict != "rejected"
     else:
         short = [result for result in report.results if result.is_lost] + report.pending_automatic
         is_passed = all(result.criterion.bonus for result in short)

@@ -49,7 +49,8 @@ class XmlDocument(NamedTuple):
     """The root element, and everything that TinyXML2 or XML rejects in the text; `first_tag` is an offset.
 
     The root is None where TinyXML2 refuses the text, or finds no <robot> at its top level; `recovered` is then what can
-    be read of the robot. If xacro expanded the text, `unresolved` has the elements that are not known completely.
+    be read of the robot. If xacro expanded the text, `unresolved` has the elements that are not known completely, and
+    `is_meant` is whether the text means these elements although it is refused.
     """
 
     root: Element | None
@@ -59,6 +60,7 @@ class XmlDocument(NamedTuple):
     unresolved: Mapping[Element, Unresolved] = {}
     is_expanded: bool = False
     recovered: Element | None = None
+    is_meant: bool = True
 
 
 def parse_xml(data: bytes) -> Element:

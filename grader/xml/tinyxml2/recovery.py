@@ -157,4 +157,4 @@ class Recovery:
             self._xml.append(escape(decode(text)).replace(">", "&gt;"))
 
     def _assume(self, message: str, offset: int) -> None:
-        self._assumed.append(NoteDifference(catalogue.RECOVERED, f"assumed for grading: {message}", offset))
+        self._assumed.append(NoteDifference(catalogue.RECOVERED, message, offset))

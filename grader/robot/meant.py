@@ -1,0 +1,142 @@
+"""The words for which ROS 2 rejects a file and that surely stand for others: what the robot is if they are undone."""
+
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator
+from itertools import islice
+from typing import NamedTuple
+
+from grader.names import near
+from grader.problems import Problem
+from grader.robot.diagnostics import Problems
+from grader.robot.model import Robot
+from grader.text import quoted
+from grader.xml.parsing import Element
+from grader.xml.urdf_format import ATTRIBUTES, JOINT_TYPES, REQUIRED, TAGS
+
+_MAX_ROUNDS = 3  # one undone word can reveal the next: that of a tag, then its attribute, then its value
+_MAX_WORDS = 20  # in one file
+_OF_JOINT = ("parent", "child", "limit", "mimic", "safety_controller")  # a defect of these rejects the file
+
+
+class Word(NamedTuple):
+    """A word of an element that is read as another one, in a sentence; `tag` and `attributes` are those as read."""
+
+    element: Element
+    attribute: str | None  # where the word is; None: the tag
+    tag: str
+    attributes: dict[str, str]
+    sentence: str
+
+
+class AsMeant(NamedTuple):
+    """What ROS 2 would read if some words were others; the problems say which."""
+
+    robot: Robot
+    problems: list[Problem]
+
+
+def read_as_meant(root: Element, robot: Robot, read: Callable[[], tuple[Robot, Problems]]) -> AsMeant | None:
+    """Return what a rejected file means; None if a word can stand for several, or ROS 2 would still reject the file.
+
+    `robot` was read from `root`, and `read` reads it again. The elements are as before at the end.
+    """
+    undone: list[Word] = []
+    before: list[tuple[Element, str, dict[str, str]]] = []
+    try:
+        for _ in range(_MAX_ROUNDS):
+            ways = (_of_format(root), _references(root, robot), _repeated_names(root))
+            words = next(filter(None, ([*islice(way, _MAX_WORDS)] for way in ways)), [])
+            if not words:
+                return None
+            for word in words:
+                before.append((word.element, str(word.element.tag), dict(word.element.attrib)))  # type: ignore[arg-type]
+                _write(word.element, word.tag, word.attributes)
+            undone += words
+            robot, problems = read()
+            if "rejects" not in problems.effects:
+                return AsMeant(robot, [*problems.listed, *(problems.assumed(*word[:2], word.sentence) for word in undone)])
+        return None
+    finally:
+        for element, tag, attributes in reversed(before):
+            _write(element, tag, attributes)
+
+
+def _write(element: Element, tag: str, attributes: dict[str, str]) -> None:
+    element.tag = tag
+    element.attrib.clear()
+    element.attrib.update(attributes)
+
+
+def _with_value(element: Element, attribute: str, value: str, what: str) -> Word:
+    given: dict[str, str] = dict(element.attrib)  # type: ignore[arg-type]
+    sentence = f"{what} {quoted(given[attribute])} is read as {quoted(value)}"
+    return Word(element, attribute, str(element.tag), {**given, attribute: value}, sentence)
+
+
+def _references(root: Element, robot: Robot) -> Iterator[Word]:
+    """Yield links that joints name and that do not exist, and joint types, each near one that can be meant."""
+    links = [link.name for link in robot.links]
+    children = {joint.child for joint in robot.joints}
+    unknown = {name for joint in robot.joints for name in (joint.parent, joint.child) if not robot.has_link(name)}
+    for joint in root.iterchildren("joint") if len(unknown) <= _MAX_WORDS else ():
+        kind = near(joint.get("type") or "", JOINT_TYPES)
+        if kind is not None and joint.get("type") not in JOINT_TYPES:
+            yield _with_value(joint, "type", kind, "the joint type")
+        ends = {role: end for role in ("parent", "child") if (end := joint.find(role)) is not None and end.get("link")}
+        for role, end in ends.items():
+            name = end.get("link") or ""
+            if robot.has_link(name):
+                continue
+            others = {other.get("link") for other in ends.values()} | (children if role == "child" else set())
+            meant = near(name, [link for link in links if link not in others], "link")
+            if meant is not None:
+                children.add(meant if role == "child" else "")
+                yield _with_value(end, "link", meant, "the link")
+
+
+def _repeated_names(root: Element) -> Iterator[Word]:
+    """Yield a name that is given twice, where one other name is used and not given: the later one should have it."""
+    used = {
+        "link": [end.get("link") for end in root.iterfind("joint/*") if end.tag in ("parent", "child")],
+        "joint": [mimic.get("joint") for mimic in root.iterfind("joint/mimic")],
+        "material": [it.get("name") for it in root.iterfind("link/visual/material") if not len(it)],
+    }
+    for tag, names in used.items():
+        given = Counter(element.get("name") for element in root.iterchildren(tag))
+        given.update(it.get("name") for it in root.iterfind("link/visual/material") if tag == "material" and len(it))
+        repeated = [name for name, count in given.items() if count > 1]
+        missing = [name for name in dict.fromkeys(names) if name and name not in given]
+        if len(repeated) == len(missing) == 1 and given[repeated[0]] == 2:
+            *_, later = (element for element in root.iterchildren(tag) if element.get("name") == repeated[0])
+            yield _with_value(later, "name", missing[0], f"the second {tag}")
+
+
+def _of_format(root: Element) -> Iterator[Word]:
+    """Yield tags and attributes that the format does not have there, each near one that it needs and that is absent."""
+    yield from _tags(root, ("link", "joint"))
+    yield from _attributes(root)
+    for element in (it for tag in ("link", "joint") for it in root.iterchildren(tag)):
+        yield from _attributes(element)
+        if element.tag == "joint":
+            needed = ("parent", "child", *(("limit",) if element.get("type") in ("revolute", "prismatic") else ()))
+            yield from _tags(element, [tag for tag in needed if element.find(tag) is None])
+            for child in element:
+                yield from _attributes(child) if child.tag in _OF_JOINT else ()
+
+
+def _tags(parent: Element, needed: Collection[str]) -> Iterator[Word]:
+    for child in parent:
+        tag = str(child.tag)
+        meant = near(tag, needed) if tag not in TAGS and not tag.startswith("{") else None
+        if meant is not None:
+            yield Word(child, None, meant, dict(child.attrib), f"<{tag}> is read as <{meant}>")  # type: ignore[arg-type]
+
+
+def _attributes(element: Element) -> Iterator[Word]:
+    tag, given = str(element.tag), dict(element.attrib)
+    absent = [name for name in REQUIRED[tag] if name not in given]
+    for name in given if absent else ():
+        meant = near(str(name), absent) if name not in ATTRIBUTES[tag] else None
+        if meant is not None:
+            renamed = {meant if key == name else str(key): str(value) for key, value in given.items()}
+            yield Word(element, str(name), tag, renamed, f"the attribute {name} of <{tag}> is read as {meant}")
