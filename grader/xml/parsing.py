@@ -8,6 +8,7 @@ from lxml import etree
 
 from grader.problems import Problem
 from grader.source import Location, Source
+from grader.xml.catalogue import NOT_UTF8
 
 Element = etree._Element  # noqa: SLF001  lxml has no public name for it
 XMLSyntaxError = etree.XMLSyntaxError
@@ -27,6 +28,7 @@ _PARSER = etree.XMLParser(
 # bytes: of xyz="0 0<tab>1" it sees ="<tab>".
 _UNIMPORTANT = bytes(sorted(set(range(256)) - set(b"=\"'\t\n\r")))
 _BROKEN_VALUE = re.compile(rb"""=[\t\n\r]*(?:"[='\t\n\r]*?[\t\n\r]|'[="\t\n\r]*?[\t\n\r])""")
+_UTF_16 = re.compile(rb"\xff\xfe(?!\0\0)|\xfe\xff|<\0[^\0]\0|\0<\0[^\0]")
 _DEFAULT_NAMESPACE = rb"xmlns[ \t\r\n]*="
 # No declaration, and no byte-order mark, which lxml takes for the encoding; or one that says what TinyXML2 assumes.
 _PLAIN_START = re.compile(
@@ -75,6 +77,8 @@ def make_element(tag: str, attributes: dict[str, str], parent: Element | None = 
 
 def read_document(data: bytes, path: str) -> XmlDocument:
     """Read the bytes of a URDF; never raises. Text that lxml may not read as TinyXML2 does is translated first."""
+    if _UTF_16.match(data):
+        return _read_utf_16(data, path)
     text = data.decode("utf-8", "surrogateescape")
     body = data.removeprefix(b"\xef\xbb\xbf")  # TinyXML2 skips a byte-order mark
     if is_plain(body):
@@ -90,6 +94,16 @@ def read_document(data: bytes, path: str) -> XmlDocument:
     problems = [Problem(found.kind, found.message, source.at(found.offset)) for found in scan.differences]
     root, recovered = (parse_xml(xml) if xml else None for xml in (scan.xml, scan.recovered))
     return XmlDocument(root, source, problems, scan.first_tag, recovered=recovered)
+
+
+def _read_utf_16(data: bytes, path: str) -> XmlDocument:
+    """Read a text in UTF-16, which TinyXML2 refuses, as what it means; without a byte-order mark it begins with a <."""
+    encoding = "utf-16" if data[0] >= 0xFE else "utf-16-le" if data[0] else "utf-16-be"
+    document = read_document(data.decode(encoding, "replace").replace("\0", "\ufffd").encode(), path)
+    message = "the file is UTF-16 text, which ROS 2 cannot read; save it as UTF-8"
+    problems = [Problem(NOT_UTF8, message, document.source.at(0)), *document.problems]
+    recovered = document.root if document.root is not None else document.recovered
+    return document._replace(root=None, problems=problems, recovered=recovered)
 
 
 def is_plain(data: bytes) -> bool:
