@@ -14,12 +14,13 @@ _WORD = re.compile(r"\d+|[^\W\d_]+")
 _LETTER_BORDER = re.compile(r"(?<!\d) (?!\d)")
 # Words of side, place, axis and measure: none is a misspelling of another one.
 _DISTINCT = frozenset(
-    (
-        "left right front rear back fore top bottom upper lower inner outer middle center centre side first second"
-        " third last start end forward backward minimum maximum roll pitch yaw width length height depth thickness"
-        " radius diameter size mass weight"
-    ).split()
-)
+    {
+        "left", "right", "front", "rear", "back", "fore", "top", "bottom", "upper", "lower", "inner", "outer", "middle",
+        "center", "centre", "side", "first", "second", "third", "last", "start", "end", "forward", "backward",
+        "minimum", "maximum", "roll", "pitch", "yaw", "width", "length", "height", "depth", "thickness", "radius",
+        "diameter", "size", "mass", "weight",
+    }
+)  # fmt: skip
 
 
 def closest(name: str, known: Iterable[str]) -> str | None:

@@ -43,13 +43,22 @@ def urdf_loads(urdf: Reading) -> Outcome:
     causes = [problem for problem in problems if not problem.kind.is_consequence]
     first = (causes or problems or list(urdf.problems))[0]
     others = f" (and {counted(len(problems) - 1, 'more such problem')})" if len(problems) > 1 else ""
-    assumed = [f"{it.message} (line {it.location.line})" for it in urdf.problems if it.kind is xml_catalogue.RECOVERED]
     message = f"{first.message}{others}"
-    if assumed:
-        end = "" if message.endswith("?") else "."
-        message += f"{end} Not deducted elsewhere: {enumerated(assumed, _MAX_ASSUMED)}"
+    if assumed := _assumed(urdf):
+        message += f"{'' if message.endswith('?') else '.'} Not deducted elsewhere: {assumed}"
     outcome = failed(message, first.location, problem=first.message)
     return outcome._replace(mistake=f"{first.code}: {first.kind.title}")
+
+
+def _assumed(urdf: Reading) -> str:
+    """Return what is assumed about a file that ROS 2 rejects, each with its lines; empty if nothing is."""
+    lines: dict[str, list[str]] = {}
+    for problem in urdf.problems:
+        if problem.kind is xml_catalogue.RECOVERED:
+            lines.setdefault(problem.message, []).append(str(problem.location.line))
+    found = [(message, [*dict.fromkeys(at)]) for message, at in lines.items()]
+    texts = [f"{it} (line{'s' * (len(at) > 1)} {enumerated(at, _MAX_ASSUMED)})" for it, at in found]
+    return enumerated(texts, _MAX_ASSUMED)
 
 
 def _raw_xacro_failure(urdf: Reading, raw: Problem) -> Outcome:
@@ -103,8 +112,8 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointTy
 def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]) -> Outcome:
     """The parent joints of the links have the given names (joint name: link name).
 
-    Any joint between `parent` and the link may have the name. A link without a parent joint counts if any joint of that
-    name has it as its child or parent.
+    A joint of the file with this name and this child counts, even if ROS 2 ignores it. Any joint between `parent` and
+    the link may have the name. A link without a parent joint counts if a joint of that name has it as its parent.
 
     Args:
         parent: The link from which the path to each link starts.
@@ -129,12 +138,14 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
 
 
 def _is_named(robot: Configuration, name: str, link: str, parent: str) -> bool:
+    named = [joint for joint in robot.robot.joints if joint.name == name]
+    if any(joint.child == link for joint in named):
+        return True
     if not robot.robot.has_link(link):
         return False
-    named = [joint for joint in robot.robot.joints if joint.name == name]
     own = robot.parent_joints.get(link)
     if own is None:
-        return any(link in (joint.child, joint.parent) for joint in named)
+        return any(joint.parent == link for joint in named)
     is_joined = robot.robot.has_link(parent) and robot.root_of(parent) == robot.root_of(link)
     path = robot.between(parent, link) if is_joined else ()
     return any(joint in named for joint in (*path, own))

@@ -54,7 +54,8 @@ def read_as_meant(root: Element, robot: Robot, read: Callable[[], tuple[Robot, P
             undone += words
             robot, problems = read()
             if "rejects" not in problems.effects:
-                return AsMeant(robot, [*problems.listed, *(problems.assumed(*word[:2], word.sentence) for word in undone)])
+                assumed = [problems.assumed(word.element, word.attribute, word.sentence) for word in undone]
+                return AsMeant(robot, [*problems.listed, *assumed])
         return None
     finally:
         for element, tag, attributes in reversed(before):
@@ -64,7 +65,8 @@ def read_as_meant(root: Element, robot: Robot, read: Callable[[], tuple[Robot, P
 def _write(element: Element, tag: str, attributes: dict[str, str]) -> None:
     element.tag = tag
     element.attrib.clear()
-    element.attrib.update(attributes)
+    for name, value in attributes.items():
+        element.set(name, value)
 
 
 def _with_value(element: Element, attribute: str, value: str, what: str) -> Word:
@@ -74,21 +76,30 @@ def _with_value(element: Element, attribute: str, value: str, what: str) -> Word
 
 
 def _references(root: Element, robot: Robot) -> Iterator[Word]:
-    """Yield links that joints name and that do not exist, and joint types, each near one that can be meant."""
+    """Yield links that joints name and that do not exist, and joint types, each near one that can be meant.
+
+    Where several joints name it, and none names the link that is near, the definition of that is the wrong word.
+    """
     links = [link.name for link in robot.links]
+    uses = Counter(name for joint in robot.joints for name in (joint.parent, joint.child))
+    unknown = [name for name in uses if name and not robot.has_link(name)]
+    if len(unknown) > _MAX_WORDS:
+        return
+    defined = {link: name for name in unknown if uses[name] > 1 and (link := near(name, links, "link")) not in uses}
+    for element in root.iterchildren("link"):
+        if element.get("name") in defined:
+            yield _with_value(element, "name", defined[element.get("name")], "the link")
     children = {joint.child for joint in robot.joints}
-    unknown = {name for joint in robot.joints for name in (joint.parent, joint.child) if not robot.has_link(name)}
-    for joint in root.iterchildren("joint") if len(unknown) <= _MAX_WORDS else ():
+    for joint in root.iterchildren("joint"):
         kind = near(joint.get("type") or "", JOINT_TYPES)
         if kind is not None and joint.get("type") not in JOINT_TYPES:
             yield _with_value(joint, "type", kind, "the joint type")
         ends = {role: end for role in ("parent", "child") if (end := joint.find(role)) is not None and end.get("link")}
         for role, end in ends.items():
             name = end.get("link") or ""
-            if robot.has_link(name):
-                continue
             others = {other.get("link") for other in ends.values()} | (children if role == "child" else set())
-            meant = near(name, [link for link in links if link not in others], "link")
+            known = [link for link in links if link not in others] if name in unknown else []
+            meant = near(name, known, "link") if name not in defined.values() else None
             if meant is not None:
                 children.add(meant if role == "child" else "")
                 yield _with_value(end, "link", meant, "the link")
@@ -133,10 +144,10 @@ def _tags(parent: Element, needed: Collection[str]) -> Iterator[Word]:
 
 
 def _attributes(element: Element) -> Iterator[Word]:
-    tag, given = str(element.tag), dict(element.attrib)
+    tag, given = str(element.tag), {str(name): str(value) for name, value in element.attrib.items()}
     absent = [name for name in REQUIRED[tag] if name not in given]
     for name in given if absent else ():
-        meant = near(str(name), absent) if name not in ATTRIBUTES[tag] else None
+        meant = near(name, absent) if name not in ATTRIBUTES[tag] else None
         if meant is not None:
-            renamed = {meant if key == name else str(key): str(value) for key, value in given.items()}
-            yield Word(element, str(name), tag, renamed, f"the attribute {name} of <{tag}> is read as {meant}")
+            renamed = {meant if key == name else key: value for key, value in given.items()}
+            yield Word(element, name, tag, renamed, f"the attribute {name} of <{tag}> is read as {meant}")

@@ -115,9 +115,8 @@ def _read_content(document: XmlDocument, root: Element) -> Reading:
     if verdict == "rejected":
         is_as_loaded = is_meant and "undetermined" not in effects
         robot = replace(robot, rejected=not is_as_loaded, incomplete=incomplete)
-    return Reading(
-        verdict, robot, in_order(listed), document.source, document.root, document.unresolved, document.recovered, is_meant
-    )
+    places = (document.source, document.root, document.unresolved, document.recovered)
+    return Reading(verdict, robot, in_order(listed), *places, is_meant)
 
 
 def _verdict(effects: Collection[Effect]) -> Verdict:
@@ -131,8 +130,9 @@ def in_order(problems: Iterable[Problem]) -> tuple[Problem, ...]:
 
 def causes(problems: Iterable[Problem]) -> list[Problem]:
     """Return the problems for which ROS 2 rejects a file; only those of xacro if that stops before."""
-    found = [problem for problem in problems if problem.kind.effect == "rejects" and not problem.kind.is_consequence]
-    return [problem for problem in found if problem.kind.is_before_ros] or found
+    found = [problem for problem in problems if problem.kind.effect == "rejects"]
+    own = [problem for problem in found if not problem.kind.is_consequence]
+    return [problem for problem in own if problem.kind.is_before_ros] or own or found
 
 
 def _read_robot(document: XmlDocument, root: Element) -> tuple[Robot, Problems]:

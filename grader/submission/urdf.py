@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.problems import Problem
 from grader.robot.catalogue import RAW_XACRO
-from grader.robot.reader import Reading, find_xacro, read_robot, read_urdf
+from grader.robot.reader import Reading, causes, find_xacro, in_order, read_robot, read_urdf
 from grader.source import Source
 from grader.xml.catalogue import DOCTYPE, NOT_WELL_FORMED
 
@@ -148,4 +148,9 @@ def _expand_xacro(data: bytes, path: str, surroundings: "Surroundings", launched
         raw = read_urdf(data, path)
         problems = [problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)]
         return Reading("rejected", raw.robot, (*expansion.problems, *problems), raw.source)
-    return read_robot(expansion.document)
+    reading = read_robot(expansion.document)
+    meant = read_robot(expansion.meant.document) if expansion.meant is not None else reading
+    if not meant.is_meant or expansion.meant is None:
+        return reading
+    found = in_order([*causes(reading.problems), *expansion.assumed, *meant.problems])
+    return replace(meant, verdict="rejected", problems=found)

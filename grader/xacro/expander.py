@@ -1,17 +1,18 @@
 """Walks the elements of a xacro file and writes the expanded ones, in the order of xacro."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
 from grader.problems import Kind, Problem
 from grader.source import Location
 from grader.static_python.closed_values import CHARACTERS, Budget, ExpressionFails, OutOfBudget, Undetermined, Value
+from grader.text import quoted
 from grader.xacro import catalogue
 from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions, read_yaml_values
 from grader.xacro.macros import MacroError
 from grader.xacro.nodes import XacroNode
-from grader.xacro.scopes import Reported, ScopePlace, XacroFails, XacroScope
+from grader.xacro.scopes import Reported, ScopePlace, UnknownName, XacroFails, XacroScope
 from grader.xacro.texts import Texts
 
 _MAX_DOCUMENT = 1024 * 1024  # characters of the values and texts in the expanded document
@@ -22,7 +23,7 @@ _TOO_DEEP = "elements and macros are nested too deeply"
 STOPS = "xacro stops here, and ROS 2 gets no robot"
 
 
-class TagFails(ExpressionFails):
+class TagFails(XacroFails):
     """A xacro tag with a missing or wrong attribute."""
 
 
@@ -31,6 +32,44 @@ class Open(NamedTuple):
 
     reason: str
     location: Location
+
+
+class Misspelt(NamedTuple):
+    """A name that xacro refuses and that surely stands for another one, and where it is."""
+
+    unknown: UnknownName
+    place: ScopePlace
+    location: Location
+
+    @property
+    def sentence(self) -> str:
+        """What it is read as."""
+        return f"the {self.unknown.kind} {quoted(self.unknown.name)} is read as {quoted(self.unknown.meant or '')}"
+
+
+class Respelling:
+    """Names that are read as others: in expressions, and those of elements, by the file and the index of the tag."""
+
+    def __init__(self, misspelt: Iterable[Misspelt] = ()) -> None:
+        self.names: dict[str, str] = {}
+        self._elements: dict[tuple[str, int], dict[str, str]] = {}
+        for (name, _, kind, meant), place, _ in misspelt:
+            own = self._elements.setdefault((place.source.path, place.tag), {})
+            (self.names if kind == "property" else own)[name] = meant or name
+
+    def element(self, node: XacroNode) -> XacroNode:
+        """Return an element with the names that it is read with: of a macro, of attributes, of the block it inserts."""
+        names = self._elements.get((node.place.source.path, node.place.tag))
+        if not names:
+            return node
+        name = node.tag.removeprefix("xacro:")
+        has_block = name == "insert_block"
+        other = XacroNode(f"xacro:{names.get(name, name)}", node.place)
+        other.attributes = {
+            names.get(key, key): names.get(text, text) if has_block else text for key, text in node.attributes.items()
+        }
+        other.children, other.unresolved = node.children, node.unresolved
+        return other
 
 
 class Scopes(NamedTuple):
@@ -60,6 +99,7 @@ class Expander:
         budget: Budget,
         handlers: Mapping[str, Handler],
         other: Handler,
+        respelling: Respelling,
     ) -> None:
         """`handlers` expand xacro's own tags, and `other` every other tag that begins with xacro: a macro call."""
         self.files = files
@@ -67,7 +107,10 @@ class Expander:
         # `texts` is set below, so that the lambda is needed.
         own = document_functions(self._load_yaml, lambda name: self.texts.argument(name))  # noqa: PLW0108
         self.texts = Texts(dict(arguments), self.budget, self.report, own, files.has_package)
+        self.texts.respelt, self._respelling = respelling.names, respelling
+        self.own_tags = [tag.removeprefix("xacro:") for tag in handlers]
         self.problems: list[Problem] = []
+        self.misspelt: list[Misspelt] = []
         self.undetermined: list[Open] = []
         self.refused: list[tuple[XacroFails, ScopePlace, str | None]] = []  # what may be corrected, and where
         self.calls: tuple[tuple[str, ScopePlace], ...] = ()
@@ -161,6 +204,8 @@ class Expander:
         self.problems.append(Problem(kind, f"{message}{joint}{STOPS}", location))
         if isinstance(error, XacroFails) and (error.unknown is not None or error.lacking):
             self.refused.append((error, place, attribute))
+            if error.unknown is not None and error.unknown.meant is not None:
+                self.misspelt.append(Misspelt(error.unknown, place, location))
         return ""
 
     def use(self, name: str, body: ScopePlace, call: ScopePlace) -> None:
@@ -182,6 +227,7 @@ class Expander:
     def _element(self, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
         self.budget.charge(_OF_ELEMENT, len(node.tag))
         if node.tag.startswith("xacro:"):
+            node = self._respelling.element(node)
             self.budget.charge(len(node.attributes), sum(map(len, node.attributes.values())))
             self._handlers.get(node.tag, self._other)(self, node, out, scopes)
         else:

@@ -4,8 +4,10 @@ xacro (ros/xacro 2.1) stops at the first thing that it refuses. Here it becomes 
 the same, so that one defect does not hide another.
 """
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
+from functools import partial
 from itertools import groupby
 from typing import NamedTuple
 
@@ -14,11 +16,15 @@ from grader.source import Source
 from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
 from grader.xacro import catalogue
 from grader.xacro.expanded_source import ExpandedSource
-from grader.xacro.expander import STOPS, Expander, Open
+from grader.xacro.expander import STOPS, Expander, Misspelt, Open, Respelling
 from grader.xacro.files import Files, Workspace
 from grader.xacro.nodes import XacroNode, read_nodes, recovered_nodes
 from grader.xacro.tags import CALL, HANDLERS
+from grader.xml.catalogue import MISPLACED_DECLARATION, RECOVERED
 from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, error_location, make_element
+
+_INSTRUCTION = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?(?!xml\s)(?P<target>[\w:.-]+)", re.DOTALL)
+_MAX_ASSUMED = 20
 
 __all__ = ("Expansion", "Open", "Workspace", "expand")
 
@@ -26,7 +32,9 @@ __all__ = ("Expansion", "Open", "Workspace", "expand")
 class Expansion(NamedTuple):
     """An expanded file.
 
-    If it cannot be expanded at all, `root` is None, and `recovered` is what can be read despite broken tags.
+    If it cannot be expanded at all, `root` is None, and `recovered` is what can be read despite broken tags. `is_meant`
+    says whether xacro refuses nothing else. If it refuses only names that surely stand for others, `meant` is the
+    expansion with these, which `assumed` lists.
     """
 
     root: Element | None
@@ -35,6 +43,9 @@ class Expansion(NamedTuple):
     undetermined: tuple[Open, ...]  # what cannot be determined statically
     unresolved: Mapping[Element, Unresolved]  # the elements that are not known completely
     recovered: Element | None = None
+    is_meant: bool = False
+    assumed: tuple[Problem, ...] = ()
+    meant: "Expansion | None" = None
 
     @property
     def document(self) -> XmlDocument:
@@ -43,39 +54,59 @@ class Expansion(NamedTuple):
             Problem(catalogue.XACRO_UNDETERMINED, found.reason, found.location) for found in self.undetermined
         ]
         problems = [*self.problems, *undetermined]
-        return XmlDocument(
-            self.root, self.source, problems, 0, self.unresolved, is_expanded=True, recovered=self.recovered
-        )
+        found = XmlDocument(self.root, self.source, problems, 0, self.unresolved, is_expanded=True)
+        return found._replace(recovered=self.recovered, is_meant=self.is_meant)
 
 
 def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str, str | None]) -> Expansion:
     """Return a xacro file as xacro expands it with these arguments; never raises. `path` is that in the submission."""
+    read = partial(_expand, data, path, workspace, arguments)
+    expansion, first = read(Respelling())
+    meant, last, misspelt = expansion, first, list[Misspelt]()
+    while last is not None and last.misspelt and len(misspelt) < _MAX_ASSUMED:
+        of_elements = [found for found in last.misspelt if found.unknown.kind != "property"]
+        misspelt += of_elements or last.misspelt  # elements first: they may define the names
+        meant, last = read(Respelling(misspelt))
+    if first is None or last is None or not misspelt or last.problems:
+        return expansion
+    last.refused += first.refused  # for hints
+    assumed = {found.sentence: Problem(RECOVERED, found.sentence, found.location) for found in reversed(misspelt)}
+    return expansion._replace(meant=meant, assumed=tuple(assumed.values()))
+
+
+def _expand(
+    data: bytes, path: str, workspace: Workspace, arguments: Mapping[str, str | None], respelling: Respelling
+) -> tuple[Expansion, Expander | None]:
+    """Return an expansion, and its expander unless there was nothing to expand."""
     plain, budget = Source(path, data.decode("utf-8", "surrogateescape")), workspace.budget
     before = budget.used
     try:
         source, refused, is_recovered = _read(data, plain, budget)
     except ExpressionFails as error:
         problem = Problem(catalogue.XACRO_NOT_XML, f"{error}; {STOPS}", plain.at(0))
-        return Expansion(None, plain, (problem,), (), {})
+        return Expansion(None, plain, (problem,), (), {}), None
     except (Undetermined, OutOfBudget) as error:
-        return Expansion(None, plain, (), (Open(str(error), plain.at(0)),), {})
+        return Expansion(None, plain, (), (Open(str(error), plain.at(0)),), {}), None
     if source is None:
-        return Expansion(None, plain, refused, (), {})
+        return Expansion(None, plain, refused, (), {}), None
     files = Files(workspace, path)
     files.documents[path] = source
-    expander = Expander(files, arguments, budget, HANDLERS, CALL)
+    refused = (*refused, *_instructions(plain))
+    expander = Expander(files, arguments, budget, HANDLERS, CALL, respelling)
     root = expander.root(source)
     nodes: list[XacroNode] = []
     unresolved: dict[Element, Unresolved] = {}
     element = _element(root, nodes, unresolved)
-    return Expansion(
+    expansion = Expansion(
         None if is_recovered else element,
         ExpandedSource(plain, nodes, expander, budget.used - before),
         (*refused, *expander.problems),
         tuple(expander.undetermined),
         unresolved,
         element if is_recovered else None,
+        is_meant=not expander.problems,
     )
+    return expansion, expander
 
 
 def _read(data: bytes, text: Source, budget: Budget) -> tuple[XacroNode | None, tuple[Problem, ...], bool]:
@@ -90,6 +121,15 @@ def _read(data: bytes, text: Source, budget: Budget) -> tuple[XacroNode | None, 
         return read_nodes(data, path, budget, is_repaired=True), refused, False
     recovered, assumed = recovered_nodes(data, path, budget)
     return recovered, (*refused, *assumed) if recovered is not None else refused, True
+
+
+def _instructions(text: Source) -> Iterator[Problem]:
+    """Yield the first processing instruction: xacro keeps it, after its own comment, where TinyXML2 refuses it."""
+    instruction = next((found for found in _INSTRUCTION.finditer(text.text) if found["target"]), None)
+    if instruction is not None:
+        what = f"<?{instruction['target'][:40]}?>"
+        message = f"{what} comes after the comment that xacro adds, which ROS 2 rejects: remove it"
+        yield Problem(MISPLACED_DECLARATION, message, text.at(instruction.start()))
 
 
 def _element(root: XacroNode, nodes: list[XacroNode], unresolved: dict[Element, Unresolved]) -> Element:

@@ -1,5 +1,6 @@
 """The tags of xacro that define macros and call them, and that insert the elements which a call gives."""
 
+from grader.names import near
 from grader.static_python.closed_values import Undetermined
 from grader.xacro.expander import Expander, Scopes, TagFails
 from grader.xacro.macros import (
@@ -21,7 +22,9 @@ _MAX_CALLS = 100  # macros that call each other
 def needed(node: XacroNode, name: str) -> str:
     """Return an attribute that xacro requires."""
     if name not in node.attributes:
-        raise TagFails(f"<{node.tag}> has no attribute {name}")
+        given = [other for other in node.attributes if near(other, [name])]
+        unknown = UnknownName(given[0], {name: None}, "attribute", name) if len(given) == 1 else None
+        raise TagFails(f"<{node.tag}> has no attribute {name}", unknown)
     return node.attributes[name]
 
 
@@ -60,7 +63,7 @@ def _call_by_name(expander: Expander, name: str, node: XacroNode, out: XacroNode
     if found is None:
         if expander.texts.names_open is not None:
             raise expander.texts.names_open.with_traceback(None)
-        raise MacroError(*expander.texts.unknown("macro", name, scopes.macros))
+        raise MacroError(*expander.texts.unknown("macro", name, scopes.macros, expander.own_tags))
     macro, outer_macros, outer_symbols = found
     if len(expander.calls) >= _MAX_CALLS:
         raise Undetermined(f"macros call each other more than {_MAX_CALLS} deep")
@@ -95,7 +98,9 @@ def insert_block(expander: Expander, node: XacroNode, out: XacroNode, scopes: Sc
         if expander.texts.names_open is not None:
             raise expander.texts.names_open.with_traceback(None)
         expander.budget.charge(len(scopes.symbols.properties))
-        raise MacroError(f"there is no block {name} at this place", UnknownName(name, scopes.symbols.blocks()))
+        known = scopes.symbols.blocks()
+        unknown = UnknownName(name, known, "block", near(name, known))
+        raise MacroError(f"there is no block {name} at this place", unknown)
     if key.startswith("**"):
         expander.start(block, scopes)
         expander.insert(block, out, scopes)

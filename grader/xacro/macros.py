@@ -3,6 +3,7 @@
 import re
 from typing import NamedTuple
 
+from grader.names import near
 from grader.static_python.closed_values import Budget, Undetermined
 from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import Definition, UnknownName, XacroFails, XacroScope
@@ -114,7 +115,8 @@ def bind_values(
         if name not in first:
             known = dict.fromkeys(first, (macro.body.place, "params"))
             message = f"the macro {macro.name} has no parameter {name}; it has: {', '.join(known) or 'none'}"
-            raise MacroError(message, UnknownName(name, known))
+            meant = near(name, known.keys() - call.attributes.keys())
+            raise MacroError(message, UnknownName(name, known, "parameter", meant))
         del left[first[name]]
         texts.bind(inner, name, text, caller, call.place, name)
     return list(left.values())

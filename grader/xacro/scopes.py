@@ -58,10 +58,15 @@ Known = Mapping[str, tuple[ScopePlace, str] | None]
 
 
 class UnknownName(NamedTuple):
-    """A name that is not defined, and those that are."""
+    """A name that is not defined, and those that are; `meant` is the one that it surely stands for, if there is one.
+
+    `kind` is property where the name is in an expression, else what it names: a macro, block, parameter or attribute.
+    """
 
     name: str
     known: Known
+    kind: str = ""
+    meant: str | None = None
 
 
 class XacroFails(ExpressionFails):

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping
 from copy import copy
 from keyword import iskeyword
 
-from grader.names import did_you_mean
+from grader.names import did_you_mean, near
 from grader.static_python.closed import evaluate
 from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value, joined, str_of
 from grader.xacro.functions import GLOBALS
@@ -59,7 +59,9 @@ class Texts:
         self._is_own = is_own
         self._report = report
         self._globals = {**GLOBALS, **own}
-        self._similar: dict[tuple[str, ...], str] = {}  # what is said of a name, by this name and those that are known
+        self.respelt: Mapping[str, str] = {}  # names in expressions, and the names that they are read as
+        # What is said of a name, and the name that it stands for, by this name and those that are known.
+        self._similar: dict[tuple[str, ...], tuple[str, str | None]] = {}
 
     def supposing(self, texts: Mapping[Key, str], budget: Budget) -> "Texts":
         """Return the same with other texts where names are defined. Nothing is reported or remembered."""
@@ -109,6 +111,9 @@ class Texts:
             return self._globals[name]
         if self.names_open is not None:
             raise self.names_open.with_traceback(None)
+        meant = self.respelt.get(name, name)
+        if meant != name and self.is_bound(meant, scope):
+            return self.find(meant, scope)
         raise XacroFails(*self.unknown("property", name, scope, self._globals))
 
     def unknown(self, kind: str, name: str, scope: XacroScope, own: Iterable[str] = ()) -> tuple[str, UnknownName]:
@@ -118,9 +123,9 @@ class Texts:
         key = (name, *known)
         if key not in self._similar:
             self._budget.charge(_OF_NAME * len(known))
-            self._similar[key] = did_you_mean(name, known)
-        message = f"there is no {kind} {name[:_MAX_SHOWN]} at this place{self._similar[key]}"
-        return message, UnknownName(name, known)
+            self._similar[key] = did_you_mean(name, known), near(name, known)
+        guess, meant = self._similar[key]
+        return f"there is no {kind} {name[:_MAX_SHOWN]} at this place{guess}", UnknownName(name, known, kind, meant)
 
     def _again(self, definition: Definition) -> Value:
         """Return the value of a definition with the supposed texts."""

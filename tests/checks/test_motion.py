@@ -175,7 +175,7 @@ def test_a_wheel_without_an_axis_points_to_its_joint() -> None:
     assert "sideways" in message or "does not roll" in message
 
 
-@pytest.mark.parametrize("kind", ["fixed", "Continuous", "", "wheel"])
+@pytest.mark.parametrize("kind", ["fixed", "rotary", "", "wheel"])
 def test_a_wheel_without_a_moving_joint_misses_one(kind: str) -> None:
     """Fixed joints and unknown types move nothing, so the moving joint is missing."""
     for check, arguments in ((rolls_forward, FORWARDS), (turns_about_itself, ITSELF)):
@@ -385,7 +385,7 @@ def test_a_wobble_is_at_most_a_right_angle(tilt: float) -> None:
 @pytest.mark.parametrize(("check", "arguments"), [(rolls_forward, FORWARDS), (turns_about_itself, ITSELF)])
 def test_the_type_can_be_left_out(check: AnyCheck, arguments: Arguments) -> None:
     """With `any_type` a joint of a misspelt type turns about its axis; without it nothing turns."""
-    typo, wrong = rolling(kind="continous"), rolling(kind="continous", axis="1 0 0")
+    typo, wrong = rolling(kind="rotary"), rolling(kind="rotary", axis="1 0 0")
     assert missing(check, typo, **arguments).kind == "moving joint"
     assert ask(check, typo, **arguments, any_type=True).status == "passed"
     assert ask(check, wrong, **arguments, any_type=True).status == "failed"

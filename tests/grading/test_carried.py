@@ -241,7 +241,8 @@ def test_a_wrong_footprint_is_lost_with_and_without_an_early_mistake(footprint: 
 
 def test_a_misspelt_type_costs_once() -> None:
     """The wheel would drive forward and turn about itself; one with a wrong axis as well would not."""
-    typo = ('type="continuous"', 'type="continous"')
+    assert lost(lab6(('type="continuous"', 'type="continous"'))) == {"urdf-loads": 3}
+    typo = ('type="continuous"', 'type="rotary"')
     expected = {"urdf-loads": 3, "left-wheel-continuous": 1, "right-wheel-continuous": 1}
     assert lost(lab6(typo)) == expected
     axes = ('axis xyz="0 0 1"', 'axis xyz="0 0 -1"')

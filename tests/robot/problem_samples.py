@@ -194,7 +194,7 @@ SAMPLES: tuple[ProblemSample, ...] = (
     ProblemSample(
         "URDF061",
         "type-unknown",
-        lines(_TWO, ' <joint name="j" ¦type="Fixed"><parent link="a"/><child link="b"/></joint>'),
+        lines(_TWO, ' <joint name="j" ¦type="rigid"><parent link="a"/><child link="b"/></joint>'),
     ),
     ProblemSample("URDF062", "joint-origin", in_joint('<origin ¦xyz="1,2,3"/>', _AXIS)),
     ProblemSample("URDF062", "joint-rpy", in_joint('<origin xyz="1 2 3" ¦rpy="0 0"/>', _AXIS)),
