@@ -8,7 +8,7 @@ from typing import TypeVar
 from grader.checks.check import MEASURES, METRES, About
 from grader.checks.outcome import Outcome, failed, judged, measured, other_unit, passed, place, point, within
 from grader.checks.toml_types import NonNegative, Size
-from grader.checks.visuals import all_within, main_visual, rgba, shape_name, visuals
+from grader.checks.visuals import all_within, main_visual, shape_name, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Sphere, Visual
@@ -95,7 +95,7 @@ def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
     """
     robot.link(link)
     try:
-        shown = [visual for visual in visuals(robot, link) if visual.material is None or rgba(visual.material)[3] > 0]
+        shown = [visual for visual in visuals(robot, link) if visual.material is None or visual.material.rgba[3] > 0]
     except MissingElement:
         shown = []
     if not shown:

@@ -6,7 +6,7 @@ from math import hypot, inf
 from grader.checks.check import MEASURES, METRES, About
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, passed, pending, place, point
 from grader.checks.toml_types import NonNegative, RadiusAndLength, Size
-from grader.checks.visuals import MAX_SHAPES, check_resolved, file_name, visuals
+from grader.checks.visuals import MAX_SHAPES, file_name, visuals
 from grader.errors import MissingElement, NotDecided, RubricError
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
@@ -39,7 +39,6 @@ def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonN
         link: The link that is examined.
         tolerance: How far a centre, a size or a point of the surface may be off, in metres.
     """
-    check_resolved(robot.link(link), "visual", has_none=True)
     shown = visuals(robot, link)
     solid = _solid(robot, link, "the shapes that it shows")
     if max(len(shown), len(solid)) > MAX_SHAPES:
@@ -119,7 +118,6 @@ def collides_as(
 
 def _solid(robot: Configuration, link: str, expected: str) -> tuple[Collision, ...]:
     """Return the collision shapes of a link that have a size; raise MissingElement if there is none."""
-    check_resolved(robot.link(link), "collision", has_none=True)
     solid = tuple(collision for collision in robot.link(link).collisions if not is_empty(collision.geometry))
     if not solid:
         message = f"link {link!r} has no collision shape with a size; it should have {expected}"

@@ -3,7 +3,7 @@
 from grader.checks.check import MEASURES, About, Usual
 from grader.checks.outcome import SLACK, Outcome, failed, judged, pending, place, point, within
 from grader.checks.toml_types import Colour, NonNegative
-from grader.checks.visuals import ShapeName, all_within, main_visual, rgba
+from grader.checks.visuals import ShapeName, all_within, main_visual
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Material, Visual
 
@@ -61,7 +61,7 @@ def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: N
 
 def _has_only_texture(material: Material) -> bool:
     # ROS 2 gives a material black where it has a texture and no colour.
-    return rgba(material) == Material("").rgba and material.texture != ""
+    return material.rgba == Material("").rgba and material.texture != ""
 
 
 def _colourless(link: str, visual: Visual) -> Outcome:

@@ -5,7 +5,6 @@ from math import isfinite, isnan
 from typing import NamedTuple
 
 from grader.checks.outcome import Outcome, judged, place, within
-from grader.errors import MissingElement
 from grader.robot.model import Joint
 from grader.source import LazyLocation
 
@@ -67,12 +66,3 @@ def named(joint: Joint) -> str:
 def number_text(value: float, digits: int = 9) -> str:
     """Return a number of a URDF for a message."""
     return "missing or unreadable" if isnan(value) else f"{value + 0.0:.{digits}g}"
-
-
-def check_known(joint: Joint, tag: str, link: str, *, is_there: bool) -> None:
-    """Raise NotDecided or MissingElement where xacro leaves open an element of a joint, or whether it has one."""
-    part = joint.unresolved.get(tag, joint.unresolved.get("") if not is_there else None)
-    if part is not None:
-        part.check()
-        message = f"xacro cannot expand the <{tag}> of the joint that moves {link!r}"
-        raise MissingElement(tag, link, message=message, location=part.location)

@@ -47,7 +47,6 @@ def counts(
         prismatic: The number of prismatic joints.
         fixed: The number of fixed joints.
     """
-    robot.robot.check_complete()
     wanted = {
         "link": links,
         "joint": joints,
@@ -74,10 +73,7 @@ def _count(robot: Configuration, nouns: Collection[str]) -> Counter[str]:
     tree = robot.main_tree
     found = Counter({"link": len(tree), "joint": max(0, len(tree) - 1)})
     for joint in (robot.parent_joints[link] for link in tree[1:]) if set(nouns) - {"link", "joint"} else ():
-        is_moving = joint.type != "fixed" and joint.mimic is None and "mimic" not in joint.unresolved
-        for part in ("@type", *(("",) if "moving joint" in nouns and is_moving else ())):
-            if part in joint.unresolved:
-                joint.unresolved[part].check()
+        is_moving = joint.type != "fixed" and joint.mimic is None
         found[f"{joint.type} joint"] += 1
         found["moving joint"] += is_moving
     return found

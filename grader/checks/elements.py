@@ -94,7 +94,7 @@ def element_present(
 
 def _without_dropped(robot: Configuration, root: Element) -> Element:
     """Return a copy of a robot without the inertials, visuals and collisions of links that ROS 2 drops."""
-    parts = (part for link in robot.robot.links for part in (link.inertial, *link.visuals, *link.collisions))
+    parts = (part for link in robot.known.links for part in (link.inertial, *link.visuals, *link.collisions))
     tags = {part.location.tag for part in parts if part is not None and part.location is not None}
     copy = deepcopy(root)
     for tag, element in enumerate([*copy.iter()]):

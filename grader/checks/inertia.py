@@ -8,7 +8,7 @@ from grader.checks.check import MEASURES, About, Usual
 from grader.checks.inertia_mistakes import mistake_of, round_factor
 from grader.checks.outcome import Outcome, failed, in_millimetres, judged, place, point, within
 from grader.checks.toml_types import NonNegative
-from grader.checks.visuals import MAX_SHAPES, check_resolved
+from grader.checks.visuals import MAX_SHAPES
 from grader.errors import MissingElement, NotDecided
 from grader.robot.frames import placed_by
 from grader.robot.inertia import (
@@ -115,7 +115,6 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
 def _inertial(robot: Configuration, link: str) -> Inertial:
     """Return the <inertial> of a link; raise MissingElement if ROS 2 reads none."""
     found = robot.link(link)
-    check_resolved(found, "inertial", has_none=found.inertial is None)
     if found.inertial is None:
         message = f"link {link!r} has no valid <inertial>"
         raise MissingElement("inertial", link, message=message, location=place(found.location))
@@ -145,7 +144,6 @@ def _solid_shapes(robot: Configuration, link: str) -> tuple[str, list[tuple[Shap
     """
     found = robot.link(link)
     for word, elements in (("collision shape", found.collisions), ("visual", found.visuals)):
-        check_resolved(found, word.partition(" ")[0], has_none=True)
         placed = with_volume(elements)
         if len(placed) > MAX_SHAPES:
             raise NotDecided(f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes")

@@ -3,7 +3,7 @@
 from math import degrees, hypot, isfinite
 
 from grader.checks.check import DEGREES, MEASURES, About
-from grader.checks.comparison import EXACT, Number, check_known, compared, expected_numbers, named, number_text
+from grader.checks.comparison import EXACT, Number, compared, expected_numbers, named, number_text
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, judged, place, point, within
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import axis_place
@@ -49,7 +49,6 @@ def joint_limits(
         )
         return failed(message, place(joint.location, "type"), detail=named(joint))
     limit, units = joint.limit, "degrees" if joint.type == "revolute" else "m"
-    check_known(joint, "limit", link, is_there=limit is not None)
     fault = f"it should be {_range(lower, upper)} {units}"
     if limit is None:
         return failed(f"the joint that moves {link!r} has no limits; {fault}", joint.location, detail=named(joint))
@@ -145,7 +144,6 @@ def joint_dynamics(
     """
     joint = robot.moving_joint(link)
     given = joint.dynamics
-    check_known(joint, "dynamics", link, is_there=given is not None)
     found = given or Dynamics()
     numbers = expected_numbers({"friction": (found.friction, friction), "damping": (found.damping, damping)}, tolerance)
     message = f"the joint that moves {link!r} has {'<dynamics>' if given else 'no <dynamics>'}"

@@ -1,7 +1,7 @@
 """The check of a joint that mimics another one."""
 
 from grader.checks.check import MEASURES, About
-from grader.checks.comparison import EXACT, check_known, compared, expected_numbers, named
+from grader.checks.comparison import EXACT, compared, expected_numbers, named
 from grader.checks.outcome import Outcome, failed, place
 from grader.checks.toml_types import NonNegative
 from grader.errors import MissingElement
@@ -42,8 +42,6 @@ def mimics(
         if joint.mimic is not None:
             detail = f" (joint {joint.name!r} mimics {joint.mimic.joint!r}, not {leading.name!r})"
         is_missing = not robot.robot.has_joint(last)
-        if is_missing or "@name" in leading.unresolved:
-            robot.robot.check_complete()
         if is_missing:
             message = f"the joint that moves {link!r} mimics a joint that does not exist"
             detail += did_you_mean(last, (other.name for other in robot.robot.joints))
@@ -62,7 +60,6 @@ def _mimic_chain(robot: Configuration, joint: Joint, link: str) -> dict[str, tup
     found: dict[str, tuple[float, float]] = {}
     first, ratio, shift = joint, 1.0, 0.0
     while True:
-        check_known(joint, "mimic", link, is_there=joint.mimic is not None)
         if joint.mimic is None:
             return found
         name = joint.mimic.joint

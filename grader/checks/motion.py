@@ -164,8 +164,8 @@ def _as_turning(robot: Configuration, link: str) -> Configuration:
     joint = robot.parent_joints.get(link)
     if joint is None:
         return robot
-    joints = (replace(other, type="continuous") if other is joint else other for other in robot.robot.joints)
-    return Configuration(replace(robot.robot, joints=tuple(joints)), robot.positions)
+    joints = (replace(other, type="continuous") if other is joint else other for other in robot.known.joints)
+    return Configuration(replace(robot.known, joints=tuple(joints)), robot.positions)
 
 
 def _flat(vector: Vector, up: Vector) -> Vector:

@@ -202,7 +202,6 @@ def _check_names(robot: Configuration, names: Sequence[str]) -> None:
     missing = [name for name in names if not robot.robot.has_joint(name)]
     if not missing:
         return
-    robot.robot.check_complete()
     known = tuple(joint.name for joint in robot.robot.joints)
     message = f"there is no joint {enumerated([*map(quoted, missing)], _MAX_NAMED, 'and no joint')}"
     guess = did_you_mean(missing[0], known) or f"; the file has: {_list_names(known) or 'none'}"
@@ -213,7 +212,5 @@ def _wrong_type(joint: Joint, other: Joint) -> Outcome | None:
     """Return the failure of a joint that cannot move as its counterpart does, such as a prismatic one for a wheel."""
     if joint.type == other.type or {joint.type, other.type} <= {"revolute", "continuous"} or other.type not in SINGLE:
         return None
-    if "@type" in joint.unresolved:
-        joint.unresolved["@type"].check()
     message = f"the joint is {joint.type or 'of no type'}; it should be {other.type}"
     return failed(message, place(joint.location, "type"), detail=f" (joint {quoted(joint.name)})")

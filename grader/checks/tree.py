@@ -138,7 +138,7 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
 
 
 def _is_named(robot: Configuration, name: str, link: str, parent: str) -> bool:
-    named = [joint for joint in robot.robot.joints if joint.name == name]
+    named = [joint for joint in robot.known.joints if joint.name == name]
     if any(joint.child == link for joint in named):
         return True
     if not robot.robot.has_link(link):

@@ -9,7 +9,7 @@ from grader.checks.outcome import place, within
 from grader.errors import MissingElement
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Box, Cylinder, Geometry, Joint, Link, Material, Mesh, Sphere, Visual
+from grader.robot.model import Box, Cylinder, Geometry, Joint, Mesh, Sphere, Visual
 from grader.robot.shapes import extent, is_empty, volume
 from grader.robot.transforms import Transform, Vector, unit
 from grader.source import LazyLocation
@@ -22,25 +22,12 @@ def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
     """Return the visuals of a link that have a size; raise MissingElement if there is none."""
     shown = robot.shown.get(link)
     if shown is None:
-        check_resolved(robot.link(link), "visual", has_none=not robot.link(link).visuals)
         shown = tuple(visual for visual in robot.link(link).visuals if not is_empty(visual.geometry))
         robot.shown[link] = shown
     if not shown:
         message = f"link {link!r} has no visual with a size"
         raise MissingElement("visual", link, message=message, location=place(robot.link(link).location))
     return shown
-
-
-def check_resolved(link: Link, part: str, *, has_none: bool) -> None:
-    """Raise NotDecided or MissingElement where a part of a link, such as a visual, is not known because of xacro.
-
-    If the link `has_none` that is known, it may be among the children that are not.
-    """
-    found = link.unresolved.get(part, link.unresolved.get("") if has_none else None)
-    if found is not None:
-        found.check()
-        message = f"xacro cannot expand the {part} of link {link.name!r}"
-        raise MissingElement(part, link.name, message=message, location=found.location)
 
 
 ShapeName = Literal["any", "box", "cylinder", "sphere"]
@@ -102,10 +89,3 @@ def axis_place(joint: Joint) -> LazyLocation | None:
 def all_within(actual: Sequence[float], expected: Sequence[float], tolerance: float) -> bool:
     """Return whether each of several numbers is within a tolerance."""
     return all(map(within, actual, expected, repeat(tolerance)))
-
-
-def rgba(material: Material) -> tuple[float, ...]:
-    """Return the colour of a material; raise NotDecided if xacro leaves it open."""
-    for part in material.unresolved.values():
-        part.check()
-    return material.rgba

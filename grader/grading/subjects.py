@@ -75,7 +75,7 @@ class Subjects:
             positions = {joint.name: radians(value) if joint.type in _TURNING else value for joint, value in found}
             for name in positions:
                 _check_name(robot, name)
-            self._posed[key] = Configuration(robot.robot, positions, holding=robot.parent_joints)
+            self._posed[key] = robot.at(positions)
         return self._posed[key]
 
     def _missing(self, name: Subject) -> object:
@@ -103,8 +103,6 @@ def _joint(robot: Configuration, name: str) -> Joint:
         return found
     joint = robot.joint(name)
     if joint.type not in (*_TURNING, *_SLIDING):
-        if "@type" in joint.unresolved:
-            joint.unresolved["@type"].check()
         at = joint.location and joint.location._replace(attribute="type")
         message = f"the joint {quoted(name)} is {joint.type or 'of no type'}; it should turn or slide"
         raise MissingElement("moving joint", name, message=message, location=at)
@@ -125,7 +123,7 @@ def named_links(value: Any, robot: Configuration) -> Any:
 
 def _check_name(robot: Configuration, name: str) -> None:
     """Raise MissingElement if several joints with this name turn or slide: positions are given by the joint's name."""
-    found = [joint for joint in robot.robot.joints if joint.name == name and joint.type in (*_TURNING, *_SLIDING)]
+    found = [joint for joint in robot.known.joints if joint.name == name and joint.type in (*_TURNING, *_SLIDING)]
     if len(found) > 1:
         message = f"{len(found)} joints are called {quoted(name)}; each needs a name of its own"
         raise MissingElement("own name", name, message=message, location=found[1].location)

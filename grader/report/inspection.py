@@ -52,7 +52,7 @@ class Inspection:
         """Yield the pose of every link in the frame `relative_to`, in file order, or the reason why it has none."""
         if self.robot is None or self.relative_to is None:
             return
-        for link in self.robot.robot.links:
+        for link in self.robot.known.links:
             try:
                 yield link.name, self.robot.pose(link.name, relative_to=self.relative_to)
             except (MissingElement, NotDecided) as reason:
@@ -83,7 +83,7 @@ _ROBOT = Record(
     {
         "name": (TEXT, "robot.name"),
         "root": (nullable(TEXT), main_root),
-        "links": (array(TEXT), lambda robot: [link.name for link in robot.robot.links]),
+        "links": (array(TEXT), lambda robot: [link.name for link in robot.known.links]),
         "joints": (Many(_JOINT), "robot.joints"),
     }
 )
@@ -108,7 +108,7 @@ def inspection_json(inspection: Inspection) -> str:
 def inspection_terminal(inspection: Inspection, console: Console) -> None:
     """Print the inspection."""
     reading, robot = inspection.reading, inspection.robot
-    name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
+    name = f"robot {robot.known.name!r}" if robot is not None else "no robot"
     words = effect(reading)
     head = ((printable(inspection.path), "bold"), ": ", (words, _STYLES[words]), f", {printable(name)}")
     console.print(Text.assemble(*head))
@@ -127,7 +127,7 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     for link, pose in islice(inspection.poses(), _MAX_LISTED):
         text = (_pose_text(pose), "cyan") if isinstance(pose, Transform) else (printable(pose), "red")
         wrapped(console, Text.assemble(f"{printable(link)}  ", text), 2)
-    _print_rest(console, len(robot.robot.links))
+    _print_rest(console, len(robot.known.links))
 
 
 def _print_title(console: Console, title: str) -> None:

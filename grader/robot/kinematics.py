@@ -9,6 +9,7 @@ from grader.errors import MissingElement
 from grader.robot.frames import Frames, Position, check_position, motion_of, undefined_pose
 from grader.robot.joints import MOVING_TYPES
 from grader.robot.model import Joint, Link, Robot, Visual
+from grader.robot.open_values import guarded
 from grader.robot.transforms import IDENTITY, Transform, Vector, unit
 from grader.robot.tree import parent_joints
 from grader.text import quoted
@@ -29,18 +30,25 @@ class Configuration:
         *,
         holding: Mapping[str, Joint] | None = None,
     ) -> None:
-        """`holding` is parent_joints(robot), if it is known already; positions are not validated then.
+        """`robot` becomes `known`; what of it xacro leaves open raises NotDecided where `self.robot` is used.
+
+        `holding` is parent_joints(robot), if it is known already; positions are not validated then.
 
         Raises MissingElement for a joint that is not there, ValueError for a position of the wrong shape.
         """
-        self.robot = robot
+        self.known = robot
+        self.robot, joints = guarded(robot)
         self.positions = dict(positions or {})
-        self.parent_joints = parent_joints(robot) if holding is None else holding
+        self._holding = parent_joints(robot) if holding is None else holding
+        self.parent_joints = self._holding
+        if self.robot is not robot:
+            own = {id(known): joint for known, joint in zip(robot.joints, joints, strict=True)}
+            self.parent_joints = {child: own[id(joint)] for child, joint in self._holding.items()}
         if holding is None:
             for name, position in self.positions.items():
                 check_position(robot.joint(name), position)
         self.shown: dict[str, tuple[Visual, ...]] = {}  # a cache for the checks of what a link shows
-        self._frames = Frames(robot, self.parent_joints, self.positions)
+        self._frames = Frames(robot, self._holding, self.positions)
         self._relative: dict[tuple[str, str | None], Transform] = {}
 
     def link(self, name: str) -> Link:
@@ -88,7 +96,7 @@ class Configuration:
         frame = self._frames.of(link)
         base = self._frames.of(relative_to if relative_to is not None else frame.root)
         if frame.root != base.root:
-            self.robot.check_complete()
+            self.known.check_complete()
             roots = " and ".join(sorted((frame.root, base.root)))
             message = f"no chain of joints leads from {quoted(relative_to or base.root)} to {quoted(link)}"
             raise MissingElement("connection", roots, message=message, location=self.link(link).location)
@@ -148,7 +156,7 @@ class Configuration:
         path = self.chain(link) or ()
         types = {joint.type for joint in path} - {"fixed"}
         if not types:
-            self.robot.check_complete()
+            self.known.check_complete()
         joint = last_moving(path, link, types, f"no joint above {quoted(link)} moves; one should turn or slide")
         if joint.type in MOVING_TYPES:
             return joint
@@ -160,7 +168,11 @@ class Configuration:
         """Return the same robot with one joint elsewhere; raises ValueError for a position that it cannot have."""
         found = self.joint(joint) if isinstance(joint, str) else joint
         check_position(found, position)
-        return Configuration(self.robot, {**self.positions, found.name: position}, holding=self.parent_joints)
+        return self.at({**self.positions, found.name: position})
+
+    def at(self, positions: Mapping[str, Position]) -> "Configuration":
+        """Return the same robot with its joints at other positions, which are not validated."""
+        return Configuration(self.known, positions, holding=self._holding)
 
     def displacement(self, link: str, joint: Joint, angle: float, *, relative_to: str) -> Transform:
         """Return the motion of points on a link when a turning or sliding joint moves by `angle` (rad, m) from here.

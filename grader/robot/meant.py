@@ -85,7 +85,8 @@ def _references(root: Element, robot: Robot) -> Iterator[Word]:
     unknown = [name for name in uses if name and not robot.has_link(name)]
     if len(unknown) > _MAX_WORDS:
         return
-    defined = {link: name for name in unknown if uses[name] > 1 and (link := near(name, links, "link")) not in uses}
+    nearest = {near(name, links, "link"): name for name in unknown if uses[name] > 1}
+    defined = {link: name for link, name in nearest.items() if link is not None and link not in uses}
     for element in root.iterchildren("link"):
         if element.get("name") in defined:
             yield _with_value(element, "name", defined[element.get("name")], "the link")

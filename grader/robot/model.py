@@ -6,7 +6,7 @@ cannot be read; a value that the file does not give has ROS 2's default.
 
 from collections.abc import Iterable, Mapping
 from dataclasses import field
-from typing import NamedTuple, NoReturn
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 from grader.errors import MissingElement, NotDecided
 from grader.names import did_you_mean
@@ -34,6 +34,33 @@ class UnresolvedPart(NamedTuple):
 # The parts of an element that are unresolved: "@name" for its attribute, "visual" for something in a <visual>, "" for
 # more children than are known. Empty for a plain URDF.
 UnresolvedParts = Mapping[str, UnresolvedPart]
+_KEYS = {"name": "@name", "type": "@type", "visuals": "visual", "collisions": "collision"}
+
+
+def open_part(parts: UnresolvedParts, field: str, *, is_absent: bool = False) -> UnresolvedPart | None:
+    """Return why a field of a link or joint is open; if the file does not give it, it may be among unknown children."""
+    return parts.get(_KEYS.get(field, field)) or (parts.get("") if is_absent else None)
+
+
+class Guarded:
+    """A part of a robot. A field that is not set is open: reading it raises NotDecided.
+
+    Where xacro refuses the text of the field, MissingElement.
+    """
+
+    __slots__ = ()
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> NoReturn:
+            if name not in self.__dataclass_fields__:
+                raise AttributeError(name)
+            part = open_part(self.unresolved, name, is_absent=True)
+            for one in (part,) if part else self.unresolved.values():
+                one.check()
+            what, owner = _KEYS.get(name, name), getattr(self, "child", self.name)
+            message = f"xacro cannot expand the {what} of {type(self).__name__.lower()} {quoted(self.name)}"
+            raise MissingElement(what, owner, message=message, location=part and part.location)
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +110,7 @@ Geometry = Box | Cylinder | Sphere | Mesh
 
 
 @dataclass(frozen=True, slots=True)
-class Material:
+class Material(Guarded):
     """A colour with channels in 0..1, red, green, blue, alpha; `texture` is a file name, never opened."""
 
     name: str
@@ -124,7 +151,7 @@ class Inertial:
 
 
 @dataclass(frozen=True, slots=True)
-class Link:
+class Link(Guarded):
     """A rigid body and its frame."""
 
     name: str
@@ -136,7 +163,7 @@ class Link:
 
 
 @dataclass(frozen=True, slots=True)
-class Joint:
+class Joint(Guarded):
     """A joint between two links; its frame is the child link's frame.
 
     `type` is the file's text, so a misspelt one can be quoted. `origin` and `axis` are None if they are given but
@@ -180,6 +207,14 @@ class Robot:
         object.__setattr__(self, "_links", {link.name: link for link in reversed(self.links)})
         object.__setattr__(self, "_joints", {joint.name: joint for joint in reversed(self.joints)})
 
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> NoReturn:
+            """Refuse `links` and `joints` where these are not set, because it is open which ones there are."""
+            if name in ("links", "joints"):
+                self.check_complete()
+            raise AttributeError(name)
+
     def link(self, name: str) -> Link:
         """Return the link of this name; raises MissingElement, which lists the existing names."""
         return self._links.get(name) or self._raise_missing("link", name, self.links)
@@ -189,12 +224,12 @@ class Robot:
         return self._joints.get(name) or self._raise_missing("joint", name, self.joints)
 
     def has_joint(self, name: str) -> bool:
-        """Return whether a joint of this name was read."""
-        return name in self._joints
+        """Return whether there is a joint of this name; raises NotDecided where `joints` does."""
+        return name in self._joints or self.joints is None
 
     def has_link(self, name: str) -> bool:
-        """Return whether a link of this name was read."""
-        return name in self._links
+        """Return whether there is a link of this name; raises NotDecided where `links` does."""
+        return name in self._links or self.links is None
 
     def check_complete(self) -> None:
         """Raise NotDecided if there may be more links and joints than are known."""

@@ -1,6 +1,6 @@
 """Two robots with paired joints: how far links of one are from those of the other with joints at the same positions."""
 
-from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterable, Iterator, Sequence
 from math import asin, degrees, dist, inf, isfinite, pi, sqrt
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
@@ -51,7 +51,7 @@ class RobotPair(NamedTuple):
             for index, ((joint, _), position) in enumerate(zip(self.joints, positions, strict=True))
             if joint.mimic is None  # a mimic joint follows
         }
-        posed = _pose_of(self.robots[0], own)
+        posed = self.robots[0].at(own)
         found = []
         for (name, _), wanted in zip(self.links, self._reference_poses(positions), strict=True):
             pose = posed.pose(name, relative_to=self.bases[0])
@@ -65,7 +65,7 @@ class RobotPair(NamedTuple):
         names, links = (tuple(joint.name for _, joint in self.joints), tuple(link for _, link in self.links))
         key = (self.bases[1], links, names, positions)
         if key not in known:
-            posed = _pose_of(self.robots[1], dict(zip(names, positions, strict=True)))
+            posed = self.robots[1].at(dict(zip(names, positions, strict=True)))
             known[key] = tuple(posed.pose(link, relative_to=self.bases[1]) for link in links)
         return known[key]
 
@@ -73,10 +73,6 @@ class RobotPair(NamedTuple):
         """Return how far an offset exceeds the tolerances, rounded, so that equal ones are equal; infinite for NaN."""
         shares = offset.distance / max(self.tolerance, _LEAST), offset.angle / max(self.angle, _LEAST)
         return max(round(share, 6) if share >= 0 else inf for share in shares)
-
-
-def _pose_of(robot: Configuration, positions: Mapping[str, float]) -> Configuration:
-    return Configuration(robot.robot, positions, holding=robot.parent_joints)
 
 
 def _angle(one: Transform, other: Transform) -> float:
@@ -106,8 +102,6 @@ def _leader(robot: Robot, joint: Joint) -> Joint | None:
     """Return the joint that leads a mimic joint, perhaps over others; None where there is none."""
     passed: set[str] = set()
     while True:
-        if "mimic" in joint.unresolved:
-            joint.unresolved["mimic"].check()
         if joint.mimic is None:
             return joint
         passed.add(joint.name)

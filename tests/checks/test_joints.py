@@ -468,7 +468,7 @@ def test_a_leader_whose_name_is_open(mimic: str) -> None:
 
 def test_what_xacro_refuses_is_missing() -> None:
     """ROS 2 gets no robot: the element is missing, at its place."""
-    with pytest.raises(MissingElement, match="xacro cannot expand the <limit> of the joint that moves 'tip'") as raised:
+    with pytest.raises(MissingElement, match="xacro cannot expand the limit of joint 'shoulder'") as raised:
         joint_limits(expanded('upper="0.7854"', 'upper="${top}"'), **LIMITS)
     assert isinstance(raised.value.location, LazyLocation)
     assert raised.value.location.resolve().line == 10
