@@ -46,7 +46,7 @@ def launch_found(package: Package, *, name: str) -> Outcome:
 def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
     """The launch file starts these nodes, with the defaults of its arguments.
 
-    Launch files that it includes count, if they are part of the submission or of urdf_launch.
+    Launch files that it includes count, if they are part of the submission or of a well-known package.
 
     Args:
         name: The file's name, such as view.launch.py.
