@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from grader.package.launch.model import NamedFile
 
 WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file"}
-ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".yaml", ".yml")}
+ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".launch", ".yaml", ".yml")}
 
 
 class FilePlace(NamedTuple):

@@ -137,3 +137,15 @@ def test_what_python_3_12_added_is_no_failure(path: str, code: str, tmp_path: Pa
     assert {row["status"] for name, row in found.items() if name.startswith(("setup", "launch"))} == expected
     names = graded(tmp_path / "wrong", (path, "import os\n", "import os\nname = f'{os.sep}a' b\n"))
     assert "failed" in {row["status"] for name, row in names.items() if name.startswith(("setup", "launch"))}
+
+
+def test_what_ros2_launch_starts_is_no_failure(tmp_path: Path) -> None:
+    """Its XML frontend reads files that end in .launch, and a Node takes any iterable of arguments."""
+    shutil.copytree(ROOT / "submissions/equivalent-launch-file-in-xml/my_robot", tmp_path / "xml")
+    (path,) = (tmp_path / "xml").rglob("*.launch.xml")
+    path.rename(path.with_suffix(""))
+    report = json.loads(run(("grade", tmp_path / "xml", "--format", "json", "--hints", "none")).stdout)
+    assert "passed" in [row["status"] for row in report["results"] if row["id"] == "launch-nodes"]
+    publisher = "executable='robot_state_publisher',\n"
+    keys = (LAUNCH, publisher, f"{publisher}            arguments={{'gui': gui}},\n")
+    assert statuses(graded(tmp_path, keys)) == ("passed", "passed")

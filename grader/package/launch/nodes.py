@@ -65,7 +65,7 @@ def _start(findings: Findings, package: str, executable: str, call: Call, contex
     if when is False:
         return
     for name in ("parameters", "arguments", "remappings"):
-        if isinstance(call.kwargs.get(name), str | dict):
+        if isinstance(call.kwargs.get(name), str if name == "arguments" else str | dict):
             context.add_error(f"{name} has to be a list: put [ ] around it", call.at)
     if executable == STATE_PUBLISHER:
         _find_description(findings, call, context)

@@ -65,8 +65,9 @@ class _LaunchReader:
 
         self.open.append(installed)
         suffix = PurePosixPath(path).suffix.lower()
-        if suffix in (".xml", ".yaml", ".yml"):
-            own = _frontend(data, path, context, include, is_yaml=suffix != ".xml")
+        is_xml = suffix == ".xml" or (suffix in (".launch", "") and data.lstrip().startswith(b"<"))
+        if is_xml or suffix in (".yaml", ".yml"):
+            own = _frontend(data, path, context, include, is_yaml=not is_xml)
         else:
             own = _python(data, path, installed, context, include)
         self.open.pop()
