@@ -37,16 +37,14 @@ def launch_found(package: Package, *, name: str) -> Outcome:
     path = _path(package, name)
     if is_launch_named(path, name):
         return passed(f"the launch file is {path}")
-    detail = f"; the package has {path}"
-    if not path.endswith(ENDINGS["include"]):
-        detail += ", which ros2 launch cannot start without an ending such as .launch.py"
-    return failed(f"there is no launch file {name!r}", detail=detail + package.built("launch", name))
+    detail = f"; the package has {path}{package.built('launch', name)}"
+    return failed(f"there is no launch file {name!r}", detail=detail)
 
 
 def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
     """The launch file starts these nodes, with the defaults of its arguments.
 
-    Launch files that it includes count, if they are part of the submission or of urdf_launch.
+    Launch files that it includes count, if they are part of the submission or of a well-known package.
 
     Args:
         name: The file's name, such as view.launch.py.

@@ -5,14 +5,14 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from grader.names import closest
-from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER, is_of_one_machine
+from grader.package.launch.places import HOME, PREFIX, ROS, SHARE, WORKING_FOLDER, is_of_one_machine
 from grader.package.package import Package
 
 if TYPE_CHECKING:
     from grader.package.launch.model import NamedFile
 
 WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file"}
-ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".yaml", ".yml")}
+ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".launch", ".yaml", ".yml")}
 
 
 class FilePlace(NamedTuple):
@@ -49,7 +49,7 @@ def _fault_of_path(package: Package, path: str) -> str:
         if shown.startswith("~"):
             return f"{shown}, but nothing replaces ~ by the home folder"
         return f"{shown}, relative to the folder that ros2 launch is started from"
-    if not path.startswith(PREFIX) and posixpath.basename(path) in map(posixpath.basename, package.tree.files):
+    if not path.startswith((PREFIX, ROS)) and posixpath.basename(path) in map(posixpath.basename, package.tree.files):
         return f"{path}: joining a path that begins with / drops the folders before it"
     return ""
 
@@ -57,19 +57,25 @@ def _fault_of_path(package: Package, path: str) -> str:
 def _in_unknown_package(package: Package, owner: str, rest: str, file: "NamedFile") -> FilePlace:
     """Return what is known of a path in the share folder of a package that is not part of the submission."""
     what = WORDS[file.purpose]
+    fault = "" if package.depends_on(owner) else _fault_of_owner(package, owner, rest, what)
+    if fault:
+        return FilePlace(file, "wrong", fault)
+    if file.purpose == "include":
+        return FilePlace(file, "found")
+    return FilePlace(file, "unknown", f"the {what} is in {owner!r}, which is not part of the submission")
+
+
+def _fault_of_owner(package: Package, owner: str, rest: str, what: str) -> str:
+    """Return how the name of a package that is not part of the submission is wrong; empty where that is not known."""
     # A path may lack a slash after the package's name: get_package_share_directory(...) + 'my_robot.urdf'.
     more = owner.removeprefix(package.name)
     is_known = more in package.tree.folders if rest else more in map(posixpath.basename, package.tree.files)
     if owner.startswith(package.name) and is_known:
         path = posixpath.join("share", owner, rest).rstrip("/")
-        fault = f"the launch file looks for the {what} at {path}: a slash is missing after {package.name!r}"
-        return FilePlace(file, "wrong", fault)
+        return f"the launch file looks for the {what} at {path}: a slash is missing after {package.name!r}"
     if closest(owner, [package.name]):
-        fault = f"the launch file looks in a package {owner!r}, but the graded package is named {package.name!r}"
-        return FilePlace(file, "wrong", fault)
-    if file.purpose == "include":
-        return FilePlace(file, "found")
-    return FilePlace(file, "unknown", f"the {what} is in {owner!r}, which is not part of the submission")
+        return f"the launch file looks in a package {owner!r}, but the graded package is named {package.name!r}"
+    return ""
 
 
 def _in_package(owner: Package, target: str, file: "NamedFile") -> FilePlace:

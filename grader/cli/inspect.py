@@ -26,8 +26,8 @@ def inspect(
 ) -> int:
     """Show a URDF as ROS 2 reads it: problems, tree, joints, poses.
 
-    A xacro file is expanded as xacro does, without running it. Exits 1 if ROS 2 or xacro rejects the file. A planar
-    joint takes x,y,angle and a floating joint x,y,z,roll,pitch,yaw.
+    A xacro file is expanded as xacro does, without running it. Exits 1 if ROS 2 or xacro rejects the file, or if
+    this cannot be determined statically. A planar joint takes x,y,angle and a floating joint x,y,z,roll,pitch,yaw.
 
     Examples:
 
@@ -45,4 +45,4 @@ def inspect(
 
     inspection = read(path, joint or [], relative_to, max_size, arg or [], warn)
     write_stdout(render_inspection(inspection, output_format, screen()))
-    return ExitCode.FAILED if inspection.reading.verdict == "rejected" else ExitCode.PASSED
+    return ExitCode.FAILED if inspection.verdict in ("rejected", "undecided") else ExitCode.PASSED

@@ -20,6 +20,7 @@ class Manifest:
     name_location: Location
     type_location: Location
     unread: str = ""  # why the file was not read at all: too large, damaged
+    dependencies: frozenset[str] = frozenset()  # the packages that it depends on, in any way
 
 
 @reuse
@@ -45,6 +46,7 @@ def read_manifest(data: bytes, path: str) -> Manifest:
         tuple(_problems(file)),
         file.location(name if name is not None else root),
         file.location(kind if kind is not None else root),
+        dependencies=frozenset((it.text or "").strip() for it in root.iterchildren("*") if it.tag.endswith("depend")),
     )
 
 

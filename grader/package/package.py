@@ -64,6 +64,10 @@ class Package:
         others = (package for package in self.packages.values() if name in package.names)
         return self.packages.get(name) or next(others, None)
 
+    def depends_on(self, name: str) -> bool:
+        """Return whether its package.xml depends on a package of this name."""
+        return self.manifest is not None and name in self.manifest.dependencies
+
     @cached_property
     def names(self) -> tuple[str, ...]:
         """The names that ROS 2 finds it by: its own, and those that setup.py installs in the resource index."""

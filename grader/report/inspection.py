@@ -34,8 +34,8 @@ from grader.text import printable
 from grader.values import dataclass
 
 _MAX_LISTED = 500  # links in the terminal
-_EFFECTS = {verdict: text.replace("the file", "it") for verdict, text in VERDICTS.items()}
-_STYLES = dict(zip((*_EFFECTS.values(), UNDECIDED), ("green", "yellow", "bold red", "bold red"), strict=True))
+_EFFECTS = {**{verdict: text.replace("the file", "it") for verdict, text in VERDICTS.items()}, "undecided": UNDECIDED}
+_STYLES = dict(zip(_EFFECTS, ("green", "yellow", "bold red", "bold red"), strict=True))
 _BRANCHES = ("\u251c\u2500 ", "\u2514\u2500 ", "\u2502  ")  # to a link, to the last one, past others
 
 
@@ -47,6 +47,11 @@ class Inspection:
     reading: Reading
     robot: Configuration | None
     relative_to: str | None
+
+    @property
+    def verdict(self) -> str:
+        """ROS 2's verdict; `undecided` where it depends on what cannot be determined statically."""
+        return self.reading.verdict if self.reading.is_certain else "undecided"
 
     def poses(self) -> Iterator[tuple[str, Transform | str]]:
         """Yield the pose of every link in the frame `relative_to`, in file order, or the reason why it has none."""
@@ -91,7 +96,7 @@ INSPECTION = Record(
     {
         **schema_key("grader/inspect/v1"),
         "path": TEXT,
-        "verdict": ({"enum": ["clean", "degraded", "rejected"]}, "reading.verdict"),
+        "verdict": ({"enum": list(_EFFECTS)}, "verdict"),
         "problems": (Many(PROBLEM), "reading.problems"),
         "robot": Maybe(_ROBOT),
         "relative_to": nullable(TEXT),
@@ -109,20 +114,20 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     """Print the inspection."""
     reading, robot = inspection.reading, inspection.robot
     name = f"robot {robot.known.name!r}" if robot is not None else "no robot"
-    words = effect(reading)
-    head = ((printable(inspection.path), "bold"), ": ", (words, _STYLES[words]), f", {printable(name)}")
+    verdict = (effect(inspection), _STYLES[inspection.verdict])
+    head = ((printable(inspection.path), "bold"), ": ", verdict, f", {printable(name)}")
     console.print(Text.assemble(*head))
     if reading.problems:
         _print_title(console, "Problems")
         show_problems(console, reading.problems, lambda _: reading.source, inspection.path)
-    if robot is None:
+    if robot is None or inspection.relative_to is None:  # without a root there is neither a tree nor a frame
         return
     _print_title(console, "Tree")
     signs = tuple(symbol(console, *pair) for pair in zip(_BRANCHES, ("|- ", "`- ", "|  "), strict=True))
     for indent, link, joint in islice(tree(robot, signs), _MAX_LISTED):
         put(console, Text.assemble(f"  {indent}{link}", (f"  {joint}" if joint else "", "dim")))
     _print_rest(console, len(robot.roots) + len(robot.parent_joints))
-    frame = printable(inspection.relative_to or "")
+    frame = printable(inspection.relative_to)
     _print_title(console, f"Poses in {frame!r} (x y z in m, roll pitch yaw in rad)")
     for link, pose in islice(inspection.poses(), _MAX_LISTED):
         text = (_pose_text(pose), "cyan") if isinstance(pose, Transform) else (printable(pose), "red")
@@ -140,9 +145,9 @@ def _print_rest(console: Console, count: int) -> None:
         console.print(Text(f"  ... and {count - _MAX_LISTED} more (--format json lists all)"))
 
 
-def effect(reading: Reading) -> str:
+def effect(inspection: Inspection) -> str:
     """Return what ROS 2 does with a URDF."""
-    return _EFFECTS[reading.verdict] if reading.is_certain else UNDECIDED
+    return _EFFECTS[inspection.verdict]
 
 
 def tree(robot: Configuration, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, str, str]]:

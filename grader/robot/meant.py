@@ -88,8 +88,8 @@ def _references(root: Element, robot: Robot) -> Iterator[Word]:
     nearest = {near(name, links, "link"): name for name in unknown if uses[name] > 1}
     defined = {link: name for link, name in nearest.items() if link is not None and link not in uses}
     for element in root.iterchildren("link"):
-        if element.get("name") in defined:
-            yield _with_value(element, "name", defined[element.get("name")], "the link")
+        if (meant := defined.get(element.get("name") or "")) is not None:
+            yield _with_value(element, "name", meant, "the link")
     children = {joint.child for joint in robot.joints}
     for joint in root.iterchildren("joint"):
         kind = near(joint.get("type") or "", JOINT_TYPES)

@@ -27,9 +27,10 @@ def guarded(robot: Robot) -> tuple[Robot, tuple[Joint, ...]]:
     links, joints = tuple(map(_link, robot.links)), tuple(map(_joint, robot.joints))
     found = replace(robot)
     put = partial(object.__setattr__, found)
-    for name, raw, parts in (("links", robot.links, links), ("joints", robot.joints, joints)):
-        put(name, parts)
-        put(f"_{name}", {old.name: new for old, new in reversed([*zip(raw, parts, strict=True)])})
+    put("links", links)
+    put("joints", joints)
+    put("_links", {old.name: new for old, new in reversed([*zip(robot.links, links, strict=True)])})
+    put("_joints", {old.name: new for old, new in reversed([*zip(robot.joints, joints, strict=True)])})
     put("materials", tuple(map(_material, robot.materials)))
     for name in ("links", "joints") if robot.incomplete else ():
         object.__delattr__(found, name)

@@ -73,7 +73,6 @@ class Evaluation:
         self.uncertainty: Unknown | None = None  # set while it is unknown whether a statement is reached
         self.handlers = 0  # how many blocks around this place catch errors
         self.may_have_failed = False  # whether an error may have been raised in the innermost of them
-        self._messages: set[str] = set()
         self._steps = 0
         self._depth = 0
 
@@ -89,8 +88,7 @@ class Evaluation:
             return
         if self.handlers:
             raise RaisedFlow(PythonError(message, at), kind)
-        if message not in self._messages and len(self.errors) < _MAX_ERRORS:
-            self._messages.add(message)
+        if len(self.errors) < _MAX_ERRORS and all(message != error.message for error in self.errors):
             self.errors.append(PythonError(message, at))
 
     def record(self, call: Call) -> Call:

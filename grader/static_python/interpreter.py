@@ -8,7 +8,7 @@ from functools import partial
 from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable, LoopFlow, RaisedFlow, ReturnFlow
 from grader.static_python.parse import Code, Position, position_of
 from grader.static_python.statements import StatementEvaluator
-from grader.static_python.values import Call, Function, Scope, Unknown, Value, items_of, truth
+from grader.static_python.values import UNKNOWN_KEYS, Call, Function, Scope, Unknown, Value, items_of, truth
 
 _CONDITION = "a condition is known only at run time"
 
@@ -34,17 +34,27 @@ class Interpreter(StatementEvaluator):
             pass
         return self.module
 
-    def call_from_outside(self, function: Function, at: Position, args: Sequence[Value] = ()) -> Value:
-        """Return the value of a call of one of the file's functions. Never raises."""
+    def call_from_outside(self, function: Function, at: Position, args: Sequence[Value] | None = ()) -> Value:
+        """Return the value of a call of one of the file's functions. Never raises.
+
+        With `args` None, the arguments are unknown, and no error in the call counts: it may never happen.
+        """
+        unknown = {UNKNOWN_KEYS: Unknown("an event is known only at run time", at)} if args is None else {}
+        recorded = list(self.errors)
         try:
-            return self.call_function(function, Call("", list(args), {}, at))
+            return self.call_function(function, Call("", list(args or ()), unknown, at))
         except (EvaluationStopped, RecursionError) as error:
             return Unknown(self._stop(error), at)
         except (ExitFlow, LoopFlow):
             return Unknown("the file exits here", at)
+        finally:
+            if args is None:
+                self.errors = recorded
 
     def _functiondef(self, node: ast.FunctionDef | ast.AsyncFunctionDef, scope: Scope) -> None:
         function = self.function(node.args, scope, position_of(node), partial(self._function_body, node))
+        for parameter in getattr(node, "type_params", ()):  # Python 3.12
+            scope.bind(parameter.name, Unknown("a type is not supported", position_of(node)))
         decorated = Unknown("a decorator is not supported", position_of(node))
         scope.bind(node.name, decorated if node.decorator_list else function)
 

@@ -1,6 +1,7 @@
 """Parses Python text with Python's own parser; whatever it refuses is data, not an exception."""
 
 import ast
+import re
 import sys
 import tokenize
 import warnings
@@ -13,6 +14,11 @@ from grader.values import dataclass, reuse
 
 _SLOW_ENCODINGS = ("idna", "punycode")  # encodings of domain names; their time grows with the square of the length
 _JAZZY = (3, 12)  # the Python version of ROS 2 Jazzy
+# What Python 3.12 added: type parameters and the statement type (PEP 695), and in a line, an f-string whose braces are
+# still open at its quote or at the end of the line (PEP 701).
+_TYPES = re.compile(r"^[ \t]*(?:type[ \t]+\w+[ \t]*[=\[]|(?:async[ \t]+)?(?:def|class)[ \t]+\w+[ \t]*\[)", re.MULTILINE)
+_OPEN_BRACES = re.compile(r"""\b[rR]?[fF][rR]?(['"])(?:(?!\1).)*?(?<!\{)\{(?:(?!\1)[^{}])*(?:\1|$)""")
+_MAX_SEARCHED = 1_000  # characters of a line
 
 
 class Position(NamedTuple):
@@ -87,7 +93,14 @@ def _parse(data: bytes, path: str) -> Code | SyntaxFault:
             return Code(source, tree)
     except SyntaxError as error:
         location = Location(path, max(error.lineno or 1, 1), max(error.offset or 1, 1))
-        newer = sys.version_info < _JAZZY and error.msg.startswith("f-string")
-        return SyntaxFault(source, error.msg, location, sure=not newer)
+        return SyntaxFault(source, error.msg, location, sure=not _is_of_newer_python(error, text))
     except (ValueError, OverflowError):
         return SyntaxFault(source, _TOO_DEEP, Location(path, 1, 1))
+
+
+def _is_of_newer_python(error: SyntaxError, text: str) -> bool:
+    """Return whether the Python of ROS 2 Jazzy may accept what this older Python refuses."""
+    if sys.version_info >= _JAZZY:
+        return False
+    in_f_string = error.msg.startswith("f-string") or _OPEN_BRACES.search((error.text or "")[:_MAX_SEARCHED].rstrip())
+    return bool(in_f_string or _TYPES.search(text))

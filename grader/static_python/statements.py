@@ -3,6 +3,7 @@
 import ast
 import builtins
 from collections.abc import Callable, Iterator
+from typing import Any
 
 from grader.static_python.evaluation import ExitFlow, LoopFlow, ReturnFlow
 from grader.static_python.imports import import_error, imported_names, is_always_installed
@@ -146,8 +147,10 @@ class StatementEvaluator(ExpressionEvaluator):
     def _expr(self, node: ast.Expr, scope: Scope) -> None:
         self.evaluate(node.value, scope)
 
-    def _classdef(self, node: ast.ClassDef, scope: Scope) -> None:
-        scope.bind(node.name, Unknown("a class is not supported", position_of(node)))
+    def _classdef(self, node: Any, scope: Scope) -> None:
+        scope.bind(getattr(node.name, "id", node.name), Unknown("a class is not supported", position_of(node)))
+
+    _typealias = _classdef  # type X = ..., in Python 3.12
 
     def _return(self, node: ast.Return, scope: Scope) -> None:
         raise ReturnFlow(self.evaluate(node.value, scope) if node.value is not None else None)

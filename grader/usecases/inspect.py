@@ -33,7 +33,8 @@ def inspect(
         others = ", ".join(file.path for file in submission.other_candidates)
         warn(f"inspecting {urdf.path}; other candidates: {others}")
     if urdf.is_expanded and urdf.as_it_stands is None:
-        warn(f"{urdf.path} is xacro: this is what xacro expands it to")
+        extent = "" if urdf.loaded.is_certain else "the part that can be determined of "
+        warn(f"{urdf.path} is xacro: this is {extent}what xacro expands it to")
     for note in submission.notes if submission.is_single else ():
         warn(note)
     robot = _configuration(urdf.loaded, joints)

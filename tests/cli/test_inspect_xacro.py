@@ -26,7 +26,7 @@ def test_a_link_of_an_unknown_name_has_no_pose(text: str, message: str, tmp_path
     found = json.loads(done.stdout)
     assert (done.returncode, found["verdict"], [problem["message"] for problem in found["problems"]]) == (
         1,
-        "rejected",
+        "undecided",
         [message],
     )
     assert found["robot"]["links"][0] == "base_link"
@@ -37,6 +37,19 @@ def test_a_link_of_an_unknown_name_has_no_pose(text: str, message: str, tmp_path
     joint = run(("inspect", path, "--joint", "wheel=1"))
     assert (joint.returncode, joint.stdout) == (2, b"")
     assert joint.stderr.endswith(f"grader: --joint: {message}\n".encode())
+
+
+def test_xacro_that_cannot_be_expanded_has_no_poses(tmp_path: Path) -> None:
+    """Without any link there is neither a tree nor a frame: the verdict and the reason are shown, and nothing else."""
+    path = tmp_path / "robot.urdf.xacro"
+    path.write_text(
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="$(find a)/b"/></robot>'
+    )
+    done = run(("inspect", path))
+    assert (done.returncode, done.stdout.count(b"XACRO006"), b"Poses" in done.stdout) == (1, 1, False)
+    assert b"the part that can be determined of what xacro expands it to" in done.stderr
+    page = run(("inspect", path, "--format", "html"))
+    assert b"xacro that cannot be determined statically" in page.stdout
 
 
 def test_a_required_attribute_is_missing_beside_one_that_xacro_refuses(tmp_path: Path) -> None:

@@ -92,8 +92,8 @@ include.launch.yaml
   include 7: my_robot/launch/broken.launch.py
   faults 1: Python cannot read the file
 include_foreign.launch.py
-  include 10: ros_gz_sim/launch/gz_sim.launch.py
-  unknown 10: it includes share/ros_gz_sim/launch/gz_sim.launch.py, which the submission does not install
+  include 10: my_world/launch/world.launch.py
+  unknown 10: it includes share/my_world/launch/world.launch.py, which the submission does not install
 include_of_itself.launch.py
   nodes: rviz2
   rviz 8: wrong: rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration

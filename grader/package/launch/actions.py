@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from grader.package.launch.conditions import holds
+from grader.package.launch.known_files import start_known_file
 from grader.package.launch.model import Context, Findings
-from grader.package.launch.nodes import start_node, start_process, start_urdf_launch
+from grader.package.launch.nodes import start_node, start_process
 from grader.package.launch.substitutions import resolve
 from grader.static_python.parse import START, Position
 from grader.static_python.values import UNKNOWN_KEYS, Call, Function, QualifiedName, Unknown, Value
@@ -29,7 +30,7 @@ class ActionVisitor:
 
     findings: Findings
     include: Include
-    call_function: Callable[[Function, Position, Sequence[Value]], Value]
+    call_function: Callable[[Function, Position, Sequence[Value] | None], Value]
     visited: set[int] = field(default_factory=set)  # the ids of the calls that are part of the description
     steps: int = 0
     depth: int = 0
@@ -127,7 +128,7 @@ class ActionVisitor:
     def _event_handler(self, call: Call, context: Context, when: bool | None) -> None:
         """Visit the actions for an event. Only the start of another process certainly happens."""
         for value in (value for name, value in call.kwargs.items() if name.startswith("on_") or name == "entities"):
-            actions = self.call_function(value, call.at, ()) if isinstance(value, Function) else value
+            actions = self.call_function(value, call.at, None) if isinstance(value, Function) else value
             self.visit(actions, context, when)
 
     def _opaque_function(self, call: Call, context: Context, when: bool | None) -> None:
@@ -149,14 +150,16 @@ class ActionVisitor:
             return
         folder, arguments = path.rpartition("/")[0], {**context.arguments, **given}
         inner = Context(folder, arguments, when=when, steps_left=context.steps_left)
-        if not start_urdf_launch(self.findings, path, call, inner):
-            reason = self.include(path, inner)
+        reason = self.include(path, inner)
+        if not reason or not start_known_file(self.findings, path, call, inner):
+            self.findings.refer("include", path, call)
             if reason == CIRCULAR_INCLUDE and when:
                 self.findings.add_fault(reason, call.at)
             elif reason:
                 self.findings.add_unknown(reason, call.at)
-            self.findings.refer("include", path, call)
         context.arguments.update(inner.arguments)  # an included file shares its arguments with the actions that follow
+        if reason:
+            context.arguments[UNKNOWN_KEYS] = Unknown(reason, call.at)
 
     # The methods that visit each kind of action.
     _VISITS: ClassVar[Mapping[str, Callable[..., None]]] = {

@@ -1,4 +1,4 @@
-"""The nodes that a launch file starts, by Node, a command or urdf_launch, and the files that they are given."""
+"""The nodes that a launch file starts, by Node or a command, and the files that they are given."""
 
 import re
 
@@ -6,7 +6,6 @@ from grader.names import did_you_mean
 from grader.package.launch.command_words import command_words, items_in
 from grader.package.launch.commands import PART_UNKNOWN
 from grader.package.launch.model import STATE_PUBLISHER, Contents, Context, Findings, NamedFile, StartedNode
-from grader.package.launch.places import SHARE
 from grader.package.launch.substitutions import resolve
 from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value
 
@@ -25,8 +24,6 @@ _UNFINISHED = {
     ),
     "builtins.open": "robot_description is given an open file, not its contents: add .read() to open(...)",
 }
-# The launch files of the ROS 2 package urdf_launch; what they start is known.
-_URDF_LAUNCH = re.compile(r".*/share/urdf_launch/launch/(?P<name>display|description)\.launch\.py")
 
 
 def start_node(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
@@ -68,7 +65,7 @@ def _start(findings: Findings, package: str, executable: str, call: Call, contex
     if when is False:
         return
     for name in ("parameters", "arguments", "remappings"):
-        if isinstance(call.kwargs.get(name), str | dict):
+        if isinstance(call.kwargs.get(name), str if name == "arguments" else str | dict):
             context.add_error(f"{name} has to be a list: put [ ] around it", call.at)
     if executable == STATE_PUBLISHER:
         _find_description(findings, call, context)
@@ -167,30 +164,3 @@ def _display_config(words: list[str]) -> str | None:
         if option := re.match(r"--display-config=|-d=?", word):
             return word[option.end() :]
     return None
-
-
-def start_urdf_launch(findings: Findings, path: str, call: Call, context: Context) -> bool:
-    """Add what an included launch file of urdf_launch starts; return whether the path is one of these files."""
-    known = _URDF_LAUNCH.fullmatch(path)
-    if known is None:
-        return False
-    nodes = [STATE_PUBLISHER]
-    given = [context.arguments.get(key) for key in ("urdf_package", "urdf_package_path")]
-    match [resolve(value, context) for value in given]:
-        case [str() as package, str() as urdf]:
-            findings.refer("urdf", Contents(f"{SHARE}/{package}/{urdf}", "xacro"), call)
-        case values:
-            unknown = next(value for value in values if not isinstance(value, str))
-            is_missing = None in given or isinstance(unknown, Contents)
-            message = "urdf_launch needs the arguments urdf_package and urdf_package_path"
-            findings.refer("urdf", None if is_missing else unknown, call, wrong=message)
-    if known["name"] == "display":
-        nodes += ["joint_state_publisher_gui", _RVIZ]
-        opened = resolve(context.arguments.get("rviz_config", Contents("", "")), context)
-        if not isinstance(opened, Contents):
-            findings.refer("rviz", opened, call)
-        else:
-            message = "urdf_launch is included without rviz_config, so it opens its own configuration, not the lab's"
-            findings.refer("rviz", None, call, wrong=message)
-    findings.nodes += [StartedNode(node, node, context.when, findings.locate(call.at)) for node in nodes]
-    return True

@@ -5,6 +5,7 @@ from pathlib import PurePosixPath
 
 # Paths below these are compared as strings.
 PREFIX = "/<prefix>"  # the folder that a build installs to
+ROS = "/opt/ros/"  # the folder that ROS 2 is installed to
 WORKING_FOLDER = "/<current folder>"
 HOME = "/<home>"
 SHARE = f"{PREFIX}/share"

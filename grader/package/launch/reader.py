@@ -65,8 +65,9 @@ class _LaunchReader:
 
         self.open.append(installed)
         suffix = PurePosixPath(path).suffix.lower()
-        if suffix in (".xml", ".yaml", ".yml"):
-            own = _frontend(data, path, context, include, is_yaml=suffix != ".xml")
+        is_xml = suffix == ".xml" or (suffix in (".launch", "") and data.lstrip().startswith(b"<"))
+        if is_xml or suffix in (".yaml", ".yml"):
+            own = _frontend(data, path, context, include, is_yaml=not is_xml)
         else:
             own = _python(data, path, installed, context, include)
         self.open.pop()
@@ -110,7 +111,8 @@ def _frontend(data: bytes, path: str, context: Context, include: Include, *, is_
 def _python(data: bytes, path: str, installed: str, context: Context, include: Include) -> Launch:
     code = parse(data, path)
     if isinstance(code, SyntaxFault):
-        return Launch(code.source, LaunchFault(f"Python cannot read the file: {code.message}", code.location))
+        syntax = LaunchFault(f"Python cannot read the file: {code.message}", code.location)
+        return Launch(code.source, syntax) if code.sure else Launch(code.source, unknown=(syntax,))
     interpreter = Interpreter(launch_functions(), {"__file__": f"{PREFIX}/{installed}", "__name__": _MODULE})
     names = interpreter.run(code).names
     findings = Findings(lambda position: location_in(code.source, position))

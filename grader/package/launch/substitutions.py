@@ -13,7 +13,7 @@ from grader.static_python.closed import evaluate
 from grader.static_python.closed_functions import BUILTINS
 from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, str_of
 from grader.static_python.parse import START
-from grader.static_python.values import MAX_TEXT, Call, Unknown, Value, as_text
+from grader.static_python.values import MAX_TEXT, UNKNOWN_KEYS, Call, Unknown, Value, as_text
 
 COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
@@ -165,6 +165,8 @@ class _Substitution:
         value = self.context.arguments.get(name, self.call.argument(1, "default"))
         if value is not None or name in self.context.arguments:
             return self.resolve(value)
+        if UNKNOWN_KEYS in self.context.arguments:
+            return Unknown(f"the launch argument {name!r} may be declared in an included file", self.call.at)
         message = f"the launch argument {name!r} is used, but DeclareLaunchArgument does not declare it before"
         self.context.add_error(message, self.call.at)
         return Unknown(f"the launch argument {name!r} is not declared", self.call.at)

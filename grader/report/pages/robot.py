@@ -197,8 +197,8 @@ def inspection_html(inspection: Inspection) -> str:
         "version": __version__,
         "title": printable(robot.known.name if robot is not None else inspection.path),
         "path": inspection.path,
-        "effect": effect(reading),
-        "verdict": _CLASSES.get(reading.verdict if reading.is_certain else "", "failed"),
+        "effect": effect(inspection),
+        "verdict": _CLASSES.get(inspection.verdict, "failed"),
         "problems": [
             (problem.severity, problem_line(problem), source_lines(problem.location, sources.get))
             for problem in reading.problems[:_MAX_LISTED]
