@@ -217,7 +217,7 @@ BROKEN = (
     Variant("joint-without-parent", 1, "", "urdf-loads caster-placed stands-on-ground",
         (Edit(_CASTER, '<parent link="base_link"/>'),)),
     Variant("unknown-link", 2, "", "urdf-loads lidar-fixed lidar-frame lidar-on-top joint-names",
-        (Edit(_LIDAR, '<child link="lidar"/>', '<child link="lidr"/>'),)),
+        (Edit(_LIDAR, '<child link="lidar"/>', '<child link="laser"/>'),)),
     Variant("duplicate-link", 2, "", "urdf-loads", (Edit("caster_wheel", "</link>", '</link>\n  <link name="caster_wheel"/>'),)),
 )
 # fmt: on

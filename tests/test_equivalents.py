@@ -71,7 +71,8 @@ lidar-slanted | LIDAR/origin | rpy | 0 0.3 0 | lidar-on-top
 lidar-turning | LIDAR | type | continuous | lidar-fixed
 lidar-planar | LIDAR | type | planar | lidar-fixed
 lidar-on-the-footprint | LIDAR/parent | link | base_footprint | lidar-fixed lidar-frame lidar-on-top
-lidar-misspelt | LIDAR/child | link | lidr | urdf-loads lidar-fixed lidar-frame lidar-on-top joint-names
+lidar-misspelt | LIDAR/child | link | lidr | urdf-loads
+lidar-unknown | LIDAR/child | link | laser | urdf-loads lidar-fixed lidar-frame lidar-on-top joint-names
 lidar-wide | DISC/geometry/cylinder | radius | 0.2 | lidar-shape | lidar-on-top
 lidar-narrow | DISC/geometry/cylinder | radius | 0.05 | lidar-shape
 lidar-long | DISC/geometry/cylinder | length | 0.1 | lidar-shape | lidar-on-top

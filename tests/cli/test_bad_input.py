@@ -133,7 +133,7 @@ CONTENTS = {
     "empty": b"",
     "blank": b" \n\t\n",
     "binary": bytes(range(256)) * 40,
-    "utf-16": '<robot name="a"><link name="b"/></robot>'.encode("utf-16"),
+    "utf-32": '<robot name="a"><link name="b"/></robot>'.encode("utf-32"),
     "external-entity": b'<!DOCTYPE r [<!ENTITY x SYSTEM "file:///etc/passwd">]><robot name="&x;">',
     "bomb": b'<!DOCTYPE r [<!ENTITY a "aaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]><robot name="&b;">',
     "deep": b"<robot name='a'>" + b"<a>" * 100_000,

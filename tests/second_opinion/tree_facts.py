@@ -19,6 +19,8 @@ def held_by(posed: Posed, link: str, parent: str, joint_type: str) -> Fact:
 
 def joints_named(posed: Posed, parent: str, joints: Mapping[str, str]) -> Fact:
     for name, link in joints.items():
+        if any((joint.name, joint.child) == (name, link) for joint in posed.robot.named):
+            continue
         if link not in posed.robot.links:
             return False, None
         up, other = posed.way_up(link), posed.way_up(parent) if parent in posed.robot.links else []
