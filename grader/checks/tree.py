@@ -45,7 +45,8 @@ def urdf_loads(urdf: Reading) -> Outcome:
     others = f" (and {counted(len(problems) - 1, 'more such problem')})" if len(problems) > 1 else ""
     message = f"{first.message}{others}"
     if assumed := _assumed(urdf):
-        message += f"{'' if message.endswith('?') else '.'} Not deducted elsewhere: {assumed}"
+        what = "Not deducted elsewhere" if urdf.is_meant else "Assumed"
+        message += f"{'' if message.endswith('?') else '.'} {what}: {assumed}"
     outcome = failed(message, first.location, problem=first.message)
     return outcome._replace(mistake=f"{first.code}: {first.kind.title}")
 
@@ -54,7 +55,7 @@ def _assumed(urdf: Reading) -> str:
     """Return what is assumed about a file that ROS 2 rejects, each with its lines; empty if nothing is."""
     lines: dict[str, list[str]] = {}
     for problem in urdf.problems:
-        if problem.kind is xml_catalogue.RECOVERED:
+        if problem.kind is xml_catalogue.RECOVERED and not problem.subject:
             lines.setdefault(problem.message, []).append(str(problem.location.line))
     found = [(message, [*dict.fromkeys(at)]) for message, at in lines.items()]
     texts = [f"{it} (line{'s' * (len(at) > 1)} {enumerated(at, _MAX_ASSUMED)})" for it, at in found]

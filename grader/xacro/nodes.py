@@ -84,7 +84,9 @@ def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[XacroNode |
     text = _decode(data, budget)
     recovered = Recovery(text).run()
     source = Source(path, text, recovered.offsets)
-    assumed = [Problem(found.kind, found.message, source.at(found.offset)) for found in recovered.differences]
+    assumed = [
+        Problem(found.kind, found.message, source.at(found.offset), found.subject) for found in recovered.differences
+    ]
     return _nodes(parse_xml(recovered.recovered), source, budget) if recovered.recovered else None, assumed
 
 

@@ -91,7 +91,9 @@ def read_document(data: bytes, path: str) -> XmlDocument:
 
     scan = Scanner(text).scan()
     source = Source(path, text, scan.offsets)
-    problems = [Problem(found.kind, found.message, source.at(found.offset)) for found in scan.differences]
+    problems = [
+        Problem(found.kind, found.message, source.at(found.offset), found.subject) for found in scan.differences
+    ]
     root, recovered = (parse_xml(xml) if xml else None for xml in (scan.xml, scan.recovered))
     return XmlDocument(root, source, problems, scan.first_tag, recovered=recovered)
 

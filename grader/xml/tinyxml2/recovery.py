@@ -34,11 +34,15 @@ _MAX_ASSUMED = 20
 
 
 class NoteDifference(NamedTuple):
-    """A difference from XML, an error, or what was assumed about one, at a character offset."""
+    """A difference from XML, an error, or what was assumed about one, at a character offset.
+
+    `subject` is the tag of which a part cannot be read.
+    """
 
     kind: Kind
     message: str
     offset: int
+    subject: str = ""
 
 
 class Scan(NamedTuple):
@@ -112,7 +116,9 @@ class Recovery:
             tag, end = ReadTag(found["name"], form, attributes, start), found.end()
             if tag.form != "close":
                 what = f"with {enumerated(list(map(short, attributes)))}" if attributes else "without attributes"
-                self._assume(f"<{short(tag.name)}> is read {what}", start)
+                self._assume(
+                    f"<{short(tag.name)}> is read {what}", start, tag.name if "=" in rest and not attributes else ""
+                )
         is_slash_missing = tag.form == "open" and not tag.attributes and self._open and self._open[-1].name == tag.name
         if is_slash_missing and not self._is_before_child(tag, end):
             self._assume(f"<{short(tag.name)}> is read as </{short(tag.name)}>", start)
@@ -156,5 +162,5 @@ class Recovery:
         if self._open:
             self._xml.append(escape(decode(text)).replace(">", "&gt;"))
 
-    def _assume(self, message: str, offset: int) -> None:
-        self._assumed.append(NoteDifference(catalogue.RECOVERED, message, offset))
+    def _assume(self, message: str, offset: int, subject: str = "") -> None:
+        self._assumed.append(NoteDifference(catalogue.RECOVERED, message, offset, subject))
