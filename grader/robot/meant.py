@@ -78,15 +78,17 @@ def _with_value(element: Element, attribute: str, value: str, what: str) -> Word
 def _references(root: Element, robot: Robot) -> Iterator[Word]:
     """Yield links that joints name and that do not exist, and joint types, each near one that can be meant.
 
-    Where several joints name it, and none names the link that is near, the definition of that is the wrong word.
+    If no joint names the link that is near, and several joints name the other one, or a joint is named after it, the
+    definition has the wrong word.
     """
     links = [link.name for link in robot.links]
     uses = Counter(name for joint in robot.joints for name in (joint.parent, joint.child))
     unknown = [name for name in uses if name and not robot.has_link(name)]
     if len(unknown) > _MAX_WORDS:
         return
-    nearest = {near(name, links, "link"): name for name in unknown if uses[name] > 1}
-    defined = {link: name for link, name in nearest.items() if link is not None and link not in uses}
+    names = "".join(f"_{joint.name}_" for joint in robot.joints)
+    nearest = {near(name, links): name for name in unknown if uses[name] > 1 or f"_{name}_" in names}
+    defined = {link: name for link, name in nearest.items() if link and link not in uses and f"_{link}_" not in names}
     for element in root.iterchildren("link"):
         if (meant := defined.get(element.get("name") or "")) is not None:
             yield _with_value(element, "name", meant, "the link")

@@ -3,6 +3,7 @@
 import re
 from typing import Literal, NamedTuple
 
+from grader.names import near
 from grader.problems import Kind
 from grader.text import enumerated
 from grader.xml import catalogue
@@ -141,11 +142,18 @@ class Recovery:
 
     def _close(self, tag: ReadTag) -> None:
         found = [index for index, opened in enumerate(self._open) if opened.name == tag.name]
-        if not found:
+        if not found and self._open and self._open[-1].name not in _TAGS and near(self._open[-1].name, [tag.name]):
+            opened = self._open[-1]
+            at = len(self._xml) - 1 - self._xml[::-1].index(opened.xml)
+            self._open[-1] = opened._replace(name=tag.name)
+            self._xml[at] = self._open[-1].xml
+            self._assume(f"<{short(opened.name)}> is read as <{short(tag.name)}>", opened.offset)
+            self._end()
+        elif not found:
             self._assume(f"</{short(tag.name)}> is ignored, because no <{short(tag.name)}> is open", tag.offset)
-            return
-        self._leave(found[-1] + 1, tag.offset)
-        self._end()
+        else:
+            self._leave(found[-1] + 1, tag.offset)
+            self._end()
 
     def _leave(self, depth: int, offset: int) -> None:
         """Close the tags that are open below a depth, before an offset."""
