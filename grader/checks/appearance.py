@@ -8,7 +8,7 @@ from typing import TypeVar
 from grader.checks.check import MEASURES, METRES, About
 from grader.checks.outcome import Outcome, failed, judged, measured, other_unit, passed, place, point, within
 from grader.checks.toml_types import NonNegative, Size
-from grader.checks.visuals import all_within, main_visual, rgba, shape_name, visuals
+from grader.checks.visuals import VISIBLE, all_within, main_visual, rgba, shape_name, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Sphere, Visual
@@ -90,14 +90,16 @@ def shows_sphere(robot: Configuration, *, link: str, radius: NonNegative, tolera
 
 
 def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
-    """A link exists and shows nothing: no visual, or only invisible ones (without a size, or fully transparent).
+    """A link exists and shows nothing: no visual, or only invisible ones (without a size, or with an alpha below 0.01).
 
     Args:
         link: The link that is examined.
     """
     robot.link(link)
     try:
-        shown = [visual for visual in visuals(robot, link) if visual.material is None or rgba(visual.material)[3] > 0]
+        shown = [
+            visual for visual in visuals(robot, link) if visual.material is None or rgba(visual.material)[3] >= VISIBLE
+        ]
     except MissingElement:
         shown = []
     if not shown:
