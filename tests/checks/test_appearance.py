@@ -367,3 +367,17 @@ def test_other_links_do_not_matter() -> None:
     """A check examines its own link only."""
     passes(shows_box, scene(LIDAR, BASE), **BOX)
     passes(shows_nothing, scene(link("foot"), BASE), link="foot")
+
+
+def test_an_invisible_colour_is_wrong_unless_it_is_wanted() -> None:
+    """Below an alpha of 0.01 nothing shows; a rubric may ask for that by the fourth channel."""
+    assert "invisible" in fails(shows_colour, painted("0 0.6 0 0.009"), **{**GREEN, "colour": (0.0, 0.6, 0.0)})
+    passes(shows_colour, painted("0 0.6 0 0.01"), **{**GREEN, "colour": (0.0, 0.6, 0.0)})
+    passes(shows_colour, painted("0 0.6 0 0"), **{**GREEN, "colour": (0.0, 0.6, 0.0, 0.0)})
+
+
+@pytest.mark.parametrize("size", [(-0.6, 0.4, 0.2), (0.6, 0.4, -0.001)])
+def test_a_negative_size_is_wrong(size: Vector) -> None:
+    """Even if it is within the tolerance of a thin plate."""
+    passes(shows_box, boxed(0.6, 0.4, abs(size[2])), **{**BOX, "size": (0.6, 0.4, abs(size[2]))})
+    fails(shows_box, boxed(*size), **{**BOX, "size": (0.6, 0.4, abs(size[2]))})
