@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
 from grader.names import closest
-from grader.package.launch.model import BY_UTF8
-from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER, is_of_one_machine
+from grader.package.launch.places import BY_UTF8, HOME, PREFIX, SHARE, WORKING_FOLDER, is_of_one_machine
 from grader.package.package import Package
 
 if TYPE_CHECKING:

@@ -8,7 +8,6 @@ from rich.text import Text
 
 from grader.grading.criterion import worth
 from grader.grading.report import Report
-from grader.package.catalogue import NO_MANIFEST_ENTRY
 from grader.problems import Problem
 from grader.report import content
 from grader.report.console import SEVERITY_STYLES, block, put, show_problems, wrapped
@@ -159,8 +158,8 @@ def _show_other_problems(page: Page) -> None:
     if listed:
         page.leave_row()
     kinds = alike(listed, lambda problem: f"{problem.code} {problem.location.path}")
-    # No criterion is about the entry for package.xml, so this is the only place that reports it.
-    shown = [some for index, (_, some) in enumerate(kinds) if index < _MAX_KINDS or some[0].kind is NO_MANIFEST_ENTRY]
+    # No criterion is about the entry for package.xml (PKG015), so this is the only place that reports it.
+    shown = [some for index, (_, some) in enumerate(kinds) if index < _MAX_KINDS or some[0].code == "PKG015"]
     for some in shown:
         put(page.console, _kind_block(some, page))
     rest = len(problems) - sum(map(len, shown))

@@ -10,7 +10,6 @@ from grader.static_python.values import Call, Unknown, Value
 
 _MAX_STEPS = 50_000
 STATE_PUBLISHER = "robot_state_publisher"
-BY_UTF8 = ("cat", "open")  # what reads a file as text in UTF-8, and stops at any other
 Purpose = Literal["urdf", "rviz", "include"]
 
 
