@@ -109,13 +109,6 @@ def move_caster_frame(draw: st.DrawFn, tree: Element) -> None:
         move_frame(tree, link, draw(_poses))
 
 
-def turn_lidar_frame(draw: st.DrawFn, tree: Element) -> None:
-    """Turn the lidar's frame in place; the visual stays."""
-    link = link_named(tree, "lidar")
-    if link is not None and parent_joint(tree, "lidar") is not None:
-        move_frame(tree, link, draw(_rotations))
-
-
 def turn_visual(draw: st.DrawFn, tree: Element) -> None:
     """Turn a shape within its own symmetry, a box onto any of its sides: it looks the same."""
     visual = _one_of(draw, tree.iterfind("link/visual"))
@@ -295,7 +288,6 @@ BEHAVING: tuple[Step, ...] = (
     add_hub,
     move_wheel_frame,
     move_caster_frame,
-    turn_lidar_frame,
     turn_visual,
     other_angles,
     scale_axis,

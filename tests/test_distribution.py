@@ -196,6 +196,6 @@ def test_ci_of_a_student(installed: Path, lab: Path) -> None:
     done = do((installed, "grade", ".", "--save", "json=../report.json"), lab / "repository", **job)
     assert done.returncode == 1
     assert "::error " in done.stderr
-    assert json.loads((lab / "report.json").read_text(encoding="utf-8"))["score"] == 42
-    assert "42" in (lab / "summary.md").read_text(encoding="utf-8")
+    assert json.loads((lab / "report.json").read_text(encoding="utf-8"))["score"] == 43
+    assert "43" in (lab / "summary.md").read_text(encoding="utf-8")
     assert os.listdir(lab / "repository")

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 from grader.checks.measures.fact import Solution
 from grader.package.package import Package
-from grader.submission.urdf import Read
 
 
 class IgnoredMutants(NamedTuple):
@@ -16,8 +15,6 @@ class IgnoredMutants(NamedTuple):
     reason: str
 
 
-_SIZED = ("box", "cylinder", "sphere")
-_NEGATIVE = "ROS 2 loads a negative size; the checks of shapes compare its absolute value."
 _TEMPLATE = "These entries of data_files are those of the template; the criteria are about files that ROS 2 opens."
 _MODULES = "No check is about the Python modules of the package, or about where its programs are installed."
 
@@ -28,11 +25,6 @@ _FOLDER = "ros2 launch finds a launch file in any folder of the installed packag
 
 def ignored_mutants(solution: Solution) -> Iterator[IgnoredMutants]:
     """Yield what a rubric of all facts of a solution ignores nevertheless."""
-    urdf = solution.submission.urdf
-    text = urdf.source.text if isinstance(urdf, Read) else ""
-    sizes = [kind for kind in _SIZED if re.search(rf"<{kind}\s[^>]*=\s*[\"']\s*[\d.]", text)]
-    if sizes:
-        yield IgnoredMutants([f"number negated: *link */geometry/{kind} *" for kind in sizes], _NEGATIVE)
     package = solution.submission.package
     if package is not None:
         yield from _of_launch_files(package)

@@ -8,7 +8,7 @@ from typing import TypeVar
 from grader.checks.check import MEASURES, METRES, About
 from grader.checks.outcome import Outcome, failed, judged, measured, other_unit, passed, place, point, within
 from grader.checks.toml_types import NonNegative, Size
-from grader.checks.visuals import all_within, main_visual, shape_name, visuals
+from grader.checks.visuals import VISIBLE, all_within, main_visual, shape_name, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Sphere, Visual
@@ -31,6 +31,8 @@ Shown = TypeVar("Shown", Box, Cylinder, Sphere)
 def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNegative) -> Outcome:
     """A link shows a box whose edges along the link's x, y and z axes have the given lengths in metres.
 
+    A negative length is wrong in every shape: ROS 2 loads it, and each program shows something else.
+
     Args:
         link: The link that is examined.
         size: The lengths of the edges along the link's x, y and z axes, in metres.
@@ -43,7 +45,7 @@ def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNega
     at = place(visual.origin.location, "rpy") if is_turned else place(visual.geometry.location, "size")
     if actual is None:
         return failed(f"the box of {link!r} is turned: its edges should be along the axes of {link!r}", at)
-    fine = all_within(actual, size, tolerance)
+    fine = min(actual) >= 0.0 and all_within(actual, size, tolerance)
     message = f"{link!r} shows a box {point(actual)} m"
     if not fine:
         message += f"; it should be {point(size)} m ({other_unit(actual, size) or 'x, y, z'})"
@@ -62,9 +64,9 @@ def shows_cylinder(
         tolerance: How far radius and length may each be off, in metres.
     """
     expected = (radius, length)
-    sizes = [((abs(shape.radius), abs(shape.length)), shape) for _, shape in _visuals_of_kind(robot, link, Cylinder)]
+    sizes = [((shape.radius, shape.length), shape) for _, shape in _visuals_of_kind(robot, link, Cylinder)]
     actual, best = min(sizes, key=lambda pair: _difference(pair[0], expected))
-    fine = all_within(actual, expected, tolerance)
+    fine = min(actual) >= 0.0 and all_within(actual, expected, tolerance)
     message = f"{link!r} shows a cylinder of radius {point(actual[:1])} m and length {point(actual[1:])} m"
     if not fine:
         message += f"; it should have radius {point((radius,))} m and length {point((length,))} m"
@@ -82,20 +84,22 @@ def shows_sphere(robot: Configuration, *, link: str, radius: NonNegative, tolera
         tolerance: How far the radius may be off, in metres.
     """
     spheres = (sphere for _, sphere in _visuals_of_kind(robot, link, Sphere))
-    best = min(spheres, key=lambda sphere: abs(abs(sphere.radius) - radius))
+    best = min(spheres, key=lambda sphere: abs(sphere.radius - radius))
     what = f"the radius of the sphere that {link!r} shows is"
-    return measured(what, abs(best.radius), radius, tolerance, at=place(best.location, "radius"))
+    return measured(what, best.radius, radius, tolerance, at=place(best.location, "radius"))
 
 
 def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
-    """A link exists and shows nothing: no visual, or only invisible ones (without a size, or fully transparent).
+    """A link exists and shows nothing: no visual, or only invisible ones (without a size, or with an alpha below 0.01).
 
     Args:
         link: The link that is examined.
     """
     robot.link(link)
     try:
-        shown = [visual for visual in visuals(robot, link) if visual.material is None or visual.material.rgba[3] > 0]
+        shown = [
+            visual for visual in visuals(robot, link) if visual.material is None or visual.material.rgba[3] >= VISIBLE
+        ]
     except MissingElement:
         shown = []
     if not shown:
@@ -117,8 +121,7 @@ def _visuals_of_kind(robot: Configuration, link: str, kind: type[Shown]) -> list
 
 def _edges(visual: Visual, box: Box) -> Vector | None:
     """Return the edge lengths of a box along its link's axes, in metres; None where they are not along them."""
-    a, b, c = box.size
-    size = (abs(a), abs(b), abs(c))  # RViz shows a negative size as a positive one
+    size = box.size
     rotation = rotation_from_rpy(visual.origin.rpy)
     if rotation is IDENTITY_ROTATION:
         return size

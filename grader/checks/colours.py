@@ -3,7 +3,7 @@
 from grader.checks.check import MEASURES, About, Usual
 from grader.checks.outcome import SLACK, Outcome, failed, judged, pending, place, point, within
 from grader.checks.toml_types import Colour, NonNegative
-from grader.checks.visuals import ShapeName, all_within, main_visual
+from grader.checks.visuals import VISIBLE, ShapeName, all_within, main_visual
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Material, Visual
 
@@ -19,6 +19,8 @@ def shows_colour(
 ) -> Outcome:
     """A link is shown in a colour: red, green, blue and, if a fourth channel is given, opacity, each from 0 to 1.
 
+    With an opacity below 0.01 it is invisible, which is never correct, unless the fourth channel demands it.
+
     Args:
         link: The link that is examined.
         colour: Red, green, blue and, if it is to be checked, opacity, each from 0 to 1.
@@ -33,11 +35,22 @@ def shows_colour(
     message = f"{link!r} is shown in {'rgba' if len(colour) == 4 else 'rgb'} {point(actual)}"
     if not fine:
         message += f"; it should be {point(colour)}"
-    return judged(fine, message, actual, colour, tolerance, at=place(visual.material.location, "rgba"))
+    is_wanted = len(colour) == 4 and colour[3] < VISIBLE
+    invisible = "" if is_wanted else _invisible(visual.material)
+    return judged(
+        fine and not invisible,
+        message + invisible,
+        actual,
+        colour,
+        tolerance,
+        at=place(visual.material.location, "rgba"),
+    )
 
 
 def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: NonNegative) -> Outcome:
-    """A link is shown in a grey (red = green = blue) of at least the given level, from 0 to 1; opacity is not checked.
+    """A link is shown in a grey (red = green = blue) of at least the given level, from 0 to 1, and not invisible.
+
+    Below 0.01, the opacity makes it invisible; otherwise opacity is not checked.
 
     Args:
         link: The link that is examined.
@@ -55,8 +68,16 @@ def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: N
         message += ", which is not grey; red, green and blue should be equal"
     elif not is_light:
         message += f"; each should be at least {at_least:g}"
-    fine, at = is_grey and is_light, place(visual.material.location, "rgba")
-    return judged(fine, message, actual, at_least, tolerance, at=at)
+    invisible, at = _invisible(visual.material), place(visual.material.location, "rgba")
+    return judged(is_grey and is_light and not invisible, message + invisible, actual, at_least, tolerance, at=at)
+
+
+def _invisible(material: Material) -> str:
+    """Return the end of a message on a colour that nobody sees; empty for one that shows."""
+    alpha = material.rgba[3]
+    return (
+        "" if alpha >= VISIBLE else f"; its alpha is {alpha:g}, so it is invisible; it should be at least {VISIBLE:g}"
+    )
 
 
 def _has_only_texture(material: Material) -> bool:

@@ -93,6 +93,8 @@ def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | 
 def launch_finds_files(package: Package, *, name: str, built: bool = True) -> Outcome:
     """The launch file looks for the URDF and RViz files where a build of the package installs them.
 
+    What it reads as text, with `open` or `cat`, must be UTF-8, unless it names the encoding.
+
     Args:
         name: The file's name, such as view.launch.py.
         built: Whether a build must install the files; if not, files of the package count as found.
@@ -122,7 +124,7 @@ def _wrong(package: Package, wrong: Sequence[FilePlace]) -> Outcome:
     is_local = any(it.file.path is not None and is_of_one_machine(it.file.path) for it in wrong)
     if is_local:
         message += f"; use get_package_share_directory({package.name!r}), which returns the installed folder"
-    first, mistake = wrong[0].file, _ON_ONE_MACHINE if is_local else _NOT_INSTALLED
+    first, mistake = wrong[0].file, wrong[0].mistake or (_ON_ONE_MACHINE if is_local else _NOT_INSTALLED)
     problem = one_machine_only(first.path) if first.path else ""
     return failed(message, first.location, problem=problem, mistake=mistake)
 

@@ -4,8 +4,10 @@ import posixpath
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
+from grader.errors import InputError
+from grader.files.reading import URDF_LIMIT
 from grader.names import closest
-from grader.package.launch.places import HOME, PREFIX, ROS, SHARE, WORKING_FOLDER, is_of_one_machine
+from grader.package.launch.places import BY_UTF8, HOME, PREFIX, ROS, SHARE, WORKING_FOLDER, is_of_one_machine
 from grader.package.package import Package
 
 if TYPE_CHECKING:
@@ -16,11 +18,15 @@ ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", "
 
 
 class FilePlace(NamedTuple):
-    """Where a launch file looks for a file: found there, or why it is not. `missing`: a build does not install it."""
+    """Where a launch file looks for a file: found there, or why it is not. `missing`: a build does not install it.
+
+    `mistake` is the text without what differs between students.
+    """
 
     file: "NamedFile"
     state: Literal["found", "wrong", "unknown", "missing"]
     text: str = ""
+    mistake: str = ""
 
 
 def place_of(package: Package, file: "NamedFile") -> FilePlace:
@@ -87,10 +93,25 @@ def _in_package(owner: Package, target: str, file: "NamedFile") -> FilePlace:
         return FilePlace(file, "missing", f"a build installs no {what}: there is no setup.py that Python can read")
     installed = setup.installed()
     if target in installed:
-        return FilePlace(file, "found", target)
+        return _undecodable(owner, installed[target], file) or FilePlace(file, "found", target)
     if setup.unknown:
         return FilePlace(file, "unknown", f"cannot determine statically whether a build installs {target}")
     return _not_there(owner, installed, target, file)
+
+
+def _undecodable(owner: Package, path: str, file: "NamedFile") -> FilePlace | None:
+    """Return where reading a file stops the launch file, because its text is not UTF-8; None where it does not."""
+    try:
+        if file.by in BY_UTF8:
+            owner.tree.files[path].read(URDF_LIMIT).decode()
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        mistake = f"reading the {WORDS[file.purpose]} stops the launch file with a UnicodeDecodeError: it is not UTF-8"
+        detail = f" (line {line} of {posixpath.basename(path)}); save it as UTF-8"
+        return FilePlace(file, "wrong", mistake + detail, mistake)
+    except InputError:
+        pass  # other criteria report it
+    return None
 
 
 def _not_there(owner: Package, installed: Iterable[str], target: str, file: "NamedFile") -> FilePlace:

@@ -1,7 +1,7 @@
 """Checks of the motion of a link when its joint turns."""
 
 from dataclasses import replace
-from math import hypot
+from math import asin, degrees, hypot
 from typing import Literal
 
 from grader.checks.check import About
@@ -22,8 +22,7 @@ ABOUT = {
 
 _SMALL_ANGLE = 1e-3  # radians
 _STANDSTILL = 1e-9  # metres
-# The smallest relative motion of lowest and highest point, as a share of that of a level wheel: 45 degrees off level.
-_ROLLING = 0.7
+_MAX_SLOPE = 45.0  # degrees between the axis of a wheel and the level
 
 
 def rolls_forward(
@@ -38,8 +37,8 @@ def rolls_forward(
 ) -> Outcome:
     """Turning a wheel's joint by a small positive angle drives the base forward, if the wheel rolls without slip.
 
-    The lowest point of the wheel must move opposite to `forward`. It must also move relative to the wheel's highest
-    point, at least 0.7 times as far as on a level wheel: one that swivels does not.
+    The lowest point of the wheel must move opposite to `forward`, and the joint's axis must be within 45 degrees of
+    level: about an upright axis, a wheel swivels.
 
     Args:
         link: The link of the wheel.
@@ -73,19 +72,16 @@ def travel_of(
     NotDecided or UnknownShape if it cannot be determined.
     """
     poses = [(visual.geometry, visual_pose(robot, link, visual, base)) for visual in visuals(robot, link)]
-    lowest = highest = poses[0]
-    if len(poses) > 1:
-        lowest = min(poses, key=lambda shape: extent(shape[0], shape[1], up)[0])
-        highest = max(poses, key=lambda shape: extent(shape[0], shape[1], up)[1])
-    low, high = farthest(*lowest, minus((0.0, 0.0, 0.0), up)), farthest(*highest, up)
-    displaced = robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base)
-    moved_low = _flat(minus(displaced.apply(low), low), up)
-    moved_high = _flat(minus(displaced.apply(high), high), up)
-    travel = unit((-moved_low[0], -moved_low[1], -moved_low[2])) if hypot(*moved_low) > _STANDSTILL else None
+    lowest = min(poses, key=lambda shape: extent(shape[0], shape[1], up)[0]) if len(poses) > 1 else poses[0]
+    low = farthest(*lowest, minus((0.0, 0.0, 0.0), up))
+    moved = _flat(minus(robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base).apply(low), low), up)
+    travel = unit((-moved[0], -moved[1], -moved[2])) if hypot(*moved) > _STANDSTILL else None
     if travel is None:
         return None, "its lowest point does not move"
-    if hypot(*minus(moved_low, moved_high)) < _ROLLING * _SMALL_ANGLE * dot(minus(high, low), up):
-        return None, "it swivels about an upright axis"
+    upright = abs(dot(robot.pose(joint.child, relative_to=base).rotate(robot.axis(joint)), up))
+    slope = degrees(asin(min(1.0, upright)))
+    if slope > _MAX_SLOPE + SLACK:
+        return None, f"it swivels about an axis {in_degrees(slope)} off level; at most {in_degrees(_MAX_SLOPE)} count"
     return travel, ""
 
 

@@ -3,7 +3,7 @@
 from math import acos, degrees
 
 from grader.checks.check import MEASURES, METRES, About, Usual
-from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, location_of, measured_point, place
+from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, location_of, measured_point, place, point
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose
 from grader.robot.kinematics import Configuration
@@ -50,7 +50,7 @@ def frame_at(
     pose, at = robot.pose(link, relative_to=relative_to), origin_place(robot, link)
     placed = measured_point(f"the frame {link!r}", pose.translation, xyz, tolerance, relative_to, at=at)
     return (
-        _with_orientation(placed, turn_between(pose.rotation, rotation_from_rpy(rpy)), angle, at)
+        _with_orientation(placed, turn_between(pose.rotation, rotation_from_rpy(rpy)), angle, f"rpy {point(rpy)}", at)
         if angle < _ANY_ANGLE
         else placed
     )
@@ -93,14 +93,16 @@ def centre_at(
     if angle >= _ANY_AXIS:
         return placed
     cosine = abs(dot(pose.rotate(Z_AXIS), unit(axis) or axis))
-    return _with_orientation(placed, degrees(acos(min(1.0, cosine))), angle, at)
+    return _with_orientation(placed, degrees(acos(min(1.0, cosine))), angle, f"the axis {point(axis)}", at)
 
 
-def _with_orientation(placed: Outcome, turned: float, angle: float, at: LazyLocation | None) -> Outcome:
+def _with_orientation(placed: Outcome, turned: float, angle: float, wanted: str, at: LazyLocation | None) -> Outcome:
     """Return the outcome of a position, or its failure where the orientation is more than `angle` degrees off."""
     if turned <= angle + SLACK:
         return placed
-    message = f"{placed.message}; its orientation is {in_degrees(turned)} off"
+    message = f"{placed.message}; its orientation is {in_degrees(turned)} off {wanted}"
+    if placed.status == "passed" and at is not None and at.attribute == "xyz":
+        at = at._replace(attribute="rpy")
     return placed._replace(status="failed", message=message, location=location_of(at))
 
 

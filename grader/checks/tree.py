@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from grader.checks.check import MEASURES, About
+from grader.checks.comparison import check_known, named, number_text
 from grader.checks.outcome import Outcome, failed, passed, pending, place
 from grader.errors import MissingElement
 from grader.names import did_you_mean
@@ -10,6 +11,7 @@ from grader.problems import Problem, kinds_in
 from grader.robot.catalogue import RAW_XACRO
 from grader.robot.joints import MOVING_TYPES
 from grader.robot.kinematics import Configuration
+from grader.robot.model import Joint
 from grader.robot.reader import Reading
 from grader.text import counted, enumerated
 from grader.xml import catalogue as xml_catalogue
@@ -70,13 +72,14 @@ def _raw_xacro_failure(urdf: Reading, raw: Problem) -> Outcome:
     return outcome._replace(mistake=f"{raw.code}: {raw.kind.title}")
 
 
-def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointType) -> Outcome:
+def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointType, free: bool = False) -> Outcome:
     """The joints from the parent to the link are one of the given type and otherwise only fixed joints.
 
     Args:
         link: The link that is examined.
         parent: The link that it should be connected to; other links may lie between.
         joint_type: The type of the one joint that is not fixed; fixed, if all must be fixed.
+        free: Whether that joint must move by itself: without `<mimic>`, and without a velocity limit of 0.
     """
     chain = robot.chain(link, above=parent)
     if chain is None:
@@ -89,7 +92,8 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointTy
     moving = [joint for joint in chain if joint.type != "fixed"]
     wanted = [] if joint_type == "fixed" else [joint_type]
     if [joint.type for joint in moving] == wanted:
-        return passed(f"the {joint_type} joint {(moving or [joint])[0].name!r} connects {link!r} to {parent!r}")
+        found = passed(f"the {joint_type} joint {(moving or [joint])[0].name!r} connects {link!r} to {parent!r}")
+        return (_driven_or_blocked(moving[0], link) if free and moving else None) or found
     if not moving:
         message = f"{link!r} cannot move: its joint is fixed; it should be {joint_type}"
         raise MissingElement("moving joint", link, message=message, detail=f" (joint {joint.name!r})", location=at)
@@ -108,6 +112,22 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointTy
         return failed(f"several joints move {link!r}; there should be {expected}", at, detail=f" (joints {names})")
     message = f"the joint that moves {link!r} is {moving[0].type}; it should be {joint_type}"
     return failed(message, place(moving[0].location, "type"), detail=f" (joint {moving[0].name!r})")
+
+
+def _driven_or_blocked(joint: Joint, link: str) -> Outcome | None:
+    """Return the failure of a joint that another one moves, or that has no velocity; None if it moves by itself."""
+    check_known(joint, "mimic", link, is_there=joint.mimic is not None)
+    check_known(joint, "limit", link, is_there=joint.limit is not None)
+    if joint.mimic is not None:
+        leader = "itself" if joint.mimic.joint == joint.name else "another joint"
+        message = f"the joint that moves {link!r} mimics {leader}; it should have no <mimic>"
+        detail = f" (joint {joint.name!r} mimics {joint.mimic.joint!r})"
+        return failed(message, place(joint.mimic.location, "joint"), detail=detail)
+    if joint.limit is not None and joint.limit.velocity <= 0.0:  # one that ROS 2 cannot read is NaN
+        message = f"the velocity limit of the joint that moves {link!r} is {number_text(joint.limit.velocity)}"
+        at = place(joint.limit.location, "velocity")
+        return failed(f"{message}; it should be more than 0", at, detail=named(joint))
+    return None
 
 
 def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]) -> Outcome:

@@ -16,6 +16,7 @@ from grader.source import LazyLocation
 
 _MAX_FILE_NAME = 100  # characters that a message shows
 MAX_SHAPES = 50  # of one link that are compared with each other
+VISIBLE = 0.01  # the smallest alpha of a colour that shows
 
 
 def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:

@@ -1,7 +1,7 @@
 """Pictures and other evidence in a submission: found by name or headings in documents, and described, never graded."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple
 
 from grader.documents.collection import DocumentCollection
@@ -32,19 +32,20 @@ def find_evidence(
 
     Files with the label come first. Without one, files count that have a misspelt label with task and step, and
     headings of Word and PDF files with a picture below them. Not certain are labels without a task, headings without a
-    picture, and documents that were not read or have pictures without headings.
+    picture, documents that were not read or have pictures without headings, and everything of a pre-lab.
     """
     wanted = [read_label(name) for name in names]
     exact = [it for it in files if _is_named(it.label, wanted)]
-    if exact:
-        return FoundEvidence(as_evidence(exact))
+    if certain := [it for it in exact if not _PRELAB.search(it.file.path)]:
+        return FoundEvidence(as_evidence(certain))
     others = [labelled for labelled in files if not labelled.label.is_complete]
     meant = [it for it in others if it.loose.is_complete and _is_named(it.loose, wanted)]
     inside = [*_below_headings(documents, wanted)]
-    certain = tuple(file for file, is_certain in inside if is_certain)
-    if meant or certain:
-        return FoundEvidence((*as_evidence(meant), *certain))
-    perhaps = [it for it in others if any(_may_match(label, it) for label in wanted)]
+    found = [*as_evidence(meant), *(file for file, is_certain in inside if is_certain)]
+    if found := [file for file in found if not _PRELAB.search(file.path)]:
+        return FoundEvidence(tuple(found))
+    misspelt = [it for it in others if it not in exact and any(_may_match(label, it) for label in wanted)]
+    perhaps = [*exact, *meant, *misspelt]
     return FoundEvidence((), (*as_evidence(perhaps), *(it for it, _ in inside), *_unlisted(documents, perhaps)))
 
 
@@ -62,30 +63,38 @@ def find_all_evidence(
 ) -> list[FoundEvidence]:
     """Return the evidence for each of several lists of names.
 
-    A file is perhaps meant for one of them, the first without a file, unless its headings name several or it could not
-    be read. A file that names another step is perhaps meant for the nearest step of its task without a file.
+    A file is perhaps meant for one of them, the first without a file, unless its headings name several, it could not
+    be read, or it has pictures without headings. A file that names another step, or only the task if that has one step,
+    is perhaps meant for the nearest step of its task without a file.
     """
     found = [find_evidence(files, one, documents) for one in names]
     claimed = {file.path for one in found for file in one.files}
-    unread = {it.path for it in documents.named(DOCUMENTS)[1]} if documents is not None else set()
+    several = {it.path for it in _whole_documents(documents)} - claimed
+    several |= {it.path for it in documents.named(DOCUMENTS)[1]} if documents is not None else set()
     for index, one in enumerate(found):
-        perhaps = tuple(file for file in one.possible if file.heading or file.path not in claimed - unread)
+        perhaps = tuple(file for file in one.possible if file.heading or file.path not in claimed - several)
         claimed |= {file.path for file in perhaps}
         found[index] = FoundEvidence(one.files, perhaps)
-    without = [index for index, one in enumerate(found) if not one.files]
-    steps = [(label, index) for index in without for label in map(read_label, names[index]) if label.is_complete]
+    steps = [(label, index) for index, one in enumerate(names) for label in map(read_label, one) if label.is_complete]
+    without = {index for index, one in enumerate(found) if not one.files}
     for labelled in files:
-        near = _nearest(labelled.loose, steps) if labelled.file.path not in claimed else None
+        near = _nearest(labelled.loose, steps, without) if labelled.file.path not in claimed else None
         if near is not None:
             found[near] = FoundEvidence((), (*found[near].possible, *as_evidence([labelled])))
     return found
 
 
-def _nearest(wanted: Label, steps: Sequence[tuple[Label, int]]) -> int | None:
-    """Return what belongs to the nearest step of the same task; None if there is none of it, or no step is wanted."""
-    if not wanted.is_complete:
+def _nearest(wanted: Label, steps: Sequence[tuple[Label, int]], without: Collection[int]) -> int | None:
+    """Return which of those without a file belongs to the nearest step of the same task; None if there is none of it.
+
+    A label without a step means the only step of its task.
+    """
+    of_task = [(it, index) for it, index in steps if it.task == wanted.task]
+    if not wanted.steps and len(of_task) > 1:
         return None
-    distances = [(abs(min(it.steps) - min(wanted.steps)), index) for it, index in steps if it.task == wanted.task]
+    distances = [
+        (abs(min(it.steps) - min(wanted.steps or it.steps)), index) for it, index in of_task if index in without
+    ]
     return min(distances)[1] if distances else None
 
 

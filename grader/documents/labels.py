@@ -35,7 +35,7 @@ class Label:
 def read_label(text: str, *, loosely: bool = False) -> Label:
     """Return the label of a name or line. If it names several tasks, as a path may, the last one counts.
 
-    With `loosely`, misspelt words and other words for a task count as well: Taks1_Step8, Part3_step3.
+    With `loosely`, misspelt words and other words for a task count as well: Taks1_Step8, Part3_step3, Task1_part18.
     """
     text = text[-_MAX_LENGTH:].lower()
     task: int | None = None
@@ -73,7 +73,7 @@ def _numbers(words: list[str], *, loosely: bool) -> tuple[int | None, set[int]]:
         numbers = [int(number) for number in takewhile(_NUMBER.fullmatch, words[index + 1 :])]
         if not numbers:
             continue
-        keyword = _keyword(word) if loosely else word
+        keyword = _keyword(word, within=task is not None) if loosely else word
         if keyword in TASKS:
             task, steps = numbers[0], (steps if task is None else set()) | set(numbers[1:])
         elif keyword in STEPS:
@@ -81,11 +81,11 @@ def _numbers(words: list[str], *, loosely: bool) -> tuple[int | None, set[int]]:
     return task, steps
 
 
-def _keyword(word: str) -> str | None:
-    """Return the keyword that a word stands for, misspelt or not."""
+def _keyword(word: str, *, within: bool) -> str | None:
+    """Return the keyword that a word stands for, misspelt or not; `within` a task, a part of it is a step."""
     if word in KEYWORDS:
         return word
-    return "task" if word in _OTHER_TASKS else closest(word, ("task", "step"))
+    return ("step" if within else "task") if word in _OTHER_TASKS else closest(word, ("task", "step"))
 
 
 def _in_order(wanted: tuple[str, ...], found: tuple[str, ...]) -> bool:

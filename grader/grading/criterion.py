@@ -60,7 +60,7 @@ class Criterion:
     about: str = ""
     position: int = 0
     answer: str = ""
-    carried: Carried | None = None
+    carried: tuple[Carried, ...] = ()
     at: Mapping[str, float] = field(default_factory=dict)
     has_selectors: bool = False
     bonus: bool = False

@@ -58,9 +58,9 @@ class _Grading:
         """Run the check of a criterion, or skip it because of another that failed."""
         cause = self._cause(criterion)
         result = Result(criterion, _skip_outcome(cause), cause) if cause else self._check(criterion)
-        self.results[criterion.id] = (
-            self._carry(result, criterion.carried) if criterion.carried and result.is_lost else result
-        )
+        for carried in criterion.carried:
+            result = self._carry(result, carried) if result.is_lost else result
+        self.results[criterion.id] = result
 
     def _cause(self, criterion: Criterion) -> str | None:
         """Return the criterion because of which this one is skipped, if there is one."""

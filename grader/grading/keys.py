@@ -134,7 +134,7 @@ CRITERION = KeyTable(
         ),
         "requires": described(_NAMES, "Ids of criteria above this one: it is skipped unless they passed."),
         "carried": described(
-            _table(CARRIED.schema), "What counts instead if an earlier mistake makes the criterion fail."
+            CARRIED.one_or_more, "What counts instead if an earlier mistake makes the criterion fail."
         ),
         "feedback": described(_TEXT, "An explanation for students whose submission fails the criterion."),
         "choices": described(_CHOICES, "Usual deductions for manual grading: a comment, and points below 0."),

@@ -1,7 +1,7 @@
 """A rubric: the facts that are checked, and their points. It is loaded strictly: all mistakes are reported at once."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from decimal import Decimal
 from functools import cache, lru_cache
@@ -196,15 +196,15 @@ def _solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSolution | N
 
 
 def _criterion(
-    position: int, row: TomlRow, bound: BoundCheck, carried: BoundCarried | None, *, answers: bool
+    position: int, row: TomlRow, bound: BoundCheck, carried: Sequence[BoundCarried], *, answers: bool
 ) -> Criterion:
     check, arguments = bound[0], dict(bound[1])
     # Nothing that lists or passes on a criterion's arguments may see the model answer.
     answer = arguments.pop("answer", "") if check.function is answered else ""
     own = {key: value for key, value in row.items() if key not in ("check", "with", "carried")}
     own |= {"check": check, "arguments": arguments, "position": position, "answer": answer if answers else ""}
-    own["has_selectors"] = any(map(is_selector, texts_in((arguments, carried[2] if carried is not None else ()))))
-    return Criterion(**own, carried=Carried(*carried) if carried is not None else None)
+    own["has_selectors"] = any(map(is_selector, texts_in((arguments, *(given for _, _, given in carried)))))
+    return Criterion(**own, carried=tuple(Carried(*one) for one in carried))
 
 
 def _adjust(criterion: Criterion, adjustments: Mapping[str, Adjustment]) -> Criterion:

@@ -19,7 +19,7 @@ _KEYS_OF_RUBRIC: Mapping[str, _Values] = {
 _KEYS_OF_CRITERION: Mapping[str, _Values] = {
     **{name: attrgetter(name) for name in ("bonus", "part", "requires", "at")},
     "check": lambda row: row.check.name,
-    "carried": lambda row: row.carried and (row.carried.causes, row.carried.check.name, row.carried.arguments),
+    "carried": lambda row: [(one.causes, one.check.name, one.arguments) for one in row.carried] or None,
 }
 
 
@@ -54,7 +54,7 @@ def concerning(
     """
     needs: dict[str, set[str]] = {}
     for row in (row for rubric in rubrics for row in rubric.criteria):
-        needs.setdefault(row.id, set()).update(row.requires, row.carried.causes if row.carried is not None else ())
+        needs.setdefault(row.id, set()).update(row.requires, *(one.causes for one in row.carried))
     concerned: set[str] = set()
     for name in names:
         level = {name}

@@ -20,7 +20,8 @@ def rubric_schema() -> _Schema:
     checks = [check for check in named.values() if check is not None]
     facts = [check.documentation.fact if check is not None else "" for check in named.values()]
     schema, criterion = RUBRIC.schema, CRITERION.schema
-    for row in (criterion, criterion["properties"]["carried"]):
+    carried = criterion["properties"]["carried"]
+    for row in (criterion, carried, carried["items"]):
         row["properties"]["check"] |= {"enum": list(named), "x-taplo": {"docs": {"enumValues": facts}}}
         # In a row with allOf, taplo completes no key.
         row |= {"if": {"required": ["check"]}, "then": {"$ref": "#/$defs/arguments"}}
@@ -43,7 +44,7 @@ def _complete(checks: Iterable[Check]) -> _Schema:
     rules = [_if_check(check, {"required": names}) for check, names in needed if names]
     of_check = {"$ref": "#/$defs/needed"}
     required = [key for key in CRITERION.schema["required"] if key in DEFAULTS.keys]
-    complete = {**of_check, "required": required, "properties": {"carried": of_check}}
+    complete = {**of_check, "required": required, "properties": {"carried": {**of_check, "items": of_check}}}
     return {"needed": {"allOf": rules}, "complete": complete}
 
 

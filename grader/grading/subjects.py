@@ -88,9 +88,8 @@ class Subjects:
 
 def check_selectors(robot: Configuration, criterion: Criterion) -> None:
     """Raise MissingElement or NotDecided if a criterion names a link by a place that no link has, or several have."""
-    named_links(
-        [dict(criterion.arguments), criterion.carried and dict(criterion.carried.arguments), [*criterion.at]], robot
-    )
+    carried = [dict(one.arguments) for one in criterion.carried]
+    named_links([dict(criterion.arguments), *carried, [*criterion.at]], robot)
 
 
 def _joint(robot: Configuration, name: str) -> Joint:

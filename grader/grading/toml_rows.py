@@ -39,6 +39,12 @@ class KeyTable(NamedTuple):
         schema = {"type": "array", "items": self.schema, "minItems": 1}
         return simple_type(f"one or more [[{self.name}]] tables", schema, _are_tables)
 
+    @property
+    def one_or_more(self) -> TomlType:
+        """The type of one such table, or several."""
+        schema = {**self.schema, **self.rows.schema, "type": ["object", "array"]}
+        return simple_type("a table, or several", schema, lambda value: isinstance(value, dict) or _are_tables(value))
+
 
 def _are_tables(value: Any) -> bool:
     return isinstance(value, list) and value != [] and all(isinstance(item, dict) for item in value)

@@ -33,7 +33,7 @@ class Validation:
         self._reader = TomlRowReader()
         self._row, self._guess, self._complain = self._reader.row, self._reader.guess, self._reader.complain
         self.bound: list[BoundCheck] = []
-        self.carried: list[BoundCarried | None] = []
+        self.carried: list[list[BoundCarried]] = []
         self._find_check, self._check_names = cache(find_check), cache(check_names)
         self.rubric = self._row((), table, keys.RUBRIC)
         self._defaults: TomlRow = {}
@@ -69,7 +69,10 @@ class Validation:
             if (bound := self._arguments(where, row)) is not None:
                 self.bound.append(bound)
                 self._check_subject(where, row, bound[0])
-            self.carried.append(self._bind_carried(where, row, positions))
+            given = row.get("carried", [])
+            tables = [((), given)] if isinstance(given, dict) else [((i,), table) for i, table in enumerate(given)]
+            found = [self._bind_carried((*where, "carried", *i), row, table, positions) for i, table in tables]
+            self.carried.append([*filter(None, found)])
             if row.get("id") == TOTAL:
                 self._complain((*where, "id"), f"the id {TOTAL!r} is reserved for final marks: choose another one")
 
@@ -135,11 +138,10 @@ class Validation:
                 message = f"{verb} {name!r}, which does not exist{self._guess(name, positions)}"
             self._complain(where, message)
 
-    def _bind_carried(self, where: TomlPath, row: TomlRow, positions: Mapping[str, int]) -> BoundCarried | None:
-        if "carried" not in row:
-            return None
-        where = (*where, "carried")
-        carried = self._row(where, row["carried"], keys.CARRIED)
+    def _bind_carried(
+        self, where: TomlPath, row: TomlRow, table: TomlRow, positions: Mapping[str, int]
+    ) -> BoundCarried | None:
+        carried = self._row(where, table, keys.CARRIED)
         self._check_order((*where, "from"), row, positions)
         bound = self._arguments(where, carried)
         return (carried["from"], *bound) if bound is not None and "from" in carried else None

@@ -31,8 +31,8 @@ def names_in(rubric: Rubric) -> set[str]:
 
 def names_of(criterion: Criterion) -> set[str]:
     """Return every text in the arguments of a criterion, and the joints that it poses."""
-    carried = criterion.carried.arguments if criterion.carried is not None else {}
-    return set(texts([criterion.arguments, carried, getattr(criterion, "at", {})]))
+    carried = [one.arguments for one in criterion.carried]
+    return set(texts([criterion.arguments, *carried, getattr(criterion, "at", {})]))
 
 
 def words_in_files(submission: Submission) -> set[str]:

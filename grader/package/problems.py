@@ -7,7 +7,7 @@ from grader.names import did_you_mean
 from grader.package import catalogue
 from grader.package.launch.model import Launch
 from grader.package.launch.places import is_of_one_machine, one_machine_only
-from grader.package.package import RESOURCE_INDEX, Package
+from grader.package.package import MANIFEST, RESOURCE_INDEX, Package
 from grader.package.setup_py import Setup
 from grader.problems import Problem
 from grader.source import Location
@@ -53,17 +53,19 @@ def _setup_problems(package: Package, setup: Setup) -> Iterator[Problem]:
         yield Problem(catalogue.SETUP_UNKNOWN, message, setup.location(unknown.at))
     start, targets = setup.location(setup.called_at), setup.installed()
     declared = package.manifest.name if package.manifest is not None else None
+    is_known = not (setup.unknown or setup.stops)
     if declared is not None and setup.name is not None and setup.name != declared:
         message = f"package.xml names the package {declared!r}, setup.py names it {setup.name!r}"
         yield Problem(catalogue.OTHER_NAME, message, start)
-        return  # the entries are missing under one of the two names in any case
-    if setup.unknown or setup.stops:
-        return
-    if RESOURCE_INDEX + package.name not in targets:
+        is_known = False  # the entries are missing under one of the two names in any case
+    if is_known and RESOURCE_INDEX + package.name not in targets:
         message = f"data_files has no entry for the resource index: resource/{package.name} is not installed"
         yield Problem(catalogue.NO_MARKER, message, start)
-    if f"share/{package.name}/package.xml" not in targets:
+    if is_known and f"share/{package.name}/package.xml" not in targets:
         message = f"data_files does not install package.xml in share/{package.name}"
+        yield Problem(catalogue.NO_MANIFEST_ENTRY, message, start)
+    elif not is_known and MANIFEST not in targets.values() and MANIFEST not in setup.source.text:
+        message = f"setup.py does not name package.xml, which data_files should install in share/{package.name}"
         yield Problem(catalogue.NO_MANIFEST_ENTRY, message, start)
 
 

@@ -109,8 +109,7 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
     positions = ", ".join(f"{name} = {value:g}" for name, value in criterion.at.items())
     pose = f"The robot is posed: {positions} (degrees or metres); its other joints are at 0." if positions else ""
     yield _check_text("Check", criterion.check, criterion.arguments, pose)
-    if criterion.carried is not None:
-        causes, check, arguments = criterion.carried
+    for causes, check, arguments in criterion.carried:
         failures = f"If it fails and {enumerated(causes, word='or')} failed before it"
         yield _check_text(f"{failures}, the points are given if this check passes", check, arguments)
 

@@ -158,11 +158,13 @@ def _show_other_problems(page: Page) -> None:
     if listed:
         page.leave_row()
     kinds = alike(listed, lambda problem: f"{problem.code} {problem.location.path}")
-    for _, some in kinds[:_MAX_KINDS]:
+    # No criterion is about the entry for package.xml (PKG015), so this is the only place that reports it.
+    shown = [some for index, (_, some) in enumerate(kinds) if index < _MAX_KINDS or some[0].code == "PKG015"]
+    for some in shown:
         put(page.console, _kind_block(some, page))
-    rest = len(problems) - sum(len(some) for _, some in kinds[:_MAX_KINDS])
+    rest = len(problems) - sum(map(len, shown))
     if rest:
-        noun = "problem" if len(kinds) > _MAX_KINDS else "note"
+        noun = "problem" if len(kinds) > len(shown) else "note"
         words = counted(rest, f"more {noun}" if listed else noun)
         page.title(f"{words}: --verbose shows {'it' if rest == 1 else 'them'}", "dim")
 

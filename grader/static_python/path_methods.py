@@ -50,7 +50,8 @@ def _by_function(evaluation: Evaluation, path: PurePosixPath, name: str, call: C
         found = absolute(evaluation, Call("", [str(path)], {}, call.at)) if absolute is not None else None
         return PurePosixPath(found) if isinstance(found, str) else path
     if name in ("read_text", "open"):
-        opened = Call("builtins.open", [str(path), *(call.args if name == "open" else ())], {}, call.at)
+        before = ["r", -1] if name == "read_text" and call.args else []  # it takes no mode and no size of a buffer
+        opened = Call("builtins.open", [str(path), *before, *call.args], {}, call.at)
         if opener is not None:
             opened.kwargs = call.kwargs
             opened = opener(evaluation, opened)

@@ -230,9 +230,9 @@ CASES = (
     ),
     Case(
         tree.held_by,
-        {"link": "lidar", "parent": "base", "joint_type": "fixed"},
-        passing=mounted(),
-        failing=scene(BASE, LIDAR, joint("base_lidar_joint", "continuous", "base", "lidar")),
+        {"link": "wheel", "parent": "base", "joint_type": "continuous", "free": True},
+        passing=rolling(),
+        failing=scene(BASE, WHEEL, joint("j", "continuous", "base", "wheel", more='<mimic joint="j"/>')),
         needs_size=False,
     ),
     Case(

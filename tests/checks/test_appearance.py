@@ -153,7 +153,7 @@ def test_another_shape_is_named(required: str, shown: str) -> None:
 
 
 def test_what_has_no_size_does_not_count() -> None:
-    """Visuals without a size are ignored, whatever their place; plates, discs and negative sizes are visible."""
+    """Visuals without a size are ignored, whatever their place; plates and discs are visible."""
     nothing = visual(box(0.0, 0.0, 0.0), material=paint("1 0 0 1", "red"))
     real = visual(box(*SIZE), material=paint("0 0.6 0 1", "green"))
     for found in (scene(link("base", nothing, real)), scene(link("base", real, nothing))):
@@ -162,7 +162,6 @@ def test_what_has_no_size_does_not_count() -> None:
     disc, needle = (scene(link("lidar", visual(cylinder(*size)))) for size in ((0.1, 0.0), (0.0, 0.05)))
     assert "length 0 m; it should" in fails(shows_cylinder, disc, **CYLINDER)
     assert fails(shows_box, boxed(0.6, 0.4, 0.0), **BOX).startswith("'base' shows a box 0.6 0.4 0 m; it should be")
-    passes(shows_box, boxed(-0.6, 0.4, 0.2), **BOX)
     flat_mesh, other_mesh = (scene(link("base", visual(mesh(scale=scale)))) for scale in ("0 0 0", "2 2 2"))
     for check, found, arguments, kind in (
         (shows_cylinder, needle, CYLINDER, "visual"),
@@ -288,7 +287,7 @@ LEVEL, TINTED = "; each should be at least 0.75", ", which is not grey; red, gre
 @pytest.mark.parametrize(
     ("rgba", "complaint"),
     [
-        ("0.75 0.75 0.75 1", ""), ("1 1 1 1", ""), ("0.75 0.76 0.76 0", ""), ("0.8 0.809 0.8 1", ""),
+        ("0.75 0.75 0.75 1", ""), ("1 1 1 1", ""), ("0.75 0.76 0.76 0.01", ""), ("0.8 0.809 0.8 1", ""),
          ("0.8 0.81 0.8 1", ""),
         ("0.749 0.749 0.749 1", LEVEL), ("0.749 0.755 0.755 1", LEVEL), ("0.7 0.7 0.7 1", LEVEL),
         ("0.8 0.811 0.8 1", TINTED), ("1 1 0.9 1", TINTED), ("1 0 0 1", TINTED),
@@ -368,3 +367,17 @@ def test_other_links_do_not_matter() -> None:
     """A check examines its own link only."""
     passes(shows_box, scene(LIDAR, BASE), **BOX)
     passes(shows_nothing, scene(link("foot"), BASE), link="foot")
+
+
+def test_an_invisible_colour_is_wrong_unless_it_is_wanted() -> None:
+    """Below an alpha of 0.01 nothing shows; a rubric may ask for that by the fourth channel."""
+    assert "invisible" in fails(shows_colour, painted("0 0.6 0 0.009"), **{**GREEN, "colour": (0.0, 0.6, 0.0)})
+    passes(shows_colour, painted("0 0.6 0 0.01"), **{**GREEN, "colour": (0.0, 0.6, 0.0)})
+    passes(shows_colour, painted("0 0.6 0 0"), **{**GREEN, "colour": (0.0, 0.6, 0.0, 0.0)})
+
+
+@pytest.mark.parametrize("size", [(-0.6, 0.4, 0.2), (0.6, 0.4, -0.001)])
+def test_a_negative_size_is_wrong(size: Vector) -> None:
+    """Even if it is within the tolerance of a thin plate."""
+    passes(shows_box, boxed(0.6, 0.4, abs(size[2])), **{**BOX, "size": (0.6, 0.4, abs(size[2]))})
+    fails(shows_box, boxed(*size), **{**BOX, "size": (0.6, 0.4, abs(size[2]))})

@@ -672,3 +672,8 @@ def test_without_a_build_the_files_of_the_package_count() -> None:
     status, message, _ = finds(launch_finds_files, no_setup, name=NAME, built=False)
     assert (status, message) == ("passed", "the launch file looks for files of the package")
     assert lacks(launch_finds_files, REFERENCE.without(RVIZ), name=NAME, built=False)[0] == "RViz file in the package"
+
+
+def test_a_urdf_that_is_too_large_to_read_is_there() -> None:
+    """Another criterion reports that it is too large."""
+    assert finds_files(REFERENCE.with_files({URDF: " " * 2_000_000}))[:2] == ("passed", FOUND)

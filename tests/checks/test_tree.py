@@ -57,6 +57,26 @@ def test_the_type_of_the_joint_decides(kind: str, required: str) -> None:
         assert own_message(outcome) == f"the joint that moves 'wheel' is {kind}; it should be {required} (joint 'j')"
 
 
+FREE: Arguments = {**HELD, "free": True}
+BLOCKED = '<limit effort="1" velocity="0"/>'
+
+
+@pytest.mark.parametrize(
+    ("arguments", "found", "why"),
+    [
+        (FREE, joined("continuous", more='<limit effort="1" velocity="0.1"/>'), ""),
+        ({**FIXED, "free": True}, joined("fixed"), ""),
+        (HELD, joined("continuous", more=BLOCKED), ""),
+        (FREE, joined("continuous", more=BLOCKED), "the velocity limit of the joint that moves 'wheel' is 0"),
+        (FREE, joined("continuous", more='<mimic joint="j"/>'), "the joint that moves 'wheel' mimics itself"),
+        (FREE, joined("continuous", more='<mimic joint="k"/>'), "the joint that moves 'wheel' mimics another joint"),
+    ],
+)
+def test_a_free_joint_moves_by_itself(arguments: Arguments, found: Scene, why: str) -> None:
+    """If that is asked for, it neither mimics a joint nor is kept from moving."""
+    assert (fails(held_by, found, **arguments) if why else passes(held_by, found, **arguments)).startswith(why)
+
+
 @pytest.mark.parametrize("kind", ["fixed", "rotary"])
 def test_a_link_that_cannot_move_misses_a_moving_joint(kind: str) -> None:
     """Checks of motion miss the same thing, so that they are skipped; a joint of an unknown type moves nothing."""

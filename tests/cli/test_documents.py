@@ -143,7 +143,7 @@ def test_a_pdf_of_google_docs_is_read_as_it_looks(tmp_path: Path) -> None:
 
 
 def test_evidence_does_not_contradict_itself(tmp_path: Path) -> None:
-    """What a criterion takes as its picture is not missing, no file is offered twice, and a wrong step is near the right one."""
+    """What a criterion takes as its picture is not missing, no picture is offered twice, and a wrong step is near the right one."""
     scan = pdf([PICTURE], [PICTURE])
     files = {"Task3_desk.png": png(), "report.pdf": scan, "prelab.pdf": scan, "Task2_Step3.png": png()}
     path = submitted(tmp_path / "Ash", files)
@@ -151,16 +151,16 @@ def test_evidence_does_not_contradict_itself(tmp_path: Path) -> None:
     listed = {row["id"]: [file["path"] for file in (*row["files"], *row["possible"])] for row in report["evidence"]}
     assert listed == {
         "task1-step8": ["report.pdf"],
-        "task1-step18": [],
-        "task1-step36": [],
-        "task2-step6": ["Task2_Step3.png"],
+        "task1-step18": ["report.pdf"],
+        "task1-step36": ["report.pdf"],
+        "task2-step6": ["report.pdf", "Task2_Step3.png"],
         "task3-step3": ["Task3_desk.png"],
     }
     (webcam,) = (row for row in report["results"] if row["id"] == "evidence-webcam")
     assert webcam["measured"] == ["Task3_desk.png"]
     text = grade(path)
     assert "Step 3: the camera image in RViz: Task3_desk.png" in text
-    assert "Step 6: the robot, started by the launch file: perhaps Task2_Step3.png" in text
+    assert "Step 6: the robot, started by the launch file: perhaps report.pdf" in text
 
 
 def test_the_list_of_evidence_agrees_with_the_criterion(tmp_path: Path) -> None:
@@ -169,7 +169,7 @@ def test_the_list_of_evidence_agrees_with_the_criterion(tmp_path: Path) -> None:
     report = as_json(submitted(tmp_path / "Ash", {"report.pdf": scan, "Prelab/pictures.pdf": scan}))
     assert [row["id"] for row in report["evidence"]][-1] == "task3-step3"
     listed = {row["id"]: [file["path"] for file in row["possible"]] for row in report["evidence"] if row["possible"]}
-    assert listed == {"task3-step3": ["report.pdf"]}
+    assert listed == {row["id"]: ["report.pdf"] for row in report["evidence"]}
     (webcam,) = (row for row in report["results"] if row["id"] == "evidence-webcam")
     assert webcam["measured"] == ["report.pdf"]
 

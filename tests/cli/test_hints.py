@@ -120,7 +120,7 @@ def test_fix_writes_the_robot_with_all_edits(tmp_path: Path) -> None:
     """It gets full marks, and only the lines of the edits differ."""
     done = run(("grade", MISTAKES, "--fix", tmp_path / "fixed.urdf"))
     assert done.returncode == 1
-    assert b"42 -> 70 of 70 points" in done.stderr
+    assert b"43 -> 70 of 70 points" in done.stderr
     assert run(("grade", tmp_path / "fixed.urdf")).returncode == 0
     before, after = MISTAKES.read_bytes().split(b"\n"), (tmp_path / "fixed.urdf").read_bytes().split(b"\n")
     differing = [number for number, pair in enumerate(zip(before, after, strict=True), 1) if pair[0] != pair[1]]
@@ -267,7 +267,7 @@ def test_a_fault_of_the_search_costs_no_report(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(HintSearch, "run", fail)
     done = run(("grade", MISTAKES, "--format", "json"))
     assert done.returncode == 1
-    assert json.loads(done.stdout)["score"] == 42
+    assert json.loads(done.stdout)["score"] == 43
     assert done.stderr == b"grader: no hints: the grader itself failed (ZeroDivisionError); please report it\n"
 
 

@@ -36,7 +36,7 @@ def test_requested_annotations_are_printed_once(job: GithubJob) -> None:
     done = job.run("grade", "my_robot.urdf", "--format", "github")
     assert len(commands(done.stdout.decode())) == 8
     assert done.stderr == b""
-    assert job.summary.read_text(encoding="utf-8").startswith("# 42 / 70 points")
+    assert job.summary.read_text(encoding="utf-8").startswith("# 43 / 70 points")
 
 
 @pytest.mark.parametrize("variable", ["GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY"])
@@ -55,7 +55,7 @@ def test_a_summary_is_appended(job: GithubJob) -> None:
     root = read_as_github(job.summary.read_text(encoding="utf-8"))
     assert [heading.text_content() for heading in root.iter("h1")] == [
         "Built",
-        *["42 / 70 points: IRP Lab 6: a wheeled base"] * 2,
+        *["43 / 70 points: IRP Lab 6: a wheeled base"] * 2,
     ]
 
 
@@ -126,7 +126,7 @@ def test_every_mistake_of_a_rubric_is_in_the_annotation(job: GithubJob) -> None:
     assert done.stderr.decode().splitlines()[1:] == [f"grader: {line}" for line in lines]
 
 
-@pytest.mark.parametrize(("threshold", "code"), [("42", 0), ("60%", 0), ("42.5", 1), ("100%", 1)])
+@pytest.mark.parametrize(("threshold", "code"), [("43", 0), ("60%", 0), ("43.5", 1), ("100%", 1)])
 def test_the_threshold_decides_whether_the_step_fails(job: GithubJob, threshold: str, code: int) -> None:
     """Error annotations alone fail no step."""
     done = job.run("grade", "my_robot.urdf", "--fail-under", threshold)

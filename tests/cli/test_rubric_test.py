@@ -99,8 +99,8 @@ def test_survivors_are_listed_with_their_diff_and_a_suggestion(tmp_path: Path, a
     [
         ("number +0.05: joint slide/origin xyz.x", "no criterion looks at it; try frame_at"),
         (
-            "number negated: link plate/visual/geometry/box size.x",
-            "plate-box passes nevertheless; check the arguments",
+            "number x10: joint finger_joint/origin xyz.x",
+            "tool-frame passes nevertheless; try kinematics_match_reference",
         ),
     ],
 )

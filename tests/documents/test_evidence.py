@@ -37,6 +37,7 @@ def words(files: Files, names: list[str]) -> tuple[list[str], list[str]]:
         ("T1S8.png", STEP_8),
         ("Step8_Task1.png", STEP_8),
         ("section1-step8.pdf", STEP_8),
+        ("Task1_part18.png", ["task 1 step 18"]),
     ],
 )
 def test_misspelt_names_that_are_unambiguous(path: str, names: list[str]) -> None:
@@ -53,10 +54,13 @@ def test_misspelt_names_that_are_unambiguous(path: str, names: list[str]) -> Non
         ("webcm.png", WEBCAM),
         ("my_camrea.png", WEBCAM),
         ("pictures/step3.png", WEBCAM),
+        ("prelab/Task1_Step8.png", STEP_8),
+        ("Pre-Lab Taks1_Step8.png", STEP_8),
+        ("prelab_webcam.png", WEBCAM),
     ],
 )
 def test_ambiguous_names_are_perhaps_meant(path: str, names: list[str]) -> None:
-    """A step without a task, or a misspelt word, is listed as perhaps meant."""
+    """A step without a task, a misspelt word, or what is of a pre-lab is listed as perhaps meant."""
     assert words({path: png()}, names) == ([], [path])
 
 
@@ -112,6 +116,14 @@ def test_a_heading_in_a_word_file_is_named() -> None:
     assert words({"a.docx": titled}, WEBCAM) == (["The webcam in RViz in a.docx"], [])
 
 
+def test_a_heading_of_a_prelab_is_perhaps_meant() -> None:
+    """A document that names the pre-lab shows no step of the lab for certain."""
+    assert words({"prelab.pdf": pdf(["Task 1: Step 8", PICTURE])}, STEP_8) == (
+        [],
+        ["Task 1: Step 8, page 1 of prelab.pdf"],
+    )
+
+
 def test_a_heading_without_a_picture_is_perhaps_meant() -> None:
     """A heading without a picture below it may be a table of contents or an answer, and a plain number one of the handout."""
     assert words({"a.docx": docx("Task 1: Step 8", "See below.", "Task 1: Step 18", PICTURE)}, STEP_8) == (
@@ -153,11 +165,9 @@ def offered(files: Files, names: list[list[str]] = STEPS) -> list[tuple[list[str
 
 
 def test_a_file_is_offered_once() -> None:
-    """A document of pictures is perhaps meant for the first piece only, and that of the prelab for none."""
+    """A document of pictures is perhaps meant for every piece, that of the prelab for none, and a picture for one."""
     scan = pdf([PICTURE], [PICTURE])
-    assert offered({"report.pdf": scan, "prelab.pdf": scan, "Lab6 Pre-Lab.pdf": scan}) == [
-        ([], ["report.pdf"]), ([], []), ([], []), ([], [])
-    ]  # fmt: skip
+    assert offered({"report.pdf": scan, "prelab.pdf": scan, "Lab6 Pre-Lab.pdf": scan}) == [([], ["report.pdf"])] * 4
     assert offered({"report.pdf": scan, "Task1_Step8.png": png()})[:2] == [
         (["Task1_Step8.png"], []),
         ([], ["report.pdf"]),
@@ -182,6 +192,9 @@ def test_a_file_whose_headings_name_several_steps_is_offered_for_each() -> None:
         (["Task1_Step13.png"], 0),  # as near as the other
         (["Task1_Step9.png", "Task1_Step8.png"], 1),  # which is filled
         (["Task3_Step1.png"], 3),
+        (["lab6_task2.png"], 2),  # the only step of its task
+        (["lab6_task1.png"], None),
+        (["lab6_task2.png", "Task2_Step6.png"], None),
         (["Task4_Step6.png"], None),
         (["Task2_Step3.png", "Task2_Step6.png"], None),
     ],

@@ -162,20 +162,29 @@ def test_a_submission_that_could_not_be_graded_is_not_opened_again() -> None:
 )
 def test_no_outline_of_what_is_right(name: str, old: str, new: str, tmp_path: Path) -> None:
     """A wrong colour or axis draws no dashed shape or frame at a link that is correct in another way than the reference."""
-    text = (ROOT / "submissions" / name / "my_robot.urdf").read_text()
-    assert old in text
-    (tmp_path / "my_robot.urdf").write_text(text.replace(old, new))
-    loaded = load_rubric("lab6")
-    found = picture_of(grade(loaded, open_submission(str(tmp_path), loaded.lab)))
-    assert found is not None
+    found = changed_picture(tmp_path, name, old, new)
     assert found.callouts
     assert (found.outlines, found.frames) == ((), ())
 
 
-def test_criterion_on_several_links_marks_none_of_them() -> None:
+def changed_picture(folder: Path, name: str, old: str, new: str) -> Picture:
+    """Return the picture of a sample with another text in its URDF."""
+    text = (ROOT / "submissions" / name / "my_robot.urdf").read_text()
+    assert old in text
+    (folder / "my_robot.urdf").write_text(text.replace(old, new))
+    loaded = load_rubric("lab6")
+    found = picture_of(grade(loaded, open_submission(str(folder), loaded.lab)))
+    assert found is not None
+    return found
+
+
+def test_criterion_on_several_links_marks_none_of_them(tmp_path: Path) -> None:
     """If wheels and caster miss the ground together, that is a mistake of the robot, not of its first wheel."""
-    callouts = {callout.link: callout for callout in picture("footprint-too-low").callouts}
-    assert set(callouts) == {"base_footprint", ""}
+    found = changed_picture(
+        tmp_path, "caster-below-the-ground", '<origin xyz="0 0 0.1"/>\n', '<origin xyz="0 0 0.05"/>\n'
+    )
+    callouts = {callout.link: callout for callout in found.callouts}
+    assert set(callouts) == {"base_footprint", "caster_wheel", ""}
     assert [result.criterion.id for result in callouts[""].results] == ["stands-on-ground"]
 
 

@@ -32,7 +32,7 @@ SMALL_WHEELS = "submissions/wheel-too-small/my_robot.urdf"
 
 def carried_from(name: str, causes: list[str], check: AnyCheck, other: AnyCheck = passes_) -> Criterion:
     """Return a criterion that is carried from others if another check passes."""
-    return replace(ask(name, check), carried=Carried(tuple(causes), describe(other), {}))
+    return replace(ask(name, check), carried=(Carried(tuple(causes), describe(other), {}),))
 
 
 def report_on(*criteria: Criterion) -> Report:
@@ -161,9 +161,23 @@ XZY = FACT.replace("xyz", "xzy")
 
 def test_a_rubric_says_what_counts_instead(tmp_path: Path) -> None:
     """The causes and the other check with its arguments, converted like those of the criterion."""
-    found = loaded(tmp_path, f'{GOOD}{AFTER}from = ["loads"]\n{FACT}').criteria[1].carried
-    assert found is not None
+    (found,) = loaded(tmp_path, f'{GOOD}{AFTER}from = ["loads"]\n{FACT}').criteria[1].carried
     assert (found.causes, found.check.name, found.arguments["xyz"]) == (("loads",), "frame_at", (0.0, 0.0, 1.0))
+
+
+SEVERAL = AFTER.replace("[criterion.carried]", "[[criterion.carried]]")
+
+
+def test_several_facts_may_count_instead(tmp_path: Path) -> None:
+    """Each is a table with causes of its own; a mistake in the second has its line."""
+    tables = f'{SEVERAL}from = ["loads"]\n{FACT}\n[[criterion.carried]]\nfrom = ["loads"]\ncheck = "urdf_loads"\n'
+    found = loaded(tmp_path, GOOD + tables).criteria[1].carried
+    assert [one.check.name for one in found] == ["frame_at", "urdf_loads"]
+    wrong = f"{GOOD}{tables}with = {{ x = 1 }}  # !! the check urdf_loads takes no 'x'; it takes: nothing\n"
+    assert complaints(tmp_path, wrong) == announced(wrong)
+    first, second = carried_from("two", ["one"], fails_, fails_).carried + carried_from("two", ["one"], fails_).carried
+    for order in ((first, second), (second, first)):
+        assert carried(report_on(ONE, replace(ask("two", fails_), carried=order))) == ["", "one"]
 
 
 @pytest.mark.parametrize(

@@ -89,7 +89,7 @@ def test_manual_marks_have_their_points() -> None:
 def test_each_output_is_complete_markdown() -> None:
     """The submission's output is first, and each test has its own; every one is rendered alone."""
     data = results(SAMPLES["several-mistakes"].grade())
-    assert read_as_github(data["output"]).findtext("h1") == "42 / 70 points: IRP Lab 6: a wheeled base"
+    assert read_as_github(data["output"]).findtext("h1") == "43 / 70 points: IRP Lab 6: a wheeled base"
     by_id = {test["tags"][0]: read_as_github(test["output"]) for test in data["tests"]}
     assert [element.tag for element in by_id["base-green"]] == ["p", "p", "p", "pre", "p"]
     assert by_id["base-green"].findtext("pre/code") == '6 | <color rgba="0 1 0 1" />\n  |        --------------\n'

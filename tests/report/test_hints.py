@@ -108,7 +108,7 @@ def test_sarif_fixes_apply() -> None:
     fixes = [fix for result in run["results"] for fix in result.get("fixes", [])]
     assert [fix["description"]["text"] for fix in fixes] == [
         CHANGE,
-        "Raise the base by 50 mm. Also fixes stands-on-ground, -1.",
+        "Raise the base by 50 mm.",
     ]
     lines = MISTAKEN.read_text(encoding="utf-8").splitlines()
     for fix, (old, new) in zip(fixes, (('"1.57 0 0"', '"-1.57 0 0"'), ('"0 0 0.05"', '"0 0 0.1"')), strict=True):

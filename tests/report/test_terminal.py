@@ -30,10 +30,10 @@ LIDAR = """\
   0.225 m (z 25 mm too small).
   30 \u2502 <origin xyz="0.15 0 0.2"/>
      \u2502         \u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500\u2500
-  The joint's origin places the lidar's frame, and every scan is measured from
-  that frame. The visual's origin moves only the shape. Halfway from the middle
-  to the front is 0.6 / 4; the top is the base's height plus half of the
-  lidar's."""
+  The joint's origin places the lidar's frame, and every scan is measured in
+  that frame: if the frame is turned, so is what the lidar sees. The visual's
+  origin moves only the shape. Halfway from the middle to the front is 0.6 / 4;
+  the top is the base's height plus half of the lidar's."""
 RUBRIC = load_rubric("lab6")
 HOSTILE = (
     b'<robot name="[bold red]\x1b[31m"><link name="lidar\x1b]8;;http://x\x07"/>\n'

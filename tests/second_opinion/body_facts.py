@@ -10,6 +10,7 @@ from tests.second_opinion.elements import Shape
 from tests.second_opinion.geometry import inertia, is_same_solid, overlap
 from tests.second_opinion.posed import SLACK, Fact, Missing, Posed, Undecided, near
 
+_VISIBLE = 0.01  # alpha
 _SIDE_BY_SIDE = 0.001  # metres: shapes that overlap by no more share no solid
 
 
@@ -19,21 +20,21 @@ def shows_box(posed: Posed, link: str, size: Sequence[float], tolerance: float) 
         turned = np.abs(shape.pose[:3, :3])
         order = turned.argmax(axis=1)
         if sorted(order) == [0, 1, 2] and turned[range(3), order].min() >= cos(radians(1.0)):
-            edges.append(np.abs(shape.size)[order])
+            edges.append(np.array(shape.size)[order])
     if not edges:
         return False, None
     best = min(edges, key=lambda found: np.abs(found - size).max())
-    return near(best, size, tolerance), best
+    return near(best, size, tolerance) and bool(best.min() >= 0), best
 
 
 def shows_cylinder(posed: Posed, link: str, radius: float, length: float, tolerance: float) -> Fact:
-    sizes = [np.abs(shape.size) for shape in _of_kind(posed, link, "cylinder")]
+    sizes = [np.array(shape.size) for shape in _of_kind(posed, link, "cylinder")]
     best = min(sizes, key=lambda found: np.abs(found - (radius, length)).max())
-    return near(best, (radius, length), tolerance), best
+    return near(best, (radius, length), tolerance) and bool(best.min() >= 0), best
 
 
 def shows_sphere(posed: Posed, link: str, radius: float, tolerance: float) -> Fact:
-    best = min((abs(shape.size[0]) for shape in _of_kind(posed, link, "sphere")), key=lambda found: abs(found - radius))
+    best = min((shape.size[0] for shape in _of_kind(posed, link, "sphere")), key=lambda found: abs(found - radius))
     return near(best, radius, tolerance), best
 
 
@@ -50,8 +51,9 @@ def shows_colour(posed: Posed, link: str, colour: Sequence[float], tolerance: fl
     found = posed.main(link, shape).colour
     if found is None:
         return False, None
+    is_visible = found[3] >= _VISIBLE or (len(colour) == 4 and colour[3] < _VISIBLE)
     found = found[: len(colour)]
-    return near(found, colour, tolerance), found
+    return near(found, colour, tolerance) and is_visible, found
 
 
 def shows_grey(posed: Posed, link: str, at_least: float, tolerance: float) -> Fact:
@@ -59,12 +61,14 @@ def shows_grey(posed: Posed, link: str, at_least: float, tolerance: float) -> Fa
     if found is None:
         return False, None
     red_green_blue = found[:3]
-    is_grey = max(red_green_blue) - min(red_green_blue) <= tolerance + SLACK
+    is_grey = found[3] >= _VISIBLE and max(red_green_blue) - min(red_green_blue) <= tolerance + SLACK
     return bool(is_grey and min(red_green_blue) >= at_least - SLACK), red_green_blue
 
 
 def shows_nothing(posed: Posed, link: str) -> Fact:
-    shown = [one for one in posed.link(link).visuals if one.has_size and (one.colour is None or one.colour[3] > 0)]
+    shown = [
+        one for one in posed.link(link).visuals if one.has_size and (one.colour is None or one.colour[3] >= _VISIBLE)
+    ]
     return not shown, None
 
 

@@ -52,10 +52,9 @@ def rolls_forward(
     posed = _as_turning(posed, link) if any_type else posed
     _, axis, point = _turning(posed, link, base)
     shapes, pose, above = posed.visuals(link), posed.pose(link, base), np.asarray(up, float)
-    ends = [_extreme(shapes, pose, sign * above) for sign in (-1, 1)]
-    moves = [(turn(axis, _SMALL_TURN) - np.eye(3)) @ (end - point) for end in ends]
-    low, high = (move - above * (move @ above) for move in moves)
-    if np.linalg.norm(low) < 1e-9 or np.linalg.norm(high - low) < 0.7 * _SMALL_TURN * ((ends[1] - ends[0]) @ above):
+    move = (turn(axis, _SMALL_TURN) - np.eye(3)) @ (_extreme(shapes, pose, -above) - point)
+    low = move - above * (move @ above)
+    if np.linalg.norm(low) < 1e-9 or not 45 <= angle_between(axis, above) <= 135:
         return False, None
     drive = -low / np.linalg.norm(low)
     return angle_between(drive, forward) <= tolerance + SLACK, drive

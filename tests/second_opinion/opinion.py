@@ -49,8 +49,10 @@ class Rubric:
             except Missing as missing:
                 first = missed.setdefault(missing.thing, row["id"])
                 opinion = Opinion("failed") if first == row["id"] else Opinion("skipped", because=first)
-            carried = row.get("carried")
-            if carried and opinion.status in ("failed", "skipped"):
+            given = row.get("carried", [])
+            for carried in [given] if isinstance(given, dict) else given:
+                if opinion.status not in ("failed", "skipped"):
+                    break
                 reasons = {opinion.because, found[opinion.because].cause} if opinion.because else set(carried["from"])
                 causes = [
                     name for name in carried["from"] if name in reasons and found[name].status in ("failed", "carried")

@@ -9,12 +9,13 @@ def urdf_loads(posed: Posed) -> Fact:
     return posed.robot.loads, None
 
 
-def held_by(posed: Posed, link: str, parent: str, joint_type: str) -> Fact:
+def held_by(posed: Posed, link: str, parent: str, joint_type: str, free: bool = False) -> Fact:
     way = below(posed, link, parent)
     types = [joint.type for joint in way or () if joint.type != "fixed"]
     if way and not types and joint_type != "fixed":
         raise Missing("moving joint", link)
-    return way is not None and types == ([] if joint_type == "fixed" else [joint_type]), None
+    is_free = not any(joint.is_mimic or (joint.limit and joint.limit[3] <= 0) for joint in way or ())
+    return way is not None and types == ([] if joint_type == "fixed" else [joint_type]) and (is_free or not free), None
 
 
 def joints_named(posed: Posed, parent: str, joints: Mapping[str, str]) -> Fact:

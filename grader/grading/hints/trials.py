@@ -149,8 +149,7 @@ class Trials:
 
 def _steps_of(criterion: Criterion) -> int:
     """Return what the checks of a criterion cost besides reading a text: nothing unless they sample positions."""
-    checks = [(criterion.check, criterion.arguments)]
-    checks += [criterion.carried[1:]] if criterion.carried is not None else []
+    checks = [(criterion.check, criterion.arguments), *((one.check, one.arguments) for one in criterion.carried)]
     sampling = [(check.parameters["samples"], given) for check, given in checks if "samples" in check.parameters]
     return sum(int(given.get("samples", parameter.default)) // _SAMPLES for parameter, given in sampling)
 

@@ -1,4 +1,4 @@
-"""The file that a command of a launch file prints: for xacro and cat."""
+"""The file that a command of a launch file prints, for xacro and cat; and how Python opens one."""
 
 import re
 import shlex
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from grader.package.launch.model import Contents, Context, Resolved
 from grader.static_python.parse import Position
-from grader.static_python.values import MAX_TEXT, Unknown
+from grader.static_python.values import MAX_TEXT, Call, Unknown
 
 PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
 
@@ -42,3 +42,15 @@ def _file_of(words: list[str]) -> Contents | None:
         return Contents(files[0], "cat")
     given = (word.split(":=", 1) for word in words[1:] if ":=" in word)
     return Contents(files[0], "xacro", tuple((name, None if PART_UNKNOWN in it else it) for name, it in given))
+
+
+def opened_by(call: Call) -> str:
+    """Return how a call of open, or of codecs.open, reads a file: "open" if as UTF-8, strictly, else "decode"."""
+    position = 2 if call.name.startswith("codecs.") else 3
+    mode, encoding, errors = (
+        call.argument(1, "mode"),
+        call.argument(position, "encoding"),
+        call.argument(position + 1, "errors"),
+    )
+    is_utf8 = encoding is None or str(encoding).lower().replace("_", "-") in ("utf-8", "utf8")
+    return "open" if is_utf8 and errors in (None, "strict") and "b" not in str(mode) else "decode"

@@ -15,7 +15,10 @@ Purpose = Literal["urdf", "rviz", "include"]
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """The contents of a file, read by open, cat or xacro. `arguments` are those of xacro; None for an unknown value."""
+    """The contents of a file, read by open, cat or xacro; by decode, if open is told how to read what is no UTF-8.
+
+    `arguments` are those of xacro; None for an unknown value.
+    """
 
     path: str
     by: str
@@ -68,7 +71,7 @@ class NamedFile:
     location: Location
     reason: str = ""  # why the path is unknown, or what is wrong with it
     sure: bool = True  # False where it is unknown
-    by: str = ""  # the program that reads it, if there is one: xacro, cat or open
+    by: str = ""  # the program that reads it, if there is one: xacro, cat, open or decode
     arguments: tuple[tuple[str, str | None], ...] = ()  # that xacro gets
 
 

@@ -9,6 +9,7 @@ ROS = "/opt/ros/"  # the folder that ROS 2 is installed to
 WORKING_FOLDER = "/<current folder>"
 HOME = "/<home>"
 SHARE = f"{PREFIX}/share"
+BY_UTF8 = ("cat", "open")  # what reads a file as text in UTF-8, and stops at any other
 ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", "_launch.py", "_launch.xml", "_launch.yaml")
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from grader.package.launch.booleans import BOOLEAN_SUBSTITUTIONS, boolean_substitution, operands_of
-from grader.package.launch.commands import command_output
+from grader.package.launch.commands import command_output, opened_by
 from grader.package.launch.model import Contents, Context, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
 from grader.static_python.closed import evaluate
@@ -94,7 +94,7 @@ class _Substitution:
                 return self.contents("xacro", "input_file_name", arguments=self.mappings())
             case "open" if full in ("builtins.open", "io.open", "codecs.open"):
                 self.needs_texts("open takes a path, not a substitution: use Command(['cat ', ...])", 1)
-                return self.contents("open", "file")
+                return self.contents(opened_by(self.call), "file", "filename")
             case "EnvironmentVariable" | "getenv" | "environ[]" | "get" if "nviron" in full or name == "getenv":
                 is_home = self.argument("name") == "HOME"
                 return HOME if is_home else Unknown("the environment is known only at run time", self.call.at)
