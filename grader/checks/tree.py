@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from grader.checks.check import MEASURES, About
-from grader.checks.comparison import check_known, named, number_text
+from grader.checks.comparison import named, number_text
 from grader.checks.outcome import Outcome, failed, passed, pending, place
 from grader.errors import MissingElement
 from grader.names import did_you_mean
@@ -116,8 +116,6 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointTy
 
 def _driven_or_blocked(joint: Joint, link: str) -> Outcome | None:
     """Return the failure of a joint that another one moves, or that has no velocity; None if it moves by itself."""
-    check_known(joint, "mimic", link, is_there=joint.mimic is not None)
-    check_known(joint, "limit", link, is_there=joint.limit is not None)
     if joint.mimic is not None:
         leader = "itself" if joint.mimic.joint == joint.name else "another joint"
         message = f"the joint that moves {link!r} mimics {leader}; it should have no <mimic>"
