@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from grader.errors import InputError, NotDecided
 from grader.files.reading import URDF_LIMIT
-from grader.files.tree import Tree, make_tree
+from grader.files.tree import Tree, make_tree, parents
 from grader.package.package import Package
 from grader.static_python.closed_values import Budget
 from grader.values import dataclass
@@ -37,8 +37,9 @@ class Surroundings:
     is_single: bool = False
 
     def robot_references(self, path: str) -> list[NamedFile]:
-        """Return where the launch files of the graded package read a URDF."""
-        return self.graded.robot_references(path.rpartition("/")[2]) if self.graded is not None else []
+        """Return where the launch files of the graded package read a URDF; without one, those in a folder around it."""
+        around = self.graded if self.graded is not None or self.is_single else folder_with_launch(self.tree, path)
+        return around.robot_references(path.rpartition("/")[2]) if around is not None else []
 
     def workspace(self) -> Workspace:
         """Return the files as xacro sees them."""
@@ -90,3 +91,9 @@ class Surroundings:
             if len(found) == 1:
                 return found[0]
         return None
+
+
+def folder_with_launch(tree: Tree, path: str) -> Package | None:
+    """Return the nearest folder around a file that has launch files, as a package without a package.xml."""
+    folders = (Package(folder, tree.below(folder), None, {}) for folder in (*parents(path), ""))
+    return next((folder for folder in folders if folder.launch_files), None)

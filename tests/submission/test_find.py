@@ -10,11 +10,12 @@ from grader.errors import InputError
 from grader.files.tree import File, Tree, make_tree
 from grader.package.package import Package
 from grader.submission import search
+from grader.submission.labs import LabFolders
 from grader.submission.opening import submission_of
 from grader.submission.packages import find_packages, read_packages
 from grader.submission.robots import find_robots
 from grader.submission.search import UrdfChoice
-from grader.submission.submission import Lab
+from grader.submission.submission import DEFAULTS, Lab
 from grader.submission.urdf import OtherCandidate
 from tests.work import limited_work
 
@@ -55,9 +56,10 @@ def manifest(name: str) -> bytes:
     return f'<package format="3"><name>{name}</name></package>'.encode()
 
 
-def find_urdf(tree: Tree, urdf: str, package_folder: str | None = None) -> UrdfChoice:
+def find_urdf(tree: Tree, urdf: str) -> UrdfChoice:
     """Return which robot of a tree is graded."""
-    return search.find_urdf(tree, urdf, package_folder, find_robots(tree, urdf.rpartition("/")[2]))
+    robots = find_robots(tree, urdf.rpartition("/")[2])
+    return search.find_urdf(tree, Lab(urdf, "my_robot"), robots, LabFolders([]), DEFAULTS)
 
 
 def rejected(found: UrdfChoice) -> dict[str, str]:

@@ -1,0 +1,77 @@
+"""The links of robots that may be graded: how many of those that a lab names, and so whether it is another robot."""
+
+from collections.abc import Collection, Sequence
+from itertools import islice
+from typing import TYPE_CHECKING, NamedTuple
+
+from grader.errors import InputError, NotDecided
+from grader.files.tree import Tree
+from grader.names import closest
+from grader.package.package import Package
+from grader.robot.model import Robot
+from grader.static_python.closed_values import Budget
+from grader.submission.submission import Lab, Opening
+from grader.submission.urdf import read_as_ros
+
+if TYPE_CHECKING:
+    from grader.submission.robots import RobotFile
+
+_MAX_COMPARED = 50  # links whose names are compared
+_MAX_READ = 4 * 1024 * 1024  # bytes of all candidates
+_COST_OF_FILE = 64 * 1024  # bytes that take as long to read as the smallest file
+
+
+class RobotLinks(NamedTuple):
+    """How many links a robot has, of those that the lab names unless it `is_another`; all if the lab names none."""
+
+    is_another: bool
+    links: int
+
+
+def known_links(robot: Robot, wanted: Collection[str]) -> int:
+    """Return how many of the wanted links a robot has, also under a similar name."""
+    names = {link.name for link in robot.links}
+    missing = set(wanted) - names
+    others = islice(sorted(names.difference(wanted)), _MAX_COMPARED)
+    similar = {closest(name, missing) for name in others} - {None} if missing else ()
+    return len(wanted) - len(missing) + len(similar)
+
+
+def is_another_robot(robot: Robot | None, wanted: Collection[str]) -> bool:
+    """Return whether a completely known robot has fewer than half of the wanted links."""
+    return robot is not None and not robot.incomplete and 2 * known_links(robot, wanted) < len(wanted)
+
+
+def count_links(
+    tree: Tree, lab: Lab, robots: "Sequence[RobotFile]", packages: tuple[Package, ...], opening: Opening
+) -> dict[str, RobotLinks]:
+    """Return the links of each robot, expanded by xacro, by its path; of very many only the first are read.
+
+    Of a file that cannot be read none are known, and it may be the robot of the lab.
+    """
+    from grader.submission.packages import package_around  # late: a URDF on its own needs no search
+    from grader.submission.surroundings import Surroundings
+
+    budget, left = Budget(), _MAX_READ
+    found: dict[str, RobotLinks] = {}
+    for robot in robots:
+        left -= min(robot.size, opening.max_size) + _COST_OF_FILE
+        if left < 0:
+            found[robot.path] = RobotLinks(is_another=bool(lab.links), links=0)
+            continue
+        around = package_around(packages, robot.path)
+        known = (around, *packages) if around is not None else packages
+        surroundings = Surroundings(tree, around, known, opening.arguments, budget=budget)
+        try:
+            reading = read_as_ros(tree.files[robot.path].read(opening.max_size), robot.path, surroundings).reading
+            found[robot.path] = _links_of(reading.robot, lab, is_open=bool(reading.undetermined))
+        except (InputError, NotDecided):
+            found[robot.path] = RobotLinks(is_another=False, links=0)
+    return found
+
+
+def _links_of(robot: Robot | None, lab: Lab, *, is_open: bool) -> RobotLinks:
+    if robot is None:
+        return RobotLinks(bool(lab.links) and not is_open, 0)
+    is_another = is_another_robot(robot, lab.links)
+    return RobotLinks(is_another, len(robot.links) if is_another or not lab.links else known_links(robot, lab.links))
