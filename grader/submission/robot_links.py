@@ -24,8 +24,9 @@ _COST_OF_FILE = 64 * 1024  # bytes that take as long to read as the smallest fil
 class RobotLinks(NamedTuple):
     """How many links a robot has, of those that the lab names unless it `is_another`; all if the lab names none."""
 
-    is_another: bool
-    links: int
+    is_another: bool = False
+    links: int = 0
+    is_nameless: bool = False
 
 
 def known_links(robot: Robot, wanted: Collection[str]) -> int:
@@ -57,21 +58,22 @@ def count_links(
     for robot in robots:
         left -= min(robot.size, opening.max_size) + _COST_OF_FILE
         if left < 0:
-            found[robot.path] = RobotLinks(is_another=bool(lab.links), links=0)
+            found[robot.path] = RobotLinks(is_another=bool(lab.links))
             continue
         around = package_around(packages, robot.path)
         known = (around, *packages) if around is not None else packages
         surroundings = Surroundings(tree, around, known, opening.arguments, budget=budget)
         try:
             reading = read_as_ros(tree.files[robot.path].read(opening.max_size), robot.path, surroundings).reading
-            found[robot.path] = _links_of(reading.robot, lab, is_open=bool(reading.undetermined))
+            found[robot.path] = _links_of(reading.robot, robot.robot, lab, is_open=bool(reading.undetermined))
         except (InputError, NotDecided):
-            found[robot.path] = RobotLinks(is_another=False, links=0)
+            found[robot.path] = RobotLinks()
     return found
 
 
-def _links_of(robot: Robot | None, lab: Lab, *, is_open: bool) -> RobotLinks:
+def _links_of(robot: Robot | None, name: str, lab: Lab, *, is_open: bool) -> RobotLinks:
     if robot is None:
-        return RobotLinks(bool(lab.links) and not is_open, 0)
+        return RobotLinks() if is_open else RobotLinks(is_another=bool(lab.links), is_nameless=not name)
     is_another = is_another_robot(robot, lab.links)
-    return RobotLinks(is_another, len(robot.links) if is_another or not lab.links else known_links(robot, lab.links))
+    counted = len(robot.links) if is_another or not lab.links else known_links(robot, lab.links)
+    return RobotLinks(is_another, counted, not robot.name)

@@ -20,7 +20,7 @@ from grader.submission.packages import (
 from grader.submission.robot_links import RobotLinks, count_links
 from grader.submission.robots import RobotFile, parts_of
 from grader.submission.submission import Lab, Opening
-from grader.submission.surroundings import folder_with_launch
+from grader.submission.surroundings import launch_folders
 from grader.submission.urdf import OtherCandidate
 
 _MAX_GENERATED = 20
@@ -50,17 +50,12 @@ _REASONS = {
     "links": "it has fewer links",
     "is_part": "another candidate includes it",
     "is_backup": BACKUP,
+    "tier": "its path is less like {urdf}",
     "is_misnamed": "it is not named like a URDF",
     "package": "it is outside the package that is graded",
     "depth": DEEPER,
     "path": LATER,
 }
-_OF_TIERS = {
-    _Tier.SAME_NAME: "it has the expected name, but is not at {urdf}",
-    _Tier.OTHER_ENDING: "its name only starts like that of {urdf}",
-    _Tier.SAME_START: "its name only starts like that of {urdf}",
-}
-_OTHER_NAME = "its name differs from that of {urdf}"
 
 
 class UrdfChoice(NamedTuple):
@@ -123,7 +118,7 @@ def _candidates(
         yield _Candidate(
             is_another=links[path].is_another,
             place=labs.belonging(path),
-            is_fragment=not robot.robot and path not in launched,
+            is_fragment=links[path].is_nameless and path not in launched,
             is_unlaunched=path not in launched,
             links=-links[path].links,
             is_part=path in parts and tier > _Tier.OTHER_ENDING,
@@ -138,8 +133,8 @@ def _candidates(
 
 def _launched(tree: Tree, robots: tuple[RobotFile, ...], packages: tuple[Package, ...]) -> set[str]:
     """Return the paths of the robots that launch files load, also without a package."""
-    around = [package_around(packages, robot.path) or folder_with_launch(tree, robot.path) for robot in robots]
-    known = {package.folder: package for package in (*packages, *around) if package is not None}
+    loose = [robot.path for robot in robots if package_around(packages, robot.path) is None]
+    known = {package.folder: package for package in (*packages, *launch_folders(tree, loose))}
     found: set[str] = set()
     for package in known.values():
         for reference in {reference.path or "" for reference in package.robot_references()}:
@@ -168,8 +163,4 @@ def _reason(best: _Candidate, other: _Candidate, lab: Lab) -> str:
     """Return why a file is not graded: the first field in which it differs from the best."""
     pairs = zip(_Candidate._fields, best, other, strict=True)
     field = next(name for name, wanted, found in pairs if wanted != found)
-    if field == "place":
-        return ELSEWHERE[other.place]
-    if field == "tier":
-        return _OF_TIERS.get(other.tier, _OTHER_NAME).format(urdf=lab.urdf)
-    return _REASONS[field]
+    return ELSEWHERE[other.place] if field == "place" else _REASONS[field].format(urdf=lab.urdf)

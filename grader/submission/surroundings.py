@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import field
 from typing import TYPE_CHECKING
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from grader.package.launch.model import NamedFile
     from grader.xacro.files import Workspace
 
+_MAX_FOLDERS = 40  # whose launch files are read
 _NO_FILES = make_tree("", (), ())
 
 
@@ -38,8 +39,8 @@ class Surroundings:
 
     def robot_references(self, path: str) -> list[NamedFile]:
         """Return where the launch files of the graded package read a URDF; without one, those in a folder around it."""
-        around = self.graded if self.graded is not None or self.is_single else folder_with_launch(self.tree, path)
-        return around.robot_references(path.rpartition("/")[2]) if around is not None else []
+        around = [self.graded] if self.graded is not None else launch_folders(self.tree, [path] * (not self.is_single))
+        return [found for package in around for found in package.robot_references(path.rpartition("/")[2])]
 
     def workspace(self) -> Workspace:
         """Return the files as xacro sees them."""
@@ -93,7 +94,9 @@ class Surroundings:
         return None
 
 
-def folder_with_launch(tree: Tree, path: str) -> Package | None:
-    """Return the nearest folder around a file that has launch files, as a package without a package.xml."""
-    folders = (Package(folder, tree.below(folder), None, {}) for folder in (*parents(path), ""))
-    return next((folder for folder in folders if folder.launch_files), None)
+def launch_folders(tree: Tree, paths: Iterable[str]) -> list[Package]:
+    """Return the nearest folders around these files that have launch files, as packages without a package.xml."""
+    files = Package("", tree, None, {}).launch_files
+    folders = {folder for path in files for folder in (*parents(path), "")}
+    around = {folder for path in paths for folder in [it for it in (*parents(path), "") if it in folders][:1]}
+    return [Package(folder, tree.below(folder), None, {}) for folder in sorted(around)[:_MAX_FOLDERS]]
