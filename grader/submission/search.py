@@ -134,7 +134,7 @@ def _candidates(
 def _launched(tree: Tree, robots: tuple[RobotFile, ...], packages: tuple[Package, ...]) -> set[str]:
     """Return the paths of the robots that launch files load, also without a package."""
     loose = [robot.path for robot in robots if package_around(packages, robot.path) is None]
-    known = {package.folder: package for package in (*packages, *launch_folders(tree, loose))}
+    known = {package.folder: package for package in (*packages, *launch_folders(tree, packages, loose))}
     found: set[str] = set()
     for package in known.values():
         for reference in {reference.path or "" for reference in package.robot_references()}:

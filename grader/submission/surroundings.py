@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING
 
@@ -39,7 +39,8 @@ class Surroundings:
 
     def robot_references(self, path: str) -> list[NamedFile]:
         """Return where the launch files of the graded package read a URDF; without one, those in a folder around it."""
-        around = [self.graded] if self.graded is not None else launch_folders(self.tree, [path] * (not self.is_single))
+        paths = [path] if self.graded is None and not self.is_single else []
+        around = [self.graded] if self.graded is not None else launch_folders(self.tree, self.packages, paths)
         return [found for package in around for found in package.robot_references(path.rpartition("/")[2])]
 
     def workspace(self) -> Workspace:
@@ -94,9 +95,11 @@ class Surroundings:
         return None
 
 
-def launch_folders(tree: Tree, paths: Iterable[str]) -> list[Package]:
-    """Return the nearest folders around these files that have launch files, as packages without a package.xml."""
-    files = Package("", tree, None, {}).launch_files
+def launch_folders(tree: Tree, packages: Sequence[Package], paths: Iterable[str]) -> list[Package]:
+    """Return the nearest folders around these files that have launch files outside of packages, as packages."""
+    packaged = tuple(package.path("") for package in packages)
+    loose = tree.only(lambda path: not path.startswith(packaged)) if packaged else tree
+    files = Package("", loose, None, {}).launch_files
     folders = {folder for path in files for folder in (*parents(path), "")}
     around = {folder for path in paths for folder in [it for it in (*parents(path), "") if it in folders][:1]}
-    return [Package(folder, tree.below(folder), None, {}) for folder in sorted(around)[:_MAX_FOLDERS]]
+    return [Package(folder, loose.below(folder), None, {}) for folder in sorted(around)[:_MAX_FOLDERS]]
