@@ -37,7 +37,7 @@ def render_terminal(report: Report, console: Console, *, verbose: bool = False) 
 def _show(page: Page, order: Order) -> None:
     for line in filter(None, (content.graded_line(page.report), _package_line(page))):
         page.line(line, "dim")
-    for line in content.notes(page.report)[: _notes_at_top(page)]:
+    for line in content.notes(page.report)[: bool(page.report.submission.another_robot)]:
         page.line(line, "yellow")
     listed = (one for one in order.failures if page.is_verbose or not (one.result.why_given or one.first))
     for number, failure in enumerate(listed):
@@ -178,14 +178,9 @@ def _kind_block(problems: Sequence[Problem], page: Page) -> Text:
     return block(page.console, text, INDENT, Text(), most=1 if page.is_tight else 2)
 
 
-def _notes_at_top(page: Page) -> int:
-    """Return how many notes are read before all else: that this is another robot."""
-    return bool(page.report.submission.another_robot)
-
-
 def _show_notes(page: Page) -> None:
     """Print how the submission was read: what it was not graded on, other candidates, ignored files."""
-    notes = content.notes(page.report)[_notes_at_top(page) :]
+    notes = content.notes(page.report)[bool(page.report.submission.another_robot) :]
     ignored = content.ignored_lines(page.report) if page.is_verbose else content.first_ignored(page.report)
     if page.is_verbose and (notes or ignored):
         page.console.print()

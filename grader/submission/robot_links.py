@@ -46,10 +46,7 @@ def is_another_robot(robot: Robot | None, wanted: Collection[str]) -> bool:
 def count_links(
     tree: Tree, lab: Lab, robots: "Sequence[RobotFile]", packages: tuple[Package, ...], opening: Opening
 ) -> dict[str, RobotLinks]:
-    """Return the links of each robot, expanded by xacro, by its path; of very many only the first are read.
-
-    Of a file that cannot be read none are known, and it may be the robot of the lab.
-    """
+    """Return the links of each robot, expanded by xacro, by its path; of very many only the first are read."""
     from grader.submission.packages import package_around  # late: a URDF on its own needs no search
     from grader.submission.surroundings import Surroundings
 
@@ -66,7 +63,7 @@ def count_links(
         try:
             reading = read_as_ros(tree.files[robot.path].read(opening.max_size), robot.path, surroundings).reading
             found[robot.path] = _links_of(reading.robot, robot.robot, lab, is_open=bool(reading.undetermined))
-        except (InputError, NotDecided):
+        except (InputError, NotDecided):  # it may be the robot of the lab
             found[robot.path] = RobotLinks()
     return found
 

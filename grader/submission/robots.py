@@ -126,8 +126,5 @@ def _end_of_prolog(data: bytes) -> int:
 def _describe(start: bytes) -> tuple[str, frozenset[str]]:
     tag = _ROBOT.match(start)
     name = _NAME.search(tag[1]) if tag is not None else None
-    includes = _INCLUDE.findall(_COMMENT.sub(b"", start))
-    return (
-        name[1].decode("utf-8", "replace").strip() if name is not None else "",
-        frozenset(found.decode("utf-8", "replace") for found in includes),
-    )
+    includes = (found.decode("utf-8", "replace") for found in _INCLUDE.findall(_COMMENT.sub(b"", start)))
+    return name[1].decode("utf-8", "replace").strip() if name is not None else "", frozenset(includes)

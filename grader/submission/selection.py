@@ -153,10 +153,7 @@ def lab_scope(tree: Tree, lab: Lab, opening: Opening) -> LabScope:
 
 
 def _other_lab(tree: Tree, labs: LabFolders, urdf: str | None, roots: Sequence[str]) -> str:
-    """Return the folder of another lab that is searched: that of the URDF, or without one, if there is nothing else.
-
-    `roots` are the paths of manifests and setup files, if they are searched.
-    """
+    """Return the folder of another lab that is searched: that of the URDF; without one, if there is nothing else."""
     if urdf is not None:
         return labs.around(urdf) if labs.belonging(urdf) is Belonging.OTHER_LAB else ""
     others = {Belonging.OTHER_LAB}

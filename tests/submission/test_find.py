@@ -26,7 +26,6 @@ DEEPER = "it matches equally well, but is deeper in the folders"
 LATER = "it matches equally well, but comes later in alphabetical order"
 LESS_LIKE = "its path is less like urdf/my_robot.urdf"
 BACKUP = "it is named like a backup"
-NOT_NAMED = "it is not named like a URDF"
 ANOTHER = "it has fewer than half of the links that the rubric names"
 BOX = b"<robot name='box'><link name='box'/></robot>"
 
@@ -111,8 +110,7 @@ def test_every_tier() -> None:
         ("deep/down/my_robot.urdf", "my_robot.urdf.txt", LESS_LIKE),
         ("x/my_robot.urdf.xacro", "robot.urdf", LESS_LIKE),
         ("MY_ROBOT_final(2).urdf", "robot.urdf", LESS_LIKE),
-        ("x/robot.urdf", "robot.xml", NOT_NAMED),
-        ("robot.URDF", "robot", NOT_NAMED),
+        ("x/robot.urdf", "robot.xml", LESS_LIKE),
         ("robot", "x/robot.xacro", DEEPER),
     ],
 )
