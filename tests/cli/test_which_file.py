@@ -75,7 +75,7 @@ def test_the_box_of_the_prelab_costs_nothing(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("files", "chosen"),
     [
-        ({"face.xacro": PART, "robot.urdf.xacro": MAIN}, "robot.urdf.xacro"),
+        ({"face.xacro": PART, "rover.urdf.xacro": MAIN}, "rover.urdf.xacro"),
         ({"face.xacro": PART}, "face.xacro"),
         ({"package.xml": MANIFEST, "robot.urdf": URDF, "urdf/b.urdf.xacro": MAIN, "launch/a.launch.py": LAUNCHED}, "urdf/b.urdf.xacro"),
         ({"robot.urdf": URDF, "urdf/b.urdf.xacro": MAIN, "launch/a.launch.py": LAUNCHED}, "urdf/b.urdf.xacro"),
