@@ -6,9 +6,8 @@ from grader.checks.outcome import Outcome, pending
 from grader.errors import MissingElement
 from grader.grading.rubric import Rubric
 from grader.robot.model import Robot
-from grader.submission.robot_links import is_another_robot, known_links
 from grader.submission.submission import Submission
-from grader.submission.urdf import Absent, Read, Urdf
+from grader.submission.urdf import Absent, Read, Urdf, is_another_robot, known_links
 from grader.text import enumerated
 
 _MAX_PICTURES = 50

@@ -1,22 +1,19 @@
 """The links of robots that may be graded: how many of those that a lab names, and so whether it is another robot."""
 
-from collections.abc import Collection, Sequence
-from itertools import islice
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple
 
 from grader.errors import InputError, NotDecided
 from grader.files.tree import Tree
-from grader.names import closest
 from grader.package.package import Package
 from grader.robot.model import Robot
 from grader.static_python.closed_values import Budget
+from grader.submission.packages import package_around
+from grader.submission.robots import RobotFile
 from grader.submission.submission import Lab, Opening
-from grader.submission.urdf import read_as_ros
+from grader.submission.surroundings import Surroundings
+from grader.submission.urdf import is_another_robot, known_links, read_as_ros
 
-if TYPE_CHECKING:
-    from grader.submission.robots import RobotFile
-
-_MAX_COMPARED = 50  # links whose names are compared
 _MAX_READ = 4 * 1024 * 1024  # bytes of all candidates
 _COST_OF_FILE = 64 * 1024  # bytes that take as long to read as the smallest file
 
@@ -29,27 +26,10 @@ class RobotLinks(NamedTuple):
     is_nameless: bool = False
 
 
-def known_links(robot: Robot, wanted: Collection[str]) -> int:
-    """Return how many of the wanted links a robot has, also under a similar name."""
-    names = {link.name for link in robot.links}
-    missing = set(wanted) - names
-    others = islice(sorted(names.difference(wanted)), _MAX_COMPARED)
-    similar = {closest(name, missing) for name in others} - {None} if missing else ()
-    return len(wanted) - len(missing) + len(similar)
-
-
-def is_another_robot(robot: Robot | None, wanted: Collection[str]) -> bool:
-    """Return whether a completely known robot has fewer than half of the wanted links."""
-    return robot is not None and not robot.incomplete and 2 * known_links(robot, wanted) < len(wanted)
-
-
 def count_links(
-    tree: Tree, lab: Lab, robots: "Sequence[RobotFile]", packages: tuple[Package, ...], opening: Opening
+    tree: Tree, lab: Lab, robots: Sequence[RobotFile], packages: tuple[Package, ...], opening: Opening
 ) -> dict[str, RobotLinks]:
     """Return the links of each robot, expanded by xacro, by its path; of very many only the first are read."""
-    from grader.submission.packages import package_around  # late: a URDF on its own needs no search
-    from grader.submission.surroundings import Surroundings
-
     budget, left = Budget(), _MAX_READ
     found: dict[str, RobotLinks] = {}
     for robot in robots:

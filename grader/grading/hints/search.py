@@ -21,8 +21,7 @@ from grader.robot.edits.draft import Draft
 from grader.robot.reader import Reading
 from grader.source import Edits
 from grader.submission.editing import creates
-from grader.submission.robot_links import known_links
-from grader.submission.urdf import Read
+from grader.submission.urdf import Read, known_links
 
 if TYPE_CHECKING:
     from grader.package.package import Package
