@@ -26,6 +26,7 @@ def to_record(report: Report) -> str:
     data = {
         "submission": {
             **{name: getattr(submission, name) for name in _OF_SUBMISSION},
+            "another_robot": submission.another_robot,
             "package": package._asdict() if package is not None else None,
             "other_candidates": [other._asdict() for other in submission.other_candidates],
         },

@@ -138,8 +138,9 @@ class Report:
 
     @property
     def all_notes(self) -> tuple[str, ...]:
-        """The notes, and one on hints that are missing."""
-        return self.notes if self.hints_complete else (*self.notes, INCOMPLETE_HINTS)
+        """The notes, the first on a robot that looks like another one, the last on hints that are missing."""
+        last = "" if self.hints_complete else INCOMPLETE_HINTS
+        return tuple(filter(None, (self.submission.another_robot, *self.notes, last)))
 
     @property
     def score(self) -> Decimal:

@@ -62,7 +62,7 @@ class Rubric:
     @property
     def lab(self) -> Lab:
         """What is searched in a submission."""
-        return Lab(self.urdf, self.package, self.folders)
+        return Lab(self.urdf, self.package, self.folders, self.links)
 
     @property
     def compares_with_reference(self) -> bool:

@@ -138,11 +138,11 @@ class Package:
         return MissingElement(f"{word} in the package", "", message=message, detail=self.built(kind))
 
     def launch_file(self, name: str) -> str | None:
-        """Return the launch file of this name, in any language; else the one with the closest name; else any."""
-        files = sorted(self.launch_files, key=lambda path: (path.count("/"), path))
-        exact = [path for path in files if is_launch_named(path, name)]
-        if exact:
-            return exact[0]
+        """Return the launch file of this name, if need be in another language; else the closest name's; else any."""
+        files = sorted(self.launch_files, key=lambda path: (path.rpartition("/")[2] != name, path.count("/"), path))
+        named = [path for path in files if is_launch_named(path, name)]
+        if named:
+            return named[0]
         names = {path.rpartition("/")[2]: path for path in reversed(files)}
         stem = launch_stem(name)
         similar = closest(name, names) or next((other for other in names if launch_stem(other) == stem), None)
@@ -177,11 +177,11 @@ class Package:
             rviz = RvizFile(Source(own, ""), None, None, Location(own, 1, 1), (), unread=str(error))
         return self._rviz_files.setdefault(path, rviz)
 
-    def robot_references(self, name: str) -> "list[NamedFile]":
-        """Return where its launch files read the robot in a file of this name."""
+    def robot_references(self, name: str = "") -> "list[NamedFile]":
+        """Return where its launch files read the robot in a file of this name, or in any file."""
         launches = map(self.launch, self.launch_files[:_MAX_LAUNCHES])
-        references = (reference for launch in launches for reference in launch.named("urdf"))
-        return [reference for reference in references if (reference.path or "").rpartition("/")[2] == name]
+        references = (reference for launch in launches for reference in launch.named("urdf") if reference.path)
+        return [reference for reference in references if not name or f"/{reference.path}".endswith(f"/{name}")]
 
     def rviz_file(self, name: str, launch: "Launch | None") -> str | None:
         """Return the RViz file that the launch file opens; else the one of this name; else any."""

@@ -37,6 +37,8 @@ def render_terminal(report: Report, console: Console, *, verbose: bool = False) 
 def _show(page: Page, order: Order) -> None:
     for line in filter(None, (content.graded_line(page.report), _package_line(page))):
         page.line(line, "dim")
+    for line in content.notes(page.report)[: bool(page.report.submission.another_robot)]:
+        page.line(line, "yellow")
     listed = (one for one in order.failures if page.is_verbose or not (one.result.why_given or one.first))
     for number, failure in enumerate(listed):
         show_failure(failure, page, number)
@@ -180,7 +182,7 @@ def _kind_block(problems: Sequence[Problem], page: Page) -> Text:
 
 def _show_notes(page: Page) -> None:
     """Print how the submission was read: what it was not graded on, other candidates, ignored files."""
-    notes = content.notes(page.report)
+    notes = content.notes(page.report)[bool(page.report.submission.another_robot) :]
     ignored = content.ignored_lines(page.report) if page.is_verbose else content.first_ignored(page.report)
     if page.is_verbose and (notes or ignored):
         page.console.print()

@@ -78,7 +78,7 @@ def submission_of(tree: Tree, identity: str, lab: Lab, opening: Opening = DEFAUL
     from grader.submission.selection import select
     from grader.submission.surroundings import Surroundings
 
-    chosen = select(tree, lab, opening.max_size)
+    chosen = select(tree, lab, opening)
     urdf: Urdf = Absent()
     surroundings = Surroundings(tree, chosen.package, chosen.packages, opening.arguments)
     if chosen.urdf is not None:

@@ -29,9 +29,6 @@ _PROLOG = re.compile(
 _ROBOT = re.compile(rb"<\s*robot(?=[\s/>])([^>]*)")
 _NAME = re.compile(rb"(?<![\w:])name\s*=\s*[\"']([^\"']*)")
 _COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
-_MACRO = re.compile(rb"<xacro:macro[\s>].*?(?:</xacro:macro\s*>|\Z)", re.DOTALL)
-# A link, or a tag of xacro that may make one: a call, an include, a block.
-_LINK = re.compile(rb"<\s*link[\s/>]|<xacro:(?!(?:macro|property|arg|if|unless)[\s/>])")
 _INCLUDE = re.compile(rb"<xacro:include\s[^<>]*filename\s*=\s*[\"'](?:[^\"']*/)?([^\"'/]+)[\"']")
 _LIKELY = re.compile("urdf|xacro|robot")  # in names of files that are read first
 # Files that are no text, and need not be read.
@@ -48,8 +45,8 @@ _BINARY = frozenset(
 class RobotFile(NamedTuple):
     """A file that may be graded as the URDF: it is called .urdf, or its first element is <robot>.
 
-    `robot` is the name of the robot, `includes` are the names of the files that it includes, and `has_links` is whether
-    it may have a link outside of macros, as far as its beginning tells.
+    `robot` is the name of the robot, and `includes` are the names of the files that it includes, as far as its
+    beginning tells.
     """
 
     path: str
@@ -57,7 +54,6 @@ class RobotFile(NamedTuple):
     is_urdf: bool  # by its name
     robot: str = ""
     includes: frozenset[str] = frozenset()
-    has_links: bool = True
 
     @property
     def name(self) -> str:
@@ -84,7 +80,7 @@ def find_robots(tree: Tree, urdf_name: str = "", max_size: int = URDF_LIMIT) -> 
         start = _robot_start(file) if is_read else None
         if start is not None or is_urdf:
             by_content += not is_urdf
-            found.append(RobotFile(file.path, file.size, is_urdf, *(_describe(start, file.size) if start else ())))
+            found.append(RobotFile(file.path, file.size, is_urdf, *(_describe(start) if start else ())))
     return tuple(sorted(found))
 
 
@@ -113,7 +109,7 @@ def _robot_start(file: File) -> bytes | None:
             return None
         end = _end_of_prolog(data)
         if _ROBOT.match(data, end):
-            if count < _LONG_START and len(data) == count and (b"xacro:" in data or not _LINK.search(data)):
+            if count < _LONG_START and len(data) == count and b"xacro:" in data:
                 continue
             return data[end:]
         # Only comments so far, the last of which may have been cut.
@@ -127,10 +123,8 @@ def _end_of_prolog(data: bytes) -> int:
     return found.end() if found is not None else 0
 
 
-def _describe(start: bytes, size: int) -> tuple[str, frozenset[str], bool]:
+def _describe(start: bytes) -> tuple[str, frozenset[str]]:
     tag = _ROBOT.match(start)
     name = _NAME.search(tag[1]) if tag is not None else None
-    text = _COMMENT.sub(b"", start)
-    includes = frozenset(found.decode("utf-8", "replace") for found in _INCLUDE.findall(text))
-    has_links = size > _LONG_START or _LINK.search(_MACRO.sub(b"", text)) is not None
-    return name[1].decode("utf-8", "replace").strip() if name is not None else "", includes, has_links
+    includes = (found.decode("utf-8", "replace") for found in _INCLUDE.findall(_COMMENT.sub(b"", start)))
+    return name[1].decode("utf-8", "replace").strip() if name is not None else "", frozenset(includes)

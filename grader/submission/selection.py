@@ -1,6 +1,6 @@
 """What of a submission is graded: where its lab is searched, and of these files the URDF and the package."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from grader.files.names import PACKAGE_FILES
@@ -9,19 +9,15 @@ from grader.package.package import MANIFEST, Package
 from grader.submission.labs import Belonging, LabFolders, lab_words
 from grader.submission.packages import best_named, package_around, read_packages, why_none, why_not
 from grader.submission.robots import RobotFile, find_robots
-from grader.submission.search import find_urdf, is_of_lab
+from grader.submission.search import ELSEWHERE, UrdfChoice, find_urdf, is_of_lab
 from grader.submission.students import StudentWork, students_beside, students_in
-from grader.submission.submission import Lab
+from grader.submission.submission import Lab, Opening
 from grader.submission.urdf import OtherCandidate
 from grader.text import enumerated, was_not_committed
 
 _MAX_ELSEWHERE = 40
 _MAX_WORKS = 1000  # robots of which the student is determined
 _MAX_NAMED = 5  # folders in a note
-_ELSEWHERE = {
-    Belonging.OTHER_LAB: "it is in the folder of another lab",
-    Belonging.NO_LAB: "it is outside the folder of this lab",
-}
 _BESIDE = "{others} may be of other students, but were read as well: grade {own} to leave them out"
 
 
@@ -45,13 +41,13 @@ class Selection(NamedTuple):
 
 
 class LabScope(NamedTuple):
-    """Where a lab is searched: the URDF in `search_tree`, among `robots`; documents in `tree`.
+    """Where a lab is searched: the URDF among `robots`, of which `choice` is graded; documents in `tree`.
 
     If the lab has a folder, `tree` is only that folder, `own_folder`. `other_lab` is the folder of another lab that is
-    searched instead. `elsewhere` are robots and packages in other places.
+    searched as well. `elsewhere` are robots and packages in other places.
     """
 
-    search_tree: Tree
+    choice: UrdfChoice
     tree: Tree
     robots: tuple[RobotFile, ...]
     packages: tuple[Package, ...]
@@ -60,32 +56,29 @@ class LabScope(NamedTuple):
     own_folder: str
     other_lab: str
 
-    def notes(self, urdf: str | None) -> tuple[str, ...]:
-        """Return the notes on the folders that were searched; `urdf` is the path of the URDF that is graded."""
-        own = f"{self.own_folder}, the folder of this lab, has no" if self.own_folder else ""
+    def notes(self) -> tuple[str, ...]:
+        """Return the notes on the folders that were searched."""
+        why, urdf = f"{self.own_folder}, the folder of this lab, has no robot of this lab", self.choice.path
         if self.other_lab:
-            why = f"{own} robot and no package" if own else "no folder of this lab was found"
+            why = why if self.own_folder else "no folder of this lab was found"
             return (f"{why}: {self.other_lab}, the folder of another lab, was graded",)
-        if own and urdf and urdf not in self.tree.files:
-            return (f"{own} URDF: {urdf}, which is outside of it, was graded",)
-        return ()
+        is_outside = self.own_folder and urdf and urdf not in self.tree.files
+        return (f"{why}: {urdf}, which is outside of it, was graded",) if is_outside else ()
 
 
-def select(tree: Tree, lab: Lab, max_size: int) -> Selection:
-    """Select what is graded of the files of a submission; `max_size` is in bytes of a URDF."""
-    scope = lab_scope(tree, lab, max_size)
-    packages = scope.packages
-    named = best_named(packages, lab.package)
-    preferred = named or next(iter(packages), None)
-    urdf, others = find_urdf(scope.search_tree, lab.urdf, preferred.folder if preferred else None, scope.robots)
-    graded = named or package_around(packages, urdf)
+def select(tree: Tree, lab: Lab, opening: Opening) -> Selection:
+    """Select what is graded of the files of a submission."""
+    scope = lab_scope(tree, lab, opening)
+    packages, (urdf, others) = scope.packages, scope.choice
+    named, around = best_named(packages, lab.package), package_around(packages, urdf)
+    graded = around if named is None or (around is not None and around.name == named.name) else named
     others += tuple(
         OtherCandidate(it.path(MANIFEST), why_not(graded, it, lab.urdf)) for it in packages if it is not graded
     )
     names = {package.folder: package.name for package in packages}
     words = {word for name in lab.folders for word in lab_words(name)}
     students = _students(scope, names, words, lab)
-    notes = scope.notes(urdf)
+    notes = scope.notes()
     if urdf is not None and not students:
         own, beside = students_beside(urdf.rpartition("/")[0], scope.tree.folders, names, words, lab.package)
         notes += (_BESIDE.format(others=enumerated(beside, _MAX_NAMED), own=own),) if beside else ()
@@ -102,11 +95,10 @@ def _students(scope: LabScope, names: Mapping[str, str], words: set[str], lab: L
 
 
 class _Places(NamedTuple):
-    """The places of a submission that are searched, the best first; of other labs only the one in `other_lab`."""
+    """The places of a submission that are searched; of other labs only the one in `other_lab`."""
 
     labs: LabFolders
-    searched: Sequence[Belonging]
-    other_lab: str = ""
+    other_lab: str
 
     def of(self, path: str) -> Belonging | None:
         """Return where a file is; None of one in the folder of another lab that is not searched."""
@@ -114,64 +106,59 @@ class _Places(NamedTuple):
         is_open = place is not Belonging.OTHER_LAB or (self.other_lab and path.startswith(f"{self.other_lab}/"))
         return place if is_open else None
 
-    def nearest(self, paths: Iterable[str]) -> Sequence[Belonging]:
-        """Return the best place that has one of these files; none if no place has."""
-        present = set(map(self.of, paths))
-        return [place for place in self.searched if place in present][:1]
+    def nearest(self, paths: Iterable[str]) -> Belonging | None:
+        """Return the best place that has one of these files; None if no place has."""
+        return min((place for place in map(self.of, paths) if place is not None), default=None)
 
-    def only(self, tree: Tree, places: Sequence[Belonging]) -> Tree:
+    def only(self, tree: Tree, places: Collection[Belonging]) -> Tree:
         """Return the files that are in these places."""
         if all(self.of(path) in places for path in (*tree.files, *tree.generated)):
             return tree
         return tree.only(lambda path: self.of(path) in places)
 
 
-def lab_scope(tree: Tree, lab: Lab, max_size: int) -> LabScope:
-    """Return where a lab is searched in the files of a submission.
+def lab_scope(tree: Tree, lab: Lab, opening: Opening) -> LabScope:
+    """Return where a lab is searched in the files of a submission, and which of its robots is graded.
 
-    Where the lab's folder exists, it decides: a file in no lab's folder is graded only if the lab's has none of its
-    kind. Another lab's folder is used only if no robot and no package is anywhere else, and if the lab's folder exists,
-    only for the robot that the rubric names. `max_size` is in bytes of a URDF.
+    Another lab's folder is searched only if its robot is graded, or if there is nothing else. Where the lab's folder
+    exists, no robot of a final project is graded.
     """
-    robots = find_robots(tree, lab.urdf.rpartition("/")[2], max_size)
+    labs = LabFolders(lab.folders, tree.files)
+    robots = find_robots(tree, lab.urdf.rpartition("/")[2], opening.max_size)
     roots = [path for path in tree.files if path.rpartition("/")[2] in PACKAGE_FILES]
-    places = _places(tree, lab, robots, roots)
-    has_own = any(places.labs.belonging(path) is Belonging.THIS_LAB for path in tree.files)
-    search_tree = places.only(tree, places.searched)
+    has_own = any(labs.belonging(path) is Belonging.THIS_LAB for path in tree.files)
+    projects = {it.path for it in robots if labs.belonging(it.path) is Belonging.OTHER_LAB and labs.is_project(it.path)}
+    projects = projects if has_own or len(projects) < len(robots) else set()
+    choice = find_urdf(tree, lab, tuple(it for it in robots if it.path not in projects), labs, opening)
+    places = _Places(labs, _other_lab(tree, labs, choice.path, () if has_own else roots))
+    search_tree = places.only(tree, tuple(Belonging))
     own_tree = places.only(tree, (Belonging.THIS_LAB,)) if has_own else search_tree
-    of_robots, of_packages = places.nearest(robot.path for robot in robots), places.nearest(roots)
-    packages = read_packages(places.only(tree, of_packages), lab) if of_packages else ()
-    other_roots = [path for path in roots if places.of(path) not in of_packages]
-    elsewhere = [robot.path for robot in robots if places.of(robot.path) not in of_robots]
-    elsewhere += [path for path in other_roots if path.rpartition("/")[2] == MANIFEST]
+    of_robots = {places.nearest(robot.path for robot in robots), labs.belonging(choice.path or "")}
+    of_packages = places.nearest(roots)
+    packages = read_packages(places.only(tree, (of_packages,)), lab) if of_packages is not None else ()
+    other_roots = [path for path in roots if places.of(path) is None or places.of(path) is not of_packages]
+    elsewhere = [*sorted(projects), *(path for path in other_roots if path.rpartition("/")[2] == MANIFEST)]
     of_other_labs = read_packages(tree, lab) if other_roots and not packages else ()
     reason, which = why_none(packages, of_other_labs, lab.package)
     return LabScope(
-        search_tree,
+        choice,
         own_tree,
         tuple(robot for robot in robots if places.of(robot.path) in of_robots),
         packages,
         (reason, which + (_built_package(search_tree) if not packages else "")),
-        tuple(OtherCandidate(path, _ELSEWHERE[places.labs.belonging(path)]) for path in elsewhere[:_MAX_ELSEWHERE]),
-        next(map(places.labs.around, own_tree.files), "") if has_own else "",
+        tuple(OtherCandidate(path, ELSEWHERE[labs.belonging(path)]) for path in elsewhere[:_MAX_ELSEWHERE]),
+        next(map(labs.around, own_tree.files), "") if has_own else "",
         places.other_lab,
     )
 
 
-def _places(tree: Tree, lab: Lab, robots: tuple[RobotFile, ...], roots: Sequence[str]) -> _Places:
-    """Return the places that are searched; `roots` are the paths of manifests and setup files."""
-    labs = LabFolders(lab.folders, tree.files)
-    present = set(map(labs.belonging, tree.files))
-    of_work = {labs.belonging(path) for path in (*(robot.path for robot in robots), *roots)}
-    of_labs = tuple(robot for robot in robots if not labs.is_project(robot.path))
-    is_elsewhere = of_work == {Belonging.OTHER_LAB} and any(is_of_lab(robot, lab.urdf) for robot in of_labs)
-    if Belonging.THIS_LAB in present and not is_elsewhere:
-        return _Places(labs, (Belonging.THIS_LAB, Belonging.NO_LAB))
-    if Belonging.OTHER_LAB in present and {Belonging.OTHER_LAB} in (of_work, present):
-        robot = find_urdf(tree, lab.urdf, None, of_labs or robots).path
-        other_lab = labs.around(robot or next(iter([*roots, *tree.files])))
-        return _Places(labs, (Belonging.OTHER_LAB, Belonging.NO_LAB), other_lab)
-    return _Places(labs, (Belonging.NO_LAB,))
+def _other_lab(tree: Tree, labs: LabFolders, urdf: str | None, roots: Sequence[str]) -> str:
+    """Return the folder of another lab that is searched: that of the URDF; without one, if there is nothing else."""
+    if urdf is not None:
+        return labs.around(urdf) if labs.belonging(urdf) is Belonging.OTHER_LAB else ""
+    others = {Belonging.OTHER_LAB}
+    is_only = others in (set(map(labs.belonging, roots)), set(map(labs.belonging, tree.files)))
+    return labs.around(next(iter([*roots, *tree.files]))) if is_only else ""
 
 
 def _built_package(tree: Tree) -> str:

@@ -29,11 +29,12 @@ _NO_ARGUMENTS: Mapping[str, str] = {}
 
 
 class Lab(NamedTuple):
-    """What a rubric asks for: the URDF's path in its package, the package's name, and names of the lab's folder."""
+    """What a rubric asks for: the URDF's path in its package, the package's name, names of the lab's folder, links."""
 
     urdf: str
     package: str = ""
     folders: tuple[str, ...] = ()
+    links: frozenset[str] = frozenset()
 
 
 def _show_nothing(path: str) -> None:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError, NotDecided
 from grader.files.reading import URDF_LIMIT
-from grader.files.tree import Tree, make_tree
+from grader.files.tree import Tree, make_tree, parents
 from grader.package.package import Package
 from grader.static_python.closed_values import Budget
 from grader.values import dataclass
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from grader.package.launch.model import NamedFile
     from grader.xacro.files import Workspace
 
+_MAX_FOLDERS = 40  # whose launch files are read
 _NO_FILES = make_tree("", (), ())
 
 
@@ -37,8 +38,10 @@ class Surroundings:
     is_single: bool = False
 
     def robot_references(self, path: str) -> list[NamedFile]:
-        """Return where the launch files of the graded package read a URDF."""
-        return self.graded.robot_references(path.rpartition("/")[2]) if self.graded is not None else []
+        """Return where the launch files of the graded package read a URDF; without one, those in a folder around it."""
+        paths = [path] if self.graded is None and not self.is_single else []
+        around = [self.graded] if self.graded is not None else launch_folders(self.tree, self.packages, paths)
+        return [found for package in around for found in package.robot_references(path.rpartition("/")[2])]
 
     def workspace(self) -> Workspace:
         """Return the files as xacro sees them."""
@@ -90,3 +93,13 @@ class Surroundings:
             if len(found) == 1:
                 return found[0]
         return None
+
+
+def launch_folders(tree: Tree, packages: Sequence[Package], paths: Iterable[str]) -> list[Package]:
+    """Return the nearest folders around these files that have launch files outside of packages, as packages."""
+    packaged = tuple(package.path("") for package in packages)
+    loose = tree.only(lambda path: not path.startswith(packaged)) if packaged else tree
+    files = Package("", loose, None, {}).launch_files
+    folders = {folder for path in files for folder in (*parents(path), "")}
+    around = {folder for path in paths for folder in [it for it in (*parents(path), "") if it in folders][:1]}
+    return [Package(folder, loose.below(folder), None, {}) for folder in sorted(around)[:_MAX_FOLDERS]]

@@ -1,18 +1,23 @@
 """The URDF of a submission, as one of three states, and what ROS 2 makes of it: read as it is, or expanded by xacro."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
+from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
+from grader.names import closest
 from grader.problems import Problem
 from grader.robot.catalogue import RAW_XACRO
+from grader.robot.model import Robot
 from grader.robot.reader import Reading, causes, find_xacro, in_order, read_robot, read_urdf
 from grader.source import Source
 from grader.xml.catalogue import DOCTYPE, NOT_WELL_FORMED
 
 if TYPE_CHECKING:
     from grader.submission.surroundings import Surroundings
+
+_MAX_COMPARED = 50  # links whose names are compared
 
 
 class OtherCandidate(NamedTuple):
@@ -104,6 +109,20 @@ def read_as_ros(data: bytes, path: str, surroundings: "Surroundings | None" = No
             return Read(path, data, reading)
         reading = replace(reading, verdict="degraded")  # ROS 2 ignores the tags of xacro, and what they stand for
     return Read(path, data, expanded, is_expanded=True, as_it_stands=reading)
+
+
+def known_links(robot: Robot, wanted: Collection[str]) -> int:
+    """Return how many of the wanted links a robot has, also under a similar name."""
+    names = {link.name for link in robot.links}
+    missing = set(wanted) - names
+    others = islice(sorted(names.difference(wanted)), _MAX_COMPARED)
+    similar = {closest(name, missing) for name in others} - {None} if missing else ()
+    return len(wanted) - len(missing) + len(similar)
+
+
+def is_another_robot(robot: Robot | None, wanted: Collection[str]) -> bool:
+    """Return whether a completely known robot has fewer than half of the wanted links."""
+    return robot is not None and not robot.incomplete and 2 * known_links(robot, wanted) < len(wanted)
 
 
 def _says_xacro(name: str) -> bool:

@@ -43,11 +43,13 @@ def results(path: Path, *more: object) -> dict[str, Any]:
 
 
 def rubric(folder: Path, *keys: str) -> Path:
-    """Write the rubric of Lab 6 with keys that are set to "manual"."""
+    """Write the rubric of Lab 6 with only these keys set to "manual"."""
     folder.mkdir(parents=True, exist_ok=True)
     text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8")
     path = folder / "lab6.toml"
-    path.write_text("".join(f'{key} = "manual"\n' for key in keys) + text, encoding="utf-8")
+    for key in {"without_urdf", "without_package"}.difference(keys):
+        text = re.sub(rf"^{key} = .*\n", "", text, flags=re.MULTILINE)
+    path.write_text(text, encoding="utf-8")
     shutil.copy(ROOT / "rubrics" / "lab6.answers.toml", folder)
     (folder / "lab6").symlink_to(ROOT / "rubrics" / "lab6")
     return path
@@ -240,11 +242,20 @@ def test_a_robot_with_other_names_has_hints(tmp_path: Path) -> None:
     assert any(row["hints"] for row in report["results"])
 
 
-@pytest.mark.parametrize("link", ["base_link", "Base", "leftwheel", "wheel_1"])
-def test_a_robot_with_a_similar_link_is_graded_link_by_link(link: str, tmp_path: Path) -> None:
-    """One link of the rubric, or one with a similar name, makes it the robot of the lab."""
-    data = BOX.replace(b'link name="box"', f'link name="{link}"'.encode())
-    assert "another robot" not in json.dumps(graded(written(tmp_path, {"box.urdf": data}) / "box.urdf"))
+@pytest.mark.parametrize(
+    ("links", "is_another"),
+    [
+        (["base_link", "lidar"], True),
+        (["base_link", "lidar", "left_wheel"], False),
+        (["Base_Link", "lidarr", "leftwheel", "arm"], False),
+        ([f"arm_{n}" for n in range(9)], True),
+    ],
+)
+def test_half_of_the_links_make_the_robot_of_the_lab(links: list[str], is_another: bool, tmp_path: Path) -> None:
+    """A robot with fewer than half of the rubric's links, also under similar names, is called another robot."""
+    data = "".join(f'<link name="{link}"/>' for link in links)
+    path = written(tmp_path, {"box.urdf": f'<robot name="box">{data}</robot>'.encode()}) / "box.urdf"
+    assert ("another robot" in json.dumps(graded(path))) == is_another
 
 
 def test_a_robot_with_an_unknown_part_is_not_called_another_robot(tmp_path: Path) -> None:
@@ -267,7 +278,8 @@ def test_another_robot_counts_as_no_urdf(tmp_path: Path) -> None:
         "needs manual grading"
     )
     book = tmp_path / "lab.db"
-    done = run(("batch", path.parent, "--gradebook", book, "--jobs", 1, "--format", "json"))
+    default = rubric(tmp_path / "default")
+    done = run(("batch", path.parent, "--gradebook", book, "--jobs", 1, "--format", "json", "--rubric", default))
     assert json.loads(done.stdout)["evidence_without_urdf"] == 1
 
 

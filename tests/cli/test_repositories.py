@@ -112,7 +112,7 @@ def test_pictures_in_the_lab_and_a_robot_in_another(tmp_path: Path) -> None:
     put(tmp_path / "Lab7/my_robot", PACKAGE)
     put(tmp_path / "Lab7/Task1_Step18.png", BURIED)
     found = report(tmp_path)
-    note = "Lab6, the folder of this lab, has no robot and no package: Lab7, the folder of another lab, was graded"
+    note = "Lab6, the folder of this lab, has no robot of this lab: Lab7, the folder of another lab, was graded"
     assert found["score"] == 90
     assert json.dumps(found["notes"]).startswith(json.dumps([note])[:-1])
     assert '"Lab6/Task1_Step8.png"' in json.dumps(found["evidence"])

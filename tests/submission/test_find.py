@@ -10,11 +10,12 @@ from grader.errors import InputError
 from grader.files.tree import File, Tree, make_tree
 from grader.package.package import Package
 from grader.submission import search
+from grader.submission.labs import LabFolders
 from grader.submission.opening import submission_of
 from grader.submission.packages import find_packages, read_packages
 from grader.submission.robots import find_robots
 from grader.submission.search import UrdfChoice
-from grader.submission.submission import Lab
+from grader.submission.submission import DEFAULTS, Lab
 from grader.submission.urdf import OtherCandidate
 from tests.work import limited_work
 
@@ -23,12 +24,10 @@ ROBOT = b'<?xml version="1.0"?>\n<robot name="my_robot"/>\n'
 OUTSIDE = "it is outside the package that is graded"
 DEEPER = "it matches equally well, but is deeper in the folders"
 LATER = "it matches equally well, but comes later in alphabetical order"
-MISSING = "it has the expected name, but is not at urdf/my_robot.urdf"
+LESS_LIKE = "its path is less like urdf/my_robot.urdf"
 BACKUP = "it is named like a backup"
-BEGINS = "its name only starts like that of urdf/my_robot.urdf"
-OTHER_NAME = "its name differs from that of urdf/my_robot.urdf"
-NOT_NAMED = "it is not named like a URDF"
-EMPTY = "it is empty"
+ANOTHER = "it has fewer than half of the links that the rubric names"
+BOX = b"<robot name='box'><link name='box'/></robot>"
 
 
 def tree_of(*paths: str, **contents: bytes) -> Tree:
@@ -55,9 +54,11 @@ def manifest(name: str) -> bytes:
     return f'<package format="3"><name>{name}</name></package>'.encode()
 
 
-def find_urdf(tree: Tree, urdf: str, package_folder: str | None = None) -> UrdfChoice:
+def find_urdf(tree: Tree, urdf: str) -> UrdfChoice:
     """Return which robot of a tree is graded."""
-    return search.find_urdf(tree, urdf, package_folder, find_robots(tree, urdf.rpartition("/")[2]))
+    robots = find_robots(tree, urdf.rpartition("/")[2])
+    lab = Lab(urdf, "my_robot", links=frozenset({"base_link"}))
+    return search.find_urdf(tree, lab, robots, LabFolders([]), DEFAULTS)
 
 
 def rejected(found: UrdfChoice) -> dict[str, str]:
@@ -78,11 +79,11 @@ def test_every_tier() -> None:
     found = find_urdf(tree_of(*paths, empty=b""), EXPECTED)
     assert found.path == "urdf/my_robot.urdf"
     assert rejected(found) == {
-        "a/my_robot.urdf": MISSING,
-        "my_robot.urdf.xacro.txt": BEGINS,
-        "robot.urdf": OTHER_NAME,
-        "lab6.xml": NOT_NAMED,
-        "e/empty.urdf": EMPTY,
+        "a/my_robot.urdf": LESS_LIKE,
+        "my_robot.urdf.xacro.txt": LESS_LIKE,
+        "robot.urdf": LESS_LIKE,
+        "lab6.xml": LESS_LIKE,
+        "e/empty.urdf": "its <robot> has no name",
     }
     ranked = [
         "urdf/my_robot.urdf",
@@ -99,18 +100,17 @@ def test_every_tier() -> None:
 @pytest.mark.parametrize(
     ("better", "worse", "reason"),
     [
-        ("x/y/urdf/my_robot.urdf", "my_robot.urdf", MISSING),
+        ("x/y/urdf/my_robot.urdf", "my_robot.urdf", LESS_LIKE),
         ("urdf/my_robot.urdf", "x/urdf/my_robot.urdf", DEEPER),
         ("a/urdf/my_robot.urdf", "b/urdf/my_robot.urdf", LATER),
-        ("urdf/my_robot.urdf", "urdf/My_Robot.urdf", BEGINS),
-        ("deep/down/my_robot.urdf", "my_robot.urdf.bak.txt", BEGINS),
+        ("urdf/my_robot.urdf", "urdf/My_Robot.urdf", LESS_LIKE),
+        ("deep/down/my_robot.urdf", "my_robot.urdf.bak.txt", BACKUP),
         ("src/my_robot.urdf", "backup/urdf/my_robot.urdf", BACKUP),
         ("x/y/my_robot_v2.urdf", "my_robotOld.urdf", BACKUP),
-        ("deep/down/my_robot.urdf", "my_robot.urdf.txt", BEGINS),
-        ("x/my_robot.urdf.xacro", "robot.urdf", OTHER_NAME),
-        ("MY_ROBOT_final(2).urdf", "robot.urdf", OTHER_NAME),
-        ("x/robot.urdf", "robot.xml", NOT_NAMED),
-        ("robot.URDF", "robot", NOT_NAMED),
+        ("deep/down/my_robot.urdf", "my_robot.urdf.txt", LESS_LIKE),
+        ("x/my_robot.urdf.xacro", "robot.urdf", LESS_LIKE),
+        ("MY_ROBOT_final(2).urdf", "robot.urdf", LESS_LIKE),
+        ("x/robot.urdf", "robot.xml", LESS_LIKE),
         ("robot", "x/robot.xacro", DEEPER),
     ],
 )
@@ -174,20 +174,21 @@ def test_the_name_of_the_robot_counts() -> None:
     odd = b"<robot xmlns:xacro='http://www.ros.org/wiki/xacro' name = 'my_robot'>"
     for name in ("a/urdf.xacro file", "z"):
         found = find_urdf(tree_of(name, "box.urdf", box=box, urdf=odd, z=odd), EXPECTED)
-        assert found == UrdfChoice(name, (OtherCandidate("box.urdf", "its robot is not named 'my_robot'"),))
+        assert found == UrdfChoice(name, (OtherCandidate("box.urdf", LESS_LIKE),))
 
 
 def test_a_file_that_another_one_includes_is_a_part() -> None:
     """The file that includes others is graded, not the macros and materials that it includes."""
     includes = ("$(find my_robot)/urdf/materials.xacro", "a.xacro")
-    main = b"<robot name='r'>" + b"".join(b"<xacro:include filename='%s'/>" % name.encode() for name in includes)
+    main = XACRO + b"".join(b"<xacro:include filename='%s'/>" % name.encode() for name in includes)
     tree = tree_of("a.xacro", "materials.xacro", "z/robot.xacro", a=b"<robot/>", materials=b"<robot/>", robot=main)
-    part = "another candidate includes it"
-    others = (OtherCandidate("a.xacro", part), OtherCandidate("materials.xacro", part))
+    fragment = "its <robot> has no name"
+    others = (OtherCandidate("a.xacro", fragment), OtherCandidate("materials.xacro", fragment))
     assert find_urdf(tree, EXPECTED) == UrdfChoice("z/robot.xacro", others)
 
 
-MACROS = b"<robot name='my_robot'><xacro:macro name='a'><link name='b'/></xacro:macro></robot>"
+XACRO = b"<robot name='my_robot' xmlns:xacro='http://www.ros.org/wiki/xacro'>"
+MACROS = XACRO + b"<xacro:macro name='a'><link name='base_link'/></xacro:macro></robot>"
 LINKS = b"<robot name='r'><link name='base_link'/></robot>"
 
 
@@ -195,15 +196,16 @@ LINKS = b"<robot name='r'><link name='base_link'/></robot>"
 def test_the_name_of_a_part_does_not_matter(main: str) -> None:
     """A file that includes one named like the robot is graded, unless that is named exactly so, with any ending."""
     name = main.rpartition("/")[2].partition(".")[0]
-    includes = b"<robot name='r'><xacro:include filename='%s'/></robot>"
+    up = b"../" if "/" in main else b""
+    includes = XACRO.replace(b"my_robot", b"r") + b"<xacro:include filename='" + up + b"%s'/></robot>"
     tree = tree_of(
-        main, "box.urdf", "my_robot_core.xacro", **{name: includes % b"my_robot_core.xacro"}, my_robot=LINKS, box=LINKS
+        main, "box.urdf", "my_robot_core.xacro", **{name: includes % b"my_robot_core.xacro"}, my_robot=LINKS, box=BOX
     )
     assert find_urdf(tree, EXPECTED) == UrdfChoice(
         main,
         (
             OtherCandidate("my_robot_core.xacro", "another candidate includes it"),
-            OtherCandidate("box.urdf", OTHER_NAME),
+            OtherCandidate("box.urdf", ANOTHER),
         ),
     )
     tree = tree_of(main, "my_robot.urdf.xacro", **{name: includes % b"my_robot.urdf.xacro"}, my_robot=LINKS, box=LINKS)
@@ -226,18 +228,10 @@ def test_backups(better: str, backup: str) -> None:
     tree = tree_of(better, backup, my_robot=named, robot=named)
     assert find_urdf(tree, EXPECTED) == UrdfChoice(better, (OtherCandidate(backup, "it is named like a backup"),))
     assert find_urdf(tree_of(backup), EXPECTED).path == backup
-    assert find_urdf(tree_of(backup, "box.urdf", my_robot=LINKS, box=LINKS), EXPECTED).path == backup
+    assert find_urdf(tree_of(backup, "box.urdf", my_robot=LINKS, box=BOX), EXPECTED).path == backup
     assert (
         find_urdf(tree_of("z/golden/my_robot.urdf", "y/old/my_robot.urdf"), EXPECTED).path == "z/golden/my_robot.urdf"
     )
-
-
-def test_a_robot_of_no_link_that_has_the_name() -> None:
-    """It is graded rather than a robot of another name, and after one of the same name."""
-    names = ("my_robot.urdf", "box.urdf", "z/robot.xacro")
-    assert find_urdf(tree_of(*names, box=LINKS), EXPECTED).path == "my_robot.urdf"
-    named = LINKS.replace(b"'r'", b"'my_robot'")
-    assert find_urdf(tree_of(*names, box=LINKS, robot=named), EXPECTED).path == "z/robot.xacro"
 
 
 @pytest.mark.parametrize(
@@ -246,13 +240,13 @@ def test_a_robot_of_no_link_that_has_the_name() -> None:
         MACROS,
         b"<robot><material name='green'/></robot>",
         b"<robot><!-- <link name='a'/> --><gazebo reference='base_link'/></robot>",
-        b"<robot xmlns:xacro='x'>" + b"<xacro:property name='a' value='1'/>" * 200 + MACROS[23:],
+        XACRO + b"<xacro:property name='a' value='1'/>" * 200 + MACROS[len(XACRO) :],
     ],
 )
 def test_a_file_without_links_is_no_robot(content: bytes) -> None:
     """Macros, materials and settings of a simulator are not graded if another file has a link, whatever their names."""
     tree = tree_of("urdf/my_robot.urdf.xacro", "urdf/parts.xacro", my_robot=content, parts=LINKS)
-    reason = OtherCandidate("urdf/my_robot.urdf.xacro", "it has no link outside of macros")
+    reason = OtherCandidate("urdf/my_robot.urdf.xacro", ANOTHER)
     assert find_urdf(tree, EXPECTED) == UrdfChoice("urdf/parts.xacro", (reason,))
     alone = tree_of("urdf/my_robot.urdf.xacro", "urdf/empty.urdf", my_robot=content, empty=b"")
     assert find_urdf(alone, EXPECTED).path == "urdf/my_robot.urdf.xacro"
@@ -261,15 +255,14 @@ def test_a_file_without_links_is_no_robot(content: bytes) -> None:
 @pytest.mark.parametrize(
     "content",
     [
-        b"<robot>" + b"<material name='m'/>" * 300 + b"<link name='a'/></robot>",
-        b"<robot>" + MACROS[23:-8] + b"<xacro:a/></robot>",
-        b"<robot><xacro:if value='1'><link name='a'/></xacro:if></robot>",
-        b"<robot><xacro:include filename='parts.xacro'/></robot>",
-        b"<robot>" + b"<xacro:macro name='a'>" * 4000 + b"</robot>",
+        b"<robot name='a'>" + b"<material name='m'/>" * 300 + b"<link name='base_link'/></robot>",
+        MACROS[:-8] + b"<xacro:a/></robot>",
+        XACRO + b"<xacro:if value='1'><link name='base_link'/></xacro:if></robot>",
+        XACRO + b"<xacro:include filename='parts.xacro'/></robot>",
     ],
 )
 def test_links_anywhere_in_the_beginning(content: bytes) -> None:
-    """A link below other things, a call, a condition or an include makes a file the robot; a long file may have one."""
+    """A link below other things, of a call, a condition or an included file makes a file the robot."""
     tree = tree_of("urdf/my_robot.urdf.xacro", "urdf/parts.xacro", my_robot=content, parts=LINKS)
     assert find_urdf(tree, EXPECTED).path == "urdf/my_robot.urdf.xacro"
 
@@ -283,10 +276,10 @@ def test_tags_that_never_end(tag: bytes) -> None:
 
 
 def test_a_file_of_the_right_name_needs_no_content() -> None:
-    """A file at the expected path is graded whatever its content, unless it is empty."""
-    tree = tree_of("urdf/my_robot.urdf", "other.urdf", my_robot=b"nonsense")
-    assert find_urdf(tree, EXPECTED).path == "urdf/my_robot.urdf"
-    assert find_urdf(tree_of("urdf/my_robot.urdf", "other.urdf", my_robot=b""), EXPECTED).path == "other.urdf"
+    """A file at the expected path is graded whatever its content, if there is no robot."""
+    for content in (b"nonsense", b""):
+        assert find_urdf(tree_of("urdf/my_robot.urdf", my_robot=content), EXPECTED).path == "urdf/my_robot.urdf"
+        assert find_urdf(tree_of("urdf/my_robot.urdf", "other.urdf", my_robot=content), EXPECTED).path == "other.urdf"
 
 
 def test_a_file_that_cannot_be_read() -> None:
@@ -308,16 +301,11 @@ def test_other_endings() -> None:
 
 def test_the_package_is_preferred() -> None:
     """Among equals the one in the package is graded, however deep; a better one outside is graded all the same."""
-    tree = tree_of("urdf/my_robot.urdf", "ws/src/my_robot/urdf/my_robot.urdf")
-    assert find_urdf(tree, EXPECTED, "ws/src/my_robot") == UrdfChoice(
-        "ws/src/my_robot/urdf/my_robot.urdf", (OtherCandidate("urdf/my_robot.urdf", OUTSIDE),)
-    )
-    assert find_urdf(tree, EXPECTED, "").path == "urdf/my_robot.urdf"
-    assert find_urdf(tree, EXPECTED, "ws/src/my_rob").path == "urdf/my_robot.urdf"
-    assert (
-        find_urdf(tree_of("other/urdf/my_robot.urdf", "my_robot/a.urdf"), EXPECTED, "my_robot").path
-        == "other/urdf/my_robot.urdf"
-    )
+    inside, outside = "ws/src/my_robot/urdf/my_robot.urdf", "urdf/my_robot.urdf"
+    tree = tree_of(outside, inside, "ws/src/my_robot/package.xml", package=manifest("my_robot"))
+    assert find_urdf(tree, EXPECTED) == UrdfChoice(inside, (OtherCandidate(outside, OUTSIDE),))
+    tree = tree_of(outside, "my_robot/a.urdf", "my_robot/package.xml", package=manifest("my_robot"))
+    assert find_urdf(tree, EXPECTED).path == outside
 
 
 def test_build_products() -> None:
@@ -483,9 +471,3 @@ def test_a_description_package() -> None:
     tree = tree_of("my_robot/package.xml", "my_robot/test.urdf", "my_robot_description/package.xml", "my_robot_description/urdf/my_robot.urdf",
                    package=manifest("my_robot"))  # fmt: skip
     assert submission_of(tree, "a", Lab(EXPECTED, "my_robot")).path == "my_robot_description/urdf/my_robot.urdf"
-
-
-def test_an_old_version_comes_before_another_robot() -> None:
-    """An old version is graded if all other files hold other robots."""
-    box = b"<robot name='box'><link name='box'/></robot>"
-    assert find_urdf(tree_of("old/my_robot.urdf", "box.urdf", box=box), EXPECTED).path == "old/my_robot.urdf"

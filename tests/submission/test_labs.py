@@ -109,11 +109,10 @@ def test_the_nearest_folder_decides() -> None:
             },
         ),
         (
-            {"Lab6/step.png": PICTURE, "Lab4/box.urdf": BOX, **package("Final Project/my_robot")},
+            {"Lab6/step.png": PICTURE, **package("Final Project/my_robot")},
             None,
             None,
             {
-                "Lab4/box.urdf": OTHER_LAB,
                 "Final Project/my_robot/urdf/my_robot.urdf": OTHER_LAB,
                 "Final Project/my_robot/package.xml": OTHER_LAB,
             },
@@ -135,7 +134,7 @@ def test_the_nearest_folder_decides() -> None:
 def test_the_folder_of_the_lab_wins(
     files: Mapping[str, bytes], urdf: str | None, folder: str | None, reasons: dict[str, str]
 ) -> None:
-    """Over depth and names; what it lacks may be in no lab's folder, but never in that of another lab."""
+    """Over depth and names; what it lacks may be in no lab's folder, but never in a final project."""
     found = submission(files)
     assert found.path == urdf
     assert (found.package.folder if found.package is not None else None) == folder
@@ -148,7 +147,7 @@ def test_another_lab_is_used_if_there_is_nothing_else() -> None:
     found = submission({"README.md": b"", **package("Lab5/my_robot"), "Lab4/b.urdf": BOX, "Lab4/x.png": PICTURE})
     assert (found.path, found.package and found.package.folder) == ("Lab5/my_robot/urdf/my_robot.urdf", "Lab5/my_robot")
     assert found.notes == ("no folder of this lab was found: Lab5, the folder of another lab, was graded",)
-    assert others(found) == {"Lab4/b.urdf": OTHER_LAB}
+    assert others(found) == {"Lab4/b.urdf": "its path is less like urdf/my_robot.urdf"}
     assert found.labelled_files == ()
     assert "README.md" in found.tree.files
 
@@ -158,7 +157,9 @@ def test_a_robot_outside_of_the_folder_is_noted() -> None:
     found = submission({"Lab6/step.png": PICTURE, **package("ws/src/my_robot"), "other.png": PICTURE})
     urdf = "ws/src/my_robot/urdf/my_robot.urdf"
     assert found.path == urdf
-    assert found.notes == (f"Lab6, the folder of this lab, has no URDF: {urdf}, which is outside of it, was graded",)
+    assert found.notes == (
+        f"Lab6, the folder of this lab, has no robot of this lab: {urdf}, which is outside of it, was graded",
+    )
     assert [file.file.path for file in found.labelled_files] == ["Lab6/step.png"]
 
 
@@ -203,6 +204,6 @@ def test_another_lab_is_graded_where_this_one_has_no_work() -> None:
     """The robot that is wanted is taken from another lab's folder if there is no other, with a note; no other robot is."""
     found = submission({"Lab6/step.png": PICTURE, **package("Lab7/my_robot"), **package("Lab8/my_robot", "other")})
     assert (found.path, found.package and found.package.folder) == ("Lab7/my_robot/urdf/my_robot.urdf", "Lab7/my_robot")
-    why = "Lab6, the folder of this lab, has no robot and no package"
+    why = "Lab6, the folder of this lab, has no robot of this lab"
     assert found.notes == (f"{why}: Lab7, the folder of another lab, was graded",)
     assert list(found.tree.files) == ["Lab6/step.png"]

@@ -19,7 +19,6 @@ from grader.files.names import ARCHIVES
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.grading.grade import grade
 from grader.grading.graded_submission import GradedSubmission
-from grader.grading.missing_work import is_another_robot, robot_of
 from grader.grading.record import to_record
 from grader.grading.report import Report, Result, without_gifts
 from grader.grading.rubric import Rubric, read_rubric
@@ -90,7 +89,7 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
     fault, reason = report.fault, _why_unreadable(submission)
     verdict: GradingVerdict = "errored" if fault else "unreadable" if reason else "graded"
     graded = result._replace(verdict=verdict, reason=fault or reason).with_report(report, context.dictionary)
-    if not is_another_robot(rubric, robot_of(submission.urdf)):  # else the course handed it out
+    if not report.submission.another_robot:  # else the course handed it out
         urdf, robot = robot_hashes(submission)
         graded = graded._replace(urdf=urdf, robot=robot, forms=json.dumps(_forms(submission)))
     return graded

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.edits import Proposal
 from grader.grading.hints.choice import EditChoice
 from grader.grading.hints.trials import NoTrialsLeft, Results, State, Trials, as_one, costs_of, gains_of, join
-from grader.grading.missing_work import is_another_robot, robot_of
+from grader.grading.missing_work import robot_of
 from grader.robot.edits.draft import Draft
 from grader.robot.reader import Reading
 from grader.source import Edits
 from grader.submission.editing import creates
-from grader.submission.urdf import Read
+from grader.submission.urdf import Read, known_links
 
 if TYPE_CHECKING:
     from grader.package.package import Package
@@ -53,9 +53,9 @@ class HintSearch:
         self._choice = EditChoice(trials, reference, package)
         self._reference = reference
         robot, rubric = robot_of(trials.start.submission.urdf), trials.rubric
-        # One with as many links may be the lab's, with other names.
-        is_small = robot is not None and 2 * len(robot.links) < len(rubric.links)
-        self._is_another_robot = is_small and is_another_robot(rubric, robot)
+        # One with as many links may be the lab's, with other names; one with some of its links may be unfinished.
+        is_small = robot is not None and not robot.incomplete and 2 * len(robot.links) < len(rubric.links)
+        self._is_another_robot = robot is not None and is_small and not known_links(robot, rubric.links)
         self.causes = self._choice.causes
         self.certainties = self._choice.certainties
         self.found: list[FoundHint] = []

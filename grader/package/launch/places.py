@@ -16,9 +16,10 @@ ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", "_launch.
 def is_in_launch_folder(path: str) -> bool:
     """Return whether a file is a launch file because it is in a folder named launch, whatever its own name."""
     folder, _, name = path.rpartition("/")
+    if folder.rpartition("/")[2] != "launch" or name == "__init__.py":
+        return False
     suffix = PurePosixPath(name).suffix
-    known = suffix in ("", ".launch", ".py", ".xml", ".yaml", ".yml") or (suffix == ".txt" and ".launch." in name)
-    return folder.rpartition("/")[2] == "launch" and name != "__init__.py" and known
+    return suffix in ("", ".launch", ".py", ".xml", ".yaml", ".yml") or (suffix == ".txt" and ".launch." in name)
 
 
 def is_launch_named(path: str, name: str) -> bool:
