@@ -68,7 +68,7 @@ LAB6_SAMPLES = {name: sample for name, sample in SAMPLES.items() if sample.rubri
 # What every format of reports is tested on: together these reports reach every branch of the formats, and have each status with
 # and without a place, a hint, points that are kept and an answer, each kind of problem, and each kind of submission.
 REPORTED = (
-    "reference", "several-mistakes", "axis-for-the-z-up-wheel", "truncated-file", "pictures-only",
+    "reference", "several-mistakes", "axis-for-the-z-up-wheel", "truncated-file", "empty-urdf",
         "sensors-launch-home-path",
     "wheel-axes-along-x", "cmake-package", "arm-masses-in-grams", "commas-in-vectors", "equivalent-zero-size-footprint",
     "minus-sign-from-a-pdf", "xacro-from-another-package", "cylinder-height", "equivalent-box-on-its-side",

@@ -139,8 +139,8 @@ class Report:
     @property
     def all_notes(self) -> tuple[str, ...]:
         """The notes, the first on a robot that looks like another one, the last on hints that are missing."""
-        last = "" if self.hints_complete else INCOMPLETE_HINTS
-        return tuple(filter(None, (self.submission.another_robot, *self.notes, last)))
+        first, last = self.submission.another_robot, "" if self.hints_complete else INCOMPLETE_HINTS
+        return (*filter(None, [first]), *self.notes, *filter(None, [last]))
 
     @property
     def score(self) -> Decimal:

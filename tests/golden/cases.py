@@ -92,7 +92,7 @@ GOLDEN = (
     Golden("no-launch-folder", ("grade", "submissions/no-launch-folder", "--part", "task2"), 1),
     Golden("launch-home-path", ("grade", "submissions/launch-home-path", "--part", "task2"), 1),
     Golden("setup-syntax-error", ("grade", "submissions/setup-syntax-error", "--part", "task2"), 1),
-    Golden("pictures-only", ("grade", "submissions/pictures-only"), 1),
+    Golden("empty-urdf", ("grade", "submissions/empty-urdf"), 1),
     Golden("team-of-two-json", ("grade", "submissions/equivalent-team-of-two/Lab6/Ash", "--format", "json"), 0),
     Golden("zipped", ("grade", "submissions/equivalent-zipped-with-wrapper/lab6.zip", "--part", "questions"), 0),
     Golden("inspect-raw-xacro", ("inspect", "submissions/raw-xacro/my_robot.urdf"), 1),

@@ -118,9 +118,9 @@ DEFECTS: Mapping[str, tuple[Submitted, str, str]] = {
     ),
     "a large URDF": (REFERENCE.with_files({URDF: " " * 1_100_000}), "", OF_URDF),
     "a closed archive": (Submitted({"lab6.rar": b"Rar!", "Task1_Step8.png": png()}), "", f"{OF_URDF} {OF_PACKAGE}"),
-    "nothing but pictures": (PICTURES, f"urdf-loads package-found {OF_URDF} {OF_PACKAGE}", ""),
+    "nothing but pictures": (PICTURES, "", f"urdf-loads package-found {OF_URDF} {OF_PACKAGE}"),
     "nothing but the URDF and pictures": (
-        PICTURES.with_files({"my_robot.urdf": REFERENCE.files[URDF]}), f"package-found {OF_PACKAGE}", "",
+        PICTURES.with_files({"my_robot.urdf": REFERENCE.files[URDF]}), "", f"package-found {OF_PACKAGE}",
     ),
 }  # fmt: skip
 

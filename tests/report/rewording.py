@@ -60,6 +60,7 @@ def _submission(old: GradedSubmission, words: Words, path: Words) -> GradedSubmi
         old.verdict,
         old.is_single,
         "unread" if old.unread else "",
+        another_robot=f"a {words()}" if old.another_robot else "",
         originals=Reworded(text, _urdf(old.originals.urdf, words) if old.originals is not None else Absent()),
     )
 

@@ -191,7 +191,7 @@ def test_what_needs_manual_grading_has_no_points_yet(name: str) -> None:
 
 def mark_of_the_cause() -> Report:
     """Return a report in which a manual mark overrides a failure that others are skipped because of."""
-    report = SAMPLES["pictures-only"].grade()
+    report = SAMPLES["empty-urdf"].grade()
     cause = next(result.because for result in report.results if result.because)
     given = [
         result._replace(manual_mark=ManualMark(result.criterion.points, "Ada", ""))
@@ -204,7 +204,7 @@ def mark_of_the_cause() -> Report:
 
 @pytest.mark.parametrize(
     "report",
-    [marked, hinted, mark_of_the_cause, *(SAMPLES[name].grade for name in ("axis-negated", "pictures-only"))],
+    [marked, hinted, mark_of_the_cause, *(SAMPLES[name].grade for name in ("axis-negated", "empty-urdf"))],
 )
 def test_every_link_of_a_page_has_a_target(report: Callable[[], Report]) -> None:
     """A criterion that is skipped leads to the card of its cause."""
