@@ -59,3 +59,15 @@ notes = partial(Kind, severity="note", effect="loads")
 def kinds_in(namespace: Iterable[object]) -> tuple[Kind, ...]:
     """Return the kinds among the values of a module, sorted by code."""
     return tuple(sorted((value for value in namespace if isinstance(value, Kind)), key=lambda kind: kind.code))
+
+
+def in_order(problems: Iterable[Problem]) -> tuple[Problem, ...]:
+    """Return problems in the order of their locations."""
+    return tuple(sorted(problems, key=lambda problem: (problem.location.line, problem.location.column, problem.code)))
+
+
+def causes(problems: Iterable[Problem]) -> list[Problem]:
+    """Return the problems for which ROS 2 rejects a file; only those of xacro if that stops before."""
+    found = [problem for problem in problems if problem.kind.effect == "rejects"]
+    own = [problem for problem in found if not problem.kind.is_consequence]
+    return [problem for problem in own if problem.kind.is_before_ros] or own or found

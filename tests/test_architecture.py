@@ -51,7 +51,7 @@ LIBRARIES = {
     "docx": {"documents"},
     "pypdf": {"documents"},
     "numpy": {"robot"},
-    "tomllib": {"grading", "bundle"},
+    "tomllib": {"grading", "bundle", "package"},
     "sqlite3": {"classroom"},
     "pebble": {"classroom"},
     "distributed": {"classroom"},

@@ -4,63 +4,20 @@ Lengths are metres, angles radians about fixed axes x, y, z (REP 103). `None` is
 cannot be read; a value that the file does not give has ROS 2's default.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import field
-from typing import TYPE_CHECKING, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from grader.errors import MissingElement, NotDecided
 from grader.names import did_you_mean
 from grader.robot.joint_elements import Calibration, Dynamics, Limit, Mimic, SafetyController
+from grader.robot.unresolved import Guarded, UnresolvedParts
 from grader.source import LazyLocation
 from grader.text import quoted
 from grader.values import dataclass
 
 Vector = tuple[float, float, float]
 INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")  # the components, in the order of Inertial.inertia
-
-
-class UnresolvedPart(NamedTuple):
-    """A part of a link, joint or material that xacro leaves open: the reason, which is empty where xacro refuses it."""
-
-    reason: str
-    location: LazyLocation
-
-    def check(self) -> None:
-        """Raise NotDecided if the part cannot be determined."""
-        if self.reason:
-            raise NotDecided(self.reason)
-
-
-# The parts of an element that are unresolved: "@name" for its attribute, "visual" for something in a <visual>, "" for
-# more children than are known. Empty for a plain URDF.
-UnresolvedParts = Mapping[str, UnresolvedPart]
-_KEYS = {"name": "@name", "type": "@type", "visuals": "visual", "collisions": "collision"}
-
-
-def open_part(parts: UnresolvedParts, field: str, *, is_absent: bool = False) -> UnresolvedPart | None:
-    """Return why a field of a link or joint is open; if the file does not give it, it may be among unknown children."""
-    return parts.get(_KEYS.get(field, field)) or (parts.get("") if is_absent else None)
-
-
-class Guarded:
-    """A part of a robot. A field that is not set is open: reading it raises NotDecided.
-
-    Where xacro refuses the text of the field, MissingElement.
-    """
-
-    __slots__ = ()
-
-    if not TYPE_CHECKING:
-
-        def __getattr__(self, name: str) -> NoReturn:
-            if name not in self.__dataclass_fields__:
-                raise AttributeError(name)
-            part = open_part(self.unresolved, name, is_absent=True)
-            for one in (part,) if part else self.unresolved.values():
-                one.check()
-            what, owner = _KEYS.get(name, name), getattr(self, "child", self.name)
-            message = f"xacro cannot expand the {what} of {type(self).__name__.lower()} {quoted(self.name)}"
-            raise MissingElement(what, owner, message=message, location=part and part.location)
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,12 +5,12 @@ from dataclasses import replace
 from functools import partial
 from typing import TypeVar
 
-from grader.robot.model import Joint, Link, Material, Robot, Visual, open_part
+from grader.robot.model import Joint, Link, Material, Robot, Visual
+from grader.robot.unresolved import open_part
 
 _OF_LINK = ("name", "visuals", "collisions", "inertial")
 _OF_PLACE = ("name", "parent", "child", "type", "origin", "axis")
 _OF_JOINT = (*_OF_PLACE, "limit", "mimic", "dynamics", "safety_controller", "calibration")
-_OF_MATERIAL = ("rgba", "texture")
 
 Part = TypeVar("Part", Link, Joint, Material)
 
@@ -24,7 +24,11 @@ def guarded(robot: Robot) -> tuple[Robot, tuple[Joint, ...]]:
     parts: tuple[Link | Joint | Material, ...] = (*robot.links, *robot.joints, *robot.materials)
     if not robot.incomplete and not any(part.unresolved for part in parts):
         return robot, robot.joints
-    links, joints = tuple(map(_link, robot.links)), tuple(map(_joint, robot.joints))
+    joints = tuple(_without(joint, _open(joint, _OF_JOINT)) for joint in robot.joints)
+    links = tuple(
+        _without(replace(link, visuals=tuple(map(_visual, link.visuals))), _open(link, _OF_LINK))
+        for link in robot.links
+    )
     found = replace(robot)
     put = partial(object.__setattr__, found)
     put("links", links)
@@ -37,16 +41,13 @@ def guarded(robot: Robot) -> tuple[Robot, tuple[Joint, ...]]:
     return found, joints
 
 
-def _link(link: Link) -> Link:
-    visuals = tuple(map(_visual, link.visuals))
-
-    def is_open(name: str) -> bool:
-        # A visual or inertial that is known counts, even if there may be more.
-        is_absent = name == "collisions" or not getattr(link, name)
-        part = open_part(link.unresolved, name, is_absent=is_absent)
-        return part is not None and (name != "name" or part.reason != "")
-
-    return _without(replace(link, visuals=visuals), filter(is_open, _OF_LINK if link.unresolved else ()))
+def _open(part: Link | Joint, fields: Iterable[str]) -> Iterable[str]:
+    """Yield the fields that are open. What xacro refuses of a name or a joint's place is wrong, and not missing."""
+    for name in fields if part.unresolved else ():
+        # A visual that is known counts, even if there may be more.
+        found = open_part(part.unresolved, name, is_absent=name == "collisions" or not getattr(part, name))
+        if found is not None and (found.reason or name not in _OF_PLACE):
+            yield name
 
 
 def _visual(visual: Visual) -> Visual:
@@ -55,17 +56,7 @@ def _visual(visual: Visual) -> Visual:
 
 
 def _material(material: Material) -> Material:
-    is_open = any(part.reason for part in material.unresolved.values())
-    return _without(material, _OF_MATERIAL if is_open else ())
-
-
-def _joint(joint: Joint) -> Joint:
-    def is_open(name: str) -> bool:
-        part = open_part(joint.unresolved, name, is_absent=getattr(joint, name) is None)
-        # What xacro refuses of a joint's place is read as it is written: it is wrong, and not missing.
-        return part is not None and (part.reason != "" or name not in _OF_PLACE)
-
-    return _without(joint, filter(is_open, _OF_JOINT if joint.unresolved else ()))
+    return _without(material, ("rgba", "texture") if any(it.reason for it in material.unresolved.values()) else ())
 
 
 def _without(part: Part, names: Iterable[str]) -> Part:

@@ -1,12 +1,12 @@
 """Read a URDF as ROS 2 (Jazzy) does, and report everything that is wrong with it."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import field, replace
 from functools import partial
 from typing import Literal
 
-from grader.problems import Effect, Problem
+from grader.problems import Effect, Problem, causes, in_order
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems
 from grader.robot.joints import check_references, read_joint
@@ -92,9 +92,8 @@ def read_robot(document: XmlDocument) -> Reading:
 def _read_content(document: XmlDocument, root: Element) -> Reading:
     """Return what is read of a robot: if ROS 2 rejects it for words that surely stand for others, with these undone."""
     listed = document.problems
-    effects = {problem.kind.effect for problem in listed}
     robot, problems = _read_robot(document, root)
-    effects |= problems.effects
+    effects = {problem.kind.effect for problem in listed} | problems.effects
     found, incomplete = problems.listed, _incomplete(document, robot) if effects.intersection(_FATAL) else ""
     is_meant = document.is_meant and "rejects" not in problems.effects
     if document.is_meant and not is_meant and not incomplete:
@@ -113,26 +112,13 @@ def _read_content(document: XmlDocument, root: Element) -> Reading:
         listed.append(Problem(catalogue.UNLISTED, message, document.source.at(len(document.source.text))))
     verdict = _verdict(effects)
     if verdict == "rejected":
-        is_as_loaded = is_meant and "undetermined" not in effects
-        robot = replace(robot, rejected=not is_as_loaded, incomplete=incomplete)
+        robot = replace(robot, rejected=not is_meant or "undetermined" in effects, incomplete=incomplete)
     places = (document.source, document.root, document.unresolved, document.recovered)
     return Reading(verdict, robot, in_order(listed), *places, is_meant)
 
 
 def _verdict(effects: Collection[Effect]) -> Verdict:
     return "rejected" if not _FATAL.isdisjoint(effects) else "degraded" if "drops" in effects else "clean"
-
-
-def in_order(problems: Iterable[Problem]) -> tuple[Problem, ...]:
-    """Return problems in the order of their locations."""
-    return tuple(sorted(problems, key=lambda problem: (problem.location.line, problem.location.column, problem.code)))
-
-
-def causes(problems: Iterable[Problem]) -> list[Problem]:
-    """Return the problems for which ROS 2 rejects a file; only those of xacro if that stops before."""
-    found = [problem for problem in problems if problem.kind.effect == "rejects"]
-    own = [problem for problem in found if not problem.kind.is_consequence]
-    return [problem for problem in own if problem.kind.is_before_ros] or own or found
 
 
 def _read_robot(document: XmlDocument, root: Element) -> tuple[Robot, Problems]:

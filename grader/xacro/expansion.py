@@ -16,9 +16,10 @@ from grader.source import Source
 from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
 from grader.xacro import catalogue
 from grader.xacro.expanded_source import ExpandedSource
-from grader.xacro.expander import STOPS, Expander, Misspelt, Open, Respelling
+from grader.xacro.expander import STOPS, Expander, Open
 from grader.xacro.files import Files, Workspace
 from grader.xacro.nodes import XacroNode, read_nodes, recovered_nodes
+from grader.xacro.respelling import Misspelt, Respelling
 from grader.xacro.tags import CALL, HANDLERS
 from grader.xml.catalogue import MISPLACED_DECLARATION, RECOVERED
 from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, error_location, make_element
