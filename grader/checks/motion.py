@@ -161,7 +161,7 @@ def _as_turning(robot: Configuration, link: str) -> Configuration:
     if joint is None:
         return robot
     joints = (replace(other, type="continuous") if other is joint else other for other in robot.known.joints)
-    return Configuration(replace(robot.known, joints=tuple(joints)), robot.positions)
+    return Configuration(replace(robot.known, joints=tuple(joints)), robot.positions, is_guarded=robot.is_guarded)
 
 
 def _flat(vector: Vector, up: Vector) -> Vector:

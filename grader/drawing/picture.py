@@ -104,14 +104,14 @@ def _frames(rubric: Rubric, robot: Configuration, solution: Configuration | None
     named = [name for name, _ in given.most_common()]
     pairs = [(selected(robot, name), selected(solution, name) if solution is not None else name) for name in named]
     roots = (next(iter(robot.main_tree), None), next(iter(solution.main_tree), None) if solution is not None else None)
-    known = [pair for pair in pairs if robot.known.has_link(pair[0]) and _has(solution, pair[1])]
-    sizes = Counter(_root_of(robot, link.name) for link in robot.known.links)
+    known = [pair for pair in pairs if robot.robot.has_link(pair[0]) and _has(solution, pair[1])]
+    sizes = Counter(_root_of(robot, link.name) for link in robot.robot.links)
     del sizes[""]  # links on loops have no pose in each other's frames
     return max(known, key=lambda pair: sizes[_root_of(robot, pair[0])], default=roots)
 
 
 def _has(robot: Configuration | None, link: str) -> bool:
-    return robot is None or robot.known.has_link(link)
+    return robot is None or robot.robot.has_link(link)
 
 
 def _root_of(robot: Configuration, link: str) -> str:
@@ -146,7 +146,7 @@ def _links(criterion: Criterion, robot: Configuration, solution: Configuration |
     """Yield the links that a criterion examines and that one of the robots has."""
     subject = next((criterion.arguments[key] for key in _SUBJECTS if key in criterion.arguments), None)
     for link in dict.fromkeys(selected(robot, name) for name in texts_in(subject)):
-        if robot.known.has_link(link) or (solution is not None and solution.robot.has_link(link)):
+        if robot.robot.has_link(link) or (solution is not None and solution.robot.has_link(link)):
             yield link
 
 

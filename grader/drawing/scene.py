@@ -106,7 +106,7 @@ def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> 
 
 def _poses(robot: Configuration, frame: str, omitted: dict[str, dict[str, None]]) -> Iterator[tuple[str, Transform]]:
     """Yield the poses of links."""
-    for link in robot.known.links:
+    for link in robot.robot.links:
         try:
             pose = robot.pose(link.name, relative_to=frame)
             reason = "" if is_drawable(pose.translation) else "it is too far away"
@@ -122,7 +122,7 @@ def _bodies(
     robot: Configuration, poses: Mapping[str, Transform], omitted: dict[str, dict[str, None]]
 ) -> Iterator[Body]:
     """Yield the shapes of links that have a pose."""
-    for link in robot.known.links:
+    for link in robot.robot.links:
         if link.name not in poses:
             continue
         if link.unresolved.keys() & {"visual", ""}:

@@ -196,7 +196,7 @@ def framed_links(picture: Picture) -> list[str]:
     """
     scene = picture.scene
     called = [callout.link for callout in picture.callouts]
-    shown = [link.name for link in scene.robot.known.links if link.visuals] or list(scene.poses)
+    shown = [link.name for link in scene.robot.robot.links if link.visuals] or list(scene.poses)
     links = dict.fromkeys([scene.frame, scene.root, *called, *picture.frames, *shown])
     if len(links) > (_MAX_FRAMES if scene.bodies else _MAX_FRAMES_ALONE):
         links = dict.fromkeys([scene.frame, *called[:_MAX_FRAMES]])

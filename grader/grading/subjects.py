@@ -1,6 +1,7 @@
 """The objects that checks examine: the URDF of a submission, its robot in a pose, its package, the reference."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from math import radians
 from typing import Any
 
@@ -37,8 +38,9 @@ class Subjects:
             urdf = submission.urdf.reading
             self.source = urdf.source
             self.problems = tuple(it for it in urdf.problems if not (urdf.is_meant and it.kind.effect == "rejects"))
-            self.robot = Configuration(urdf.robot) if urdf.robot is not None else None
-            self._known["urdf"] = submission.urdf.loaded
+            self.robot = Configuration(urdf.robot, is_guarded=True) if urdf.robot is not None else None
+            examined = replace(urdf, robot=self.robot.robot) if self.robot is not None else urdf
+            self._known["urdf"] = submission.urdf.as_it_stands or examined
         if self.robot is not None:
             self._known["robot"] = self.robot
 

@@ -157,7 +157,7 @@ def inspection_svg(inspection: Inspection) -> str:
     """Return the drawing of an inspected robot as a file, with its joints at the given positions."""
     robot = inspection.robot
     picture = plain_picture(robot, inspection.relative_to)
-    name = robot.known.name if robot is not None else inspection.path
+    name = robot.robot.name if robot is not None else inspection.path
     positions = ", ".join(f"{joint} = {position}" for joint, position in robot.positions.items()) if robot else ""
     words = f"{inspection.path}: {effect(inspection)}{f'; {positions}' if positions else ''}"
     return _file(picture, name or inspection.path, (words,), "No picture: no robot could be read from the file.")

@@ -57,7 +57,7 @@ class Inspection:
         """Yield the pose of every link in the frame `relative_to`, in file order, or the reason why it has none."""
         if self.robot is None or self.relative_to is None:
             return
-        for link in self.robot.known.links:
+        for link in self.robot.robot.links:
             try:
                 yield link.name, self.robot.pose(link.name, relative_to=self.relative_to)
             except (MissingElement, NotDecided) as reason:
@@ -88,7 +88,7 @@ _ROBOT = Record(
     {
         "name": (TEXT, "robot.name"),
         "root": (nullable(TEXT), main_root),
-        "links": (array(TEXT), lambda robot: [link.name for link in robot.known.links]),
+        "links": (array(TEXT), lambda robot: [link.name for link in robot.robot.links]),
         "joints": (Many(_JOINT), "robot.joints"),
     }
 )
@@ -113,7 +113,7 @@ def inspection_json(inspection: Inspection) -> str:
 def inspection_terminal(inspection: Inspection, console: Console) -> None:
     """Print the inspection."""
     reading, robot = inspection.reading, inspection.robot
-    name = f"robot {robot.known.name!r}" if robot is not None else "no robot"
+    name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
     verdict = (effect(inspection), _STYLES[inspection.verdict])
     head = ((printable(inspection.path), "bold"), ": ", verdict, f", {printable(name)}")
     console.print(Text.assemble(*head))
@@ -132,7 +132,7 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     for link, pose in islice(inspection.poses(), _MAX_LISTED):
         text = (_pose_text(pose), "cyan") if isinstance(pose, Transform) else (printable(pose), "red")
         wrapped(console, Text.assemble(f"{printable(link)}  ", text), 2)
-    _print_rest(console, len(robot.known.links))
+    _print_rest(console, len(robot.robot.links))
 
 
 def _print_title(console: Console, title: str) -> None:

@@ -35,7 +35,7 @@ def convention_of(robot: Configuration, reference: Configuration, base: str) -> 
 
     One link may be elsewhere: its own mistake.
     """
-    names = [link.name for link in reference.robot.links if robot.known.has_link(link.name)]
+    names = [link.name for link in reference.robot.links if robot.robot.has_link(link.name)]
     pairs = [pair for name in names if (pair := _pair(robot, reference, name, base)) is not None]
     if len(pairs) < _MIN_POINTS or 2 * sum(dist(*pair) <= _NEAR for pair in pairs) >= len(pairs):
         return None  # too few points, or most are where they should be: the quick answer for most robots
@@ -93,7 +93,7 @@ def _reframe(robot: Configuration, reference: Configuration, base: str, T_base_o
     """Return a robot with another frame of its base, and of each link that is turned alike; nothing in it moves."""
     turned = Transform(T_base_other.rotation)
     frames = {base: T_base_other}
-    for link in robot.known.links:
+    for link in robot.robot.links:
         try:
             T_ours = T_base_other.inverse() @ robot.pose(link.name, relative_to=base)
             wanted = reference.pose(link.name, relative_to=base).rotation
@@ -101,11 +101,11 @@ def _reframe(robot: Configuration, reference: Configuration, base: str, T_base_o
             continue
         if turn_between((T_ours @ turned).rotation, wanted) + 1.0 < turn_between(T_ours.rotation, wanted):
             frames.setdefault(link.name, turned)
-    links = tuple(_link(link, frames.get(link.name, IDENTITY)) for link in robot.known.links)
+    links = tuple(_link(link, frames.get(link.name, IDENTITY)) for link in robot.robot.links)
     joints = tuple(
-        _joint(it, frames.get(it.parent, IDENTITY), frames.get(it.child, IDENTITY)) for it in robot.known.joints
+        _joint(it, frames.get(it.parent, IDENTITY), frames.get(it.child, IDENTITY)) for it in robot.robot.joints
     )
-    return replace(robot.known, links=links, joints=joints)
+    return replace(robot.robot, links=links, joints=joints)
 
 
 def _link(link: Link, T_link_other: Transform) -> Link:

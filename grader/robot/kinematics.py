@@ -29,15 +29,16 @@ class Configuration:
         positions: Mapping[str, Position] | None = None,
         *,
         holding: Mapping[str, Joint] | None = None,
+        is_guarded: bool = False,
     ) -> None:
-        """`robot` becomes `known`; what of it xacro leaves open raises NotDecided where `self.robot` is used.
+        """`robot` becomes `known`. With `is_guarded`, reading what xacro leaves open in `self.robot` raises NotDecided.
 
         `holding` is parent_joints(robot), if it is known already; positions are not validated then.
 
         Raises MissingElement for a joint that is not there, ValueError for a position of the wrong shape.
         """
-        self.known = robot
-        self.robot, joints = guarded(robot)
+        self.known, self.is_guarded = robot, is_guarded
+        self.robot, joints = guarded(robot) if is_guarded else (robot, robot.joints)
         self.positions = dict(positions or {})
         self._holding = parent_joints(robot) if holding is None else holding
         self.parent_joints = self._holding
@@ -172,7 +173,7 @@ class Configuration:
 
     def at(self, positions: Mapping[str, Position]) -> "Configuration":
         """Return the same robot with its joints at other positions, which are not validated."""
-        return Configuration(self.known, positions, holding=self._holding)
+        return Configuration(self.known, positions, holding=self._holding, is_guarded=self.is_guarded)
 
     def displacement(self, link: str, joint: Joint, angle: float, *, relative_to: str) -> Transform:
         """Return the motion of points on a link when a turning or sliding joint moves by `angle` (rad, m) from here.

@@ -50,6 +50,7 @@ def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
     found = _SELECTOR.fullmatch(name)
     if found is None or robot.has_link(name):
         return name
+    robot.check_complete()
     places = _places(robot, parents)
     root = _main_root(places, name)
     places = {link: place for link, place in places.items() if place.root == root}

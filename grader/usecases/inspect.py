@@ -40,8 +40,8 @@ def inspect(
     robot = _configuration(urdf.loaded, joints)
     if robot is not None and relative_to is None:
         relative_to = main_root(robot)
-    elif robot is not None and relative_to is not None and not robot.known.has_link(relative_to):
-        known = ", ".join(repr(link.name) for link in robot.known.links[:_MAX_NAMED])
+    elif robot is not None and relative_to is not None and not robot.robot.has_link(relative_to):
+        known = ", ".join(repr(link.name) for link in robot.robot.links[:_MAX_NAMED])
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
     return Inspection(urdf.path, urdf.loaded, robot, relative_to)
 

@@ -156,7 +156,7 @@ def _subject(name: Subject, of: Scene | Submitted) -> object:
     if isinstance(of, Submitted):
         if name in ("urdf", "robot"):
             reading = of.submission.needed_urdf()
-            return reading if name == "urdf" else Configuration(reading.robot or Robot(""))
+            return reading if name == "urdf" else Configuration(reading.robot or Robot(""), is_guarded=True)
         return of.package if name == "package" else of.submission
     if name == "submission":
         return read_submission(of.text.encode(), identity="test", path=PATH)

@@ -36,7 +36,7 @@ class Scene:
         """Return the robot in the file with all joints at 0."""
         found = self.reading.robot
         assert found is not None, self.text
-        return Configuration(found)
+        return Configuration(found, is_guarded=True)
 
     @property
     def submission(self) -> Submission:

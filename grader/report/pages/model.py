@@ -41,7 +41,7 @@ def picture_data(picture: Picture) -> dict[str, Any]:
 
 def _indices(scene: Scene) -> dict[str, int]:
     """Return the number of each link; links with the same name have one number."""
-    return {name: number for number, name in enumerate(dict.fromkeys(link.name for link in scene.robot.known.links))}
+    return {name: number for number, name in enumerate(dict.fromkeys(link.name for link in scene.robot.robot.links))}
 
 
 def _failed_wheels(picture: Picture) -> set[str]:
@@ -55,15 +55,15 @@ def _failed_wheels(picture: Picture) -> set[str]:
 
 def _robot(scene: Scene, expected: Scene | None = None, failed: Collection[str] = ()) -> Data:
     links, robot = _indices(scene), scene.robot
-    joints = {id(joint): number for number, joint in enumerate(robot.known.joints)}
-    named = {joint.name: joints[id(joint)] for joint in reversed(robot.known.joints)}
+    joints = {id(joint): number for number, joint in enumerate(robot.robot.joints)}
+    named = {joint.name: joints[id(joint)] for joint in reversed(robot.robot.joints)}
     parents = robot.parent_joints
     turning = {wheel.link for wheel in scene.wheels}
     return {
         "links": [*map(printable, links)],
         "parent": [joints[id(parents[name])] if name in parents else -1 for name in links],
         "order": [links[name] for name in _top_down(robot, links)],
-        "joints": [_joint(joint, robot, links, named) for joint in robot.known.joints],
+        "joints": [_joint(joint, robot, links, named) for joint in robot.robot.joints],
         "frame": links[scene.frame],
         "root": links[scene.root],
         "shapes": [_shape(body, links, is_wheel=body.link in turning) for body in scene.bodies],

@@ -96,7 +96,7 @@ def _unmoved_joints(scene: Scene) -> Iterator[str]:
 def _joints_of(scene: Scene) -> Iterator[tuple[int, Joint]]:
     """Yield the joints whose child link has a pose in the picture; of joints with the same name, the first."""
     names: set[str] = set()
-    for number, joint in enumerate(scene.robot.known.joints):
+    for number, joint in enumerate(scene.robot.robot.joints):
         if (
             scene.robot.parent_joints.get(joint.child) is joint
             and joint.child in scene.poses
@@ -145,7 +145,7 @@ def _unlisted(number: int, noun: str) -> Iterator[str]:
 def _links(scene: Scene) -> Iterator[tuple[str, str, str, str]]:
     """Yield each link in words: its name, its shapes, the pose of its frame, and its parent joint."""
     bodies = dict(alike(scene.bodies, lambda body: body.link))
-    for name in dict.fromkeys(link.name for link in scene.robot.known.links):
+    for name in dict.fromkeys(link.name for link in scene.robot.robot.links):
         shapes = ", ".join(_shape_words(body.shape) for body in bodies.get(name, ()))
         pose, joint = scene.poses.get(name), scene.robot.parent_joints.get(name)
         place = _pose_words(pose) if pose is not None else _why_none(scene, name)
@@ -180,7 +180,7 @@ def _pose_words(pose: Transform) -> str:
 
 def _words(picture: Picture, moving: int) -> str:
     """Return the description for screen readers: the parts of the robot, and the failed criteria of each link."""
-    links = counted(len(picture.scene.robot.known.links), "link")
+    links = counted(len(picture.scene.robot.robot.links), "link")
     words = f"{links}, {counted(moving, 'joint')} that can be moved."
     for callout in picture.callouts:
         names = ", ".join(result.criterion.id for result in callout.results)
@@ -195,7 +195,7 @@ def inspection_html(inspection: Inspection) -> str:
     lines = (f"{indent}{link}  {joint}" for indent, link, joint in (tree(robot) if robot is not None else ()))
     values = {
         "version": __version__,
-        "title": printable(robot.known.name if robot is not None else inspection.path),
+        "title": printable(robot.robot.name if robot is not None else inspection.path),
         "path": inspection.path,
         "effect": effect(inspection),
         "verdict": _CLASSES.get(inspection.verdict, "failed"),
