@@ -38,7 +38,7 @@ class Subjects:
             urdf = submission.urdf.reading
             self.source = urdf.source
             self.problems = tuple(it for it in urdf.problems if not (urdf.is_meant and it.kind.effect == "rejects"))
-            self.robot = Configuration(urdf.robot, is_guarded=True) if urdf.robot is not None else None
+            self.robot = Configuration(urdf.robot, is_guarded=bool(urdf.unresolved)) if urdf.robot is not None else None
             examined = replace(urdf, robot=self.robot.robot) if self.robot is not None else urdf
             self._known["urdf"] = submission.urdf.as_it_stands or examined
         if self.robot is not None:

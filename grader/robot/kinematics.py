@@ -9,7 +9,6 @@ from grader.errors import MissingElement
 from grader.robot.frames import Frames, Position, check_position, motion_of, undefined_pose
 from grader.robot.joints import MOVING_TYPES
 from grader.robot.model import Joint, Link, Robot, Visual
-from grader.robot.open_values import guarded
 from grader.robot.transforms import IDENTITY, Transform, Vector, unit
 from grader.robot.tree import parent_joints
 from grader.text import quoted
@@ -38,11 +37,14 @@ class Configuration:
         Raises MissingElement for a joint that is not there, ValueError for a position of the wrong shape.
         """
         self.known, self.is_guarded = robot, is_guarded
-        self.robot, joints = guarded(robot) if is_guarded else (robot, robot.joints)
+        self.robot = robot
         self.positions = dict(positions or {})
         self._holding = parent_joints(robot) if holding is None else holding
         self.parent_joints = self._holding
-        if self.robot is not robot:
+        if is_guarded:
+            from grader.robot.open_values import guarded  # late: few robots have open values
+
+            self.robot, joints = guarded(robot)
             own = {id(known): joint for known, joint in zip(robot.joints, joints, strict=True)}
             self.parent_joints = {child: own[id(joint)] for child, joint in self._holding.items()}
         if holding is None:

@@ -21,9 +21,6 @@ def guarded(robot: Robot) -> tuple[Robot, tuple[Joint, ...]]:
     So does reading its links and joints as a whole, and asking for one that is not there, where it is open which ones
     there are. The second value are its known joints, in the same order.
     """
-    parts: tuple[Link | Joint | Material, ...] = (*robot.links, *robot.joints, *robot.materials)
-    if not robot.incomplete and not any(part.unresolved for part in parts):
-        return robot, robot.joints
     joints = tuple(_without(joint, _open(joint, _OF_JOINT)) for joint in robot.joints)
     links = tuple(
         _without(replace(link, visuals=tuple(map(_visual, link.visuals))), _open(link, _OF_LINK))

@@ -253,7 +253,7 @@ def test_a_colour_that_only_a_run_tells(material: str) -> None:
     urdf = read_submission(text.encode(), identity="me", path="a.urdf.xacro").needed_urdf()
     assert urdf.robot is not None
     with pytest.raises(NotDecided, match="is known only at run time"):
-        shows_colour(Configuration(urdf.robot), **GREEN)
+        shows_colour(Configuration(urdf.robot, is_guarded=True), **GREEN)
 
 
 def test_the_largest_visual_determines_the_colour() -> None:

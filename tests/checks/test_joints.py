@@ -442,7 +442,7 @@ def expanded(written: str, by: str, robot: Scene | None = None) -> Configuration
     urdf = read_submission(xacro.encode(), identity="ash", path="robot.urdf.xacro").urdf
     assert isinstance(urdf, Read)
     assert urdf.reading.robot is not None
-    return Configuration(urdf.reading.robot)
+    return Configuration(urdf.reading.robot, is_guarded=True)
 
 
 @every_check

@@ -215,7 +215,7 @@ def test_what_only_a_run_tells_is_pending(robot: Scene, old: str, new: str, link
     urdf = read_submission(text.encode(), identity="me", path="arm.urdf.xacro").needed_urdf()
     assert urdf.robot is not None
     with pytest.raises(NotDecided, match="is known only at run time"):
-        kinematics_match_reference(Configuration(urdf.robot), robot.robot, links=[link])
+        kinematics_match_reference(Configuration(urdf.robot, is_guarded=True), robot.robot, links=[link])
 
 
 def test_joints_that_follow_nothing() -> None:
