@@ -151,7 +151,8 @@ def _names(difference: RobotDifference, element: Element, attribute: str | None)
         return
     name, is_definition = element.get("name"), element.getparent() is draft.root
     same = [it for it in draft.root.iterchildren(tag) if it.get("name") == name] if is_definition else [element]
-    for other in same if name is None or len(same) > 1 else ():
+    is_pasted = tag == "joint" and len({end_of(it, "child") for it in same}) < len(same)  # no name makes it another
+    for other in same if name is None or (len(same) > 1 and not is_pasted) else ():
         cause = f"the name of the {tag} is missing" if name is None else f"a duplicate {tag} name"
         for new in _free_names(difference, other):
             sets, link = (Set(other, "", "name", new),), new if tag == "link" else ""
