@@ -1,11 +1,11 @@
 """Problems of files: their kinds, each with a stable code, and one problem at its location."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import partial
 from typing import Literal
 
 from grader.source import Location
-from grader.values import dataclass
 
 Severity = Literal["error", "warning", "note"]
 Effect = Literal["rejects", "undetermined", "drops", "loads", "other"]

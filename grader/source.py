@@ -2,11 +2,10 @@
 
 import re
 from bisect import bisect_right
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
 from typing import Literal, NamedTuple
-
-from grader.values import dataclass
 
 _BYTES_OF_SHORT_FILE = 4096
 # In text that an XML parser has accepted, `<` and a name outside comments and CDATA opens a tag.

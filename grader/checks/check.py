@@ -4,14 +4,13 @@ import inspect
 import re
 import sys
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import takewhile
 from typing import Any, Literal, NamedTuple, get_args, get_type_hints
 
 from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
 from grader.errors import InputError
-from grader.values import dataclass
 
 # The ways in which the text of a robot is rewritten to an equal robot, in the order in which they are tried.
 EQUIVALENTS = (

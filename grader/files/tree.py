@@ -1,13 +1,12 @@
 """The file tree of a submission: a folder or an archive looks the same from here on."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import NamedTuple, Protocol
 
 from grader.errors import FileError
 from grader.files import limits
-from grader.values import dataclass
 
 _SMALL = 4096  # bytes
 

@@ -1,14 +1,13 @@
 """The rows of a rubric: criteria with what they are worth, parts, evidence, the late penalty, ignored mutants."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from datetime import datetime
 from decimal import Decimal
 from typing import Any, NamedTuple
 
 from grader.checks.check import Check
 from grader.text import counted_points, format_points
-from grader.values import dataclass
 
 TOTAL = "total"  # in place of a criterion's id, in manual marks: the whole submission
 

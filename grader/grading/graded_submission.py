@@ -1,6 +1,6 @@
 """The submission part of a report: what was graded, its files as far as they can still be read, its class grade."""
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from decimal import Decimal
 from typing import NamedTuple, Protocol
 
@@ -9,7 +9,6 @@ from grader.robot.reader import Verdict
 from grader.source import Source
 from grader.submission.submission import Submission
 from grader.submission.urdf import OtherCandidate, Read, Urdf
-from grader.values import dataclass
 
 
 class Originals(Protocol):

@@ -1,7 +1,7 @@
 """The report: the outcome and the points of every criterion. Renderers only lay it out."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -13,7 +13,6 @@ from grader.grading.graded_submission import Grade, GradedSubmission
 from grader.grading.rubric import Rubric
 from grader.problems import Problem
 from grader.source import Certainty, Edits, Location
-from grader.values import dataclass
 
 if TYPE_CHECKING:
     from grader.documents.evidence_files import EvidenceFile

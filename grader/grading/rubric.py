@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from functools import cache, lru_cache
 from pathlib import Path
@@ -22,7 +22,6 @@ from grader.names import did_you_mean
 from grader.robot.selectors import is_selector, texts_in
 from grader.submission.submission import Lab
 from grader.text import printable_path, shell_quoted
-from grader.values import dataclass
 
 _URDF = "robot.urdf"
 _ANSWERS = ".answers.toml"  # the ending of files with model answers next to the shipped rubrics

@@ -1,7 +1,7 @@
 """A ROS 2 package of a submission: its files are read one by one when they are needed, each once, and never run."""
 
 from contextlib import suppress
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
@@ -12,7 +12,6 @@ from grader.names import closest
 from grader.package.launch.places import ENDINGS, PREFIX, SHARE, is_in_launch_folder, is_launch_named, launch_stem
 from grader.source import Location, Source
 from grader.text import enumerated, was_not_committed
-from grader.values import dataclass
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ cannot be read; a value that the file does not give has ROS 2's default.
 """
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 from grader.errors import MissingElement, NotDecided
@@ -13,7 +13,6 @@ from grader.names import did_you_mean
 from grader.robot.joint_elements import Calibration, Dynamics, Limit, Mimic, SafetyController
 from grader.source import LazyLocation
 from grader.text import quoted
-from grader.values import dataclass
 
 Vector = tuple[float, float, float]
 INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")  # the components, in the order of Inertial.inertia

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Literal
 
@@ -18,7 +18,6 @@ from grader.robot.spelling import check_spelling
 from grader.robot.tree import check_tree
 from grader.source import Source
 from grader.text import quoted
-from grader.values import dataclass
 from grader.xml.parsing import Element, Unresolved, XmlDocument, read_document
 
 Verdict = Literal["clean", "degraded", "rejected"]

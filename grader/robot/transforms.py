@@ -4,10 +4,9 @@ At 4 x 4 a product of Python floats costs no more than a numpy call, and saves t
 gives the homogeneous matrix.
 """
 
+from dataclasses import dataclass
 from math import atan2, cos, degrees, hypot, inf, nan, sin
 from typing import TYPE_CHECKING, Any
-
-from grader.values import dataclass
 
 if TYPE_CHECKING:
     import numpy as np

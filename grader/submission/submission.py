@@ -1,7 +1,7 @@
 """A submission: its files, and which URDF and which package of it are graded."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -16,7 +16,6 @@ from grader.source import Source
 from grader.static_python.closed_values import Budget
 from grader.submission.urdf import Absent, OtherCandidate, Read, Unreadable, Urdf
 from grader.text import was_not_committed
-from grader.values import dataclass
 
 if TYPE_CHECKING:
     from grader.documents.collection import DocumentCollection

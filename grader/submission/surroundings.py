@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError, NotDecided
@@ -11,7 +11,6 @@ from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree
 from grader.package.package import Package
 from grader.static_python.closed_values import Budget
-from grader.values import dataclass
 
 if TYPE_CHECKING:
     from grader.package.launch.model import NamedFile

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -25,7 +25,6 @@ from grader.usecases.report_names import CLASS_PAGE, INDEX, report_names, update
 from grader.usecases.saves import address
 from grader.usecases.terminal import Warn
 from grader.usecases.writing import make_folder, refuse_symlinks, save
-from grader.values import dataclass
 
 _TASK_SIZE = 50  # reports
 _MAX_NAMED = 3

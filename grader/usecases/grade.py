@@ -3,6 +3,7 @@
 import os
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -18,7 +19,6 @@ from grader.usecases.rubrics import DEFAULT_RUBRIC, files_of, load
 from grader.usecases.saves import Saves, picture_beside
 from grader.usecases.terminal import ShowFile, Warn
 from grader.usecases.writing import refuse_inputs, refuse_symlinks, remove_previous, save
-from grader.values import dataclass
 
 if TYPE_CHECKING:
     from grader.grading.hints.hinting import Fix
