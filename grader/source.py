@@ -2,7 +2,6 @@
 
 import re
 from bisect import bisect_right
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
 from typing import Literal, NamedTuple
@@ -12,8 +11,7 @@ _BYTES_OF_SHORT_FILE = 4096
 _START_TAG = r"(?s)<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<(?![/!?])"
 
 
-@dataclass(frozen=True, slots=True)
-class Location:
+class Location(NamedTuple):
     """A location in a file of the submission; line and column count from 1, columns in characters.
 
     `calls` are the macro calls of xacro that led to it, outermost first: the name of each macro, and where it is

@@ -1,6 +1,5 @@
 """The submission part of a report: what was graded, its files as far as they can still be read, its class grade."""
 
-from dataclasses import dataclass, field
 from decimal import Decimal
 from typing import NamedTuple, Protocol
 
@@ -29,8 +28,7 @@ class GradedPackage(NamedTuple):
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class GradedSubmission:
+class GradedSubmission(NamedTuple):
     """The submission part of a report. `path`, `sha256` and `verdict` are those of the URDF.
 
     `is_single` distinguishes a single URDF from a folder or archive; `unread` says why the URDF could not be read;
@@ -48,7 +46,7 @@ class GradedSubmission:
     is_single: bool = False
     unread: str = ""
     lacks: tuple[str, ...] = ()
-    originals: Originals | None = field(default=None, repr=False, compare=False)
+    originals: Originals | None = None
 
     @classmethod
     def of(cls, submission: Submission, lacks: tuple[str, ...]) -> "GradedSubmission":

@@ -1,7 +1,6 @@
 """The report: the outcome and the points of every criterion. Renderers only lay it out."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
 from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -114,8 +113,7 @@ class EvidenceResult(NamedTuple):
     possible: "tuple[EvidenceFile, ...]" = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Report:
+class Report(NamedTuple):
     """The points of one submission under one rubric.
 
     `problems` are those of the URDF and, where a package is graded, of its files. `other_pictures` are pictures that no
@@ -204,7 +202,7 @@ class Report:
 def without_gifts(results: Iterable[Result], submission: GradedSubmission) -> tuple[Result, ...]:
     """Return results in which no adjustment gives points to a submission that could not be read."""
     return tuple(
-        result._replace(criterion=replace(result.criterion, adjustment=None))
+        result._replace(criterion=result.criterion._replace(adjustment=None))
         if submission.unread and result.criterion.is_given
         else result
         for result in results

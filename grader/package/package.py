@@ -30,18 +30,18 @@ _MAX_LAUNCHES = 10
 _KINDS = {"urdf": ("URDF", (".urdf", ".xacro")), "rviz": ("RViz file", (".rviz",)), "launch": ("launch file", ENDINGS)}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Package:
     """One package; `folder` is its path in the submission, and `tree` has its files by their paths in the package."""
 
     folder: str
-    tree: Tree = field(repr=False)
-    manifest: "Manifest | None" = field(repr=False)
-    packages: dict[str, "Package"] = field(repr=False, compare=False)  # all of the submission, by their names
-    generated: tuple[str, ...] = field(default=(), repr=False)  # paths in the submission that a build has copied
+    tree: Tree
+    manifest: "Manifest | None"
+    packages: dict[str, "Package"]  # all of the submission, by their names
+    generated: tuple[str, ...] = ()  # paths in the submission that a build has copied
     lab_name: str = ""  # the name that the lab gives it
-    _launches: "dict[str, Launch]" = field(default_factory=dict, init=False, repr=False, compare=False)
-    _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False, repr=False, compare=False)
+    _launches: "dict[str, Launch]" = field(default_factory=dict, init=False)
+    _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False)
 
     def path(self, path: str) -> str:
         """Return a path of the package as one of the submission."""

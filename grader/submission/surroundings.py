@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError, NotDecided
 from grader.files.reading import URDF_LIMIT
@@ -19,21 +18,20 @@ if TYPE_CHECKING:
 _NO_FILES = make_tree("", (), ())
 
 
-@dataclass(frozen=True)
-class Surroundings:
+class Surroundings(NamedTuple):
     """The files and packages of a submission; `arguments` are those that the user gives xacro.
 
-    `asked` receives the names of the other files that xacro reads. With `is_single` they are those around a single
+    `ask` is called with the name of each other file that xacro reads. With `is_single` they are those around a single
     file.
     """
 
-    tree: Tree = field(default=_NO_FILES, repr=False)
+    budget: Budget
+    tree: Tree = _NO_FILES
     graded: Package | None = None
     packages: tuple[Package, ...] = ()
-    arguments: Mapping[str, str] = field(default_factory=dict)
-    asked: list[str] = field(default_factory=list, repr=False)
-    budget: Budget = field(default_factory=Budget, repr=False)
+    arguments: Mapping[str, str] = {}
     is_single: bool = False
+    ask: Callable[[str], object] = lambda _: None
 
     def robot_references(self, path: str) -> list[NamedFile]:
         """Return where the launch files of the graded package read a URDF."""
@@ -52,7 +50,7 @@ class Surroundings:
             tuple(self.tree.files),
             self._installed_file,
             is_part,
-            self.asked.append,
+            self.ask,
         )
 
     def _read(self, path: str) -> bytes:

@@ -59,7 +59,7 @@ def report_of(grades: Grades, grade: StudentGrade, *, feedback: bool = False) ->
     is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
     counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final is not None)
     notes = (*report.notes, *remarks.notes, *graded, *([note] if note else []))
-    return replace(report, notes=notes, grade=counting if is_changed else None)
+    return report._replace(notes=notes, grade=counting if is_changed else None)
 
 
 def _nothing_submitted(grades: Grades, grade: StudentGrade) -> Report:

@@ -3,7 +3,6 @@
 import os
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -31,8 +30,7 @@ _KEPT = (*ROBOT_ENDINGS, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # fi
 _SHA256 = r"[0-9a-fA-F]{64}"
 
 
-@dataclass(frozen=True, slots=True)
-class GradeRequest:
+class GradeRequest(NamedTuple):
     """A submission to grade, its rubric, and the reports to make."""
 
     path: str
