@@ -18,6 +18,7 @@ from timing import PACKAGE, ROOT, URDF, in_turn, repeated
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
+from grader.static_python.closed_values import Budget
 from grader.submission.opening import open_submission, read_submission
 from grader.submission.surroundings import Surroundings
 from grader.xacro.expansion import expand
@@ -56,7 +57,7 @@ def from_path(path: Path) -> Callable[[], Report]:
 
 def expanded(path: Path) -> bytes:
     """Return the URDF that xacro makes of a file."""
-    root = expand(path.read_bytes(), path.name, Surroundings().workspace(), {}).root
+    root = expand(path.read_bytes(), path.name, Surroundings(Budget()).workspace(), {}).root
     assert root is not None
     return etree.tostring(root, pretty_print=True)
 

@@ -2,17 +2,15 @@
 
 from collections.abc import Iterable
 from functools import partial
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from grader.source import Location
-from grader.values import dataclass
 
 Severity = Literal["error", "warning", "note"]
 Effect = Literal["rejects", "undetermined", "drops", "loads", "other"]
 
 
-@dataclass(frozen=True, slots=True)
-class Kind:
+class Kind(NamedTuple):
     """One kind of problem: a code that never changes, and its title. docs/examples/ says how to fix the file.
 
     The effect of a URDF's problems decides the verdict: ROS 2 rejects the file, drops content of it, or loads all of
@@ -30,8 +28,7 @@ class Kind:
     is_before_ros: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Problem:
+class Problem(NamedTuple):
     """One problem of one file, in a sentence; `subject` names the link that loses content with it, if one does."""
 
     kind: Kind

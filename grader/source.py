@@ -6,15 +6,12 @@ from functools import cached_property
 from itertools import accumulate
 from typing import Literal, NamedTuple
 
-from grader.values import dataclass
-
 _BYTES_OF_SHORT_FILE = 4096
 # In text that an XML parser has accepted, `<` and a name outside comments and CDATA opens a tag.
 _START_TAG = r"(?s)<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<(?![/!?])"
 
 
-@dataclass(frozen=True, slots=True)
-class Location:
+class Location(NamedTuple):
     """A location in a file of the submission; line and column count from 1, columns in characters.
 
     `calls` are the macro calls of xacro that led to it, outermost first: the name of each macro, and where it is

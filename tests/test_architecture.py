@@ -13,7 +13,7 @@ from grader.checks.registry import own_checks
 
 ROOT = Path(__file__).parent.parent / "grader"
 LAYERS = (
-    ("errors", "markup", "text", "values"),
+    ("errors", "markup", "text", "reuse"),
     ("source", "names"),
     ("problems", "edits", "difference"),
     ("files", "static_python", "xml"),

@@ -4,14 +4,12 @@ import inspect
 import re
 import sys
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import field
 from itertools import takewhile
 from typing import Any, Literal, NamedTuple, get_args, get_type_hints
 
 from grader.checks.outcome import Outcome
 from grader.checks.toml_types import TomlType, toml_type
 from grader.errors import InputError
-from grader.values import dataclass
 
 # The ways in which the text of a robot is rewritten to an equal robot, in the order in which they are tried.
 EQUIVALENTS = (
@@ -56,8 +54,7 @@ DEGREES = Usual({"tolerance": 1.0}, "degrees")
 MEASURES = "grader.checks.measures"
 
 
-@dataclass(frozen=True, slots=True)
-class About:
+class About(NamedTuple):
     """What a check declares, in the table `ABOUT` of its module by the name of its function.
 
     `looks_at`: the files of a package (`setup.py`, `package.xml`, `launch`, `rviz`) on which the result depends, where
@@ -85,8 +82,7 @@ Subject = Literal["urdf", "robot", "package", "submission", "reference"]
 SUBJECTS: tuple[Subject, ...] = get_args(Subject)
 
 
-@dataclass(frozen=True, slots=True)
-class Parameter:
+class Parameter(NamedTuple):
     """One argument of a check: its annotation, and its default if it has one."""
 
     name: str
@@ -100,8 +96,7 @@ class Parameter:
         return toml_type(self.annotation)
 
 
-@dataclass(frozen=True, slots=True)
-class Check:
+class Check(NamedTuple):
     """A check, as a rubric names it.
 
     `examined` are the objects that it gets, the main one first: the URDF as it was read, its robot, the package, the
@@ -114,7 +109,7 @@ class Check:
     examined: tuple[Subject, ...]
     parameters: Mapping[str, Parameter]
     distribution: str = ""
-    about: About = field(default_factory=About)
+    about: About = About()
 
     @property
     def subject(self) -> Subject:

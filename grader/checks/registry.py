@@ -1,7 +1,6 @@
 """The explicit list of checks that a rubric can name. Other packages add theirs by entry points."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -124,7 +123,7 @@ def declared(place: str) -> Callable[..., Any]:
 def _load(name: str, entry: "EntryPoint") -> Check:
     distribution = _package_of(entry)
     try:
-        return replace(describe(entry.load(), distribution), name=name)
+        return describe(entry.load(), distribution)._replace(name=name)
     except (KeyboardInterrupt, OutOfTime):
         raise
     except BaseException as error:  # noqa: BLE001  a fault of another package, which may even exit

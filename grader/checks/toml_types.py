@@ -2,23 +2,20 @@
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import field, replace
 from decimal import Decimal
 from functools import lru_cache, partial
 from math import isfinite
 from types import NoneType, UnionType
-from typing import Annotated, Any, Literal, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_origin
 
 from grader.robot.transforms import Vector
-from grader.values import dataclass
 
 
 class WrongValue(ValueError):
     """A value of another type or outside the constraints; the text says what it must be."""
 
 
-@dataclass(frozen=True, slots=True)
-class TomlType:
+class TomlType(NamedTuple):
     """A type: its name for messages, its JSON Schema, and `parse`, which converts a TOML value or raises WrongValue."""
 
     name: str
@@ -26,13 +23,15 @@ class TomlType:
     parse: Callable[[Any], Any]
 
 
-@dataclass(frozen=True, slots=True)
-class Constraint:
+class Constraint(NamedTuple):
     """A constraint for `Annotated`: `must_be` ends the message "... must be", `schema` adds to the type's schema."""
 
     must_be: str
     holds: Callable[[Any], bool]
-    schema: Mapping[str, Any] = field(default_factory=dict, hash=False)
+    schema: Mapping[str, Any] = {}
+
+    def __hash__(self) -> int:
+        return hash((self.must_be, self.holds))
 
 
 AtLeastZero = Constraint("at least 0", lambda value: value >= 0, {"minimum": 0})
@@ -138,7 +137,7 @@ def _table(inner: tuple[Any, ...]) -> TomlType:
 def described(base: TomlType, description: str, **keywords: Any) -> TomlType:
     """Return a type whose JSON Schema says what the value means; without a description, only the keywords are added."""
     text = {"description": description} if description else {}
-    return replace(base, schema={**base.schema, **text, **keywords})
+    return base._replace(schema={**base.schema, **text, **keywords})
 
 
 def constrained(base: TomlType, *constraints: Constraint) -> TomlType:

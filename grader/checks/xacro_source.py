@@ -151,11 +151,11 @@ def _expand(submission: Submission, path: str, data: bytes) -> "ExpandedSource |
 
     packages = submission.packages or submission.neighbours
     surroundings = Surroundings(
+        submission.budget,
         submission.whole_tree,
         submission.package,
         packages,
         submission.opening.arguments,
-        budget=submission.budget,
         is_single=submission.is_single,
     )
     expansion = expand(data, path, surroundings.workspace(), submission.opening.arguments)

@@ -6,7 +6,7 @@ In the gradebook it is a StoredSubmission (as the last run found it), and a Stud
 the manual marks).
 """
 
-from grader.values import dataclass
+from dataclasses import dataclass
 
 # The name of the student whom Canvas makes for "View as Student", in its gradebook and in lower case.
 CANVAS_TEST_STUDENT = frozenset({"student, test", "test student"})

@@ -14,13 +14,12 @@ import csv
 import io
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from decimal import Decimal
 
 from grader.errors import InputError
 from grader.files.reading import capped
 from grader.text import format_points
-from grader.values import dataclass
 
 SIZE_LIMIT = 16 * 1024 * 1024  # bytes
 ROW_LIMIT = 100_000

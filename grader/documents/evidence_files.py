@@ -3,13 +3,13 @@
 import re
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from grader.documents.image_size import image_size
 from grader.documents.labels import Label, read_label, stem
 from grader.errors import InputError
 from grader.files.tree import File, Tree
-from grader.values import dataclass
 
 _PICTURES = frozenset({".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg"})
 

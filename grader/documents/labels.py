@@ -1,11 +1,11 @@
 """The task and step that a name or heading names, in any spelling: Task1_Step8, task 1 step 8, T1S8, lab6_task1_q8."""
 
 import re
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import takewhile
 
 from grader.names import closest
-from grader.values import dataclass
 
 WORDS = re.compile(r"[^\W\d_]+|\d+")
 QUESTION_WORDS = frozenset({"question", "q", "que", "frage"})

@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from grader.checks.visuals import main_visual
@@ -17,7 +18,6 @@ from grader.robot.kinematics import Configuration
 from grader.robot.likeness import mismatch
 from grader.robot.selectors import texts_in
 from grader.robot.transforms import Vector, minus
-from grader.values import dataclass
 
 _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
 # The arguments that name the frame of a measurement.

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import inf, isfinite
 from typing import NamedTuple
 
@@ -15,7 +15,6 @@ from grader.robot.model import Box, Cylinder, Mesh, Sphere, Visual
 from grader.robot.shapes import Shape, UnknownShape, extent, is_empty
 from grader.robot.transforms import Z_AXIS, Transform, Vector
 from grader.text import counted, enumerated, quoted
-from grader.values import dataclass
 
 Rgba = tuple[float, float, float, float]
 

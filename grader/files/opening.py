@@ -3,7 +3,6 @@
 import os
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
 from grader.errors import FileError, InputError
@@ -122,7 +121,7 @@ def _combine(name: str, parts: Sequence[tuple[str, Tree]], unopened: Sequence[Ig
     """Return one tree of several, each with the start of its paths."""
     return make_tree(
         name,
-        [replace(file, path=start + file.path) for start, part in parts for file in part.files.values()],
+        [file._replace(path=start + file.path) for start, part in parts for file in part.files.values()],
         [start + folder for start, part in parts for folder in part.folders],
         [*(file._replace(path=start + file.path) for start, part in parts for file in part.ignored), *unopened],
         [start + path for start, part in parts for path in part.generated],

@@ -1,13 +1,12 @@
 """The file tree of a submission: a folder or an archive looks the same from here on."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple, Protocol
 
 from grader.errors import FileError
 from grader.files import limits
-from grader.values import dataclass
 
 _SMALL = 4096  # bytes
 
@@ -45,13 +44,12 @@ class IgnoredFile(NamedTuple):
         return f"{self.path} {self.reason}"
 
 
-@dataclass(frozen=True, slots=True)
-class File:
+class File(NamedTuple):
     """One regular file; `path` is relative to the submission, with forward slashes, and printable."""
 
     path: str
     size: int
-    read: ContentReader = field(repr=False, compare=False)
+    read: ContentReader
 
     @property
     def name(self) -> str:
@@ -66,7 +64,7 @@ class File:
         return name[dot:].lower() if 0 < dot < len(name) - 1 else ""
 
 
-@dataclass(frozen=True)  # no slots: finalizers of archives need weak references to it
+@dataclass(frozen=True, eq=False, repr=False)  # no slots: finalizers of archives need weak references to it
 class Tree:
     """The files of a submission by path, in alphabetical order, and its folders, empty ones included.
 
@@ -80,7 +78,7 @@ class Tree:
     ignored: tuple[IgnoredFile, ...] = ()
     generated: tuple[str, ...] = ()
     unseen: frozenset[str] = frozenset()
-    kept: tuple[object, ...] = field(default=(), repr=False, compare=False)
+    kept: tuple[object, ...] = ()
 
     @property
     def unopened(self) -> tuple[IgnoredFile, ...]:
@@ -126,7 +124,7 @@ def make_tree(
     """
     by_path = {file.path: file for file in sorted(files, key=lambda file: file.path)}
     large = [_too_large(file) for file in by_path.values() if file.size > limits.MAX_FILE_SIZE]
-    by_path |= {file.path: replace(by_path[file.path], read=partial(_refuse, file)) for file in large}
+    by_path |= {file.path: by_path[file.path]._replace(read=partial(_refuse, file)) for file in large}
     named = frozenset(folders)
     everything = named | folders_above([*by_path, *named], name)
     ignored = tuple(dict.fromkeys([*ignored, *large]))

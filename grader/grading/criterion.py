@@ -1,14 +1,12 @@
 """The rows of a rubric: criteria with what they are worth, parts, evidence, the late penalty, ignored mutants."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import field
 from datetime import datetime
 from decimal import Decimal
 from typing import Any, NamedTuple
 
 from grader.checks.check import Check
 from grader.text import counted_points, format_points
-from grader.values import dataclass
 
 TOTAL = "total"  # in place of a criterion's id, in manual marks: the whole submission
 
@@ -36,8 +34,7 @@ class Adjustment(NamedTuple):
         return f"{'Points given to all students' if self.action == 'full' else 'Not counted'}: {self.reason}"
 
 
-@dataclass(frozen=True, slots=True)
-class Criterion:
+class Criterion(NamedTuple):
     """A row of a rubric: a check with its arguments, and the exact points for passing it. `position` counts from 0.
 
     The points of a `bonus` are extra credit, not part of the maximum. A dropped criterion has 0 points; manual marks of
@@ -61,11 +58,11 @@ class Criterion:
     position: int = 0
     answer: str = ""
     carried: tuple[Carried, ...] = ()
-    at: Mapping[str, float] = field(default_factory=dict)
+    at: Mapping[str, float] = {}
     has_selectors: bool = False
     bonus: bool = False
     adjustment: Adjustment | None = None
-    choices: Mapping[str, Decimal] = field(default_factory=dict)
+    choices: Mapping[str, Decimal] = {}
 
     @property
     def maximum(self) -> Decimal:
@@ -110,8 +107,7 @@ def worth(criteria: Iterable[Criterion]) -> Worth:
     return Worth(points, bonus)
 
 
-@dataclass(frozen=True, slots=True)
-class Part:
+class Part(NamedTuple):
     """A task of the lab. `needs` is the required input: a urdf, a package, or all files of the submission."""
 
     id: str
@@ -119,8 +115,7 @@ class Part:
     needs: str = "urdf"
 
 
-@dataclass(frozen=True, slots=True)
-class Evidence:
+class Evidence(NamedTuple):
     """Evidence that the lab asks for. `names` are labels in the name of its file, in any spelling: "task 1 step 8"."""
 
     id: str
@@ -129,8 +124,7 @@ class Evidence:
     names: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Late:
+class Late(NamedTuple):
     """The late penalty, in percent of the maximum for each day begun after the deadline and the grace period.
 
     The penalty lowers no grade below `floor_percent` of the maximum, and does not change lower grades. `due` has a time

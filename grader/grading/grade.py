@@ -146,7 +146,7 @@ def _note_on_convention(rubric: Rubric, submission: Submission, results: Sequenc
     found = _convention(rubric, submission) if len(lost) >= _MIN_OF_CONVENTION else None
     if found is None or not isinstance(submission.urdf, Read):
         return ()
-    reading = replace(submission.urdf.reading, robot=found.robot)
+    reading = submission.urdf.reading._replace(robot=found.robot)
     other = replace(submission, urdf=submission.urdf._replace(reading=reading))
     decided = [result for result in results if result.criterion.check.subject in ("urdf", "robot")]
     after = {result.criterion.id: result for result in decide(rubric, other, {it.criterion.id for it in decided})}

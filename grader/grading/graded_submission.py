@@ -1,6 +1,5 @@
 """The submission part of a report: what was graded, its files as far as they can still be read, its class grade."""
 
-from dataclasses import field
 from decimal import Decimal
 from typing import NamedTuple, Protocol
 
@@ -9,7 +8,6 @@ from grader.robot.reader import Verdict
 from grader.source import Source
 from grader.submission.submission import Submission
 from grader.submission.urdf import OtherCandidate, Read, Urdf
-from grader.values import dataclass
 
 
 class Originals(Protocol):
@@ -30,8 +28,7 @@ class GradedPackage(NamedTuple):
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class GradedSubmission:
+class GradedSubmission(NamedTuple):
     """The submission part of a report. `path`, `sha256` and `verdict` are those of the URDF.
 
     `is_single` distinguishes a single URDF from a folder or archive; `unread` says why the URDF could not be read;
@@ -51,7 +48,7 @@ class GradedSubmission:
     unread: str = ""
     lacks: tuple[str, ...] = ()
     another_robot: str = ""
-    originals: Originals | None = field(default=None, repr=False, compare=False)
+    originals: Originals | None = None
 
     @classmethod
     def of(cls, submission: Submission, lacks: tuple[str, ...], another_robot: str) -> "GradedSubmission":

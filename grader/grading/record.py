@@ -34,7 +34,7 @@ def to_record(report: Report) -> str:
         "parts": report.parts,
         "results": [_of_result(one) for one in report.results],
         "problems": [
-            {"code": one.code, "severity": one.severity, "message": one.message, "location": one.location}
+            {"code": one.code, "severity": one.severity, "message": one.message, "location": _of_place(one.location)}
             for one in report.problems
         ],
         "evidence": [
@@ -49,8 +49,15 @@ def to_record(report: Report) -> str:
 def _of_result(result: Result) -> dict[str, Any]:
     """Return a result by the names of its fields, without those that have their default."""
     given = {name: value for name, default, value in zip(*_OF_OUTCOME, result.outcome, strict=True) if value != default}
+    if isinstance(result.outcome.location, Location):
+        given["location"] = _of_place(result.outcome.location)
     data = {"criterion": result.criterion.id, "outcome": given}
     return data | {name: value for name in _OF_RESULT if (value := getattr(result, name))}
+
+
+def _of_place(location: Location) -> dict[str, Any]:
+    place = {"path": location.path, "line": location.line, "column": location.column}
+    return place | ({"calls": [(name, _of_place(at)) for name, at in location.calls]} if location.calls else {})
 
 
 def from_record(text: str, rubric: Rubric, originals: Originals | None = None) -> Report:
@@ -113,10 +120,7 @@ def _evidence_files(stored: list[dict[str, Any]]) -> tuple[EvidenceFile, ...]:
 
 
 def _plain(value: Any) -> Any:
-    """Return what JSON cannot hold as a dictionary: a location or file by its fields, or a read-only mapping."""
-    if isinstance(value, Location):
-        place = {"path": value.path, "line": value.line, "column": value.column}
-        return place | {"calls": value.calls} if value.calls else place
+    """Return what JSON cannot hold as a dictionary: a file by its fields, or a read-only mapping."""
     return asdict(value) if isinstance(value, EvidenceFile) else dict(value)
 
 

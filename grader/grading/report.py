@@ -1,7 +1,6 @@
 """The report: the outcome and the points of every criterion. Renderers only lay it out."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -13,7 +12,6 @@ from grader.grading.graded_submission import Grade, GradedSubmission
 from grader.grading.rubric import Rubric
 from grader.problems import Problem
 from grader.source import Certainty, Edits, Location
-from grader.values import dataclass
 
 if TYPE_CHECKING:
     from grader.documents.evidence_files import EvidenceFile
@@ -115,8 +113,7 @@ class EvidenceResult(NamedTuple):
     possible: "tuple[EvidenceFile, ...]" = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Report:
+class Report(NamedTuple):
     """The points of one submission under one rubric.
 
     `problems` are those of the URDF and, where a package is graded, of its files. `other_pictures` are pictures that no
@@ -206,7 +203,7 @@ class Report:
 def without_gifts(results: Iterable[Result], submission: GradedSubmission) -> tuple[Result, ...]:
     """Return results in which no adjustment gives points to a submission that could not be read."""
     return tuple(
-        result._replace(criterion=replace(result.criterion, adjustment=None))
+        result._replace(criterion=result.criterion._replace(adjustment=None))
         if submission.unread and result.criterion.is_given
         else result
         for result in results

@@ -2,11 +2,10 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
 from decimal import Decimal
 from functools import cache, lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from grader.checks.check import LINK_ARGUMENTS
 from grader.checks.manual import answered
@@ -22,15 +21,13 @@ from grader.names import did_you_mean
 from grader.robot.selectors import is_selector, texts_in
 from grader.submission.submission import Lab
 from grader.text import printable_path, shell_quoted
-from grader.values import dataclass
 
 _URDF = "robot.urdf"
 _ANSWERS = ".answers.toml"  # the ending of files with model answers next to the shipped rubrics
 _LIST = "(`grader rubric list` lists the rubrics that come with the grader)"
 
 
-@dataclass(frozen=True, slots=True)
-class Rubric:
+class Rubric(NamedTuple):
     """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if any.
 
     `folders` are the names of the lab's folder in a repository of several labs. `without_urdf` says what the criteria
@@ -45,8 +42,8 @@ class Rubric:
     criteria: tuple[Criterion, ...]
     urdf: str
     reference: str
-    data: bytes = field(repr=False)
-    path: Path = field(compare=False)
+    data: bytes
+    path: Path
     package: str = ""
     evidence: tuple[Evidence, ...] = ()
     late: Late | None = None
@@ -56,7 +53,7 @@ class Rubric:
     without_package: str = ""
     hints: HintLevel = "cause"
     ignored: tuple[Ignored, ...] = ()
-    solution: ReferenceSolution | None = field(default=None, compare=False, repr=False)
+    solution: ReferenceSolution | None = None
     links: frozenset[str] = frozenset()
 
     @property
@@ -213,4 +210,4 @@ def _adjust(criterion: Criterion, adjustments: Mapping[str, Adjustment]) -> Crit
     if adjustment is None:
         return criterion
     points = Decimal(0) if adjustment.action == "drop" else criterion.points
-    return replace(criterion, points=points, adjustment=adjustment)
+    return criterion._replace(points=points, adjustment=adjustment)

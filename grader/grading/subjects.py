@@ -1,7 +1,6 @@
 """The objects that checks examine: the URDF of a submission, its robot in a pose, its package, the reference."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from math import radians
 from typing import Any
 
@@ -39,7 +38,7 @@ class Subjects:
             self.source = urdf.source
             self.problems = tuple(it for it in urdf.problems if not (urdf.is_meant and it.kind.effect == "rejects"))
             self.robot = Configuration(urdf.robot, is_guarded=bool(urdf.unresolved)) if urdf.robot is not None else None
-            examined = replace(urdf, robot=self.robot.robot) if self.robot is not None else urdf
+            examined = urdf._replace(robot=self.robot.robot) if self.robot is not None else urdf
             self._known["urdf"] = submission.urdf.as_it_stands or examined
         if self.robot is not None:
             self._known["robot"] = self.robot

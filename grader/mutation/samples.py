@@ -1,6 +1,7 @@
 """Sample submissions: folders with an expected.toml, which says what their report must be."""
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -17,7 +18,6 @@ from grader.submission.opening import open_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import printable_path
-from grader.values import dataclass
 
 EXPECTED = "expected.toml"
 _TEXT = toml_type(str)

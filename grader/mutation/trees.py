@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from random import Random
 from typing import TypeVar
@@ -11,7 +12,6 @@ from lxml import etree
 
 from grader.mutation.elements import FOREIGN
 from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
-from grader.values import dataclass
 from grader.xacro.texts import INSTALLED
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import PARTS

@@ -3,6 +3,7 @@
 import posixpath
 import re
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from pathlib import PurePosixPath
 
@@ -12,7 +13,6 @@ from grader.static_python.evaluation import Evaluation, EvaluationStopped, Funct
 from grader.static_python.operators import WalkFolders
 from grader.static_python.parse import Position
 from grader.static_python.values import Call, Unknown, Value, distinct, items_of, path_text, unknown_in
-from grader.values import dataclass
 
 WRITING = "builtins.open(w)"  # the name of a call that opens a file to write into it
 _OUTSIDE = "it reads files outside of the package"

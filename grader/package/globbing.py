@@ -4,6 +4,7 @@ import posixpath
 import re
 import warnings
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from fnmatch import translate
 from functools import lru_cache
 from itertools import chain
@@ -12,7 +13,6 @@ from typing import NamedTuple
 from grader.files.tree import Tree
 from grader.static_python.parse import Position
 from grader.static_python.values import Value
-from grader.values import dataclass
 
 # The file system lists a folder, and Python a set, in any order: a result that depends on the order differs between
 # these.

@@ -1,11 +1,12 @@
 """package.xml: name, build type and problems of a package (REP 127, 140 and 149)."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from grader.package import catalogue
 from grader.problems import Problem
+from grader.reuse import reuse
 from grader.source import Location, Source
-from grader.values import dataclass, reuse
 from grader.xml.parsing import XmlFault, XmlFile
 
 

@@ -1,7 +1,7 @@
 """A ROS 2 package of a submission: its files are read one by one when they are needed, each once, and never run."""
 
 from contextlib import suppress
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
@@ -12,7 +12,6 @@ from grader.names import closest
 from grader.package.launch.places import ENDINGS, PREFIX, SHARE, is_in_launch_folder, is_launch_named, launch_stem
 from grader.source import Location, Source
 from grader.text import enumerated, was_not_committed
-from grader.values import dataclass
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
 if TYPE_CHECKING:
@@ -31,18 +30,18 @@ _MAX_LAUNCHES = 10
 _KINDS = {"urdf": ("URDF", (".urdf", ".xacro")), "rviz": ("RViz file", (".rviz",)), "launch": ("launch file", ENDINGS)}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Package:
     """One package; `folder` is its path in the submission, and `tree` has its files by their paths in the package."""
 
     folder: str
-    tree: Tree = field(repr=False)
-    manifest: "Manifest | None" = field(repr=False)
-    packages: dict[str, "Package"] = field(repr=False, compare=False)  # all of the submission, by their names
-    generated: tuple[str, ...] = field(default=(), repr=False)  # paths in the submission that a build has copied
+    tree: Tree
+    manifest: "Manifest | None"
+    packages: dict[str, "Package"]  # all of the submission, by their names
+    generated: tuple[str, ...] = ()  # paths in the submission that a build has copied
     lab_name: str = ""  # the name that the lab gives it
-    _launches: "dict[str, Launch]" = field(default_factory=dict, init=False, repr=False, compare=False)
-    _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False, repr=False, compare=False)
+    _launches: "dict[str, Launch]" = field(default_factory=dict, init=False)
+    _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False)
 
     def path(self, path: str) -> str:
         """Return a path of the package as one of the submission."""

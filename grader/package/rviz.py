@@ -1,12 +1,13 @@
 """RViz configuration files: the fixed frame and the enabled displays, as RViz of ROS 2 reads them."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from grader.package import catalogue
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.problems import Problem
+from grader.reuse import reuse
 from grader.source import Location, Source
-from grader.values import dataclass, reuse
 
 _MAX_DISPLAYS = 500
 

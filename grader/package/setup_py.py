@@ -1,7 +1,7 @@
 """The files that a build installs by a package's setup.py, which is evaluated, never run."""
 
 import ast
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from grader.files.tree import Tree
 from grader.package.data_files import DataFiles, InstalledFile, InstallError
@@ -13,7 +13,6 @@ from grader.static_python.functions import standard_functions
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import START, Code, Position, SyntaxFault, position_of
 from grader.static_python.values import PACKAGE_FOLDER, Unknown
-from grader.values import dataclass
 
 _ROOT = f"/{PACKAGE_FOLDER}"
 _SETUPS = ("setuptools.setup", "distutils.core.setup", "?.setup")

@@ -1,7 +1,6 @@
 """The criteria in the report for a terminal: a failure with what to do, what needs manual grading, lists."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from enum import Enum, auto
 from typing import NamedTuple
 
@@ -101,7 +100,7 @@ def _head(failure: FailedCriterion, details: Details, page: Page) -> Text:
     if failure.skipped and page.is_tight:
         text.append(f" with {len(failure.skipped)} skipped", "yellow")
     if details.location is not None:
-        where = replace(details.location, calls=()) if page.is_tight else details.location
+        where = details.location._replace(calls=()) if page.is_tight else details.location
         text.append(f"  {location_text(where)}", "dim")
     return text
 

@@ -1,6 +1,7 @@
 """A URDF as `grader inspect` shows it: problems, tree, joints, poses."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import islice
 from math import isfinite
 
@@ -31,7 +32,6 @@ from grader.robot.model import Joint
 from grader.robot.reader import Reading
 from grader.robot.transforms import Transform
 from grader.text import printable
-from grader.values import dataclass
 
 _MAX_LISTED = 500  # links in the terminal
 _EFFECTS = {**{verdict: text.replace("the file", "it") for verdict, text in VERDICTS.items()}, "undecided": UNDECIDED}

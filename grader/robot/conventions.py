@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import permutations, product
 from math import dist, hypot
-from statistics import median
 from typing import NamedTuple
 
 from grader.errors import MissingElement, NotDecided
@@ -71,6 +70,8 @@ def _quarter_turns() -> Iterator[Rotation]:
 
 def _fit(pairs: _Pairs, rotation: Rotation) -> tuple[int, Transform]:
     """Return how many points a rotation and the best translation lay over each other, and both."""
+    from statistics import median  # late: most robots are not turned
+
     turned = Transform(rotation)
     offsets = [minus(ours, turned.apply(theirs)) for ours, theirs in pairs]
     x, y, z = (round(median(values), 9) for values in zip(*offsets, strict=True))

@@ -1,9 +1,8 @@
 """The elements in a `<joint>` besides its frame and axis, as plain values. A number that cannot be read is NaN."""
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from grader.source import LazyLocation
-from grader.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,16 +5,17 @@ cannot be read; a value that the file does not give has ROS 2's default.
 """
 
 from collections.abc import Iterable
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NoReturn
 
 from grader.errors import MissingElement, NotDecided
 from grader.names import did_you_mean
-from grader.robot.joint_elements import Calibration, Dynamics, Limit, Mimic, SafetyController
 from grader.robot.unresolved import Guarded, UnresolvedParts
 from grader.source import LazyLocation
 from grader.text import quoted
-from grader.values import dataclass
+
+if TYPE_CHECKING:
+    from grader.robot.joint_elements import Calibration, Dynamics, Limit, Mimic, SafetyController
 
 Vector = tuple[float, float, float]
 INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")  # the components, in the order of Inertial.inertia
@@ -133,11 +134,11 @@ class Joint(Guarded):
     child: str
     origin: Origin | None = Origin()
     axis: Vector | None = (1.0, 0.0, 0.0)
-    limit: Limit | None = None
-    mimic: Mimic | None = None
-    dynamics: Dynamics | None = None
-    safety_controller: SafetyController | None = None
-    calibration: Calibration | None = None
+    limit: "Limit | None" = None
+    mimic: "Mimic | None" = None
+    dynamics: "Dynamics | None" = None
+    safety_controller: "SafetyController | None" = None
+    calibration: "Calibration | None" = None
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
     axis_location: LazyLocation | None = field(default=None, compare=False, repr=False)
     unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)

@@ -2,9 +2,9 @@
 
 import re
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import replace
 from functools import partial
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from grader.problems import Effect, Problem, causes, in_order
 from grader.robot import catalogue
@@ -18,7 +18,6 @@ from grader.robot.spelling import check_spelling
 from grader.robot.tree import check_tree
 from grader.source import Source
 from grader.text import quoted
-from grader.values import dataclass
 from grader.xml.parsing import Element, Unresolved, XmlDocument, read_document
 
 Verdict = Literal["clean", "degraded", "rejected"]
@@ -27,8 +26,7 @@ _FATAL: frozenset[Effect] = frozenset({"rejects", "undetermined"})
 _XACRO = re.compile(r"<xacro:|\$\{|\$\(")
 
 
-@dataclass(frozen=True, slots=True)
-class Reading:
+class Reading(NamedTuple):
     """ROS 2's verdict on a URDF. `robot` is as much as could be read, also of a rejected file; None if nothing could.
 
     `root` is the element that it was read from, None where the text is not XML; then it was read from `recovered`, if
@@ -40,9 +38,9 @@ class Reading:
     robot: Robot | None
     problems: tuple[Problem, ...]
     source: Source
-    root: Element | None = field(default=None, compare=False, repr=False)
-    unresolved: Mapping[Element, Unresolved] = field(default_factory=dict, compare=False, repr=False)
-    recovered: Element | None = field(default=None, compare=False, repr=False)
+    root: Element | None = None
+    unresolved: Mapping[Element, Unresolved] = {}
+    recovered: Element | None = None
     is_meant: bool = False
 
     @property

@@ -5,9 +5,7 @@ gives the homogeneous matrix.
 """
 
 from math import atan2, cos, degrees, hypot, inf, nan, sin
-from typing import TYPE_CHECKING, Any
-
-from grader.values import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     import numpy as np
@@ -20,8 +18,7 @@ Rotation = tuple[float, float, float, float, float, float, float, float, float] 
 IDENTITY_ROTATION: Rotation = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Transform:
+class Transform(NamedTuple):
     """T_a_b: maps points given in frame b to frame a. `translation` is b's origin in a, metres."""
 
     rotation: Rotation = IDENTITY_ROTATION

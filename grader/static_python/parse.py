@@ -6,11 +6,12 @@ import sys
 import tokenize
 import warnings
 from codecs import lookup
+from dataclasses import dataclass
 from io import BytesIO
 from typing import NamedTuple
 
+from grader.reuse import reuse
 from grader.source import Location, Source
-from grader.values import dataclass, reuse
 
 _SLOW_ENCODINGS = ("idna", "punycode")  # encodings of domain names; their time grows with the square of the length
 _JAZZY = (3, 12)  # the Python version of ROS 2 Jazzy

@@ -8,6 +8,7 @@ from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import File, Tree, make_tree
 from grader.source import Edit
+from grader.static_python.closed_values import Budget
 from grader.submission.submission import Submission
 from grader.submission.surroundings import Surroundings
 from grader.submission.urdf import Read, read_as_ros
@@ -59,7 +60,7 @@ def with_urdf(submission: Submission, files: Files) -> Submission:
     whole_tree = overlaid(submission.whole_tree, files) if submission.whole_tree.files else submission.whole_tree
     packages = submission.packages or submission.neighbours
     surroundings = Surroundings(
-        whole_tree, submission.package, packages, submission.opening.arguments, is_single=submission.is_single
+        Budget(), whole_tree, submission.package, packages, submission.opening.arguments, is_single=submission.is_single
     )
     read = read_as_ros(files.get(path) or urdf.data, path, surroundings)
     return replace(submission, urdf=read, whole_tree=whole_tree, budget=surroundings.budget)

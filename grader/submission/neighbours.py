@@ -24,11 +24,12 @@ def read_with_neighbours(place: Path, data: bytes, identity: str, opening: Openi
 
     If it reads anything, its path is relative to the nearest folder above with a package.xml, else to its own folder.
     """
-    alone = Surroundings(arguments=opening.arguments)
+    asked: list[str] = []
+    alone = Surroundings(Budget(), arguments=opening.arguments, ask=asked.append)
     submission = Submission(
         identity, read_as_ros(data, printable_path(place.name), alone), opening=opening, budget=alone.budget
     )
-    if not alone.asked:
+    if not asked:
         return submission
     try:
         folder = place.parent.resolve()
@@ -49,10 +50,10 @@ def _with_files_around(submission: Submission, tree: Tree, path: str, alone: Sur
         data = file.read(limit, first=first)
         return data if first else known.setdefault(file.path, data)
 
-    recorded = replace(tree, files={name: replace(file, read=partial(read, file)) for name, file in tree.files.items()})
+    recorded = replace(tree, files={name: file._replace(read=partial(read, file)) for name, file in tree.files.items()})
     packages = read_packages(recorded, Lab(""))
     data = tree.files[path].read(tree.files[path].size)
-    surroundings = replace(alone, tree=recorded, packages=packages, is_single=True, budget=Budget())
+    surroundings = alone._replace(tree=recorded, packages=packages, is_single=True, budget=Budget())
     urdf = read_as_ros(data, path, surroundings)
     besides = tuple(sorted(known.keys() - {path}))
     note = f"{enumerated(besides, _MAX_NAMED)} {'were' if len(besides) > 1 else 'was'} read besides {path}"

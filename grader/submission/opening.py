@@ -7,6 +7,7 @@ from grader.errors import InputError
 from grader.files.opening import open_tree, tree_name
 from grader.files.reading import read_capped, read_standard_input, read_start
 from grader.files.tree import Tree
+from grader.static_python.closed_values import Budget
 from grader.submission.submission import DEFAULTS, Lab, Opening, Submission
 from grader.submission.urdf import Absent, Unreadable, Urdf, read_as_ros
 from grader.text import printable_path
@@ -26,7 +27,7 @@ def read_submission(data: bytes, *, identity: str, path: str, opening: Opening =
         return Submission(identity, read_as_ros(data, path))
     from grader.submission.surroundings import Surroundings  # late: most URDFs are no xacro
 
-    surroundings = Surroundings(arguments=opening.arguments)
+    surroundings = Surroundings(Budget(), arguments=opening.arguments)
     return Submission(identity, read_as_ros(data, path, surroundings), opening=opening, budget=surroundings.budget)
 
 
@@ -80,7 +81,7 @@ def submission_of(tree: Tree, identity: str, lab: Lab, opening: Opening = DEFAUL
 
     chosen = select(tree, lab, opening)
     urdf: Urdf = Absent()
-    surroundings = Surroundings(tree, chosen.package, chosen.packages, opening.arguments)
+    surroundings = Surroundings(Budget(), tree, chosen.package, chosen.packages, opening.arguments)
     if chosen.urdf is not None:
         try:
             urdf = read_as_ros(tree.files[chosen.urdf].read(opening.max_size), chosen.urdf, surroundings)

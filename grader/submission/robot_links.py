@@ -39,7 +39,7 @@ def count_links(
             continue
         around = package_around(packages, robot.path)
         known = (around, *packages) if around is not None else packages
-        surroundings = Surroundings(tree, around, known, opening.arguments, budget=budget)
+        surroundings = Surroundings(budget, tree, around, known, opening.arguments)
         try:
             reading = read_as_ros(tree.files[robot.path].read(opening.max_size), robot.path, surroundings).reading
             found[robot.path] = _links_of(reading.robot, robot.robot, lab, is_open=bool(reading.undetermined))

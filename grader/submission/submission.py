@@ -1,7 +1,7 @@
 """A submission: its files, and which URDF and which package of it are graded."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -16,7 +16,6 @@ from grader.source import Source
 from grader.static_python.closed_values import Budget
 from grader.submission.urdf import Absent, OtherCandidate, Read, Unreadable, Urdf
 from grader.text import was_not_committed
-from grader.values import dataclass
 
 if TYPE_CHECKING:
     from grader.documents.collection import DocumentCollection
@@ -57,7 +56,7 @@ class Opening(NamedTuple):
 DEFAULTS = Opening()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Submission:
     """The work that a student submitted. `package` is the graded one; `no_package` says why none is, and which exist.
 
@@ -68,20 +67,20 @@ class Submission:
     id: str
     urdf: Urdf
     other_candidates: tuple[OtherCandidate, ...] = ()
-    tree: Tree = field(default=_NO_FILES, repr=False)
-    packages: tuple[Package, ...] = field(default=(), repr=False)
-    package: Package | None = field(default=None, repr=False)
+    tree: Tree = _NO_FILES
+    packages: tuple[Package, ...] = ()
+    package: Package | None = None
     no_package: tuple[str, str] = (NO_PACKAGE, "")
-    whole_tree: Tree = field(default=_NO_FILES, repr=False)
+    whole_tree: Tree = _NO_FILES
     students: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
     other_lab: str = ""  # the folder of another lab, where it is graded
-    opening: Opening = field(default=DEFAULTS, repr=False)
-    budget: Budget = field(default_factory=Budget, repr=False, compare=False)  # of the work to read it
-    neighbours: tuple[Package, ...] = field(default=(), repr=False)  # those around a URDF on its own
+    opening: Opening = DEFAULTS
+    budget: Budget = field(default_factory=Budget)  # of the work to read it
+    neighbours: tuple[Package, ...] = ()  # those around a URDF on its own
     besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes, and what finding them took
-    reopen: "Callable[[Tree], Submission] | None" = field(default=None, repr=False)  # opens other files in the same way
+    reopen: "Callable[[Tree], Submission] | None" = None  # opens other files in the same way
 
     @cached_property
     def documents(self) -> "DocumentCollection":

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import field
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError, NotDecided
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree, parents
 from grader.package.package import Package
 from grader.static_python.closed_values import Budget
-from grader.values import dataclass
 
 if TYPE_CHECKING:
     from grader.package.launch.model import NamedFile
@@ -21,21 +19,20 @@ _MAX_FOLDERS = 40  # whose launch files are read
 _NO_FILES = make_tree("", (), ())
 
 
-@dataclass(frozen=True)
-class Surroundings:
+class Surroundings(NamedTuple):
     """The files and packages of a submission; `arguments` are those that the user gives xacro.
 
-    `asked` receives the names of the other files that xacro reads. With `is_single` they are those around a single
+    `ask` is called with the name of each other file that xacro reads. With `is_single` they are those around a single
     file.
     """
 
-    tree: Tree = field(default=_NO_FILES, repr=False)
+    budget: Budget
+    tree: Tree = _NO_FILES
     graded: Package | None = None
     packages: tuple[Package, ...] = ()
-    arguments: Mapping[str, str] = field(default_factory=dict)
-    asked: list[str] = field(default_factory=list, repr=False)
-    budget: Budget = field(default_factory=Budget, repr=False)
+    arguments: Mapping[str, str] = {}
     is_single: bool = False
+    ask: Callable[[str], object] = lambda _: None
 
     def robot_references(self, path: str) -> list[NamedFile]:
         """Return where the launch files of the graded package read a URDF; without one, those in a folder around it."""
@@ -56,7 +53,7 @@ class Surroundings:
             tuple(self.tree.files),
             self._installed_file,
             is_part,
-            self.asked.append,
+            self.ask,
         )
 
     def _read(self, path: str) -> bytes:

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Collection, Mapping
-from dataclasses import replace
 from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -12,6 +11,7 @@ from grader.robot.catalogue import RAW_XACRO
 from grader.robot.model import Robot
 from grader.robot.reader import Reading, find_xacro, read_robot, read_urdf
 from grader.source import Source
+from grader.static_python.closed_values import Budget
 from grader.xml.catalogue import DOCTYPE, NOT_WELL_FORMED
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def read_as_ros(data: bytes, path: str, surroundings: "Surroundings | None" = No
     if surroundings is None:
         from grader.submission.surroundings import Surroundings  # late: most URDFs are no xacro
 
-        surroundings = Surroundings()
+        surroundings = Surroundings(Budget())
     launched = surroundings.robot_references(path)
     programs = {reference.by for reference in launched}
     if programs == {"xacro"} if programs else _says_xacro(name):
@@ -107,7 +107,7 @@ def read_as_ros(data: bytes, path: str, surroundings: "Surroundings | None" = No
     if reading.verdict == "clean":
         if _model(reading) == _model(expanded):
             return Read(path, data, reading)
-        reading = replace(reading, verdict="degraded")  # ROS 2 ignores the tags of xacro, and what they stand for
+        reading = reading._replace(verdict="degraded")  # ROS 2 ignores the tags of xacro, and what they stand for
     return Read(path, data, expanded, is_expanded=True, as_it_stands=reading)
 
 
@@ -172,4 +172,4 @@ def _expand_xacro(data: bytes, path: str, surroundings: "Surroundings", launched
     if not meant.is_meant or expansion.meant is None:
         return reading
     found = in_order([*causes(reading.problems), *expansion.assumed, *meant.problems])
-    return replace(meant, verdict="rejected", problems=found)
+    return meant._replace(verdict="rejected", problems=found)

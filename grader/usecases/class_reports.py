@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -25,7 +25,6 @@ from grader.usecases.report_names import CLASS_PAGE, INDEX, report_names, update
 from grader.usecases.saves import address
 from grader.usecases.terminal import Warn
 from grader.usecases.writing import make_folder, refuse_symlinks, save
-from grader.values import dataclass
 
 _TASK_SIZE = 50  # reports
 _MAX_NAMED = 3
@@ -60,7 +59,7 @@ def report_of(grades: Grades, grade: StudentGrade, *, feedback: bool = False) ->
     is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
     counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final is not None)
     notes = (*report.notes, *remarks.notes, *graded, *([note] if note else []))
-    return replace(report, notes=notes, grade=counting if is_changed else None)
+    return report._replace(notes=notes, grade=counting if is_changed else None)
 
 
 def _nothing_submitted(grades: Grades, grade: StudentGrade) -> Report:

@@ -1,5 +1,6 @@
 """The summary of a class: marks, statistics, and who needs attention."""
 
+from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -14,7 +15,6 @@ from grader.report.formats import OutputFormat
 from grader.report.screen import Screen, draw
 from grader.usecases.class_hints import HintOptions, search_class_hints
 from grader.usecases.terminal import Terminal, Warn
-from grader.values import dataclass
 
 if TYPE_CHECKING:
     from grader.classroom.run.progress import Progress

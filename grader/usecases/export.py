@@ -1,5 +1,6 @@
 """Export the current grades: as CSV or JSON, into a file of an LMS, and the reports as feedback for an LMS."""
 
+from dataclasses import dataclass
 from datetime import datetime
 from decimal import Decimal
 from pathlib import Path
@@ -22,7 +23,6 @@ from grader.usecases.feedback_zip import FeedbackRequest, feedback_zip
 from grader.usecases.grade_files import FILLERS, fill_lms_file, grades_csv, preflight_lines
 from grader.usecases.terminal import Terminal, Warn
 from grader.usecases.writing import is_same_file, is_stdout, refuse_gradebook, refuse_symlinks, save_bytes
-from grader.values import dataclass
 
 _BOM = b"\xef\xbb\xbf"  # by which Excel recognises UTF-8
 # The targets of each option that not all targets take.

@@ -3,6 +3,7 @@
 import tempfile
 from collections import Counter, defaultdict
 from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
@@ -24,7 +25,6 @@ from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, render_repo
 from grader.usecases.grade_files import by_reason
 from grader.usecases.report_names import file_names, report_names
 from grader.usecases.terminal import Terminal
-from grader.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

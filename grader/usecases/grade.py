@@ -18,7 +18,6 @@ from grader.usecases.rubrics import DEFAULT_RUBRIC, files_of, load
 from grader.usecases.saves import Saves, picture_beside
 from grader.usecases.terminal import ShowFile, Warn
 from grader.usecases.writing import refuse_inputs, refuse_symlinks, remove_previous, save
-from grader.values import dataclass
 
 if TYPE_CHECKING:
     from grader.grading.hints.hinting import Fix
@@ -31,8 +30,7 @@ _KEPT = (*ROBOT_ENDINGS, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # fi
 _SHA256 = r"[0-9a-fA-F]{64}"
 
 
-@dataclass(frozen=True, slots=True)
-class GradeRequest:
+class GradeRequest(NamedTuple):
     """A submission to grade, its rubric, and the reports to make."""
 
     path: str

@@ -4,6 +4,7 @@ import gc
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
 from datetime import datetime
 from math import isfinite
 from pathlib import Path
@@ -26,7 +27,6 @@ from grader.usecases.class_summary import SummaryRequest, class_summary, warn_of
 from grader.usecases.rubrics import files_of
 from grader.usecases.terminal import Terminal, Warn, one_total
 from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_inputs, refuse_symlinks, save
-from grader.values import dataclass
 
 _MAX_LINES = 10
 _UNREADABLE = "SELECT count(*) FROM grade WHERE verdict = 'unreadable' AND NOT is_gone AND source = ?"

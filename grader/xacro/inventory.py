@@ -2,10 +2,9 @@
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 
 from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
-from grader.values import dataclass
 from grader.xacro.macros import read_parameters
 from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import ScopePlace

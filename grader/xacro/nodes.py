@@ -3,9 +3,9 @@
 import re
 
 from grader.problems import Problem
+from grader.reuse import reuse
 from grader.source import Source
 from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined
-from grader.values import reuse
 from grader.xacro.scopes import ScopePlace
 from grader.xml.parsing import Element, parse_xml
 from grader.xml.tinyxml2.recovery import Recovery

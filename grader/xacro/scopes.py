@@ -1,7 +1,6 @@
 """The names that xacro binds: properties, evaluated when they are first used, and macros, in nested scopes."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import NamedTuple
 
 from grader.names import MAX_LENGTH
@@ -30,7 +29,7 @@ class ScopePlace(NamedTuple):
         location = self.source.tag(self.tag, attribute)
         if not self.calls:
             return location
-        return replace(location, calls=tuple((macro, place.at()) for macro, place in self.calls[:_MAX_CALLS]))
+        return location._replace(calls=tuple((macro, place.at()) for macro, place in self.calls[:_MAX_CALLS]))
 
 
 # Where a definition whose text is in an attribute has its name; a macro call has it in no value.

@@ -1,7 +1,6 @@
 """The student's page in a browser: controls move the robot, keys work, failures lead to their link, nothing runs or loads."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -307,7 +306,7 @@ def test_hostile_report_stays_text(open_page: Open, tmp_path: Path, made: Callab
         for result in report.results
     )
     file = tmp_path / "page.html"
-    file.write_text(render(replace(report, results=tuple(results), notes=(HOSTILE,)), Format.HTML), encoding="utf-8")
+    file.write_text(render(report._replace(results=tuple(results), notes=(HOSTILE,)), Format.HTML), encoding="utf-8")
     opened = open_page(file)
     assert "<script>document.title" in opened.page.locator("main").inner_text()
     assert opened.page.title() != "run"

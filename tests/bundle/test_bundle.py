@@ -9,7 +9,6 @@ import sys
 import tomllib
 import zipfile
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -297,6 +296,6 @@ def test_a_plugin_check() -> None:
 
     strange.__module__ = "elsewhere.checks"
     rubric = load_rubric("lab6")
-    first = replace(rubric.criteria[0], check=describe(strange))
+    first = rubric.criteria[0]._replace(check=describe(strange))
     with pytest.raises(InputError, match=r"urdf-loads uses a check of the package elsewhere"):
-        autograder_zip(replace(rubric, criteria=(first, *rubric.criteria[1:])))
+        autograder_zip(rubric._replace(criteria=(first, *rubric.criteria[1:])))

@@ -1,7 +1,6 @@
 """Checks of other packages: signatures that are no schema, entry points that cannot be used, and faulty results."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from decimal import Decimal
 from importlib.metadata import EntryPoint
 from pathlib import Path
@@ -110,7 +109,7 @@ def graded(result: Callable[[], Any]) -> Outcome:
         found: Outcome = result()
         return found
 
-    criterion = Criterion("only", "Only", "a", Decimal(1), replace(describe(check), distribution="labs"), {})
+    criterion = Criterion("only", "Only", "a", Decimal(1), describe(check)._replace(distribution="labs"), {})
     rubric = Rubric("r", "R", (Part("a", "A"),), (criterion,), "robot.urdf", "", b"", Path("r.toml"))
     return grade(rubric, read_submission(scene(BASE).text.encode(), identity="me", path=PATH)).results[0].outcome
 

@@ -331,8 +331,6 @@ def test_a_fault_of_one_family_costs_no_other_hint(
 
 def test_a_hint_that_was_applied_is_named() -> None:
     """It is applied if its edit is in the file, and what it gains passes now."""
-    from dataclasses import replace
-
     from grader.grading.grade import grade
     from grader.grading.hints.hinting import hinted
     from grader.submission.opening import read_submission
@@ -354,4 +352,4 @@ def test_a_hint_that_was_applied_is_named() -> None:
         )
         == []
     )
-    assert applied_hints(replace(after), texts, after) == []
+    assert applied_hints(after._replace(), texts, after) == []

@@ -918,5 +918,5 @@ def test_a_folder_and_its_zip_are_equal(home: Path) -> None:
     """The file trees are the same."""
     packed = tree_of(make_zip({URDF: ROBOT, "my_robot/meshes/": None}))
     plain = read_folder(home)
-    assert list(packed.files.values()) == list(plain.files.values())
+    assert [file[:2] for file in packed.files.values()] == [file[:2] for file in plain.files.values()]
     assert packed.folders == plain.folders

@@ -1,7 +1,6 @@
 """Adjusted criteria and extra credit in a report: points, sums, and what other criteria make of them."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from decimal import Decimal
 
 import pytest
@@ -17,12 +16,12 @@ CHECKS: tuple[AnyCheck, ...] = (passes_, fails_, pends, breaks, misses_)
 
 def full(criterion: Criterion) -> Criterion:
     """Return a criterion whose points everybody gets."""
-    return replace(criterion, adjustment=Adjustment("full", "why"))
+    return criterion._replace(adjustment=Adjustment("full", "why"))
 
 
 def dropped(criterion: Criterion) -> Criterion:
     """Return a criterion that does not count."""
-    return replace(criterion, points=Decimal(0), adjustment=Adjustment("drop", "why"))
+    return criterion._replace(points=Decimal(0), adjustment=Adjustment("drop", "why"))
 
 
 def statuses(report: Report) -> list[str]:
@@ -80,7 +79,7 @@ def test_errors_are_carried_from_an_adjusted_criterion() -> None:
 @pytest.mark.parametrize(("check", "score"), [(passes_, 3), (fails_, 1), (pends, 1)])
 def test_extra_credit(check: AnyCheck, score: int) -> None:
     """It is in the score, not in the maximum; it needs manual grading like any other."""
-    report = report_on(ask("one"), replace(ask("two", check, points="2"), bonus=True))
+    report = report_on(ask("one"), ask("two", check, points="2")._replace(bonus=True))
     assert [report.score, report.max_score, report.bonus] == [score, 1, score - 1]
     assert report.pending == (2 if check is pends else 0)
     assert report.unearned == ()
@@ -88,7 +87,7 @@ def test_extra_credit(check: AnyCheck, score: int) -> None:
 
 def test_adjusted_extra_credit() -> None:
     """It can be given to everybody, or dropped."""
-    bonus = replace(ask("two", fails_, points="2"), bonus=True)
+    bonus = ask("two", fails_, points="2")._replace(bonus=True)
     given, gone = (report_on(ask("one"), adjusted(bonus)) for adjusted in (full, dropped))
     assert [given.score, given.max_score, given.bonus] == [3, 1, 2]
     assert [gone.score, gone.max_score, gone.bonus] == [1, 1, 0]

@@ -1,7 +1,6 @@
 """Error carried forward: a criterion that fails only because of an earlier mistake keeps its points."""
 
 import json
-from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
 
@@ -32,7 +31,7 @@ SMALL_WHEELS = "submissions/wheel-too-small/my_robot.urdf"
 
 def carried_from(name: str, causes: list[str], check: AnyCheck, other: AnyCheck = passes_) -> Criterion:
     """Return a criterion that is carried from others if another check passes."""
-    return replace(ask(name, check), carried=(Carried(tuple(causes), describe(other), {}),))
+    return ask(name, check)._replace(carried=(Carried(tuple(causes), describe(other), {}),))
 
 
 def report_on(*criteria: Criterion) -> Report:
@@ -177,7 +176,7 @@ def test_several_facts_may_count_instead(tmp_path: Path) -> None:
     assert complaints(tmp_path, wrong) == announced(wrong)
     first, second = carried_from("two", ["one"], fails_, fails_).carried + carried_from("two", ["one"], fails_).carried
     for order in ((first, second), (second, first)):
-        assert carried(report_on(ONE, replace(ask("two", fails_), carried=order))) == ["", "one"]
+        assert carried(report_on(ONE, ask("two", fails_)._replace(carried=order))) == ["", "one"]
 
 
 @pytest.mark.parametrize(

@@ -136,7 +136,7 @@ def test_shipped_rubrics_load(name: str) -> None:
     rubric = load_rubric(name)
     assert rubric.id == name
     assert rubric.points > 0
-    assert load_rubric(str(shipped_rubrics()[name])) == rubric
+    assert load_rubric(str(shipped_rubrics()[name]))._replace(solution=rubric.solution) == rubric
 
 
 def test_a_part_is_found_by_its_id(tmp_path: Path) -> None:

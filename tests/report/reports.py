@@ -1,6 +1,5 @@
 """Reports that no sample has: manual marks, fractions of points, errors of the grader, hints, adjustments, extra credit."""
 
-from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
 
@@ -37,7 +36,7 @@ def half_points(folder: Path) -> Report:
     report = grade(rubric, opened("submissions/several-mistakes/my_robot.urdf", rubric))
     *others, last = report.results
     own = last._replace(outcome=Outcome("errored", "the grader itself failed here (KeyError); please report it"))
-    return replace(report, results=(*others, own))
+    return report._replace(results=(*others, own))
 
 
 AXLE = ("right-wheel-forward", "right-wheel-axis")  # that one edit makes pass
@@ -60,7 +59,7 @@ def hinted(report: Report | None = None) -> Report:
         at, gains = Location(where, edits[0].line, edits[0].column), {name: points[name] for name in names}
         hints |= dict.fromkeys(names, Hint(message, at, gains, edits, shown_by=names[0]))
     results = tuple(result._replace(hint=hints.get(result.criterion.id)) for result in report.results)
-    return replace(report, results=results)
+    return report._replace(results=results)
 
 
 def marked() -> Report:
@@ -71,7 +70,7 @@ def marked() -> Report:
         chosen = next(result for result in report.results if result.outcome.status == status)
         rulings[chosen.criterion.id] = ManualMark(chosen.criterion.points * share, "Ada", "so it\nis")
     results = tuple(result._replace(manual_mark=rulings.get(result.criterion.id)) for result in report.results)
-    return replace(report, results=results)
+    return report._replace(results=results)
 
 
 _ADJUSTED = """
@@ -123,4 +122,4 @@ def adjusted() -> Report:
     report = grade(rubric, opened("submissions/several-mistakes", rubric))
     comments = {name: ManualComment(f"seen <{name}>\nin *class*", "Ada") for name in COMMENTED}
     results = tuple(result._replace(comment=comments.get(result.criterion.id)) for result in report.results)
-    return replace(report, results=results)
+    return report._replace(results=results)

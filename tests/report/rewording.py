@@ -32,10 +32,9 @@ def recast(report: Report, words: Words) -> Report:
 
     hints: dict[str, Hint] = {}  # criteria with the same hint still have the same
     problems = tuple(
-        replace(problem, message=words(), location=Location(path(), 2, 3)) for problem in other_problems(report)
+        problem._replace(message=words(), location=Location(path(), 2, 3)) for problem in other_problems(report)
     )
-    return replace(
-        report,
+    return report._replace(
         submission=_submission(report.submission, words, path),
         results=tuple(_result(result, words, path, hints) for result in report.results),
         problems=problems,
@@ -86,7 +85,7 @@ def _urdf(old: Urdf, words: Words) -> Urdf:
             for joint in robot.joints
         ),
     )
-    return old._replace(reading=replace(old.reading, robot=renamed))
+    return old._replace(reading=old.reading._replace(robot=renamed))
 
 
 def _result(old: Result, words: Words, path: Words, known: dict[str, Hint]) -> Result:

@@ -1,7 +1,6 @@
 """The summary of changes when a submission is graded again: the score, and the criteria that changed."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from decimal import Decimal
 
 import pytest
@@ -26,7 +25,7 @@ def changed(report: Report, **changes: Change) -> Report:
     results = [
         known[result.criterion.id](result) if result.criterion.id in known else result for result in report.results
     ]
-    return replace(report, results=tuple(results))
+    return report._replace(results=tuple(results))
 
 
 def test_score_passes_and_failures() -> None:
@@ -71,7 +70,7 @@ def test_another_failure_of_the_same_criterion() -> None:
 
 def test_other_changes() -> None:
     """Notes, problems and locations do not belong to the criteria."""
-    after = replace(SHORT, notes=("something else",))
+    after = SHORT._replace(notes=("something else",))
     assert comparison_lines(SHORT, after) == ["64 of 70 points, as before; only other parts of the report changed"]
 
 
@@ -82,7 +81,7 @@ def test_no_changes() -> None:
 
 def test_many_are_counted() -> None:
     """Of many criteria the first eight are named."""
-    after = replace(SHORT, results=tuple(with_status("skipped")(result) for result in SHORT.results))
+    after = SHORT._replace(results=tuple(with_status("skipped")(result) for result in SHORT.results))
     score, line = comparison_lines(SHORT, after)
     assert score == "64 -> 0 of 70 points (-64)"
     assert line.startswith("now skipped: urdf-loads (-3), base-box (-2), ")
@@ -93,16 +92,16 @@ def test_many_are_counted() -> None:
 def test_another_rubric() -> None:
     """Added and removed criteria, and other points; both maxima are named."""
     first, second, *others = SHORT.results
-    dearer = second._replace(criterion=replace(second.criterion, points=Decimal("2.5")))
-    new = first._replace(criterion=replace(first.criterion, id="new\x1b", points=Decimal(1)))
-    assert comparison_lines(SHORT, replace(SHORT, results=(new, dearer, *others))) == [
+    dearer = second._replace(criterion=second.criterion._replace(points=Decimal("2.5")))
+    new = first._replace(criterion=first.criterion._replace(id="new\x1b", points=Decimal(1)))
+    assert comparison_lines(SHORT, SHORT._replace(results=(new, dearer, *others))) == [
         "64 of 70 -> 62.5 of 68.5 points (-1.5)",
         "now passed: new\\x1b (+1)",
         f"with other points: {second.criterion.id} (+0.5)",
         f"removed: {first.criterion.id} (-3)",
     ]
     failing = next(result for result in SHORT.results if result.outcome.status == "failed")
-    cheaper = {"lidar_frame": lambda item: item._replace(criterion=replace(failing.criterion, points=Decimal(5)))}
+    cheaper = {"lidar_frame": lambda item: item._replace(criterion=failing.criterion._replace(points=Decimal(5)))}
     assert comparison_lines(SHORT, changed(SHORT, **cheaper)) == [
         "64 of 70 -> 64 of 69 points",
         "with other points: lidar-frame",

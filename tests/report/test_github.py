@@ -1,6 +1,5 @@
 """Annotations of GitHub Actions: read back as the runner reads them, each is on its own line of the file."""
 
-from dataclasses import replace
 from decimal import Decimal
 
 import pytest
@@ -102,7 +101,7 @@ def test_eleven_findings_are_nine_and_the_rest() -> None:
             Problem(UNDEFINED_MATERIAL, f"message {number}", Location("a.urdf", number, 1))
             for number in range(1, count + 1)
         )
-        found = [command for command in annotated(replace(report, problems=problems)) if command.name == "warning"]
+        found = [command for command in annotated(report._replace(problems=problems)) if command.name == "warning"]
         assert len(found) == MAX_ANNOTATIONS
         assert found[-1].get("title") == last
 

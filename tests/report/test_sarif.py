@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 from decimal import Decimal
 from typing import Any
 from urllib.parse import unquote, urlsplit
@@ -127,7 +126,7 @@ def test_the_number_of_results_is_limited() -> None:
     problems = tuple(
         Problem(UNDEFINED_MATERIAL, "no such colour", Location("a.urdf", 1, 1)) for _ in range(MAX_RESULTS + 100)
     )
-    run = run_of(replace(report, problems=problems))
+    run = run_of(report._replace(problems=problems))
     assert len(run["results"]) == MAX_RESULTS
     assert run["properties"]["leftOut"] == 107
     assert [result["ruleId"] for result in run["results"][:2]] == ["base-green", "lidar-frame"]

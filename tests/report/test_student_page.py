@@ -3,7 +3,6 @@
 import json
 import sys
 from collections.abc import Callable
-from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
@@ -102,7 +101,7 @@ def test_bar_explains_its_colours() -> None:
 
 def test_excused_student_has_no_bar() -> None:
     """No points count."""
-    report = replace(SAMPLES["reference"].grade(), grade=Grade(points=None))
+    report = SAMPLES["reference"].grade()._replace(grade=Grade(points=None))
     assert shares(read(render_html(report))) == ([], [])
 
 
@@ -131,7 +130,7 @@ def test_mark_in_place_of_a_hint_hides_no_other_card() -> None:
     mark = ManualMark(Decimal(0), "Ada", "")
     report = hinted()
     results = (one._replace(manual_mark=mark if one.criterion.id == AXLE[0] else None) for one in report.results)
-    page = read(render_html(replace(report, results=tuple(results))))
+    page = read(render_html(report._replace(results=tuple(results))))
     assert not page.get_element_by_id(f"criterion-{AXLE[0]}").xpath(".//article")
     assert "180 degrees off" in page.get_element_by_id(f"criterion-{AXLE[1]}").text_content()
 
@@ -142,7 +141,7 @@ def test_corrected_criteria_each_have_a_card() -> None:
     report = adjusted()
     corrected = [one.criterion.id for one in report.results if one.is_adjusted]
     results = tuple(one._replace(outcome=pending) if one.is_adjusted else one for one in report.results)
-    page = read(render_html(replace(report, results=results)))
+    page = read(render_html(report._replace(results=results)))
     assert {f"criterion-{name}" for name in corrected} <= set(page.xpath("//article/@id"))
 
 
@@ -199,7 +198,7 @@ def mark_of_the_cause() -> Report:
         else result
         for result in report.results
     ]
-    return replace(report, results=tuple(given))
+    return report._replace(results=tuple(given))
 
 
 @pytest.mark.parametrize(
@@ -218,13 +217,13 @@ def test_page_says_why_it_has_no_picture() -> None:
     """Nothing was submitted that a picture could show, or it is no longer there."""
     assert "no robot could be read from the submission" in render_html(SAMPLES["pictures-only"].grade())
     report = SAMPLES["lidar-buried"].grade()
-    gone = replace(report, submission=replace(report.submission, originals=None))
+    gone = report._replace(submission=report.submission._replace(originals=None))
     assert "has changed or moved since it was graded" in render_html(gone)
 
 
 def test_late_penalty_is_a_note() -> None:
     """Notes on the whole submission stand below the score."""
-    report = replace(SAMPLES["reference"].grade(), notes=("2 days late: -10 points",))
+    report = SAMPLES["reference"].grade()._replace(notes=("2 days late: -10 points",))
     assert [note.text for note in read(render_html(report)).find_class("note")] == ["Note: 2 days late: -10 points"]
 
 
@@ -264,7 +263,7 @@ def test_inspection_of_what_is_no_robot(tmp_path: Path) -> None:
 def test_reference_is_as_secret_as_the_hints(level: Any, is_shown: bool) -> None:
     """Below the level `cause` no number of the reference is in the page, and no button shows it."""
     report = SAMPLES["lidar-buried"].grade()
-    page = read(render_html(replace(report, rubric=replace(report.rubric, hints=level))))
+    page = read(render_html(report._replace(rubric=report.rubric._replace(hints=level))))
     data = json.loads(page.get_element_by_id("data").text)
     assert (data["reference"] is not None) == is_shown
     assert bool(page.xpath("//button[@data-mode='reference']")) == is_shown

@@ -1,7 +1,7 @@
 """The reference solution that a rubric is made from, what is measured on it, and how its numbers are written."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import cos, degrees, isclose, isfinite, radians
 from typing import Any
@@ -12,7 +12,6 @@ from grader.robot.model import Joint, Link
 from grader.robot.reader import Reading
 from grader.robot.transforms import Vector
 from grader.submission.submission import Submission
-from grader.values import dataclass
 
 
 class Solution:

@@ -1,6 +1,7 @@
 """The differences between two runs, or two gradebooks: which students, by how much, in which criteria, and why."""
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
 from typing import NamedTuple
@@ -8,7 +9,6 @@ from typing import NamedTuple
 from grader.classroom.gradebook.snapshots import NOBODY, Snapshot, StudentState, states_of
 from grader.grading.rubric_changes import RubricChange, concerning, rubric_changes
 from grader.text import format_points
-from grader.values import dataclass
 
 
 class PointsChange(NamedTuple):

@@ -3,6 +3,7 @@
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from decimal import Decimal
 from math import sqrt
 from typing import NamedTuple
@@ -11,7 +12,6 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.graded_students import GradedStudent, full_units
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
-from grader.values import dataclass
 
 _SEPARATOR = re.compile(r"\s*[;\n]\s*")  # of the comments in one
 

@@ -112,7 +112,7 @@ class Grades:
         hints = self.book.first("SELECT hints FROM hint WHERE result = ?", grade.result)
         report = add_stored_hints(report, hints[0]) if hints is not None else report
         results = _with_marks(report, self._manual_marks(grade), self._comments(grade))
-        return replace(report, results=results)
+        return report._replace(results=results)
 
     def _manual_marks(self, grade: StudentGrade) -> dict[str, ManualMark]:
         """Return the manual marks by criterion; marks of adjusted criteria do not count."""

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import PurePosixPath
 from typing import Literal, NamedTuple
@@ -17,7 +18,6 @@ from grader.grading.record import graded_submission_from
 from grader.grading.report import Hint
 from grader.grading.rubric import Rubric
 from grader.source import Edit, Edits
-from grader.values import dataclass
 
 _MAX_FIXES = 20
 _QUERY = """

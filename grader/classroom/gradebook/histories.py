@@ -2,6 +2,7 @@
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
@@ -9,7 +10,6 @@ from grader.classroom.gradebook.marks import Entry, Mark, mark_of
 from grader.classroom.gradebook.stored import STUDENT_COLUMNS
 from grader.classroom.matching import LMS_IDS, Clue, People, clues_of
 from grader.classroom.students import Student
-from grader.values import dataclass
 
 _IDS = (*LMS_IDS, Clue.EXACT_ID)
 

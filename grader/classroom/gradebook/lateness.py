@@ -4,7 +4,7 @@ As in Canvas (app/models/late_policy.rb): a percentage of the maximum for each d
 """
 
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import date, datetime, time, timedelta, tzinfo
 from decimal import Decimal
 from math import ceil
@@ -13,7 +13,6 @@ from grader.errors import InputError
 from grader.grading.criterion import Late
 from grader.grading.rubric import Rubric
 from grader.text import counted
-from grader.values import dataclass
 
 _DAY = timedelta(days=1)
 

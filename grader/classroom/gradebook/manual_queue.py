@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Collection
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
@@ -14,7 +15,6 @@ from grader.errors import InputError
 from grader.grading.pictures import content_of, is_empty
 from grader.grading.report import ManualMark, Result
 from grader.text import enumerated
-from grader.values import dataclass
 
 COMMENT_NUMBER = re.compile(r"#([0-9]{1,9})")  # how a person refers to an earlier comment
 FILES = "\0"  # begins the content of an item that is not the words of an answer

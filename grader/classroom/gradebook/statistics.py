@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from decimal import Decimal
 from math import sqrt
 from typing import Any, NamedTuple
@@ -12,7 +13,6 @@ from grader.classroom.gradebook.graded_students import GradedStudent, full_units
 from grader.classroom.gradebook.result import UNITS_PER_POINT, points_from_units, units_of
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
-from grader.values import dataclass
 
 _BINS = 10
 _MAX_FAILURES = 20

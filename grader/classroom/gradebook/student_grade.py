@@ -1,6 +1,7 @@
 """The current grade of one student: automatic points, manual marks, late penalty, and whether it is final."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from decimal import Decimal
 from enum import StrEnum
 from typing import NamedTuple
@@ -9,7 +10,6 @@ from grader.classroom.gradebook.lateness import Lateness
 from grader.classroom.gradebook.submission_files import SubmissionFiles
 from grader.classroom.students import Student
 from grader.text import counted, counted_points
-from grader.values import dataclass
 
 
 class Reason(StrEnum):

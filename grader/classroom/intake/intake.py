@@ -1,7 +1,7 @@
 """The submissions of a class, each assigned to a student on the roster: which are unmatched, who submitted nothing."""
 
 from collections.abc import Callable, Container, Iterable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from grader.classroom.intake.layouts.layout import Submissions, path_key
@@ -11,7 +11,6 @@ from grader.classroom.intake.roster import Roster
 from grader.classroom.matching import plain_word
 from grader.classroom.students import ClassSubmission, Student
 from grader.text import enumerated, first_lines, printable_path
-from grader.values import dataclass
 
 _UNMATCHED = -1
 _MAX_NOTES = 200

@@ -2,12 +2,11 @@
 
 import json
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from typing import NamedTuple
 
 from grader.classroom.matching import OF_FOLDERS, OF_TEAM_FOLDERS, Clue, Clues, People, claims_of, clues_of, plain_group
 from grader.classroom.students import ClassSubmission, Student
-from grader.values import dataclass
 
 _MAX_WAYS = 4
 

@@ -2,11 +2,11 @@
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from grader.classroom.lms.filling import FillOptions
 from grader.errors import InputError
 from grader.text import counted, enumerated
-from grader.values import dataclass
 
 _MAX_LISTED = 20
 

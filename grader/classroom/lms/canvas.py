@@ -9,6 +9,7 @@ A new export may have LastName and FirstName instead of Student (lib/gradebook_e
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from decimal import Decimal
 
 from grader.classroom.lms.assignments import GradeColumn, assignment_warnings, find_assignment
@@ -19,7 +20,6 @@ from grader.classroom.students import CANVAS_TEST_STUDENT, Student
 from grader.classroom.tables import Table, TableRow, read_table
 from grader.errors import InputError
 from grader.text import format_points
-from grader.values import dataclass
 
 _IDENTITY = frozenset(
     {

@@ -8,6 +8,7 @@ person has changed the words or added to them, and the comment is theirs.
 import html
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from decimal import Decimal
 from itertools import accumulate
 
@@ -16,7 +17,6 @@ from grader.classroom.tables import FORMULA_BEHIND_SEMICOLON, spelt_out
 from grader.files.reading import sha256_of
 from grader.grading.report import Result
 from grader.text import cut, format_points
-from grader.values import dataclass
 
 LIMIT = 4_000  # characters
 

@@ -5,7 +5,7 @@ of theirs changes.
 """
 
 from collections.abc import Callable, Container, Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from decimal import Decimal
 
 from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_lms_points
@@ -15,7 +15,6 @@ from grader.classroom.students import Student
 from grader.classroom.tables import Table, TableRow
 from grader.errors import InputError
 from grader.text import format_points
-from grader.values import dataclass
 
 _MAX_NAMED = 5
 _NOT_GRADED_YET = frozenset({"", "-", "needs grading"})  # the last in Blackboard

@@ -1,10 +1,10 @@
 """A student's grade for an LMS: points in its notation."""
 
 import re
+from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Decimal
 
 from grader.classroom.students import Student
-from grader.values import dataclass
 
 _NUMBER = re.compile(r"-?[0-9][0-9.,]*")
 _COMMA = re.compile(r"[0-9],[0-9]{1,2}$")

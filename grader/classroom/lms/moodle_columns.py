@@ -7,11 +7,11 @@ Identifier is detected by its shape, a word and a number, and the Grade by the c
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from grader.classroom.lms.grades import read_lms_points
 from grader.classroom.tables import Table, TableRow
 from grader.errors import InputError
-from grader.values import dataclass
 
 # Headers in lower case, as the language packs have them (assign.php, assignfeedback_comments.php): English, German,
 # French, Spanish, Italian, Portuguese, Brazilian and Dutch, as far as they were looked up. The other columns are

@@ -16,6 +16,7 @@ removed.
 
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from decimal import Decimal
 
 from grader.classroom.lms.assignments import GradeColumn, assignment_warnings, find_assignment
@@ -26,7 +27,6 @@ from grader.classroom.students import Student
 from grader.classroom.tables import TableRow, read_table
 from grader.errors import InputError
 from grader.text import enumerated, format_points
-from grader.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

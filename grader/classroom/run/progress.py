@@ -1,8 +1,6 @@
 """How far a pass over a class is."""
 
-from dataclasses import replace
-
-from grader.values import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,6 @@
 """Reports with hints, and submissions with the edits of all hints."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -64,7 +63,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel, *, keep_edi
     causes = search.causes if level in ("cause", "edit") else {}
     with_hints = [_explain(result, hints.get(result.criterion.id), causes) for result in report.results]
     is_complete = search.is_complete or submission.is_costly
-    report = replace(report, results=tuple(with_hints), hints_complete=is_complete)
+    report = report._replace(results=tuple(with_hints), hints_complete=is_complete)
     return HintedReport(report, search.final.edits, trials.faults)
 
 

@@ -6,7 +6,6 @@ hints.
 
 import json
 from collections.abc import Sequence
-from dataclasses import replace
 from decimal import Decimal
 from typing import Any
 
@@ -52,10 +51,10 @@ def add_stored_hints(report: Report, text: str) -> Report:
         hint = _hint(stored)
         is_shown = level == "edit"
         edits = tuple(_with_path(edit, main) for edit in hint.edits) if is_shown else ()
-        at = replace(hint.at, path=hint.at.path or main)
+        at = hint.at._replace(path=hint.at.path or main)
         hints |= dict.fromkeys(stored["criteria"], hint._replace(at=at, edits=edits, action=hint.action * is_shown))
     results = tuple(result._replace(hint=hints.get(result.criterion.id)) for result in report.results)
-    return replace(report, results=results, hints_complete=record["complete"])
+    return report._replace(results=results, hints_complete=record["complete"])
 
 
 def _with_path(edit: Edit, main: str) -> Edit:

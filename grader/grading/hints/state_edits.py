@@ -106,7 +106,7 @@ class StateEdits:
         """Return a criterion with the names of the links that selectors mean, where each means one."""
         if criterion.has_selectors and self.draft is not None:
             with suppress(MissingElement, NotDecided):
-                return replace(criterion, arguments=named_links(criterion.arguments, Configuration(self.draft.robot)))
+                return criterion._replace(arguments=named_links(criterion.arguments, Configuration(self.draft.robot)))
         return criterion
 
     def targets(self, criterion: Criterion) -> Targets:

@@ -3,7 +3,7 @@
 import posixpath
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Literal
 
 from grader.edits import Proposal
@@ -13,7 +13,6 @@ from grader.package.launch.model import Launch
 from grader.package.launch.places import ENDINGS, is_in_launch_folder, is_launch_named
 from grader.package.package import MANIFEST, PYTHON_LIMIT, SETUP, Package
 from grader.source import Edit, Source
-from grader.values import dataclass
 
 Verb = Literal["set", "add", "remove", "rename", "syntax", "create", "file"]
 # What is wrong and what to do, by the kind of the step; the first gives no answer away.

@@ -14,13 +14,13 @@ from grader.package.launch.frontend_actions import actions_of
 from grader.package.launch.model import Context, Findings, Launch, LaunchFault, StartedNode
 from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.setup_py import location_in
+from grader.reuse import reuse
 from grader.source import Location, Source
 from grader.static_python.evaluation import Evaluation, FunctionTable
 from grader.static_python.functions import standard_functions
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import START, SyntaxFault, parse
 from grader.static_python.values import Call, Function, QualifiedName, Unknown, Value, path_text
-from grader.values import reuse
 
 _ENTRY = "generate_launch_description"
 _MODULE = "python_launch_file"  # the __name__ of a launch file

@@ -3,14 +3,13 @@
 import os
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from hashlib import sha256
 
 from grader.classroom.intake.listing import Children, ClassListing
 from grader.classroom.intake.roster import Roster
 from grader.classroom.students import ClassSubmission, Student
 from grader.text import printable_path
-from grader.values import dataclass
 
 MAX_LINES = 200
 _PATH_KEY = "./"  # no file name begins with this
