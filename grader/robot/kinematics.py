@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping
 from contextlib import suppress
+from dataclasses import dataclass
 from itertools import takewhile
 from math import isfinite
 
@@ -14,6 +15,7 @@ from grader.robot.tree import parent_joints
 from grader.text import quoted
 
 
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Configuration:
     """A robot with its joints at `positions`: radians or metres; the joints that are not named are at 0.
 
@@ -21,6 +23,16 @@ class Configuration:
     pitch, yaw. A mimic joint follows, unless it is named itself. Links without a parent joint are roots, so a forest is
     solved tree by tree. Every link is solved once: linear in the number of links, without recursion.
     """
+
+    known: Robot
+    robot: Robot
+    is_guarded: bool
+    positions: Mapping[str, Position]
+    parent_joints: Mapping[str, Joint]
+    shown: dict[str, tuple[Visual, ...]]  # a cache for the checks of what a link shows
+    _holding: Mapping[str, Joint]
+    _frames: Frames
+    _relative: dict[tuple[str, str | None], Transform]
 
     def __init__(
         self,
@@ -36,23 +48,20 @@ class Configuration:
 
         Raises MissingElement for a joint that is not there, ValueError for a position of the wrong shape.
         """
-        self.known, self.is_guarded = robot, is_guarded
-        self.robot = robot
-        self.positions = dict(positions or {})
-        self._holding = parent_joints(robot) if holding is None else holding
-        self.parent_joints = self._holding
+        known, positions = robot, dict(positions or {})
+        _holding = parents = parent_joints(known) if holding is None else holding
         if is_guarded:
             from grader.robot.open_values import guarded  # late: few robots have open values
 
-            self.robot, joints = guarded(robot)
-            own = {id(known): joint for known, joint in zip(robot.joints, joints, strict=True)}
-            self.parent_joints = {child: own[id(joint)] for child, joint in self._holding.items()}
+            robot, joints = guarded(known)
+            own = {id(old): joint for old, joint in zip(known.joints, joints, strict=True)}
+            parents = {child: own[id(joint)] for child, joint in _holding.items()}
         if holding is None:
-            for name, position in self.positions.items():
-                check_position(robot.joint(name), position)
-        self.shown: dict[str, tuple[Visual, ...]] = {}  # a cache for the checks of what a link shows
-        self._frames = Frames(robot, self._holding, self.positions)
-        self._relative: dict[tuple[str, str | None], Transform] = {}
+            for name, position in positions.items():
+                check_position(known.joint(name), position)
+        _frames = Frames(known, _holding, positions)
+        vars(self).update(known=known, robot=robot, positions=positions, parent_joints=parents, shown={})
+        vars(self).update(is_guarded=is_guarded, _holding=_holding, _frames=_frames, _relative={})
 
     def link(self, name: str) -> Link:
         """Return the link of this name; raises MissingElement."""
