@@ -51,7 +51,7 @@ def _link(link: Link) -> Link:
 
 def _visual(visual: Visual) -> Visual:
     material = visual.material
-    return visual if material is None or not material.unresolved else replace(visual, material=_material(material))
+    return visual if material is None or not material.unresolved else visual._replace(material=_material(material))
 
 
 def _material(material: Material) -> Material:
