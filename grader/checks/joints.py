@@ -8,6 +8,7 @@ from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millime
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import axis_place
 from grader.robot.diagnostics import FULL_TURN
+from grader.robot.joint_elements import Dynamics
 from grader.robot.kinematics import Configuration
 from grader.robot.transforms import Vector, cross, degrees_between, minus, unit
 
@@ -143,8 +144,8 @@ def joint_dynamics(
     """
     joint = robot.moving_joint(link)
     given = joint.dynamics
-    has_friction, has_damping = (given.friction, given.damping) if given is not None else (0.0, 0.0)
-    numbers = expected_numbers({"friction": (has_friction, friction), "damping": (has_damping, damping)}, tolerance)
+    found = given or Dynamics()
+    numbers = expected_numbers({"friction": (found.friction, friction), "damping": (found.damping, damping)}, tolerance)
     message = f"the joint that moves {link!r} has {'<dynamics>' if given else 'no <dynamics>'}"
     if given is None and not numbers:
         return failed(f"{message}; it should have one", joint.location, detail=named(joint))

@@ -1,21 +1,15 @@
 """Joints as urdfdom reads them (`joint.cpp`), where each defect rejects the whole file, and the names they refer to."""
 
-from __future__ import annotations
-
 from itertools import islice
-from typing import TYPE_CHECKING
 
 from grader.robot import catalogue
 from grader.robot.diagnostics import FULL_TURN, ElementReader, Problems, first_children
+from grader.robot.joint_elements import Calibration, Dynamics, Limit, Mimic, SafetyController
 from grader.robot.model import Joint, Robot
 from grader.robot.transforms import X_AXIS, Vector, unit
 from grader.text import quoted
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import JOINT_TYPES
-
-# Imported late where they are needed: the joints of most robots have none of these.
-if TYPE_CHECKING:
-    from grader.robot.joint_elements import Calibration, Dynamics, Limit, Mimic, SafetyController
 
 MOVING_TYPES = ("continuous", "revolute", "prismatic", "planar", "floating")
 _WITH_LIMIT = ("revolute", "prismatic")
@@ -114,8 +108,6 @@ def _read_limit(element: Element, limit: Element | None, kind: str, problems: Pr
             message = f"a {kind} joint needs <limit> with effort and velocity; {_REJECTED}"
             problems.add(catalogue.LIMIT_MISSING, message, element, "type")
         return None
-    from grader.robot.joint_elements import Limit
-
     reader = ElementReader(problems, catalogue.BAD_LIMIT)
     lower, upper = reader.number(limit, "lower"), reader.number(limit, "upper")
     effort, velocity = reader.number(limit, "effort"), reader.number(limit, "velocity")
@@ -137,8 +129,6 @@ def _check_degrees(limit: Element, ends: dict[str, float], problems: Problems) -
 
 
 def _read_mimic(element: Element, problems: Problems) -> Mimic | None:
-    from grader.robot.joint_elements import Mimic
-
     reader = ElementReader(problems, catalogue.BAD_MIMIC)
     joint = element.get("joint")
     if joint is None:
@@ -148,8 +138,6 @@ def _read_mimic(element: Element, problems: Problems) -> Mimic | None:
 
 
 def _read_dynamics(element: Element, problems: Problems) -> Dynamics | None:
-    from grader.robot.joint_elements import Dynamics
-
     reader = ElementReader(problems, catalogue.BAD_DYNAMICS)
     if "damping" not in element.attrib and "friction" not in element.attrib:
         reader.fail("<dynamics> has neither damping nor friction", element)
@@ -158,8 +146,6 @@ def _read_dynamics(element: Element, problems: Problems) -> Dynamics | None:
 
 
 def _read_safety(element: Element, problems: Problems) -> SafetyController:
-    from grader.robot.joint_elements import SafetyController
-
     reader = ElementReader(problems, catalogue.BAD_SAFETY)
     return SafetyController(
         reader.number(element, "k_velocity"),
@@ -171,8 +157,6 @@ def _read_safety(element: Element, problems: Problems) -> SafetyController:
 
 
 def _read_calibration(element: Element, problems: Problems) -> Calibration:
-    from grader.robot.joint_elements import Calibration
-
     reader = ElementReader(problems, catalogue.BAD_CALIBRATION)
     rising, falling = (
         reader.number(element, name) if name in element.attrib else None for name in ("rising", "falling")

@@ -6,62 +6,58 @@ cannot be read; a value that the file does not give has ROS 2's default.
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 from grader.errors import MissingElement, NotDecided
 from grader.names import did_you_mean
+from grader.robot.joint_elements import Calibration, Dynamics, Limit, Mimic, SafetyController
 from grader.robot.unresolved import Guarded, UnresolvedParts
 from grader.source import LazyLocation
 from grader.text import quoted
-
-if TYPE_CHECKING:
-    from grader.robot.joint_elements import Calibration, Dynamics, Limit, Mimic, SafetyController
 
 Vector = tuple[float, float, float]
 INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")  # the components, in the order of Inertial.inertia
 
 
-@dataclass(frozen=True, slots=True)
-class Origin:
+class Origin(NamedTuple):
     """The pose of a child frame in its parent: `xyz` in metres, `rpy` in radians about fixed axes."""
 
     xyz: Vector = (0.0, 0.0, 0.0)
     rpy: Vector = (0.0, 0.0, 0.0)
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Box:
+_SAME_FRAME = Origin()
+
+
+class Box(NamedTuple):
     """A box about its centre; `size` is the full edge lengths along x, y, z in metres."""
 
     size: Vector
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Cylinder:
+class Cylinder(NamedTuple):
     """A cylinder about its centre, its axis along z; lengths in metres."""
 
     radius: float
     length: float
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Sphere:
+class Sphere(NamedTuple):
     """A sphere about its centre; its radius in metres."""
 
     radius: float
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Mesh:
+class Mesh(NamedTuple):
     """A mesh file. It is never opened, so its extent is unknown."""
 
     filename: str
     scale: Vector = (1.0, 1.0, 1.0)
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
 
 Geometry = Box | Cylinder | Sphere | Mesh
@@ -78,34 +74,31 @@ class Material(Guarded):
     unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
 
 
-@dataclass(frozen=True, slots=True)
-class Visual:
+class Visual(NamedTuple):
     """One shape that a link shows. `material` is resolved; None if ROS 2 has no colour for it."""
 
     geometry: Geometry
-    origin: Origin = Origin()
+    origin: Origin = _SAME_FRAME
     material: Material | None = None
     material_name: str = ""
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Collision:
+class Collision(NamedTuple):
     """One shape that a link collides with."""
 
     geometry: Geometry
-    origin: Origin = Origin()
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    origin: Origin = _SAME_FRAME
+    location: LazyLocation | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Inertial:
+class Inertial(NamedTuple):
     """Mass in kilograms, centre of mass, and ixx, ixy, ixz, iyy, iyz, izz in kg m^2."""
 
     mass: float
     inertia: tuple[float, float, float, float, float, float]
-    origin: Origin = Origin()
-    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    origin: Origin = _SAME_FRAME
+    location: LazyLocation | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,13 +125,13 @@ class Joint(Guarded):
     type: str
     parent: str
     child: str
-    origin: Origin | None = Origin()
+    origin: Origin | None = _SAME_FRAME
     axis: Vector | None = (1.0, 0.0, 0.0)
-    limit: "Limit | None" = None
-    mimic: "Mimic | None" = None
-    dynamics: "Dynamics | None" = None
-    safety_controller: "SafetyController | None" = None
-    calibration: "Calibration | None" = None
+    limit: Limit | None = None
+    mimic: Mimic | None = None
+    dynamics: Dynamics | None = None
+    safety_controller: SafetyController | None = None
+    calibration: Calibration | None = None
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
     axis_location: LazyLocation | None = field(default=None, compare=False, repr=False)
     unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)

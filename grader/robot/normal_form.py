@@ -83,7 +83,7 @@ def _plain(value: Any, ignored: tuple[str, ...] = _NAMES) -> Any:
         return value
     if isinstance(value, float):
         return value + 0.0  # -0.0 is 0.0
-    if isinstance(value, tuple):
+    if isinstance(value, tuple) and not hasattr(value, "_fields"):
         items = map(_plain, value)
         return tuple(sorted(items, key=repr)) if value and isinstance(value[0], Visual | Collision) else tuple(items)
     return tuple(map(_plain, _compared(kind, ignored)(value)))
@@ -91,6 +91,6 @@ def _plain(value: Any, ignored: tuple[str, ...] = _NAMES) -> Any:
 
 @cache
 def _compared(kind: Any, ignored: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]]:
-    """Return what gets the name of a dataclass and the fields that count."""
-    names = (field.name for field in fields(kind) if field.compare and field.name not in ignored)
-    return attrgetter("__class__.__name__", *names)
+    """Return what gets the name of a class and the fields that count."""
+    names = getattr(kind, "_fields", ()) or (field.name for field in fields(kind) if field.compare)
+    return attrgetter("__class__.__name__", *(name for name in names if name not in (*ignored, "location")))

@@ -49,7 +49,7 @@ def _open(part: Link | Joint, fields: Iterable[str]) -> Iterable[str]:
 
 def _visual(visual: Visual) -> Visual:
     material = visual.material
-    return visual if material is None or not material.unresolved else replace(visual, material=_material(material))
+    return visual if material is None or not material.unresolved else visual._replace(material=_material(material))
 
 
 def _material(material: Material) -> Material:

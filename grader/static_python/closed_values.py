@@ -33,7 +33,7 @@ class OutOfBudget(Exception):
     """The budget of a submission is spent: nothing more of it can be expanded or evaluated."""
 
 
-# No dataclasses: making each one takes 0.3 ms of the start of every command.
+# No dataclasses: making each one takes 1 ms of the start of every command.
 
 
 class Budget:

@@ -63,7 +63,7 @@ def wording(found: str) -> str:
 def row(name: str, fields: Mapping[str, object]) -> str:
     """Return the fields of an outcome or an error in one line, but those that are empty."""
     return f"{name}: " + "; ".join(
-        f"{key} {_shown(value)}" for key, value in fields.items() if value not in (None, "", ())
+        f"{key} {_shown(value)}" for key, value in fields.items() if value is not None and value not in ("", ())
     )
 
 

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from grader.errors import MissingElement
 from grader.robot.catalogue import CATALOGUE
 from grader.robot.kinematics import Configuration
+from grader.robot.model import Origin
 from grader.robot.reader import Reading, read_urdf
 from tests.examples import examples, spread
 from tests.robot.edge_cases.case import joint, links, robot
@@ -217,6 +218,17 @@ def test_cyclic_mimics_are_listed() -> None:
 def test_misspelt_names_have_suggestions(text: str, code: str, guess: str) -> None:
     """The message suggests a similar name."""
     assert guess in message(read_urdf(text.encode()), code)
+
+
+def test_places_do_not_count_in_comparisons() -> None:
+    """A robot that is written elsewhere in a file is equal to another one, in its hash and its representation, too."""
+    text = robot(links("a", "b"), joint("a", "b"))
+    one, other = (read_urdf(raw.encode(), path).robot for raw, path in ((text, "a"), (text.replace("<", "\n<"), "b")))
+    assert one is not None
+    assert one == other != read_urdf(robot(links("a")).encode(), "a").robot
+    assert (one.joints, hash(one.joints), repr(one)) == (other.joints, hash(other.joints), repr(other))
+    assert one.joints[0].origin == Origin() != Origin((1.0, 0.0, 0.0))
+    assert one.joints[0].location != "a"
 
 
 def test_one_run_finds_all_problems() -> None:
