@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable
-from itertools import islice
+from itertools import islice, product
 
 from grader.text import quoted
 
@@ -12,13 +12,14 @@ MAX_LENGTH = 60  # characters of names that are compared
 _CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
 _WORD = re.compile(r"\d+|[^\W\d_]+")
 _LETTER_BORDER = re.compile(r"(?<!\d) (?!\d)")
+_AXES_AND_SIDES = frozenset("xyzlrfb")
 # Words of side, place, axis and measure: none is a misspelling of another one.
 _DISTINCT = frozenset(
     {
         "left", "right", "front", "rear", "back", "fore", "top", "bottom", "upper", "lower", "inner", "outer", "middle",
-        "center", "centre", "side", "first", "second", "third", "last", "start", "end", "forward", "backward",
-        "minimum", "maximum", "roll", "pitch", "yaw", "width", "length", "height", "depth", "thickness", "radius",
-        "diameter", "size", "mass", "weight",
+        "side", "first", "second", "third", "last", "start", "end", "forward", "backward", "minimum", "maximum", "min",
+        "max", "roll", "pitch", "yaw", "width", "length", "height", "depth", "thickness", "radius", "diameter", "size",
+        "mass", "weight",
     }
 )  # fmt: skip
 
@@ -88,7 +89,7 @@ def _distance(name: list[str], known: list[str], suffix: str) -> tuple[int, bool
 
 def _letters(word: str, known: str) -> int | None:
     """Return how many letters or exchanged pairs differ in two words; None if these are too many."""
-    most = 0 if len(known) < 4 or known.isdigit() or {word, known} <= _DISTINCT else 1 if len(known) < 7 else 2
+    most = 0 if len(known) < 4 or known.isdigit() or _are_distinct(word, known) else 1 if len(known) < 7 else 2
     if word == known or abs(len(word) - len(known)) > most:
         return 0 if word == known else None
     before, row = [0], [*range(len(known) + 1)]
@@ -99,3 +100,13 @@ def _letters(word: str, known: str) -> int | None:
             costs = (before[j] + (letter != other), before[j + 1] + 1, row[j] + 1)
             row.append(min(*costs, earlier[j - 1] + 1) if is_exchanged else min(costs))
     return row[-1] if row[-1] <= most else None
+
+
+def _are_distinct(word: str, known: str) -> bool:
+    """Return whether two words differ in a side, axis or measure that is, or may be, joined to another word."""
+    if {word, known} <= _DISTINCT or word[1:] == known[1:]:  # posx and posy, lwheel and rwheel
+        return True
+    if len(word) == len(known) and word[:-1] == known[:-1] and {word[-1], known[-1]} <= _AXES_AND_SIDES:
+        return True
+    ends = [(one for one in _DISTINCT if it.startswith(one) or it.endswith(one)) for it in (word, known)]
+    return any(one != other for one, other in product(*map(list, ends)))

@@ -143,8 +143,8 @@ def _solid_shapes(robot: Configuration, link: str) -> tuple[str, list[tuple[Shap
     Raises UnknownShape for a mesh, MissingElement for a link without a shape.
     """
     found = robot.link(link)
-    for word, elements in (("collision shape", found.collisions), ("visual", found.visuals)):
-        placed = with_volume(elements)
+    for word, field in (("collision shape", "collisions"), ("visual", "visuals")):
+        placed = with_volume(getattr(found, field))
         if len(placed) > MAX_SHAPES:
             raise NotDecided(f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes")
         shapes = [(_measurable(geometry), placed_by(IDENTITY, origin)) for geometry, origin in placed]

@@ -146,7 +146,7 @@ def kinematics_match_reference(
 
 
 def _link_name(robot: Configuration, link: str) -> str:
-    name = selected_link(robot.robot, robot.parent_joints, link)
+    name = selected_link(robot.known, robot.holding, link)
     robot.link(name)
     return name
 

@@ -1,6 +1,7 @@
 """Model answers: those in a rubric, and those in a separate file, so that students can have the rubric."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -56,7 +57,7 @@ def missing_answers(rubric: Rubric) -> str:
 def with_answers(rubric: Rubric, answers: Mapping[str, str]) -> Rubric:
     """Return the rubric with these model answers, by the ids of their criteria, in addition to its own."""
     criteria = (row._replace(answer=answers.get(row.id, row.answer)) for row in rubric.criteria)
-    return rubric._replace(criteria=tuple(criteria))
+    return replace(rubric, criteria=tuple(criteria))
 
 
 def _file(rubric: Rubric) -> Path:

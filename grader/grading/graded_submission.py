@@ -1,5 +1,6 @@
 """The submission part of a report: what was graded, its files as far as they can still be read, its class grade."""
 
+from dataclasses import dataclass, field
 from decimal import Decimal
 from typing import NamedTuple, Protocol
 
@@ -28,7 +29,8 @@ class GradedPackage(NamedTuple):
     name: str
 
 
-class GradedSubmission(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class GradedSubmission:
     """The submission part of a report. `path`, `sha256` and `verdict` are those of the URDF.
 
     `is_single` distinguishes a single URDF from a folder or archive; `unread` says why the URDF could not be read;
@@ -48,7 +50,7 @@ class GradedSubmission(NamedTuple):
     unread: str = ""
     lacks: tuple[str, ...] = ()
     another_robot: str = ""
-    originals: Originals | None = None
+    originals: Originals | None = field(default=None, repr=False, compare=False)
 
     @classmethod
     def of(cls, submission: Submission, lacks: tuple[str, ...], another_robot: str) -> "GradedSubmission":

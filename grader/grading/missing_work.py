@@ -51,5 +51,6 @@ def missing_work(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
 def by_evidence(submission: Submission, reason: str) -> Outcome:
     """Return the outcome of a criterion of what a submission lacks, for this reason, where evidence takes its place."""
     paths = tuple(file.path for file in submission.evidence_files[:_MAX_PICTURES])
-    message = f"{reason}, but {enumerated(paths, _MAX_LISTED)}; needs manual grading"
+    verb = "was" if len(paths) == 1 else "were"
+    message = f"{reason}, but {enumerated(paths, _MAX_LISTED)} {verb} submitted; needs manual grading"
     return pending(message, f"{reason}, but evidence")._replace(measured=paths)

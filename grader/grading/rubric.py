@@ -2,10 +2,11 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from decimal import Decimal
 from functools import cache, lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from grader.checks.check import LINK_ARGUMENTS
 from grader.checks.manual import answered
@@ -27,7 +28,8 @@ _ANSWERS = ".answers.toml"  # the ending of files with model answers next to the
 _LIST = "(`grader rubric list` lists the rubrics that come with the grader)"
 
 
-class Rubric(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Rubric:
     """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if any.
 
     `folders` are the names of the lab's folder in a repository of several labs. `without_urdf` says what the criteria
@@ -42,8 +44,8 @@ class Rubric(NamedTuple):
     criteria: tuple[Criterion, ...]
     urdf: str
     reference: str
-    data: bytes
-    path: Path
+    data: bytes = field(repr=False)
+    path: Path = field(compare=False)
     package: str = ""
     evidence: tuple[Evidence, ...] = ()
     late: Late | None = None
@@ -53,7 +55,7 @@ class Rubric(NamedTuple):
     without_package: str = ""
     hints: HintLevel = "cause"
     ignored: tuple[Ignored, ...] = ()
-    solution: ReferenceSolution | None = None
+    solution: ReferenceSolution | None = field(default=None, compare=False, repr=False)
     links: frozenset[str] = frozenset()
 
     @property

@@ -30,7 +30,7 @@ class Configuration:
     positions: Mapping[str, Position]
     parent_joints: Mapping[str, Joint]
     shown: dict[str, tuple[Visual, ...]]  # a cache for the checks of what a link shows
-    _holding: Mapping[str, Joint]
+    holding: Mapping[str, Joint]  # the parent joints as they are known
     _frames: Frames
     _relative: dict[tuple[str, str | None], Transform]
 
@@ -49,19 +49,19 @@ class Configuration:
         Raises MissingElement for a joint that is not there, ValueError for a position of the wrong shape.
         """
         known, positions = robot, dict(positions or {})
-        _holding = parents = parent_joints(known) if holding is None else holding
+        parents = found = parent_joints(known) if holding is None else holding
         if is_guarded:
             from grader.robot.open_values import guarded  # late: few robots have open values
 
             robot, joints = guarded(known)
             own = {id(old): joint for old, joint in zip(known.joints, joints, strict=True)}
-            parents = {child: own[id(joint)] for child, joint in _holding.items()}
+            parents = {child: own[id(joint)] for child, joint in found.items()}
         if holding is None:
             for name, position in positions.items():
                 check_position(known.joint(name), position)
-        _frames = Frames(known, _holding, positions)
+        _frames = Frames(known, found, positions)
         vars(self).update(known=known, robot=robot, positions=positions, parent_joints=parents, shown={})
-        vars(self).update(is_guarded=is_guarded, _holding=_holding, _frames=_frames, _relative={})
+        vars(self).update(is_guarded=is_guarded, holding=found, _frames=_frames, _relative={})
 
     def link(self, name: str) -> Link:
         """Return the link of this name; raises MissingElement."""
@@ -114,7 +114,7 @@ class Configuration:
             raise MissingElement("connection", roots, message=message, location=self.link(link).location)
         if frame.group != base.group:
             deeper = max(frame, base, key=lambda either: either.depth)  # the chain crosses into the deeper group
-            raise undefined_pose(self.parent_joints[deeper.group], self.robot)
+            raise undefined_pose(self.holding[deeper.group], self.known)
         if relative_to is None or relative_to == frame.group:
             return frame.pose
         pose = base.pose.inverse() @ frame.pose
@@ -184,7 +184,7 @@ class Configuration:
 
     def at(self, positions: Mapping[str, Position]) -> "Configuration":
         """Return the same robot with its joints at other positions, which are not validated."""
-        return Configuration(self.known, positions, holding=self._holding, is_guarded=self.is_guarded)
+        return Configuration(self.known, positions, holding=self.holding, is_guarded=self.is_guarded)
 
     def displacement(self, link: str, joint: Joint, angle: float, *, relative_to: str) -> Transform:
         """Return the motion of points on a link when a turning or sliding joint moves by `angle` (rad, m) from here.
@@ -193,7 +193,7 @@ class Configuration:
         """
         self.axis(joint)  # raises where it has no direction
         chain = self.chain(link, above=relative_to) or ()
-        if joint in chain and not self.positions and all(above.mimic is None for above in chain):
+        if joint in chain and not self.positions and all(self.as_known(above).mimic is None for above in chain):
             T_relative_joint = self.pose(
                 joint.child, relative_to=relative_to
             )  # everything below the joint turns together
@@ -206,7 +206,11 @@ class Configuration:
 
     def position(self, joint: Joint) -> Position:
         """Return the position of a joint: its own, that of the joint that it mimics, or 0."""
-        return self._frames.position(joint)
+        return self._frames.position(self.as_known(joint))
+
+    def as_known(self, joint: Joint) -> Joint:
+        """Return a parent joint as it is known, for code that decides itself what is open."""
+        return self.holding[joint.child] if self.parent_joints.get(joint.child) is joint else joint
 
 
 def last_moving(path: tuple[Joint, ...], link: str, types: Collection[str], message: str) -> Joint:

@@ -87,8 +87,13 @@ def _references(root: Element, robot: Robot) -> Iterator[Word]:
     if len(unknown) > _MAX_WORDS:
         return
     names = "".join(f"_{joint.name}_" for joint in robot.joints)
-    nearest = {near(name, links): name for name in unknown if uses[name] > 1 or f"_{name}_" in names}
-    defined = {link: name for link, name in nearest.items() if link and link not in uses and f"_{link}_" not in names}
+    nearest = {near(name, links, "link"): name for name in unknown if uses[name] > 1 or f"_{name}_" in names}
+    defined = {
+        link: name
+        for link, name in nearest.items()
+        if link and link not in uses and (uses[name] > 1 or f"_{link}_" not in names)
+        if name.endswith("link") or not link.endswith("link")  # the shorter name lacks its end
+    }
     for element in root.iterchildren("link"):
         if (meant := defined.get(element.get("name") or "")) is not None:
             yield _with_value(element, "name", meant, "the link")
@@ -113,11 +118,9 @@ def _repeated_names(root: Element) -> Iterator[Word]:
     used = {
         "link": [end.get("link") for end in root.iterfind("joint/*") if end.tag in ("parent", "child")],
         "joint": [mimic.get("joint") for mimic in root.iterfind("joint/mimic")],
-        "material": [it.get("name") for it in root.iterfind("link/visual/material") if not len(it)],
     }
     for tag, names in used.items():
         given = Counter(element.get("name") for element in root.iterchildren(tag))
-        given.update(it.get("name") for it in root.iterfind("link/visual/material") if tag == "material" and len(it))
         repeated = [name for name, count in given.items() if count > 1]
         missing = [name for name in dict.fromkeys(names) if name and name not in given]
         if len(repeated) == len(missing) == 1 and given[repeated[0]] == 2:

@@ -92,7 +92,7 @@ def movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[str, J
         if len(chain) > _MAX_CHAIN:
             raise NotDecided(f"more than {_MAX_CHAIN} joints lead to {quoted(link)}", "a chain has too many joints")
         for joint in chain:
-            leader = _leader(robot.robot, joint)
+            leader = _leader(robot.known, robot.as_known(joint))
             if leader is not None and leader.type != "fixed":
                 found.setdefault(leader.name, leader)
     return found
@@ -102,6 +102,8 @@ def _leader(robot: Robot, joint: Joint) -> Joint | None:
     """Return the joint that leads a mimic joint, perhaps over others; None where there is none."""
     passed: set[str] = set()
     while True:
+        if "mimic" in joint.unresolved:
+            joint.unresolved["mimic"].check()
         if joint.mimic is None:
             return joint
         passed.add(joint.name)

@@ -1,6 +1,7 @@
 """Hints of one submission: `--hints` and the rubric decide how much they tell, `--fix` writes their edits."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from grader.errors import InputError, MachineError, OutOfTime
@@ -33,7 +34,7 @@ def add_hints(
     if wanted is not None and level != wanted:
         warn(f"--hints {wanted}: the rubric {report.rubric.id} allows hints up to the level {allowed}")
     if level != allowed:
-        report = report._replace(rubric=report.rubric._replace(hints=level))
+        report = report._replace(rubric=replace(report.rubric, hints=level))
     fix = Fix({}, report, "no criterion failed")
     if level == "none" or not report.has_failures:
         return report, fix

@@ -123,7 +123,8 @@ class Texts:
         key = (name, *known)
         if key not in self._similar:
             self._budget.charge(_OF_NAME * len(known))
-            self._similar[key] = did_you_mean(name, known), near(name, known)
+            values = [it for it in known if isinstance(self._globals.get(it, 0), int | float)]  # no functions
+            self._similar[key] = did_you_mean(name, known), near(name, values)
         guess, meant = self._similar[key]
         return f"there is no {kind} {name[:_MAX_SHOWN]} at this place{guess}", UnknownName(name, known, kind, meant)
 

@@ -9,6 +9,7 @@ import sys
 import tomllib
 import zipfile
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -298,4 +299,4 @@ def test_a_plugin_check() -> None:
     rubric = load_rubric("lab6")
     first = rubric.criteria[0]._replace(check=describe(strange))
     with pytest.raises(InputError, match=r"urdf-loads uses a check of the package elsewhere"):
-        autograder_zip(rubric._replace(criteria=(first, *rubric.criteria[1:])))
+        autograder_zip(replace(rubric, criteria=(first, *rubric.criteria[1:])))

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
@@ -111,7 +112,7 @@ def graded(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> Outco
     rubric = Rubric("test", "Test", (Part("all", "All"),), (criterion,), "robot.urdf", "", b"", Path("test.toml"))
     submission = _subject("submission", of)
     assert isinstance(submission, Submission)
-    return _recorded(check, grade(rubric._replace(solution=_Solution()), submission).results[0].outcome)
+    return _recorded(check, grade(replace(rubric, solution=_Solution()), submission).results[0].outcome)
 
 
 class _Solution(ReferenceSolution):

@@ -1,5 +1,6 @@
 """What a picture of a graded robot shows: wheels and their way, where the reference differs, which criteria failed where."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -80,7 +81,7 @@ def test_missing_link_is_marked_where_the_reference_has_it() -> None:
 
 def test_rubric_that_hides_hints_hides_the_reference() -> None:
     """Below the level `cause` a picture shows nothing of the reference."""
-    rubric = load_rubric("lab6")._replace(hints="place")
+    rubric = replace(load_rubric("lab6"), hints="place")
     found = picture_of(grade(rubric, open_submission(str(ROOT / "submissions/lidar-buried"), rubric.lab)))
     assert found is not None
     assert found.reference is None

@@ -1,6 +1,7 @@
 """Harnesses of whole submissions: grading, hints, the files that `--fix` writes, and every format of the report."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from unittest.mock import patch
@@ -38,7 +39,7 @@ def package(data: bytes, rubric: str) -> None:
 
 def check_graded(rubric: Rubric, submission: Submission, path: str) -> None:
     """Assert what holds of every submission that is graded."""
-    rubric = rubric._replace(hints="edit")
+    rubric = replace(rubric, hints="edit")
     report = grade(rubric, submission)
     _check_report(report, submission)
     warnings: list[str] = []

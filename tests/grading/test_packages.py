@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from decimal import Decimal
 
 import pytest
@@ -248,6 +249,6 @@ def test_notes_and_problems_of_both_are_listed() -> None:
         "no hints were searched, because reading this robot takes too much work",
     )
     assert graded(costly).notes == notes
-    assert grade(LAB._replace(hints="none"), costly.submission).notes == notes[:1]
+    assert grade(replace(LAB, hints="none"), costly.submission).notes == notes[:1]
     top = Submitted({path.removeprefix("my_robot/"): text for path, text in REFERENCE.files.items()})
     assert graded(top).notes == ()

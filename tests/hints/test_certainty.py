@@ -1,6 +1,7 @@
 """How sure a hint is: whether another edit that the search knows works as well."""
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -54,7 +55,7 @@ def test_stored_hints_say_no_more_than_the_level() -> None:
     sample = SAMPLES["several-mistakes"]
     report = sample.grade()
     found = hinted(report, sample.open(), "edit").report
-    lowered = report._replace(rubric=report.rubric._replace(hints="cause"))
+    lowered = report._replace(rubric=replace(report.rubric, hints="cause"))
     before = [result.hint for result in found.results if result.hint is not None]
     after = [
         result.hint for result in add_stored_hints(lowered, hints_to_record(found)).results if result.hint is not None

@@ -3,6 +3,7 @@
 import json
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
@@ -217,7 +218,7 @@ def test_page_says_why_it_has_no_picture() -> None:
     """Nothing was submitted that a picture could show, or it is no longer there."""
     assert "no robot could be read from the submission" in render_html(SAMPLES["pictures-only"].grade())
     report = SAMPLES["lidar-buried"].grade()
-    gone = report._replace(submission=report.submission._replace(originals=None))
+    gone = report._replace(submission=replace(report.submission, originals=None))
     assert "has changed or moved since it was graded" in render_html(gone)
 
 
@@ -263,7 +264,7 @@ def test_inspection_of_what_is_no_robot(tmp_path: Path) -> None:
 def test_reference_is_as_secret_as_the_hints(level: Any, is_shown: bool) -> None:
     """Below the level `cause` no number of the reference is in the page, and no button shows it."""
     report = SAMPLES["lidar-buried"].grade()
-    page = read(render_html(report._replace(rubric=report.rubric._replace(hints=level))))
+    page = read(render_html(report._replace(rubric=replace(report.rubric, hints=level))))
     data = json.loads(page.get_element_by_id("data").text)
     assert (data["reference"] is not None) == is_shown
     assert bool(page.xpath("//button[@data-mode='reference']")) == is_shown
