@@ -12,6 +12,7 @@ from grader.grading.criterion import Criterion, Part
 from grader.grading.grade import grade
 from grader.grading.rubric import Rubric
 from grader.robot.kinematics import Configuration
+from grader.robot.model import Link, Robot
 from grader.submission.opening import read_submission
 
 MASS = """<robot name="r" xmlns:xacro="x">
@@ -55,3 +56,9 @@ def test_what_is_open_needs_manual_grading(name: str) -> None:
     rubric = Rubric("r", "R", (Part("a", "A"),), (criterion,), "robot.urdf", "", b"", Path("r.toml"))
     submission = read_submission(text.encode(), identity="a", path="my_robot.urdf.xacro")
     assert grade(rubric, submission).results[0].outcome.status == status
+
+
+@pytest.mark.parametrize("value", [Link("a"), Robot("r")])
+def test_a_field_that_does_not_exist(value: object) -> None:
+    """It is an AttributeError, as of any object."""
+    assert not hasattr(value, "colour")

@@ -66,6 +66,19 @@ def test_the_report_says_that_ros_rejects_the_file(tmp_path: Path) -> None:
     ]
 
 
+def test_nothing_is_assumed_about_a_file_of_many_unknown_names(tmp_path: Path) -> None:
+    """Comparing them all would take long, and nobody misspells as many."""
+    path = tmp_path / "my_robot.urdf"
+    joints = (
+        f'<joint name="j{i}" type="fixed"><parent link="lidar"/><child link="lidr_{i}"/></joint><link name="lidar_{i}"/>'
+        for i in range(21)
+    )
+    text = (PLAIN / "my_robot.urdf").read_text(encoding="utf-8")
+    path.write_text(text.replace("</robot>", f"{''.join(joints)}</robot>"), encoding="utf-8")
+    report = json.loads(run(("grade", path, "--format", "json", "--hints", "none")).stdout)
+    assert "Not deducted" not in report["results"][0]["message"]
+
+
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be"])
 def test_utf_16_costs_the_loading(encoding: str, tmp_path: Path) -> None:
     """ROS 2 cannot read UTF-16; the report says what to do, and the robot is graded."""
