@@ -121,10 +121,8 @@ def known_links(robot: Robot, wanted: Collection[str]) -> int:
 
 
 def is_another_robot(robot: Robot | None, wanted: Collection[str]) -> bool:
-    """Return whether a completely known robot that ROS 2 would load has fewer than half of the wanted links."""
-    if robot is None or robot.incomplete or robot.rejected:
-        return False
-    return 2 * known_links(robot, wanted) < len(wanted)
+    """Return whether a completely known robot has fewer than half of the wanted links."""
+    return robot is not None and not robot.incomplete and 2 * known_links(robot, wanted) < len(wanted)
 
 
 def _says_xacro(name: str) -> bool:
