@@ -21,7 +21,7 @@ class YamlFault(Exception):
         self.location = location
 
 
-@dataclass(eq=False, slots=True)
+@dataclass(frozen=True, eq=False, slots=True)
 class YamlNode:
     """A value with its location: a text, a list or a mapping. An alias is the same object as its anchor."""
 
@@ -111,13 +111,12 @@ class _Anchors:
 
     def node(self, event: yaml.NodeEvent) -> YamlNode:
         """Return the node of an event. Raises YamlFault for an alias without an anchor, and for too many."""
-        node = YamlNode(self._source, event.start_mark, {})
+        if isinstance(event, yaml.AliasEvent):
+            return self._node_of(event.anchor or "", _location(self._source, event.start_mark))
         if isinstance(event, yaml.ScalarEvent):
-            node.value, node.quoted = event.value, event.style in ("'", '"')
-        elif isinstance(event, yaml.SequenceStartEvent):
-            node.value = []
-        elif isinstance(event, yaml.AliasEvent):
-            return self._node_of(event.anchor or "", node.location)
+            node = YamlNode(self._source, event.start_mark, event.value, event.style in ("'", '"'))
+        else:
+            node = YamlNode(self._source, event.start_mark, [] if isinstance(event, yaml.SequenceStartEvent) else {})
         if event.anchor:
             self._nodes[event.anchor] = node
         return node
