@@ -6,13 +6,15 @@ from typing import Any
 
 import pytest
 
+from grader.grading.grade import grade
 from grader.grading.subjects import Subjects
 from grader.robot.reader import read_urdf
-from tests.samples import LAB6, SAMPLES, reference
+from tests.samples import LAB6, opened
 
 NAMED = """
     Submission Tree File Package Read Reading Problem Kind Location LazyLocation Configuration Robot Link Joint Limit Mimic Dynamics
     SafetyController Calibration Visual Collision Inertial Box Cylinder Sphere Mesh Origin Material Transform Outcome
+    Launch StartedNode NamedFile RvizFile YamlNode
 """
 WITH_ALL = """<robot name="a"><link name="l"/><link name="m"><inertial><mass value="1"/>
 <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
@@ -46,11 +48,11 @@ def inside(value: object, found: dict[int, object]) -> Iterator[object]:
 
 def test_what_a_check_gets_is_frozen() -> None:
     """Assigning a field of a submission, of anything in it, of a pose or of an outcome raises AttributeError."""
-    subjects = Subjects(LAB6, reference())
+    submission = opened("submissions/reference")
+    subjects, results = Subjects(LAB6, submission), grade(LAB6, submission).results
     assert subjects.robot is not None
-    results = SAMPLES["lidar-missing"].grade().results
     examined = (
-        subjects.submission, subjects.robot, subjects.robot.pose("lidar"), read_urdf(WITH_ALL.encode(), "a.urdf"), results
+        submission, subjects.robot, subjects.robot.pose("lidar"), read_urdf(WITH_ALL.encode(), "a.urdf"), results
     )  # fmt: skip
     kinds = set()
     for value in inside(examined, {}):
