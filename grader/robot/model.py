@@ -158,7 +158,7 @@ class Robot:
         object.__setattr__(self, "_links", {link.name: link for link in reversed(self.links)})
         object.__setattr__(self, "_joints", {joint.name: joint for joint in reversed(self.joints)})
 
-    if not TYPE_CHECKING:
+    if not TYPE_CHECKING:  # pragma: no branch
 
         def __getattr__(self, name: str) -> NoReturn:
             """Refuse `links` and `joints` where these are not set, because it is open which ones there are."""

@@ -39,7 +39,7 @@ class Guarded:
 
     __slots__ = ()
 
-    if not TYPE_CHECKING:
+    if not TYPE_CHECKING:  # pragma: no branch
 
         def __getattr__(self, name: str) -> NoReturn:
             if name not in self.__dataclass_fields__:
