@@ -228,7 +228,7 @@ def test_evidence_without_a_urdf(key: str, pending: int, tmp_path: Path) -> None
     loads = report["results"][0]
     if key == "manual":
         assert (loads["status"], loads["measured"]) == ("pending", ["desk.png"])
-        assert loads["message"] == "no URDF was submitted, but desk.png; needs manual grading"
+        assert loads["message"] == "no URDF was submitted, but desk.png was submitted; needs manual grading"
     else:
         assert loads["status"] == "failed"
 

@@ -163,7 +163,7 @@ def test_criteria_of_a_missing_package_need_manual_grading(files: dict[str, byte
     report = graded(path, "--rubric", rubric(tmp_path / "manual", "without_package"))
     assert (report["score"], report["pending"]) == (70, 30)
     found = next(row for row in report["results"] if row["id"] == "package-found")
-    assert found["message"].endswith("Task2_Step6.png; needs manual grading")
+    assert found["message"].endswith("Task2_Step6.png were submitted; needs manual grading")
     default = graded(path, "--rubric", rubric(tmp_path / "default"))
     assert default["pending"] == 10
     assert default["score"] < 90
@@ -274,8 +274,8 @@ def test_another_robot_counts_as_no_urdf(tmp_path: Path) -> None:
     report = graded(path, "--rubric", rubric(tmp_path / "manual", "without_urdf"))
     assert (report["score"], report["pending"]) == (0, 100)
     assert report["results"][0]["message"] == (
-        "this looks like another robot: it has none of the links that the rubric names, but Task1_Step8.png; "
-        "needs manual grading"
+        "this looks like another robot: it has none of the links that the rubric names, but Task1_Step8.png was "
+        "submitted; needs manual grading"
     )
     book = tmp_path / "lab.db"
     default = rubric(tmp_path / "default")
