@@ -31,7 +31,13 @@ os.environ |= {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Start with the files that contain slow tests, because one worker runs a file and no other should wait for it."""
+    """Start with the files that contain slow tests, because one worker runs a file and no other should wait for it.
+
+    The cases of the corpus are one file, and one worker runs an area or a table of them.
+    """
+    for item in items:
+        if not item.get_closest_marker("xdist_group"):
+            item.add_marker(pytest.mark.xdist_group(str(item.path)))
     slow = {item.path for item in items if item.get_closest_marker("slow")}
     items.sort(key=lambda item: item.path not in slow)
 

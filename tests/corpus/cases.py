@@ -1,0 +1,147 @@
+"""Cases of the corpus: what a user gives to the command line, and what comes back. README.md describes their form."""
+
+import json
+import re
+import shlex
+import shutil
+import tomllib
+import zipfile
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+from tests.command_line import ROOT, Done, run_with_input
+
+CORPUS = Path(__file__).parent
+_TIME = r"[T ]\d\d:\d\d(:\d\d(\.\d+)?)?(Z|[+-]\d\d:?\d\d)?"
+
+Expected = dict[str, str]  # exit, stdout, stderr and files/PATH; what is empty is left out
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """Commands, run one after the other in a folder of their own, the files that are there before, and what is expected.
+
+    `path` is the folder of the case, or the table in which it is the row `index`.
+    """
+
+    path: Path
+    index: int
+    expected: Expected
+    about: str
+    commands: tuple[str, ...]
+    copies: Mapping[str, str] = field(default_factory=dict)  # path here: path in the project
+    removed: tuple[str, ...] = ()
+    edits: tuple[tuple[str, str, str], ...] = ()  # path, a text that stands there, the text that replaces it everywhere
+    files: Mapping[str, str] = field(default_factory=dict)
+    hex: Mapping[str, str] = field(default_factory=dict)  # files that are no text
+    zips: Mapping[str, str] = field(default_factory=dict)  # path of an archive: the folder that moves into it
+    variables: Mapping[str, str] = field(default_factory=dict)
+    stdin: str = ""
+    keep: tuple[str, ...] = ()  # patterns of the written files whose content is compared
+    view: str = ""  # "results": of a JSON report, what is not passed, in one line each
+    shown: tuple[str, ...] = ()  # criteria that this view shows even if they are passed
+
+    @property
+    def name(self) -> str:
+        """Return the folder, or the table and what the row is about."""
+        area = self.path.relative_to(CORPUS).with_suffix("").as_posix()
+        return area if self.path.is_dir() else f"{area}: {self.about}"
+
+    def outcome(self, here: Path) -> Expected:
+        """Return what the commands print, their exit codes, and the files that they write, in an empty folder."""
+        self._prepare(here)
+        before = _contents(here)
+        found: Expected = {"exit": "", "stdout": "", "stderr": ""}
+        for command in self.commands:
+            done = run_with_input(
+                shlex.split(command.replace("ROOT", str(ROOT))), self.stdin.encode(), self.variables, here
+            )
+            heading = f"$ grader {command}\n" if len(self.commands) > 1 else ""
+            found["exit"] += f"{' ' if found['exit'] else ''}{done.returncode}"
+            found["stdout"] += heading + _masked(self._shown(done), here)
+            found["stderr"] += _masked(done.stderr.decode(), here)
+        written = [path for path, content in _contents(here).items() if before.get(path) != content]
+        for path in written:
+            is_kept = any(Path(path).match(pattern) for pattern in self.keep)
+            text = (here / path).read_bytes().decode(errors="backslashreplace") if is_kept else ""
+            found[f"files/{path}"] = _masked(text, here)
+        return {key: text for key, text in found.items() if text or key.startswith("files/")}
+
+    def _prepare(self, here: Path) -> None:
+        if (self.path / "input").is_dir():
+            shutil.copytree(self.path / "input", here, dirs_exist_ok=True)
+        for path, source in self.copies.items():
+            (here / path).parent.mkdir(parents=True, exist_ok=True)
+            (shutil.copytree if (ROOT / source).is_dir() else shutil.copyfile)(ROOT / source, here / path)
+        for path in self.removed:
+            (shutil.rmtree if (here / path).is_dir() else Path.unlink)(here / path)
+        data = {path: text.encode() for path, text in self.files.items()}
+        for path, content in (data | {path: bytes.fromhex(digits) for path, digits in self.hex.items()}).items():
+            (here / path).parent.mkdir(parents=True, exist_ok=True)
+            (here / path).write_bytes(content)
+        for path, old, new in self.edits:
+            text = (here / path).read_bytes().decode()
+            assert old in text, f"{old!r} does not stand in {path}"
+            (here / path).write_bytes(text.replace(old, new).encode())
+        for path, folder in self.zips.items():
+            with zipfile.ZipFile(here / path, "w") as archive:
+                for file in sorted((here / folder).rglob("*")):
+                    archive.write(file, file.relative_to(here / folder))
+            shutil.rmtree(here / folder)
+
+    def _shown(self, done: Done) -> str:
+        if self.view == "results" and done.stdout.startswith(b"{"):
+            return "".join(f"{line}\n" for line in results(json.loads(done.stdout), self.shown))
+        return done.stdout.decode()
+
+
+def _contents(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def _masked(text: str, here: Path) -> str:
+    """Return a text without what differs from run to run: the folder of the case, the project's, times of the run."""
+    now = datetime.now(UTC)
+    days = "|".join(f"{now - timedelta(days=days):%Y-%m-%d}" for days in (0, 1))
+    return re.sub(f"({days}){_TIME}", "TIME", text.replace(str(here), "HERE").replace(str(ROOT), "ROOT"))
+
+
+def results(report: Mapping[str, Any], shown: tuple[str, ...] = ()) -> Iterator[str]:
+    """Yield the score of a JSON report, its notes, and what did not pass or is to be shown, with place, message and hints."""
+    yield f"{report['score']:g} of {report['max_score']:g}, {report['pending']:g} pending"
+    yield from (f"note: {note}" for note in report["notes"])
+    for row in report["results"]:
+        if row["status"] != "passed" or row["id"] in shown:
+            carried = " (carried)" if row["carried"] else ""
+            yield f"{row['status']}{carried} {row['id']}{_place(row['location'])}: {row['message']}"
+            yield from (f"  hint: {hint['message']}" for hint in row["hints"])
+    yield from (f"{row['code']}{_place(row['location'])}: {row['message']}" for row in report["problems"])
+
+
+def _place(location: Mapping[str, Any] | None) -> str:
+    return f" {location['path']}:{location['line']}:{location['column']}" if location else ""
+
+
+def read_corpus() -> Iterator[Case]:
+    """Yield every case, by table and by folder."""
+    for path in sorted(CORPUS.rglob("*.toml")):
+        for index, row in enumerate(tomllib.loads(path.read_text(encoding="utf-8")).get("case", [])):
+            found = {key: str(row.pop(key)) for key in ("exit", "stdout", "stderr") if key in row}
+            found |= {f"files/{name}": text for name, text in row.pop("written", {}).items()}
+            yield _case(path, index, found, row)
+    for path in sorted(CORPUS.rglob("command")):
+        folder, settings = path.parent / "expected", path.parent / "case.toml"
+        files = [file for file in sorted(folder.rglob("*")) if file.is_file()]
+        found = {file.relative_to(folder).as_posix(): file.read_bytes().decode() for file in files}
+        row = tomllib.loads(settings.read_text(encoding="utf-8")) if settings.exists() else {"about": path.parent.name}
+        yield _case(path.parent, 0, found, {**row, "commands": path.read_text(encoding="utf-8").splitlines()})
+
+
+def _case(path: Path, index: int, expected: Expected, row: dict[str, Any]) -> Case:
+    if "command" in row:
+        row["commands"] = [row.pop("command")]
+    given: dict[str, Any] = {key: tuple(value) if isinstance(value, list) else value for key, value in row.items()}
+    return Case(path, index, expected, **given)

@@ -1,0 +1,19 @@
+"""Every case of the corpus prints and writes what is expected of it."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.corpus.cases import CORPUS, Case, read_corpus
+
+
+CASES = [
+    pytest.param(case, id=case.name, marks=pytest.mark.xdist_group(case.path.relative_to(CORPUS).parts[0]))
+    for case in read_corpus()
+]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_case_is_as_expected(case: Case, tmp_path: Path) -> None:
+    """Standard output, standard error, exit codes and written files; `python -m tests.corpus` writes them again."""
+    assert case.outcome(tmp_path) == case.expected
