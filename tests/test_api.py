@@ -19,7 +19,7 @@ from tests.command_line import ROOT, run
 
 PAGE = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", PAGE, re.DOTALL)
-SAMPLES = ROOT / "submissions"
+SAMPLES = ROOT / "submissions/lab6"
 
 
 def test_the_stub_and_the_page_name_what_there_is() -> None:

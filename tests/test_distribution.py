@@ -72,14 +72,14 @@ def test_the_wheel_has_no_model_answers_and_no_samples(built: Path) -> None:
     with tarfile.open(sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
     assert {
-        "submissions/reference/expected.toml",
+        "submissions/lab6/reference/expected.toml",
         "rubrics/lab6.toml",
         "LICENSE",
         "README.md",
         "pyproject.toml",
     } <= names
     assert not [
-        name for name in names if re.match(r"tests|benchmarks|submissions/(?!reference/)|.*\.answers\.toml", name)
+        name for name in names if re.match(r"tests|benchmarks|submissions/(?!lab6/reference/)|.*\.answers\.toml", name)
     ]
 
 
@@ -176,7 +176,7 @@ def test_a_class(installed: Path, lab: Path) -> None:
     """A class is graded, marked, exported; the model answers come from a file that the installation has not."""
     answers = ROOT / "rubrics" / "lab6.answers.toml"
     for name in ("ash", "birch"):
-        shutil.copytree(ROOT / "submissions" / "reference", lab / "class" / name)
+        shutil.copytree(ROOT / "submissions/lab6/reference", lab / "class" / name)
     book = ("--gradebook", "lab6.db")
     done = do((installed, "batch", "class", *book, "--answers", answers), lab)
     assert done.returncode == 0, done.stderr
@@ -191,7 +191,7 @@ def test_a_class(installed: Path, lab: Path) -> None:
 @pytest.mark.exhaustive
 def test_ci_of_a_student(installed: Path, lab: Path) -> None:
     """A job of GitHub Actions gets its report and its summary."""
-    shutil.copytree(ROOT / "submissions" / "several-mistakes", lab / "repository")
+    shutil.copytree(ROOT / "submissions/lab6/several-mistakes", lab / "repository")
     job = {"GITHUB_ACTIONS": "true", "GITHUB_STEP_SUMMARY": str(lab / "summary.md")}
     done = do((installed, "grade", ".", "--save", "json=../report.json"), lab / "repository", **job)
     assert done.returncode == 1

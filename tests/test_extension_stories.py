@@ -159,6 +159,8 @@ def test_a_new_format(project: Path) -> None:
     replace(project / "grader/report/formats.py", last, f"{last}{row}\n")
     replace(project / "docs/command-line.md", "| `markdown` |", "| `line` | logs | one line |\n| `markdown` |")
     add_to_changelog(project, "The format `line`.")
-    python(project, "-m", "grader", "grade", "submissions/several-mistakes", "--format", "line", "--fail-under", "0")
+    python(
+        project, "-m", "grader", "grade", "submissions/lab6/several-mistakes", "--format", "line", "--fail-under", "0"
+    )
     passes(project, "tests/report", "tests/cli/test_save.py", "tests/cli/test_completion.py", "tests/submission",
            "tests/test_architecture.py", "tests/test_docs.py")  # fmt: skip

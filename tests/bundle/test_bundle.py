@@ -245,7 +245,7 @@ def test_a_rubric_without_manual_grading(tmp_path: Path) -> None:
 
 def test_manual_points_are_those_that_the_reference_lacks() -> None:
     """The criteria listed for manual grading are those that stay pending for the reference."""
-    report = grade(LAB6, opened("submissions/reference"))
+    report = grade(LAB6, opened("submissions/lab6/reference"))
     pending = [result.criterion for result in report.results if result.outcome.status == "pending"]
     output = command._next_step(LAB6)
     assert (

@@ -11,7 +11,7 @@ import pytest
 from tests.classroom.class_runs import Done, grader, without_hints
 from tests.samples import ROOT
 
-GOOD, BAD = ROOT / "submissions" / "reference", ROOT / "submissions" / "lidar-buried"
+GOOD, BAD = ROOT / "submissions/lab6/reference", ROOT / "submissions/lab6/lidar-buried"
 TEAMS = "id,login,name,group\n1,alice,Alice Ash,team2\n2,mallory,Mallory Moss,team1\n"
 
 

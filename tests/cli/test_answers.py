@@ -14,7 +14,7 @@ from tests.samples import ROOT
 
 SECRET = "Because of the roots."
 INLINE = f', answer = "{SECRET}"'
-REFERENCE = ROOT / "submissions" / "reference"
+REFERENCE = ROOT / "submissions/lab6/reference"
 OF_LAB6 = ("The model vanishes", "joint_state_publisher_gui, publishes")
 
 

@@ -325,5 +325,5 @@ def test_one_submission_with_evidence_only(tmp_path: Path) -> None:
 def test_lab6_leaves_pictures_to_manual_grading() -> None:
     """The shipped rubric: the course took pictures."""
     assert (LAB6.without_urdf, LAB6.without_package) == ("manual", "manual")
-    text = grade(ROOT / "submissions" / "pictures-only")
+    text = grade(ROOT / "submissions/lab6/pictures-only")
     assert "no URDF was submitted; 47 need manual grading" in text

@@ -9,7 +9,7 @@ from tests.command_line import run_with_input
 from tests.samples import ROOT, SAMPLES
 
 GOOD, WRONG, FAULTS, ARM = (
-    ROOT / SAMPLES[name].path for name in ("reference", "lidar-buried", "several-mistakes", "arm-axis-sign")
+    ROOT / SAMPLES[name].path for name in ("reference", "lidar-buried", "several-mistakes", "arm/axis-sign")
 )
 NOT_XML = b"<robot name='r'><link name='a'"
 BOOK = ("--gradebook", "no.db")

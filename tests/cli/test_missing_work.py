@@ -11,7 +11,7 @@ import pytest
 from tests.checks.submissions import png
 from tests.command_line import ROOT, run
 
-REFERENCE = ROOT / "submissions" / "reference"
+REFERENCE = ROOT / "submissions/lab6/reference"
 IN_SAMPLE = "roscourse_sim_ws/src/my_robot"
 BOX = b'<robot name="box">\n <link name="box"><visual><geometry><box size="0.6 0.4 0.2"/></geometry></visual></link>\n</robot>\n'
 FORMATS = (
@@ -172,7 +172,7 @@ def test_criteria_of_a_missing_package_need_manual_grading(files: dict[str, byte
 def test_a_package_of_the_lab_is_graded_whatever_the_key_says(tmp_path: Path) -> None:
     """With a package of the lab, also in another lab's folder, or without evidence, the checks decide."""
     manual, default = rubric(tmp_path / "manual", "without_package"), rubric(tmp_path / "default")
-    misnamed = shutil.copytree(ROOT / "submissions/package-misnamed", tmp_path / "misnamed")
+    misnamed = shutil.copytree(ROOT / "submissions/lab6/package-misnamed", tmp_path / "misnamed")
     written(misnamed, {"Task2_Step6.png": png()})
     elsewhere = written(tmp_path / "Ash", PICTURES)
     shutil.copytree(REFERENCE / IN_SAMPLE, elsewhere / "Lab7/my_robot")

@@ -14,9 +14,9 @@ from tests.cli.jobs import GithubJob
 from tests.command_line import run_with_input
 from tests.samples import ROOT
 
-PACKAGE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot"
+PACKAGE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot"
 URDF = PACKAGE / "urdf/my_robot.urdf"
-BURIED = ROOT / "submissions/lidar-buried/my_robot.urdf"
+BURIED = ROOT / "submissions/lab6/lidar-buried/my_robot.urdf"
 
 
 def grade(path: Path | str, *more: str, folder: Path = ROOT) -> tuple[int, str, str]:

@@ -37,11 +37,11 @@ def _empty(top: Path) -> Path:
 
 
 def _one_submission(_: Path) -> Path:
-    return ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot"
+    return ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot"
 
 
 def _one_file(_: Path) -> Path:
-    return ROOT / "submissions/lidar-buried/my_robot.urdf"
+    return ROOT / "submissions/lab6/lidar-buried/my_robot.urdf"
 
 
 def _broken_zip(top: Path) -> Path:
