@@ -46,7 +46,7 @@ right = '<link name="base"><visual><geometry><box size="0.2 0.2 0.2"/></geometry
 RUBRIC = """\
 id = "lab0"
 title = "Lab 0: one box"
-reference = "lab0/robot.urdf"
+reference = "robot.urdf"
 
 [[part]]
 id = "model"
@@ -138,8 +138,8 @@ def test_a_new_check(project: Path) -> None:
 
 def test_a_new_rubric(project: Path) -> None:
     """A rubric is a TOML file and its reference solution."""
-    (project / "rubrics/lab0.toml").write_text(RUBRIC, encoding="utf-8")
     (project / "rubrics/lab0").mkdir()
+    (project / "rubrics/lab0/rubric.toml").write_text(RUBRIC, encoding="utf-8")
     (project / "rubrics/lab0/robot.urdf").write_text(REFERENCE, encoding="utf-8")
     python(project, "-m", "grader", "rubric", "check", "lab0")
     passes(

@@ -62,7 +62,7 @@ ROWS: tuple[tuple[int, Sequence[object], bytes], ...] = (
     (2, ("explain", "URDF999"), b""),
     (0, ("rubric", "list"), b""),
     (0, ("rubric", "show", "lab6"), b""),
-    (0, ("rubric", "check", ROOT / "rubrics/lab6.toml"), b""),
+    (0, ("rubric", "check", ROOT / "rubrics/lab6/rubric.toml"), b""),
     (2, ("rubric", "check", "file.txt"), b""),
     (2, ("rubric", "show", "lab7"), b""),
     (2, ("rubric", "new", "lab.toml", "--from", "new"), b""),

@@ -31,10 +31,10 @@ def hints(*arguments: object) -> dict[str, list[dict[str, Any]]]:
 
 def lab(folder: Path, level: str) -> Path:
     """Return a copy of the rubric of lab 6 with another level of hints."""
-    text = (ROOT / "rubrics/lab6.toml").read_text()
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text()
     assert 'hints = "edit"' in text
     text = text.replace('hints = "edit"', f'hints = "{level}"' if level else "")
-    text = text.replace('reference = "', f'reference = "{ROOT}/rubrics/').replace("answers =", "# answers =")
+    text = text.replace('reference = "', f'reference = "{ROOT}/rubrics/lab6/').replace("answers =", "# answers =")
     (folder / "lab.toml").write_text(text)
     return folder / "lab.toml"
 

@@ -45,13 +45,13 @@ def results(path: Path, *more: object) -> dict[str, Any]:
 def rubric(folder: Path, *keys: str) -> Path:
     """Write the rubric of Lab 6 with only these keys set to "manual"."""
     folder.mkdir(parents=True, exist_ok=True)
-    text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8")
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text(encoding="utf-8")
     path = folder / "lab6.toml"
     for key in {"without_urdf", "without_package"}.difference(keys):
         text = re.sub(rf"^{key} = .*\n", "", text, flags=re.MULTILINE)
     path.write_text(text, encoding="utf-8")
-    shutil.copy(ROOT / "rubrics" / "lab6.answers.toml", folder)
-    (folder / "lab6").symlink_to(ROOT / "rubrics" / "lab6")
+    shutil.copy(ROOT / "rubrics/lab6/answers.toml", folder)
+    (folder / "my_robot").symlink_to(ROOT / "rubrics/lab6/my_robot")
     return path
 
 

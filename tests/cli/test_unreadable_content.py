@@ -114,7 +114,7 @@ def test_many_files_hide_nothing(tmp_path: Path) -> None:
 def test_inputs_are_not_overwritten(tmp_path: Path) -> None:
     """Neither the URDF, alone or in its folder, nor the rubric; and nothing else is written then."""
     shutil.copy(URDF, tmp_path / "my_robot.urdf")
-    shutil.copy(ROOT / "rubrics" / "lab6.toml", tmp_path / "lab.toml")
+    shutil.copy(ROOT / "rubrics/lab6/rubric.toml", tmp_path / "lab.toml")
     for folder, over in (
         (tmp_path / "my_robot.urdf", "my_robot.urdf"),
         (tmp_path, "my_robot.urdf"),

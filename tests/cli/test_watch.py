@@ -163,7 +163,7 @@ def test_a_rubric_in_a_file_is_watched(robot: Path, tmp_path: Path, watch: Watch
     """Its mistakes are reported line by line and waited out; the URDF is graded by the current rubric."""
     rubric = tmp_path / "rules" / "lab.toml"
     rubric.parent.mkdir()
-    text = (ROOT / "rubrics" / "lab6.toml").read_text()
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text()
     rubric.write_text(text)
     renamed = text.replace('id = "lidar-frame"', 'id = "lidar-place"')
     texts = text.replace("points = 6", "points = -6"), "id = [", renamed

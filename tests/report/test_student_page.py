@@ -63,7 +63,7 @@ def test_page_shows_manual_marks() -> None:
     assert "Marked by Ada: so it is." in text
 
 
-@pytest.mark.parametrize(("answers", "count"), [((), 0), (("--answers", "rubrics/lab6.answers.toml"), 1)])
+@pytest.mark.parametrize(("answers", "count"), [((), 0), (("--answers", "rubrics/lab6/answers.toml"), 1)])
 def test_model_answers_need_the_option(answers: tuple[str, ...], count: int) -> None:
     """Model answers are on the page with --answers only."""
     page = read(run(("grade", "submissions/lab6/reference", "--format", "html", *answers)).stdout)

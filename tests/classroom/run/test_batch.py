@@ -267,7 +267,7 @@ def test_new_and_removed_students(graded: Path, tmp_path: Path) -> None:
 def test_another_rubric_and_force_grade_all_again(graded: Path, tmp_path: Path) -> None:
     """A rubric that differs by a word is another one; --force grades everything, and no result is duplicated."""
     rubric = tmp_path / "lab6.toml"
-    text = (ROOT / "rubrics/lab6.toml").read_text()
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text()
     rubric.write_text(text + "\n# another year\n")
     before = results(graded)
     assert again(graded, "--rubric", str(rubric)) == f"{SIZE} graded, 0 unchanged"

@@ -127,7 +127,7 @@ def test_wrong_usage(arguments: tuple[str, str], folder: Path, tmp_path: Path) -
 def test_a_broken_rubric_and_a_broken_roster(folder: Path, tmp_path: Path) -> None:
     """The mistake is reported with its line, and nothing is started."""
     (tmp_path / "broken.toml").write_text(
-        (ROOT / "rubrics/lab6.toml").read_text().replace("points = 6", "points = 'six'", 1)
+        (ROOT / "rubrics/lab6/rubric.toml").read_text().replace("points = 6", "points = 'six'", 1)
     )
     (tmp_path / "broken.csv").write_text("colour\nred\n")
     command = ("batch", folder, "--gradebook", tmp_path / "lab6.db")

@@ -129,8 +129,8 @@ def test_another_class_folder_removes_nobody(top: Path) -> None:
 
 def test_grades_by_an_older_rubric_are_not_exported(top: Path) -> None:
     """Students who were not graded by the newest rubric have no final grade."""
-    text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8")
-    (top / "lab6.toml").write_text(text.replace('reference = "lab6/my_robot"', "", 1) + "\n# newer\n", encoding="utf-8")
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text(encoding="utf-8")
+    (top / "lab6.toml").write_text(text.replace('reference = "my_robot"', "", 1) + "\n# newer\n", encoding="utf-8")
     shutil.copytree(ROOT / "submissions/lab6/wheels-black", top / "late" / "carol")
     done = grader("batch", top / "late", "--gradebook", top / "g.db", "--rubric", top / "lab6.toml", "--add")
     assert done.returncode == 0, done.stderr
@@ -140,8 +140,8 @@ def test_grades_by_an_older_rubric_are_not_exported(top: Path) -> None:
 
 def test_the_deadline_is_remembered(tmp_path: Path) -> None:
     """The deadline given to batch applies to later exports and runs, and can be changed."""
-    text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8")
-    policy = text.replace('reference = "lab6/my_robot"', "", 1) + "\n[late]\npercent_per_day = 10\n"
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text(encoding="utf-8")
+    policy = text.replace('reference = "my_robot"', "", 1) + "\n[late]\npercent_per_day = 10\n"
     (tmp_path / "lab6.toml").write_text(policy, encoding="utf-8")
     shutil.copytree(ROOT / "submissions/lab6/lidar-buried", tmp_path / "class" / "bob")
     roster = "id,login,submitted\n102,bob,2026-11-21T10:00+01:00\n"
