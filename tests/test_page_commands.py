@@ -33,7 +33,7 @@ ELSEWHERE = {  # beginnings of command lines that are run by another test, or no
     "grader rubric check arm_lab.toml": "a plug-in: cli/test_plugin_template.py",
 }
 CODES = {"grader grade ": 1}  # the robot has a mistake
-FOLDERS = {"grader grade . ": "src/my_robot"}  # a student's repository
+FOLDERS = dict.fromkeys(("grader grade . ", "grader grade  "), "src/my_robot")  # a student's repository
 STUDENTS = ("alice", "bob", "carol", "dave")
 CANVAS = "Student,ID,SIS User ID,SIS Login ID,Section,Lab 6 (12345)\n    Points Possible,,,,,100\n"
 
@@ -42,7 +42,7 @@ CANVAS = "Student,ID,SIS User ID,SIS Login ID,Section,Lab 6 (12345)\n    Points 
 def presumed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with a robot, a package, a rubric and a class of four students with a gradebook."""
     folder = tmp_path_factory.mktemp("presumed")
-    shutil.copy(ROOT / "submissions/lab6/lidar-offset-in-visual/my_robot.urdf", folder)
+    shutil.copy(ROOT / "submissions/lab6/lidar-offset-in-visual/my_robot/urdf/my_robot.urdf", folder)
     shutil.copytree(ROOT / "rubrics/lab6/my_robot", folder / "src/my_robot")
     for path in folder.glob("src/my_robot/urdf/*.urdf"):
         shutil.copy(folder / "my_robot.urdf", path)

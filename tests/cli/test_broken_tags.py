@@ -117,7 +117,9 @@ def test_broken_xacro_is_expanded_around_the_tag(tmp_path: Path) -> None:
 
 def test_elements_for_simulators_are_graded(tmp_path: Path) -> None:
     """What is written for Gazebo in a file with a broken tag earns its points."""
-    sensors = (ROOT / "submissions/sensors/equivalent-plain/sensor_robot.urdf").read_text(encoding="utf-8")
+    sensors = (ROOT / "submissions/sensors/equivalent-plain/sensor_robot/urdf/sensor_robot.urdf.xacro").read_text(
+        encoding="utf-8"
+    )
     statuses = []
     for text in (sensors, sensors.replace("</visual>", "", 1)):
         path = tmp_path / "sensor_robot.urdf"

@@ -34,7 +34,7 @@ ROWS: tuple[tuple[int, Sequence[object], bytes], ...] = (
     (1, ("grade", "-"), NOT_XML),
     (1, ("grade", "-"), b"\xff\x00"),
     (1, ("grade", "-"), b""),
-    (2, ("grade",), b""),
+    (2, ("inspect",), b""),
     (2, ("grade", "new"), b""),
     (2, ("grade", GOOD, "--rubric", "lab7"), b""),
     (2, ("grade", GOOD, "--rubric", "new.toml"), b""),

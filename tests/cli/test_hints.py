@@ -13,7 +13,7 @@ from grader.report.comparison import applied_hints, hinted_texts
 from tests.command_line import run
 from tests.samples import ROOT, SAMPLES
 
-MISTAKES = ROOT / "submissions/lab6/several-mistakes/my_robot.urdf"
+MISTAKES = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 REFERENCE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 ROLL = {"path": "my_robot.urdf", "line": 73, "column": 34, "old": 'rpy="1.57 0 0"', "new": 'rpy="-1.57 0 0"'}
 

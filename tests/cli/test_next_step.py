@@ -10,7 +10,7 @@ from grader.cli.app import COMMANDS
 from tests.command_line import Done, run_with_input
 from tests.samples import ROOT
 
-SAMPLE = ROOT / "submissions/lab6/lidar-offset-in-visual/my_robot.urdf"
+SAMPLE = ROOT / "submissions/lab6/lidar-offset-in-visual/my_robot/urdf/my_robot.urdf"
 PACKAGE = "submissions/lab6/reference/roscourse_sim_ws/src/my_robot"
 BATCH = "grader batch PATH --gradebook book.db"
 

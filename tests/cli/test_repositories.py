@@ -16,7 +16,7 @@ from tests.samples import ROOT
 
 PACKAGE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot"
 URDF = PACKAGE / "urdf/my_robot.urdf"
-BURIED = ROOT / "submissions/lab6/lidar-buried/my_robot.urdf"
+BURIED = ROOT / "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf"
 
 
 def grade(path: Path | str, *more: str, folder: Path = ROOT) -> tuple[int, str, str]:

@@ -14,7 +14,7 @@ from grader.usecases.writing import save
 from tests.golden.cases import CLASSROOM50, run
 from tests.samples import ROOT
 
-MISTAKEN = "submissions/lab6/several-mistakes/my_robot.urdf"
+MISTAKEN = "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 
 
 def saved(*texts: str) -> subprocess.CompletedProcess[bytes]:

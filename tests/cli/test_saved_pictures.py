@@ -8,7 +8,7 @@ import pytest
 from tests.command_line import ROOT, run, run_with_input
 from tests.report.readers import read_as_github, read_markdown, read_svg
 
-BURIED = "submissions/lab6/lidar-buried/my_robot.urdf"
+BURIED = "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf"
 
 
 def images(markdown: Path) -> list[tuple[str, str]]:

@@ -80,7 +80,7 @@ def test_xacro_that_cannot_be_determined_is_not_green(tmp_path: Path) -> None:
 def test_findings_in_an_archive_are_on_the_archive(tmp_path: Path) -> None:
     """The repository has no file inside it; the text has the location."""
     with zipfile.ZipFile(tmp_path / "lab6.zip", "w") as archive:
-        archive.write(ROOT / "submissions/lab6/several-mistakes" / "my_robot.urdf", "my_robot.urdf")
+        archive.write(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf", "my_robot.urdf")
     (tmp_path / ".git").mkdir()
     _, reported = graded(tmp_path)
     assert "::error file=lab6.zip,title=base-green (6 points lost)::" in reported

@@ -22,7 +22,7 @@ from tests.command_line import HANG_TIMEOUT, ROOT, clean_environment, run
 
 REFERENCE = ROOT / "submissions/lab6/reference"
 URDF = REFERENCE / "roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"  # 70 of 70
-SHORT = ROOT / "submissions/lab6/lidar-offset-in-visual/my_robot.urdf"  # 64 of 70
+SHORT = ROOT / "submissions/lab6/lidar-offset-in-visual/my_robot/urdf/my_robot.urdf"  # 64 of 70
 BETTER = "\n64 -> 70 of 70 points (+6)\nnow passed: lidar-frame (+6)\n"
 WORSE = "\n70 -> 64 of 70 points (-6)\nnow failed: lidar-frame (-6)\n"
 END = "  IRP Lab 6: a wheeled base\n"  # of a report

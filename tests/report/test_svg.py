@@ -117,7 +117,7 @@ def test_twenty_numbers_at_one_place_do_not_overlap() -> None:
 
 def test_every_text_is_legible_at_600_pixels() -> None:
     """A drawing is 600 pixels wide, and no text is smaller than 11 of them."""
-    root = shown("grade", "submissions/lab6/several-mistakes/my_robot.urdf", code=1)
+    root = shown("grade", "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf", code=1)
     assert root.get("viewBox").startswith("0 0 600 ")
     sizes = [float(element.get("font-size")) for element in root.iter() if element.get("font-size")]
     assert min(sizes) >= 11.0
@@ -168,7 +168,7 @@ def test_views_show_the_robot_at_one_scale() -> None:
 @pytest.mark.parametrize(("level", "is_shown"), [("none", False), ("place", False), ("cause", True), ("edit", True)])
 def test_reference_is_shown_from_the_level_cause_on(level: str, is_shown: bool) -> None:
     """Also if the option asks for less than the rubric allows; the numbers are there at each level."""
-    root = shown("grade", "submissions/lab6/lidar-buried/my_robot.urdf", "--hints", level, code=1)
+    root = shown("grade", "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf", "--hints", level, code=1)
     assert (bool(paths(root, "reference")), "reference solution" in words(root)) == (is_shown, is_shown)
     assert paths(root, "badge")
 

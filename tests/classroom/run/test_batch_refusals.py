@@ -41,7 +41,7 @@ def _one_submission(_: Path) -> Path:
 
 
 def _one_file(_: Path) -> Path:
-    return ROOT / "submissions/lab6/lidar-buried/my_robot.urdf"
+    return ROOT / "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf"
 
 
 def _broken_zip(top: Path) -> Path:

@@ -81,7 +81,7 @@ def test_an_lms_number_is_stronger_than_a_path(tmp_path: Path) -> None:
     """A new download has other file names; the user's id is the same, and the roster comes late."""
     first, second = tmp_path / "class" / "ashalice_7_1_my_robot.urdf", tmp_path / "class" / "ashalice_7_2_my_robot.urdf"
     first.parent.mkdir()
-    shutil.copy(ROOT / "submissions/lab6/lidar-buried" / "my_robot.urdf", first)
+    shutil.copy(ROOT / "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf", first)
     batch(tmp_path, "--layout", "canvas")
     assert grader("mark", "ashalice_7", "lidar-frame", "6", "--gradebook", tmp_path / "g.db").returncode == 0
     first.rename(second)
