@@ -19,7 +19,7 @@ from tests.command_line import ROOT, run
 
 PAGE = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", PAGE, re.DOTALL)
-SAMPLES = ROOT / "submissions"
+SAMPLES = ROOT / "submissions/lab6"
 
 
 def test_the_stub_and_the_page_name_what_there_is() -> None:
@@ -48,7 +48,7 @@ def test_the_examples_print_what_the_page_shows(code: str, shown: str, tmp_path:
 def test_a_report_is_that_of_the_command(path: str) -> None:
     """Points, messages and hints, with a rubric by id, by path, and loaded."""
     printed = json.loads(run(("grade", SAMPLES / path, "--format", "json")).stdout)
-    for rubric in ("lab6", ROOT / "rubrics" / "lab6.toml", grader.load_rubric("lab6")):
+    for rubric in ("lab6", ROOT / "rubrics/lab6/rubric.toml", grader.load_rubric("lab6")):
         assert json.loads(render(grader.grade(SAMPLES / path, rubric), Format.JSON)) == printed
 
 

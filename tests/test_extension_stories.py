@@ -46,7 +46,7 @@ right = '<link name="base"><visual><geometry><box size="0.2 0.2 0.2"/></geometry
 RUBRIC = """\
 id = "lab0"
 title = "Lab 0: one box"
-reference = "lab0/robot.urdf"
+reference = "robot.urdf"
 
 [[part]]
 id = "model"
@@ -138,8 +138,8 @@ def test_a_new_check(project: Path) -> None:
 
 def test_a_new_rubric(project: Path) -> None:
     """A rubric is a TOML file and its reference solution."""
-    (project / "rubrics/lab0.toml").write_text(RUBRIC, encoding="utf-8")
     (project / "rubrics/lab0").mkdir()
+    (project / "rubrics/lab0/rubric.toml").write_text(RUBRIC, encoding="utf-8")
     (project / "rubrics/lab0/robot.urdf").write_text(REFERENCE, encoding="utf-8")
     python(project, "-m", "grader", "rubric", "check", "lab0")
     passes(
@@ -159,6 +159,8 @@ def test_a_new_format(project: Path) -> None:
     replace(project / "grader/report/formats.py", last, f"{last}{row}\n")
     replace(project / "docs/command-line.md", "| `markdown` |", "| `line` | logs | one line |\n| `markdown` |")
     add_to_changelog(project, "The format `line`.")
-    python(project, "-m", "grader", "grade", "submissions/several-mistakes", "--format", "line", "--fail-under", "0")
+    python(
+        project, "-m", "grader", "grade", "submissions/lab6/several-mistakes", "--format", "line", "--fail-under", "0"
+    )
     passes(project, "tests/report", "tests/cli/test_save.py", "tests/cli/test_completion.py", "tests/submission",
            "tests/test_architecture.py", "tests/test_docs.py")  # fmt: skip

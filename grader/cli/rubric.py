@@ -118,7 +118,7 @@ def copy_rubric(
 
     Examples:
 
-      grader rubric copy lab6 rubrics
+      grader rubric copy lab6 rubrics   # writes rubrics/lab6/rubric.toml and its reference
     """
     return rubrics.copy(name, folder)
 

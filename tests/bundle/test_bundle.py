@@ -28,7 +28,7 @@ from tests.bundle.gradescope import Autograder, environment_for, unpacked
 from tests.classroom.gradebooks import grader, lab_text, refusal, write_submission
 from tests.samples import LAB6, ROOT, opened
 
-RUBRICS = [f"grader/rubrics/{name}.toml" for name in shipped_rubrics()]
+RUBRICS = [f"grader/rubrics/{name}/rubric.toml" for name in shipped_rubrics()]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 
 
@@ -47,7 +47,9 @@ def test_the_files(bundle: Path) -> None:
         "setup.sh", "run_autograder", "autograder.py", "autograder.json", "requirements.txt",
     }  # fmt: skip
     rendered = {name for name in names if name.startswith("grader/")}
-    reference = {f"grader/{path.relative_to(ROOT)}" for path in (ROOT / "rubrics/lab6").rglob("*") if path.is_file()}
+    reference = {
+        f"grader/{path.relative_to(ROOT)}" for path in (ROOT / "rubrics/lab6/my_robot").rglob("*") if path.is_file()
+    }
     assert reference
     assert rendered == {*second, "grader/bundle/on_gradescope/run_autograder", *RUBRICS, *reference}
     assert {name for name in names if "rubrics/" in name} == {*RUBRICS, *reference}
@@ -187,7 +189,7 @@ def test_unrelated_files_are_excluded(monkeypatch: pytest.MonkeyPatch, tmp_path:
         "__pycache__/a.pyc",
         "b/d.pyc",
         ".git/x",
-        "rubrics/old.toml",
+        "rubrics/old/rubric.toml",
     ):
         (tmp_path / "grader" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "grader" / name).touch()
@@ -224,7 +226,7 @@ def test_a_custom_rubric(tmp_path: Path) -> None:
 def test_a_file_named_like_a_shipped_rubric(tmp_path: Path) -> None:
     """A path to a file selects that file, not the shipped rubric of the same id."""
     own = tmp_path / "lab6.toml"
-    own.write_bytes((ROOT / "rubrics/lab6.toml").read_bytes() + b"# changed\n")
+    own.write_bytes((ROOT / "rubrics/lab6/rubric.toml").read_bytes() + b"# changed\n")
     assert grader("bundle", "gradescope", tmp_path / "out.zip", "--rubric", own).returncode == 0
     with zipfile.ZipFile(tmp_path / "out.zip") as archive:
         assert archive.read("rubric.toml") == own.read_bytes()
@@ -245,7 +247,7 @@ def test_a_rubric_without_manual_grading(tmp_path: Path) -> None:
 
 def test_manual_points_are_those_that_the_reference_lacks() -> None:
     """The criteria listed for manual grading are those that stay pending for the reference."""
-    report = grade(LAB6, opened("submissions/reference"))
+    report = grade(LAB6, opened("submissions/lab6/reference"))
     pending = [result.criterion for result in report.results if result.outcome.status == "pending"]
     output = command._next_step(LAB6)
     assert (

@@ -12,7 +12,7 @@ import pytest
 from tests.command_line import HANG_TIMEOUT, run_with_input
 from tests.golden.cases import ROOT, run
 
-REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
+REFERENCE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 MEBIBYTE = 1024 * 1024
 
 
@@ -210,7 +210,7 @@ def test_a_rubric_with_mistakes_is_refused_with_all_of_them(tmp_path: Path) -> N
 @pytest.mark.parametrize("form", ["terminal", pytest.param("json", marks=pytest.mark.exhaustive)])
 def test_closed_standard_output(form: str) -> None:
     """One line on standard error and exit code 2, whether it was closed before or during the output."""
-    command = f'"{sys.executable}" -m grader grade submissions/reference --format {form}'
+    command = f'"{sys.executable}" -m grader grade submissions/lab6/reference --format {form}'
     for redirected in (f"{command} >&-", f"({command}; echo $? >&2) | true", f"{command} > /dev/full"):
         done = subprocess.run(
             ["bash", "-c", redirected], cwd=ROOT, capture_output=True, check=False, timeout=HANG_TIMEOUT

@@ -9,7 +9,7 @@ from tests.command_line import run_with_input
 from tests.samples import ROOT, SAMPLES
 
 GOOD, WRONG, FAULTS, ARM = (
-    ROOT / SAMPLES[name].path for name in ("reference", "lidar-buried", "several-mistakes", "arm-axis-sign")
+    ROOT / SAMPLES[name].path for name in ("reference", "lidar-buried", "several-mistakes", "arm/axis-sign")
 )
 NOT_XML = b"<robot name='r'><link name='a'"
 BOOK = ("--gradebook", "no.db")
@@ -62,7 +62,7 @@ ROWS: tuple[tuple[int, Sequence[object], bytes], ...] = (
     (2, ("explain", "URDF999"), b""),
     (0, ("rubric", "list"), b""),
     (0, ("rubric", "show", "lab6"), b""),
-    (0, ("rubric", "check", ROOT / "rubrics/lab6.toml"), b""),
+    (0, ("rubric", "check", ROOT / "rubrics/lab6/rubric.toml"), b""),
     (2, ("rubric", "check", "file.txt"), b""),
     (2, ("rubric", "show", "lab7"), b""),
     (2, ("rubric", "new", "lab.toml", "--from", "new"), b""),

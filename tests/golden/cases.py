@@ -53,53 +53,57 @@ def _in_every_format(name: str, path: str, exit_code: int) -> tuple[Golden, ...]
     )
 
 
-# Samples whose drawings are kept, with their rubrics.
-_DRAWN = {
-    "reference": "lab6",
-    "axis-negated": "lab6",
-    "base-half-sunk": "lab6",
-    "caster-misnamed": "lab6",
-    "lidar-buried": "lab6",
-    "several-mistakes": "lab6",
-    "wheel-inside-base": "lab6",
-    "wheels-lying-flat": "lab6",
-    "arm-hand-half-sunk": "arm",
-    "sensors-camera-up": "sensors",
-}
+# Samples whose drawings are kept.
+_DRAWN = (
+    "lab6/reference",
+    "lab6/axis-negated",
+    "lab6/base-half-sunk",
+    "lab6/caster-misnamed",
+    "lab6/lidar-buried",
+    "lab6/several-mistakes",
+    "lab6/wheel-inside-base",
+    "lab6/wheels-lying-flat",
+    "arm/hand-half-sunk",
+    "sensors/camera-up",
+)
 
 
 def _drawings() -> tuple[Golden, ...]:
     """Return a case for each drawing."""
     return tuple(
         Golden(
-            f"drawing-{name}",
-            ("grade", f"submissions/{name}", "--rubric", rubric, "--format", "svg"),
-            int(name != "reference"),
+            f"drawing-{sample.removeprefix('lab6/').replace('/', '-')}",
+            ("grade", f"submissions/{sample}", "--rubric", sample.partition("/")[0], "--format", "svg"),
+            int(sample != "lab6/reference"),
         )
-        for name, rubric in _DRAWN.items()
+        for sample in _DRAWN
     )
 
 
 GOLDEN = (
-    Golden("reference", ("grade", "submissions/reference"), 0),
-    Golden("reference-verbose", ("grade", "submissions/reference", "--verbose"), 0),
-    Golden("reference-json", ("grade", "submissions/reference", "--format", "json"), 0),
-    Golden("several-mistakes", ("grade", "submissions/several-mistakes/my_robot.urdf"), 1),
-    Golden("several-mistakes-json", ("grade", "submissions/several-mistakes/my_robot.urdf", "--format", "json"), 1),
-    Golden("lidar-without-joint", ("grade", "submissions/lidar-without-joint/my_robot.urdf"), 1),
-    Golden("broken-tag-parent", ("grade", "submissions/broken-tag-parent/my_robot.urdf"), 1),
-    Golden("broken-tag-parent-json", ("grade", "submissions/broken-tag-parent/my_robot.urdf", "--format", "json"), 1),
-    Golden("no-launch-folder", ("grade", "submissions/no-launch-folder", "--part", "task2"), 1),
-    Golden("launch-home-path", ("grade", "submissions/launch-home-path", "--part", "task2"), 1),
-    Golden("setup-syntax-error", ("grade", "submissions/setup-syntax-error", "--part", "task2"), 1),
-    Golden("empty-urdf", ("grade", "submissions/empty-urdf"), 1),
-    Golden("team-of-two-json", ("grade", "submissions/equivalent-team-of-two/Lab6/Ash", "--format", "json"), 0),
-    Golden("zipped", ("grade", "submissions/equivalent-zipped-with-wrapper/lab6.zip", "--part", "questions"), 0),
-    Golden("inspect-raw-xacro", ("inspect", "submissions/raw-xacro/my_robot.urdf"), 1),
-    Golden("inspect-reference", ("inspect", "submissions/reference", "--relative-to", "base_link"), 0),
+    Golden("reference", ("grade", "submissions/lab6/reference"), 0),
+    Golden("reference-verbose", ("grade", "submissions/lab6/reference", "--verbose"), 0),
+    Golden("reference-json", ("grade", "submissions/lab6/reference", "--format", "json"), 0),
+    Golden("several-mistakes", ("grade", "submissions/lab6/several-mistakes/my_robot.urdf"), 1),
+    Golden(
+        "several-mistakes-json", ("grade", "submissions/lab6/several-mistakes/my_robot.urdf", "--format", "json"), 1
+    ),
+    Golden("lidar-without-joint", ("grade", "submissions/lab6/lidar-without-joint/my_robot.urdf"), 1),
+    Golden("broken-tag-parent", ("grade", "submissions/lab6/broken-tag-parent/my_robot.urdf"), 1),
+    Golden(
+        "broken-tag-parent-json", ("grade", "submissions/lab6/broken-tag-parent/my_robot.urdf", "--format", "json"), 1
+    ),
+    Golden("no-launch-folder", ("grade", "submissions/lab6/no-launch-folder", "--part", "task2"), 1),
+    Golden("launch-home-path", ("grade", "submissions/lab6/launch-home-path", "--part", "task2"), 1),
+    Golden("setup-syntax-error", ("grade", "submissions/lab6/setup-syntax-error", "--part", "task2"), 1),
+    Golden("empty-urdf", ("grade", "submissions/lab6/empty-urdf"), 1),
+    Golden("team-of-two-json", ("grade", "submissions/lab6/equivalent-team-of-two/Lab6/Ash", "--format", "json"), 0),
+    Golden("zipped", ("grade", "submissions/lab6/equivalent-zipped-with-wrapper/lab6.zip", "--part", "questions"), 0),
+    Golden("inspect-raw-xacro", ("inspect", "submissions/lab6/raw-xacro/my_robot.urdf"), 1),
+    Golden("inspect-reference", ("inspect", "submissions/lab6/reference", "--relative-to", "base_link"), 0),
     Golden(
         "inspect-turned-json",
-        ("inspect", "submissions/reference", "--joint", "base_left_wheel_joint=1.57", "--format", "json"),
+        ("inspect", "submissions/lab6/reference", "--joint", "base_left_wheel_joint=1.57", "--format", "json"),
         0,
     ),
     Golden("explain-criterion", ("explain", "lidar-frame"), 0),
@@ -112,7 +116,7 @@ GOLDEN = (
         "drawing-turned-arm",
         (
             "inspect",
-            "submissions/equivalent-arm-plain",
+            "submissions/arm/equivalent-plain",
             "--joint",
             "joint_2=0.6",
             "--joint",
@@ -122,5 +126,5 @@ GOLDEN = (
         ),
         0,
     ),
-    *_in_every_format("several-mistakes", "submissions/several-mistakes/my_robot.urdf", 1),
+    *_in_every_format("several-mistakes", "submissions/lab6/several-mistakes/my_robot.urdf", 1),
 )

@@ -26,7 +26,7 @@ from tests.grading.test_rubric import GOOD, announced, complaints, loaded
 from tests.samples import LAB6, SAMPLES
 
 REFERENCE = (LAB6.path.parent / LAB6.reference / LAB6.urdf).read_text(encoding="utf-8")
-SMALL_WHEELS = "submissions/wheel-too-small/my_robot.urdf"
+SMALL_WHEELS = "submissions/lab6/wheel-too-small/my_robot.urdf"
 
 
 def carried_from(name: str, causes: list[str], check: AnyCheck, other: AnyCheck = passes_) -> Criterion:

@@ -31,7 +31,7 @@ def annotated(report: Report, base: Base = LAB) -> list[Command]:
 def test_each_finding_is_on_its_line() -> None:
     """File, line and columns are those of the finding, the title has criterion and points, the most points come first."""
     report = SAMPLES["several-mistakes"].grade()
-    lines = (ROOT / "submissions/several-mistakes/my_robot.urdf").read_text(encoding="utf-8").splitlines()
+    lines = (ROOT / "submissions/lab6/several-mistakes/my_robot.urdf").read_text(encoding="utf-8").splitlines()
     lost = sorted((result for result in report.results if result.is_lost), key=lambda item: -item.criterion.points)
     summary, *found = annotated(report)
     assert [command.get("title") for command in found][:2] == [

@@ -20,7 +20,7 @@ from tests.report.readers import read_sarif
 from tests.report.rewording import recast
 from tests.samples import LAB6, REPORTED, ROOT, SAMPLES
 
-MISTAKEN = ROOT / "submissions/several-mistakes/my_robot.urdf"
+MISTAKEN = ROOT / "submissions/lab6/several-mistakes/my_robot.urdf"
 MAX_RESULTS = 5000  # results that GitHub shows
 MAX_DESCRIPTION = 1024  # characters of a rule's descriptions
 FOLDER = "a lab #1/50%/ü?:x/"

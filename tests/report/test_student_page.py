@@ -35,7 +35,7 @@ def read(text: str | bytes) -> Any:
 
 def test_page_has_score_and_failures_first() -> None:
     """The score is large, and the costliest failure is the first one."""
-    page = read(run(("grade", "submissions/axis-negated/my_robot.urdf", "--format", "html")).stdout)
+    page = read(run(("grade", "submissions/lab6/axis-negated/my_robot.urdf", "--format", "html")).stdout)
     assert page.find_class("score")[0].text_content().strip() == "64 / 70 points"
     first = page.xpath("//article")[0]
     assert first.get("id") == "criterion-left-wheel-forward"
@@ -63,10 +63,10 @@ def test_page_shows_manual_marks() -> None:
     assert "Marked by Ada: so it is." in text
 
 
-@pytest.mark.parametrize(("answers", "count"), [((), 0), (("--answers", "rubrics/lab6.answers.toml"), 1)])
+@pytest.mark.parametrize(("answers", "count"), [((), 0), (("--answers", "rubrics/lab6/answers.toml"), 1)])
 def test_model_answers_need_the_option(answers: tuple[str, ...], count: int) -> None:
     """Model answers are on the page with --answers only."""
-    page = read(run(("grade", "submissions/reference", "--format", "html", *answers)).stdout)
+    page = read(run(("grade", "submissions/lab6/reference", "--format", "html", *answers)).stdout)
     assert ("Model answer:" in page.text_content()) == bool(count)
 
 
@@ -94,9 +94,9 @@ def shares(page: Any) -> tuple[list[str], list[str]]:
 
 def test_bar_explains_its_colours() -> None:
     """What is earned, needs manual grading and is lost stands below it; without points to grade there is no such part."""
-    page = read(run(("grade", "submissions/right-wheel-mirrored", "--format", "html")).stdout)
+    page = read(run(("grade", "submissions/lab6/right-wheel-mirrored", "--format", "html")).stdout)
     assert shares(page) == (["63.0%", "10.0%", "27.0%"], ["Earned: 63", "Needs manual grading: 10", "Lost: 27"])
-    page = read(run(("grade", "submissions/reference", "--part", "task1", "--format", "html")).stdout)
+    page = read(run(("grade", "submissions/lab6/reference", "--part", "task1", "--format", "html")).stdout)
     assert shares(page) == (["100.0%"], ["Earned: 70"])
 
 
@@ -108,7 +108,7 @@ def test_excused_student_has_no_bar() -> None:
 
 def test_every_criterion_has_its_title_behind_its_status() -> None:
     """On cards and in the list of all criteria; so that the title of a failed one does not read as a fact."""
-    page = read(run(("grade", "submissions/axis-negated/my_robot.urdf", "--format", "html")).stdout)
+    page = read(run(("grade", "submissions/lab6/axis-negated/my_robot.urdf", "--format", "html")).stdout)
     name, title = "left-wheel-forward", "Failed: A positive turn of the left wheel drives the base forward"
     heading = page.get_element_by_id(f"criterion-{name}").find("h3").text_content()
     (row,) = (row.text_content() for row in page.iter("tr") if f"#criterion-{name}" in row.xpath(".//a/@href"))
@@ -246,7 +246,7 @@ def test_inspection_shows_problems_tree_and_poses() -> None:
 
 def test_inspection_starts_at_the_given_positions() -> None:
     """`--joint` sets the sliders; a mimic joint follows and cannot be moved."""
-    page = inspected(SAMPLES["arm-axis-sign"].path, "--joint", "joint_2=0.5")
+    page = inspected(SAMPLES["arm/axis-sign"].path, "--joint", "joint_2=0.5")
     values = {slider.get("value") for slider in page.xpath("//input[@type='range']")}
     assert values == {"0.0", "28.64789"}
 
@@ -313,7 +313,7 @@ def test_only_continuous_joints_of_their_own_are_driven(
     change: tuple[str, str], free: list[bool], has_button: bool, tmp_path: Path
 ) -> None:
     """`Drive` neither turns a mimic joint against the one that it follows, nor a revolute joint beyond its limits."""
-    text = (ROOT / "submissions/axis-negated/my_robot.urdf").read_text()
+    text = (ROOT / "submissions/lab6/axis-negated/my_robot.urdf").read_text()
     assert change[0] in text
     (tmp_path / "my_robot.urdf").write_text(text.replace(*change))
     page = render_html(grade(LAB6, opened(tmp_path)))
@@ -324,12 +324,12 @@ def test_only_continuous_joints_of_their_own_are_driven(
 
 def test_an_answer_keeps_its_lines() -> None:
     """Each line of a written answer is a line of its own."""
-    page = read(run(("grade", "submissions/reference", "--format", "html")).stdout)
+    page = read(run(("grade", "submissions/lab6/reference", "--format", "html")).stdout)
     first = page.find_class("answer")[0].text_content()
     assert len(first.strip().splitlines()) > 2 and "\\x0a" not in first
 
 
 def test_what_is_not_deducted_says_so() -> None:
     """A criterion that fails only because of an earlier mistake is no plain failure."""
-    page = read(run(("grade", "submissions/broken-tag-origin", "--format", "html")).stdout)
+    page = read(run(("grade", "submissions/lab6/broken-tag-origin", "--format", "html")).stdout)
     assert "Failed, but not deducted:" in page.get_element_by_id("criterion-lidar-on-top").find("h3").text_content()

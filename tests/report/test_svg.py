@@ -24,7 +24,7 @@ from tests.robot.edge_cases import EDGE_CASES
 from tests.samples import REPORTED, SAMPLES
 from tests.work import limited_work
 
-REFERENCE = "submissions/reference"
+REFERENCE = "submissions/lab6/reference"
 
 
 def shown(*arguments: object, code: int = 0) -> Any:
@@ -89,7 +89,7 @@ def test_drawing_of_a_sample_is_well_formed_and_says_what_it_calls_out(name: str
         assert ("not in the picture" in said) or callout.point is not None
 
 
-@pytest.mark.parametrize("name", ["reference", "several-mistakes", "wheels-lying-flat", "arm-elbow-to-the-side"])
+@pytest.mark.parametrize("name", ["reference", "several-mistakes", "wheels-lying-flat", "arm/elbow-to-the-side"])
 def test_numbers_do_not_overlap(name: str) -> None:
     """The discs of all callouts are beside each other, inside the sheet, and there is one in each view."""
     picture = picture_of(SAMPLES[name].grade())
@@ -117,7 +117,7 @@ def test_twenty_numbers_at_one_place_do_not_overlap() -> None:
 
 def test_every_text_is_legible_at_600_pixels() -> None:
     """A drawing is 600 pixels wide, and no text is smaller than 11 of them."""
-    root = shown("grade", "submissions/several-mistakes/my_robot.urdf", code=1)
+    root = shown("grade", "submissions/lab6/several-mistakes/my_robot.urdf", code=1)
     assert root.get("viewBox").startswith("0 0 600 ")
     sizes = [float(element.get("font-size")) for element in root.iter() if element.get("font-size")]
     assert min(sizes) >= 11.0
@@ -168,14 +168,14 @@ def test_views_show_the_robot_at_one_scale() -> None:
 @pytest.mark.parametrize(("level", "is_shown"), [("none", False), ("place", False), ("cause", True), ("edit", True)])
 def test_reference_is_shown_from_the_level_cause_on(level: str, is_shown: bool) -> None:
     """Also if the option asks for less than the rubric allows; the numbers are there at each level."""
-    root = shown("grade", "submissions/lidar-buried/my_robot.urdf", "--hints", level, code=1)
+    root = shown("grade", "submissions/lab6/lidar-buried/my_robot.urdf", "--hints", level, code=1)
     assert (bool(paths(root, "reference")), "reference solution" in words(root)) == (is_shown, is_shown)
     assert paths(root, "badge")
 
 
 def test_joint_position_moves_the_drawing() -> None:
     """A wheel that turns about its axis stays; the forearm of an arm does not."""
-    arm = "submissions/equivalent-arm-plain"
+    arm = "submissions/arm/equivalent-plain"
     still, moved = shown("inspect", arm), shown("inspect", arm, "--joint", "joint_3=0.8")
     assert "joint_3 = 0.8" in words(moved)
     one, other = bodies(still), bodies(moved)
@@ -186,7 +186,7 @@ def test_joint_position_moves_the_drawing() -> None:
 
 def test_xacro_is_drawn_as_it_expands() -> None:
     """An arm in xacro with macros looks as the same arm in plain URDF."""
-    one, other = (bodies(shown("inspect", f"submissions/equivalent-arm-{name}")) for name in ("plain", "xacro-macros"))
+    one, other = (bodies(shown("inspect", f"submissions/arm/equivalent-{name}")) for name in ("plain", "xacro-macros"))
     assert {name: [path.get("d") for path in found] for name, found in one.items()} == {
         name: [path.get("d") for path in found] for name, found in other.items()
     }
@@ -299,13 +299,13 @@ def test_two_hundred_links_are_drawn_in_a_second() -> None:
 
 def test_opposite_arrows_at_one_place_are_side_by_side() -> None:
     """In the side view one wheel hides the other: each arrow keeps to the right of its direction, 14 pixels apart."""
-    root = shown("grade", "submissions/several-mistakes", code=1)
+    root = shown("grade", "submissions/lab6/several-mistakes", code=1)
     views = [re.findall(r"M([\d.]+) ([\d.]+)H", path) for path in paths(root, "arrow")]
     pairs = [[tuple(map(float, start)) for start in starts] for starts in views if len(starts) == 2]
     assert [abs(one[1] - other[1]) for one, other in pairs if one[0] == other[0]] == [180.0, 14.0]
 
 
-@pytest.mark.parametrize("name", ["reference", "several-mistakes", "arm-elbow-to-the-side", "sensors-imu-upside-down"])
+@pytest.mark.parametrize("name", ["reference", "several-mistakes", "arm/elbow-to-the-side", "sensors/imu-upside-down"])
 def test_letters_of_axes_cover_neither_each_other_nor_numbers_nor_the_ground(name: str) -> None:
     """Each is behind its axis or beside it."""
     picture = picture_of(SAMPLES[name].grade())

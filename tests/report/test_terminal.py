@@ -22,7 +22,7 @@ from grader.submission.opening import read_submission
 from grader.text import printable
 from tests.samples import REPORTED, SAMPLES, opened
 
-URDF = "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
+URDF = "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 LIDAR = """\
 \u2717 lidar-frame  -6 points  my_robot.urdf:30:13
   The frame 'lidar' is at 0.15 0 0.2 m in 'base_link'; it should be at 0.15 0
@@ -152,7 +152,7 @@ def test_failures_come_first_and_the_costliest_first(name: str) -> None:
             assert (f"\n  {where.line} \u2502 " in card) == (is_seen and number < 3)
 
 
-@pytest.mark.parametrize("name", ["lidar-buried", "cylinder-height", "sensors-nothing-included"])
+@pytest.mark.parametrize("name", ["lidar-buried", "cylinder-height", "sensors/nothing-included"])
 def test_a_full_report_shows_whole_texts(name: str) -> None:
     """With `verbose`, messages, explanations and what is skipped are not cut."""
     report = report_of(name)
