@@ -76,6 +76,19 @@ def render_line(report: Report) -> str:
     """Return a report in one line."""
     return f"{printable(report.submission.id)}: {report.score} of {report.max_score}\\n"
 '''
+LMS = """
+
+SAKAI = OfflineFormat(
+    lms="Sakai",
+    example="Lab 6 [100]",
+    header=re.compile(r"(?P<title>.*?) \\[(?P<maximum>[0-9.,]+)\\]"),
+    login="Student ID",
+    sis="Student Number",
+    email="",
+    kept=frozenset(),
+    above="",
+)
+"""
 
 
 @pytest.fixture
@@ -164,3 +177,22 @@ def test_a_new_format(project: Path) -> None:
     )
     passes(project, "tests/report", "tests/cli/test_save.py", "tests/cli/test_completion.py", "tests/submission",
            "tests/test_architecture.py", "tests/test_docs.py")  # fmt: skip
+
+
+def test_a_new_lms(project: Path) -> None:
+    """A grade file of an LMS is a form, a row of the table of fillers, a name of the command and of its documentation."""
+    with (project / "grader/classroom/lms/offline.py").open("a", encoding="utf-8") as forms:
+        forms.write(LMS)
+    files = project / "grader/usecases/grade_files.py"
+    replace(files, "import BLACKBOARD, BRIGHTSPACE,", "import BLACKBOARD, BRIGHTSPACE, SAKAI,")
+    replace(files, '    "brightspace": ', '    "sakai": partial(fill_offline, form=SAKAI),\n    "brightspace": ')
+    replace(project / "grader/cli/export.py", '"brightspace", ', '"brightspace", "sakai", ')
+    replace(project / "docs/command-line.md", "|brightspace|", "|brightspace|sakai|")
+    book, exported, filled = (str(project / name) for name in ("class.db", "sakai.csv", "upload.csv"))
+    Path(exported).write_text("Student ID,Name,Lab 6 [100]\nash,Ash,\n", encoding="utf-8")
+    shutil.copytree(project / "submissions/lab6/reference", project / "class/ash")
+    python(project, "-m", "grader", "batch", "class", "--gradebook", book)
+    export = ("export", "sakai", "--gradebook", book, "--into", exported, "--output", filled, "--pending-as-zero")
+    python(project, "-m", "grader", *export)
+    assert Path(filled).read_text(encoding="utf-8") == "Student ID,Name,Lab 6 [100]\nash,Ash,90.00\n"
+    passes(project, "tests/classroom/lms", "tests/test_docs.py", "tests/cli/test_completion.py")

@@ -1,36 +1,4 @@
-"""An edge case, and builders that keep each case to a line or two."""
-
-from dataclasses import dataclass
-from typing import Literal
-
-Verdict = Literal["clean", "degraded", "rejected"]
-Oracle = Literal["agrees", "hangs", "aborts"]
-
-
-@dataclass(frozen=True, slots=True)
-class EdgeCase:
-    """A file and ROS 2's verdict on it; a program that hangs or crashes on a file has rejected it."""
-
-    name: str
-    rule: str
-    text: bytes
-    verdict: Verdict
-    oracle: Oracle = "agrees"
-
-
-def clean(name: str, rule: str, text: str | bytes) -> EdgeCase:
-    """Return the case of a file that loads completely."""
-    return EdgeCase(name, rule, _encoded(text), "clean")
-
-
-def degraded(name: str, rule: str, text: str | bytes) -> EdgeCase:
-    """Return the case of a file that loads with an error in the log or with something omitted."""
-    return EdgeCase(name, rule, _encoded(text), "degraded")
-
-
-def rejected(name: str, rule: str, text: str | bytes, oracle: Oracle = "agrees") -> EdgeCase:
-    """Return the case of a file that does not load."""
-    return EdgeCase(name, rule, _encoded(text), "rejected", oracle)
+"""Builders of small URDFs."""
 
 
 def robot(body: str, attributes: str = 'name="r"') -> str:
@@ -77,7 +45,3 @@ def geometry(shape: str) -> str:
 def with_bytes(text: str, raw: bytes) -> bytes:
     """Return this text with raw bytes for each @, for bytes that no text can contain."""
     return text.encode().replace(b"@", raw)
-
-
-def _encoded(text: str | bytes) -> bytes:
-    return text.encode() if isinstance(text, str) else text
