@@ -1,6 +1,6 @@
 """The sample submissions in submissions/, each with its expected.toml, as `grader rubric test` reads them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -33,6 +33,12 @@ class Sample:
     def path(self) -> Path:
         """Return the path of the submission, relative to the project's root."""
         return (self.expected.folder / self.expected.path).relative_to(ROOT)
+
+    @property
+    def alone(self) -> "Sample":
+        """Return the sample that consists of the URDF of this one, without its package."""
+        (urdf,) = self.expected.folder.glob("*/urdf/*_robot.urdf*")
+        return Sample(replace(self.expected, path=urdf.relative_to(self.expected.folder).as_posix()))
 
     @property
     def rubric(self) -> Rubric:

@@ -11,7 +11,7 @@ import pytest
 from tests.classroom.class_runs import Done, grader, without_hints
 from tests.samples import ROOT
 
-GOOD, BAD = ROOT / "submissions/lab6/reference", ROOT / "submissions/lab6/lidar-buried"
+GOOD, BAD = ROOT / "submissions/lab6/reference", ROOT / "submissions/lab6/lidar-buried/my_robot/urdf"
 TEAMS = "id,login,name,group\n1,alice,Alice Ash,team2\n2,mallory,Mallory Moss,team1\n"
 
 
@@ -269,11 +269,11 @@ def test_a_display_name_takes_over_nothing_later(tmp_path: Path, layout: str) ->
 def test_a_display_name_removes_nobody(tmp_path: Path) -> None:
     """A file that can be read as another user's is a submission of its own, and earlier grades stay."""
     (tmp_path / "class").mkdir()
-    shutil.copy(BAD / "my_robot/urdf/my_robot.urdf", tmp_path / "class/doejane_12_1001_6_robot.urdf")
-    shutil.copy(BAD / "my_robot/urdf/my_robot.urdf", tmp_path / "class/roerick_13_1002_robot.urdf")
+    shutil.copy(BAD / "my_robot.urdf", tmp_path / "class/doejane_12_1001_6_robot.urdf")
+    shutil.copy(BAD / "my_robot.urdf", tmp_path / "class/roerick_13_1002_robot.urdf")
     batch(tmp_path, "--layout", "canvas")
     before = students(tmp_path)
-    shutil.copy(BAD / "my_robot/urdf/my_robot.urdf", tmp_path / "class/mallory_12_14_1003_robot.urdf")
+    shutil.copy(BAD / "my_robot.urdf", tmp_path / "class/mallory_12_14_1003_robot.urdf")
     batch(tmp_path, "--layout", "canvas")
     after = students(tmp_path)
     assert after.pop("mallory_12_14")["score"] == 62
@@ -370,7 +370,7 @@ def test_hostile_display_names_of_moodle_are_refused(tmp_path: Path) -> None:
 def test_hostile_display_names_of_canvas_are_refused(tmp_path: Path) -> None:
     """A name that ends in another user's number is not that user's, whose own files show another name."""
     (tmp_path / "class").mkdir()
-    shutil.copy(BAD / "my_robot/urdf/my_robot.urdf", tmp_path / "class/smithbob_77_100_my_robot.urdf")
+    shutil.copy(BAD / "my_robot.urdf", tmp_path / "class/smithbob_77_100_my_robot.urdf")
     shutil.copy(ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf", tmp_path / "class/mallory_77_99_101_my_robot.urdf")
     batch(tmp_path, "--layout", "canvas")
     assert {key: student["score"] for key, student in students(tmp_path).items()} == {
@@ -386,7 +386,7 @@ def test_a_roster_does_not_settle_a_name_with_two_numbers(tmp_path: Path, alice:
     (tmp_path / "class").mkdir()
     for name in (alice, "birchbob_72_50072_my_robot.urdf"):
         if name:
-            shutil.copy(BAD / "my_robot/urdf/my_robot.urdf", tmp_path / "class" / name)
+            shutil.copy(BAD / "my_robot.urdf", tmp_path / "class" / name)
     shutil.copy(ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf", tmp_path / "class" / mallory)
     done = batch(tmp_path, "--layout", "canvas", roster="id,name,Canvas ID\na,Alice Ash,71\nb,Bob Birch,72\n")
     assert done.returncode == 0, done.stderr

@@ -292,7 +292,7 @@ def test_hints(tmp_path: Path) -> None:
     """None for adjusted criteria, and none counts their points as gained; extra credit has hints."""
     text = (ROOT / "rubrics/lab6/rubric.toml").read_text(encoding="utf-8")
     text = text.replace('reference = "', f'reference = "{ROOT}/rubrics/lab6/')
-    sample = ROOT / "submissions/lab6/several-mistakes"
+    sample = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf"
     base = with_bonus(text.replace("points = 70\n", "").replace("points = 100\n", ""), "base-green")
     _, data = report(sample, rubric(tmp_path, adjusted(base, "stands-on-ground", "full")))
     gains = [set(hint["gains"]) for row in data["results"] for hint in row["hints"]]

@@ -177,7 +177,7 @@ def test_usage() -> None:
     refuse("grade", reference, "--save", "pdf=x.pdf", words="terminal, markdown, json")
     refuse("grade", reference, "--save", "json=/nowhere/at/all.json", words="cannot write")
     refuse("grade", reference, "--hints", words="--hints")
-    refuse("grade", words="PATH")
+    refuse("inspect", words="PATH")
     refuse("grad", reference, words="grad")
     refuse("inspect", reference, "--joint", "base_left_wheel_joint", words="--joint takes NAME=VALUE")
     refuse("inspect", reference, "--joint", "base_left_wheel_joint=fast", words="--joint takes NAME=VALUE")

@@ -8,9 +8,8 @@ import pytest
 from tests.command_line import run_with_input
 from tests.samples import ROOT, SAMPLES
 
-GOOD, WRONG, FAULTS, ARM = (
-    ROOT / SAMPLES[name].path for name in ("reference", "lidar-buried", "several-mistakes", "arm/axis-sign")
-)
+GOOD, ARM = (ROOT / SAMPLES[name].path for name in ("reference", "arm/axis-sign"))
+WRONG, FAULTS = (ROOT / SAMPLES[name].alone.path for name in ("lidar-buried", "several-mistakes"))
 NOT_XML = b"<robot name='r'><link name='a'"
 BOOK = ("--gradebook", "no.db")
 # Exit code, arguments, standard input. `new` is a folder that does not exist, `file` a file of another kind.

@@ -335,7 +335,7 @@ def test_a_hint_that_was_applied_is_named() -> None:
     from grader.grading.hints.hinting import hinted
     from grader.submission.opening import read_submission
 
-    sample = SAMPLES["several-mistakes"]
+    sample = SAMPLES["several-mistakes"].alone
     submission = sample.open()
     before = hinted(sample.grade(), submission, "edit").report
     text = MISTAKES.read_text()

@@ -9,7 +9,7 @@ from grader.grading.rubric import shipped_rubrics
 from tests.classroom.gradebooks import grader, refusal
 from tests.samples import ROOT
 
-SAMPLE = ROOT / "submissions/lab6/lidar-in-the-middle"
+SAMPLE = ROOT / "submissions/lab6/lidar-in-the-middle/my_robot/urdf"
 
 
 @pytest.mark.parametrize("name", shipped_rubrics())

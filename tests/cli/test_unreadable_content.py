@@ -91,7 +91,7 @@ def test_findings_in_an_archive_are_on_the_archive(tmp_path: Path) -> None:
 
 def test_the_most_consequential_failure_comes_first() -> None:
     """A criterion counts for those that are skipped because of it; what is about a missing package comes last."""
-    _, reported = graded(ROOT / "submissions/lab6/several-mistakes")
+    _, reported = graded(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf")
     first, *_, last = [line for line in reported.splitlines() if line.startswith("::error ")]
     assert "title=lidar-frame (6 points lost)::" in first
     assert "title=package-found (20 points lost)::" in last

@@ -335,5 +335,5 @@ def test_only_changes_are_yielded(tmp_path: Path) -> None:
 
 def test_all_graded_files_are_watched() -> None:
     """Every file that is graded counts when it changes."""
-    for folder in sorted((ROOT / "submissions/lab6").iterdir())[:20]:
+    for folder in sorted((ROOT / "submissions/lab6").glob("*/"))[:20]:
         assert [path for path in read_folder(folder).files if not is_looked_at(folder, path)] == [], folder

@@ -82,7 +82,9 @@ def test_missing_link_is_marked_where_the_reference_has_it() -> None:
 def test_rubric_that_hides_hints_hides_the_reference() -> None:
     """Below the level `cause` a picture shows nothing of the reference."""
     rubric = replace(load_rubric("lab6"), hints="place")
-    found = picture_of(grade(rubric, open_submission(str(ROOT / "submissions/lab6/lidar-buried"), rubric.lab)))
+    found = picture_of(
+        grade(rubric, open_submission(str(ROOT / "submissions/lab6/lidar-buried/my_robot/urdf"), rubric.lab))
+    )
     assert found is not None
     assert found.reference is None
     assert found.outlines == ()

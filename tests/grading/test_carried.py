@@ -318,7 +318,7 @@ def test_explain_says_when_it_is_carried() -> None:
 
 def test_a_record_keeps_it() -> None:
     """A gradebook gives the same report."""
-    report = SAMPLES["wheel-too-small"].grade()
+    report = SAMPLES["wheel-too-small"].alone.grade()
     again = from_record(to_record(report), report.rubric)
     assert [result.carried for result in again.results] == carried(report)
     assert again.score == report.score == 68

@@ -94,7 +94,7 @@ def shares(page: Any) -> tuple[list[str], list[str]]:
 
 def test_bar_explains_its_colours() -> None:
     """What is earned, needs manual grading and is lost stands below it; without points to grade there is no such part."""
-    page = read(run(("grade", "submissions/lab6/right-wheel-mirrored", "--format", "html")).stdout)
+    page = read(run(("grade", "submissions/lab6/right-wheel-mirrored/my_robot/urdf", "--format", "html")).stdout)
     assert shares(page) == (["63.0%", "10.0%", "27.0%"], ["Earned: 63", "Needs manual grading: 10", "Lost: 27"])
     page = read(run(("grade", "submissions/lab6/reference", "--part", "task1", "--format", "html")).stdout)
     assert shares(page) == (["100.0%"], ["Earned: 70"])
@@ -331,5 +331,5 @@ def test_an_answer_keeps_its_lines() -> None:
 
 def test_what_is_not_deducted_says_so() -> None:
     """A criterion that fails only because of an earlier mistake is no plain failure."""
-    page = read(run(("grade", "submissions/lab6/broken-tag-origin", "--format", "html")).stdout)
+    page = read(run(("grade", "submissions/lab6/broken-tag-origin/my_robot/urdf", "--format", "html")).stdout)
     assert "Failed, but not deducted:" in page.get_element_by_id("criterion-lidar-on-top").find("h3").text_content()

@@ -299,7 +299,7 @@ def test_two_hundred_links_are_drawn_in_a_second() -> None:
 
 def test_opposite_arrows_at_one_place_are_side_by_side() -> None:
     """In the side view one wheel hides the other: each arrow keeps to the right of its direction, 14 pixels apart."""
-    root = shown("grade", "submissions/lab6/several-mistakes", code=1)
+    root = shown("grade", "submissions/lab6/several-mistakes/my_robot/urdf", code=1)
     views = [re.findall(r"M([\d.]+) ([\d.]+)H", path) for path in paths(root, "arrow")]
     pairs = [[tuple(map(float, start)) for start in starts] for starts in views if len(starts) == 2]
     assert [abs(one[1] - other[1]) for one, other in pairs if one[0] == other[0]] == [180.0, 14.0]
