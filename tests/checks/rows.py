@@ -23,6 +23,7 @@ from tests.checks.submissions import REFERENCE, Submitted
 
 CORPUS = Path(__file__).parents[1] / "corpus" / "checks"
 GIVEN = ("about", "scene", "urdf", "package", "removed", "renamed", "files", "copies", "edits", "reference", "with")
+_LONG = 5_000  # characters of an answer, of which the rest is counted
 _REST = 60  # characters of the line that are shown from a place on
 
 Fields = Mapping[str, Any]
@@ -133,6 +134,10 @@ def _encoding(text: Any) -> str:
 def _fields(found: Fields, of: Scene | Submitted) -> dict[str, Any]:
     """Return the fields that are not empty, with the place in words."""
     fields = {key: value for key, value in found.items() if value is not None and value not in ("", ())}
+    if len(str(fields.get("measured", ""))) > _LONG:
+        fields["measured"] = (
+            f"{fields['measured'][:40]} ... {fields['measured'][-40:]}: {len(fields['measured'])} characters"
+        )
     at = fields.pop("location", None)
     return {**fields, "place": _place(at, of)} if at is not None else fields
 
