@@ -27,15 +27,20 @@ def shows_cube(robot: Configuration, *, link: str, distance: NonNegative, tolera
     """
     return shows_box(robot, link=link, size=(distance, distance, distance), tolerance=tolerance)
 '''
-SAMPLE = """CASES = (
-    Case(
-        appearance.shows_cube,
-        {"link": "base", "distance": 0.2, "tolerance": 0.002},
-        passing=scene(link("base", visual(box(0.2, 0.2, 0.2)))),
-        failing=scene(link("base", visual(box(0.2, 0.2, 0.3)))),
-        edges={"tolerance": lambda off: scene(link("base", visual(box(0.2, 0.2, 0.2 + off))))},
-        mesh_status="failed",
-    ),
+ROWS = """\
+with = { link = "base", distance = 0.2, tolerance = 0.002 }
+meshes = "failed"
+
+[edges]
+tolerance = [["0.2 0.2 0.2", "0.2 0.2 {}", 0.2, 1]]
+
+[[row]]
+about = "Opposite faces have the distance."
+scene = "base"
+edits = [["0.6 0.4", "0.2 0.2"]]
+
+[[row]]
+scene = "base"
 """
 EXAMPLE = """
 [shows_cube]
@@ -134,7 +139,8 @@ def test_a_new_check(project: Path) -> None:
         with (project / file).open("a", encoding="utf-8") as family:
             family.write(text)
     replace(project / "grader/checks/registry.py", "CHECKS = (\n", 'CHECKS = (\n    "appearance.shows_cube",\n')
-    replace(project / "tests/checks/cases.py", "CASES = (\n", SAMPLE)
+    (project / "tests/corpus/checks/shows_cube.toml").write_text(ROWS, encoding="utf-8")
+    python(project, "-m", "tests.checks", "shows_cube")
     python(project, "tests/golden/update.py")
     python(project, "docs/make.py")
     add_to_changelog(project, "The check `shows_cube`.")

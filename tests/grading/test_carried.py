@@ -17,9 +17,8 @@ from grader.grading.rubric import Rubric
 from grader.report.formats import Format
 from grader.robot.kinematics import Configuration
 from grader.submission.opening import read_submission
-from tests.checks.cases import BASE
 from tests.checks.outcomes import AnyCheck
-from tests.checks.robots import scene
+from tests.checks.robots import BASE, scene
 from tests.classroom.gradebooks import grader
 from tests.grading.test_grade import ask, breaks, fails_, passes_, pends, statuses
 from tests.grading.test_rubric import GOOD, announced, complaints, loaded
