@@ -23,7 +23,7 @@ from tests.checks.submissions import REFERENCE, Submitted
 
 CORPUS = Path(__file__).parents[1] / "corpus" / "checks"
 GIVEN = ("about", "scene", "urdf", "package", "removed", "renamed", "files", "copies", "edits", "reference", "with")
-_LONG = 5_000  # characters of an answer, of which the rest is counted
+_LONG = 1_000  # characters of an answer, of which the rest is counted
 _REST = 60  # characters of the line that are shown from a place on
 
 Fields = Mapping[str, Any]
