@@ -1,4 +1,4 @@
-"""Every speed that the project claims: `python benchmarks/run.py [FIGURE...]`. Needs `pip install '.[test,oracle,bench]'`.
+"""Every speed that the project claims: `python benchmarks/run.py [FIGURE...]`. Needs `pip install '.[test]' --group oracle --group bench`.
 
 All figures are ratios of alternatives that run in turn; absolute times depend on the machine. Every command must end
 with the expected exit code and print an expected word. `--against FOLDER` also runs each command of the grader with the

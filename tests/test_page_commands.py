@@ -22,6 +22,7 @@ OTHER_FILES = {  # what only these pages presume, and what it is
     "rubric-test.md": {"my_lab.toml": "rubrics/arm/rubric.toml"},
 }
 ELSEWHERE = {  # beginnings of command lines that are run by another test, or not by any
+    "grader batch submissions/class/files": "test_submissions.py",
     "grader batch submissions --gradebook lab6.db --roster canvas.csv": "classroom/test_walkthrough.py",
     'grader mark "Anik Tagrigri"': "classroom/test_walkthrough.py",
     "grader mark namargri000100": "classroom/test_walkthrough.py",
