@@ -38,7 +38,7 @@ class Case:
     edits: tuple[tuple[str, str, str], ...] = ()  # path, a text that stands there, the text that replaces it everywhere
     files: Mapping[str, str] = field(default_factory=dict)
     hex: Mapping[str, str] = field(default_factory=dict)  # files that are no text
-    sizes: Mapping[str, int] = field(default_factory=dict)  # files that zeros follow up to this size
+    sizes: Mapping[str, int] = field(default_factory=dict)  # files that spaces follow up to this size
     links: Mapping[str, str] = field(default_factory=dict)  # path of a symlink: where it leads
     zips: Mapping[str, str] = field(default_factory=dict)  # path of an archive: the folder that moves into it
     variables: Mapping[str, str] = field(default_factory=dict)
@@ -60,7 +60,7 @@ class Case:
         before = _contents(here)
         found: Expected = {"exit": "", "stdout": "", "stderr": ""}
         for command in self.commands:
-            words = shlex.split(command.replace("ROOT", str(ROOT)))
+            words = shlex.split(command.replace("ROOT", str(ROOT)).replace("HERE", str(here)))
             variables = {name: text.replace("HERE", str(here)) for name, text in self.variables.items()}
             done = run_with_input(words, self.stdin.encode(), variables, here / self.folder)
             heading = f"$ grader {command}\n" if len(self.commands) > 1 else ""
