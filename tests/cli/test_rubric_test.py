@@ -12,7 +12,7 @@ from grader.checks.registry import find_check
 from grader.grading.rubric import shipped_rubrics
 from grader.robot.kinematics import Configuration
 from tests.command_line import Done, run
-from tests.mutation.robots import ARM, TOP, write_rubric
+from tests.mutation.robots import TOP, write_rubric
 from tests.samples import SAMPLES
 
 LINKS = '<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/>'
@@ -54,13 +54,7 @@ def test_a_shipped_rubric_catches_every_mutant(name: str) -> None:
     assert found["samples"] == {"tried": own, "skipped": len(SAMPLES) - own, "different": []}
 
 
-@pytest.fixture(scope="module")
-def arm(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """Return the result for the arm with all its mutants."""
-    return data(write_rubric(tmp_path_factory.mktemp("arm")), "--mutants", 5000)
-
-
-def test_survivors_are_listed_with_their_diff_and_a_suggestion(tmp_path: Path, arm: dict[str, Any]) -> None:
+def test_survivors_are_listed_with_their_diff_and_a_suggestion(tmp_path: Path) -> None:
     """Grouped by what may catch them; the exit code is 0 because no correct robot loses points."""
     done = command(write_rubric(tmp_path), "--mutants", 300)
     text = done.stdout.decode()
@@ -68,9 +62,12 @@ def test_survivors_are_listed_with_their_diff_and_a_suggestion(tmp_path: Path, a
     assert "\nThese mutants of the reference get full marks:\n" in text
     assert " mutants: no criterion looks at it; try frame_at" in text
     assert "      --- birch.urdf\n      +++ birch.urdf\n      @@ -" in text
+    arm = data(tmp_path / "arm.toml", "--mutants", 5000)
     listed = {row["id"]: row for row in arm["survivors"]}
     row = listed["number x10: joint base_plate/origin xyz.z"]
     assert row["suggestion"] == "no criterion looks at it; try frame_at or kinematics_match_reference"
+    passing = listed["number x10: joint finger_joint/origin xyz.x"]["suggestion"]
+    assert passing.startswith("tool-frame passes nevertheless; try kinematics_match_reference")
     assert (
         '-    <origin xyz="0 0 0.11" rpy="0 0 3.14159"/>\n+    <origin xyz="0 0 1.1" rpy="0 0 3.14159"/>' in row["diff"]
     )
@@ -80,38 +77,6 @@ def test_survivors_are_listed_with_their_diff_and_a_suggestion(tmp_path: Path, a
     counts = arm["mutants"]
     assert counts["tried"] == counts["caught"] + counts["same_robot"] + counts["ignored"] + counts["survived"]
     assert arm["score"] == pytest.approx(100 * counts["caught"] / (counts["caught"] + counts["survived"]), abs=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("mutant", "suggestion"),
-    [
-        ("number +0.05: joint slide/origin xyz.x", "no criterion looks at it; try frame_at"),
-        (
-            "number x10: joint finger_joint/origin xyz.x",
-            "tool-frame passes nevertheless; try kinematics_match_reference",
-        ),
-    ],
-)
-def test_a_suggestion_names_a_check_or_the_criterion_that_looks(
-    arm: dict[str, Any], mutant: str, suggestion: str
-) -> None:
-    """A check that would look at it; or a criterion that does, and passes: its tolerance or its arguments let the mutant pass."""
-    listed = {row["id"]: row["suggestion"] for row in arm["survivors"]}
-    assert listed[mutant].startswith(suggestion)
-
-
-def test_a_mutant_that_ros_2_rejects_suggests_urdf_loads(tmp_path: Path) -> None:
-    """A rubric without that check would give full marks to a file that shows nothing."""
-    found = data(write_rubric(tmp_path, TOP.partition("[[criterion]]")[0] + EXACT, SMALL), "--mutants", 5000)
-    listed = {row["id"]: row["suggestion"] for row in found["survivors"]}
-    assert listed["attribute deleted: joint j name"] == "ROS 2 rejects it, and no criterion says so; try urdf_loads"
-
-
-def test_a_mutant_within_a_tolerance_says_whose(tmp_path: Path) -> None:
-    """The criterion looks at it: the rubric has no hole there."""
-    found = data(write_rubric(tmp_path, TOP + EXACT.replace("0.002", "0.06"), SMALL), "--mutants", 5000)
-    listed = {row["id"]: row["suggestion"] for row in found["survivors"]}
-    assert listed["number +0.05: joint j/origin xyz.x"] == "frame measures it, within the tolerance"
 
 
 def test_an_equivalent_that_loses_points_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -158,13 +123,6 @@ def test_a_check_that_is_faulty_on_a_mutant_is_not_a_catch(tmp_path: Path, monke
     done = command(tmp_path / "arm.toml")
     assert done.returncode == 3
     assert "On these mutants a check is faulty:\n\n  " in done.stdout.decode()
-
-
-def test_a_sentence_fits_the_screen(tmp_path: Path) -> None:
-    """Lines are wrapped, and those of a diff are cut around the change."""
-    text = command(write_rubric(tmp_path, robot=ARM.replace("\n", " "))).stdout.decode()
-    assert max(map(len, text.splitlines())) <= 80
-    assert "..." in text
 
 
 @pytest.mark.parametrize(
