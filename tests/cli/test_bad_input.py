@@ -23,7 +23,8 @@ def test_a_file_that_cannot_be_read(command: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "data", [bytes(range(256)) * 40, b"<robot name='a'>" + b"<a>" * 100_000, b"<robot>" + b"<a>" * 10**5 + b"</a>" * 10**5]
+    "data",
+    [bytes(range(256)) * 40, b"<robot name='a'>" + b"<a>" * 100_000, b"<robot>" + b"<a>" * 10**5 + b"</a>" * 10**5],
 )
 def test_a_hostile_file_gets_a_report(data: bytes, tmp_path: Path) -> None:
     """Bytes that are no text, and tags that are nested without end."""

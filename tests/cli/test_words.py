@@ -1,6 +1,5 @@
 """Where ROS 2 or xacro rejects a file for one unambiguous word, the rest is graded as the file is meant."""
 
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
