@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.classroom.class_runs import counted, environment, grader, reasons, verdicts
+from tests.classroom.class_runs import environment
 from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
@@ -302,36 +302,3 @@ def test_a_zip_bomb_is_ignored_by_its_declared_size(tmp_path: Path) -> None:
         archive.writestr("my_robot.urdf", URDF)
     output = bounded("grade", tmp_path / "lab6.zip", "--part", "task1", calls=_FEW_CALLS, code=0)
     assert "bomb.txt (105 MB) is larger than 64 MiB" in output
-
-
-# --- --max-size for a class -----------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("kind", ["file", "folder", "zip", "class.zip"])
-def test_the_limit_of_a_class_can_be_raised(kind: str, tmp_path: Path) -> None:
-    """Too large submissions are graded again when --max-size is raised, and not again for the same limit."""
-    large = URDF + b"<!--" + b" " * MIB + b"-->"
-    folder = tmp_path / "class"
-    (folder / "ann").mkdir(parents=True)
-    match kind:
-        case "file":
-            (folder / "ann").rmdir()
-            (folder / "ann.urdf").write_bytes(large)
-        case "folder":
-            (folder / "ann" / "my_robot.urdf").write_bytes(large)
-        case "zip":
-            (folder / "ann" / "lab6.zip").write_bytes(zipped({"my_robot.urdf": large}))
-        case _:
-            folder = tmp_path / "class.zip"
-            folder.write_bytes(zipped({"ann/my_robot.urdf": large, "bob/my_robot.urdf": URDF}))
-    book = tmp_path / "lab.db"
-    command = ("batch", folder, "--gradebook", book, "--jobs", "1")
-    grader(*command)
-    assert verdicts(book)["ann"] == "unreadable"
-    assert "is larger than 1048576 bytes, the limit for a URDF (--max-size raises it)" in reasons(book)["ann"]
-    for _ in range(2):
-        done = grader(*command, "--max-size", "3000000")
-        assert verdicts(book)["ann"] == "graded", done.stderr
-    assert counted(done).startswith("0 graded, ")
-    grader(*command)
-    assert verdicts(book)["ann"] == "unreadable"
