@@ -1,6 +1,7 @@
 """Documents whose reading depends on what is installed, on time, and on the record of a class."""
 
 import json
+import shutil
 from contextlib import redirect_stderr, redirect_stdout
 from io import StringIO
 from pathlib import Path
@@ -9,7 +10,7 @@ import pytest
 
 from grader.cli.app import run as in_process
 from tests.classroom.gradebooks import grader
-from tests.command_line import run
+from tests.command_line import ROOT, run
 from tests.documents.files import PICTURE, docx
 
 
@@ -39,6 +40,7 @@ def test_a_document_that_takes_long_is_named(
     """On a terminal, after a time; the line is removed before the report is printed. The document is read all the same."""
     monkeypatch.setattr("grader.documents.collection.NOTICE_SECONDS", seconds)
     monkeypatch.setenv("COLUMNS", "80")
+    shutil.copytree(ROOT / "rubrics/lab6/my_robot", tmp_path / "my_robot")
     (tmp_path / "an\x1b swers.docx").write_bytes(docx("Task 1 step 15", "Two roots."))
     with redirect_stderr(stream()) as err, redirect_stdout(StringIO()) as out:
         in_process(["grade", str(tmp_path), "--verbose"])
