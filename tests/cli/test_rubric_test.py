@@ -151,22 +151,3 @@ def test_a_package_is_changed_as_far_as_criteria_look(tmp_path: Path, check: str
     assert {row["path"] for row in found["ignored"]} <= changed
     without = data(write_rubric(tmp_path, top), "--mutants", 0)["mutants"]["total"]
     assert (found["mutants"]["total"] > without) == (len(changed) > 1)
-
-
-MESH = '<visual><geometry><mesh filename="package://ash/meshes/wheel.stl"/></geometry></visual>'
-WHEEL = """<robot name="r"><link name="base"/><link name="wheel">{}</link><joint name="j" type="continuous">\
-<parent link="base"/><child link="wheel"/><origin rpy="-1.5708 0 0"/><axis xyz="0 0 1"/></joint></robot>"""
-
-
-def test_a_reference_may_have_large_files_that_are_not_parsed(tmp_path: Path) -> None:
-    """A mesh above the limit of the XML parser: `rubric new`, `check` and `test` accept it."""
-    package = tmp_path / "ash"
-    (package / "meshes").mkdir(parents=True)
-    (package / "meshes" / "wheel.stl").write_bytes(bytes((1 << 20) + 1))
-    (package / "ash.urdf").write_text(WHEEL.format(MESH), "utf-8")
-    (package / "package.xml").write_text("<package><name>ash</name></package>", "utf-8")
-    rubric = tmp_path / "lab.toml"
-    assert run(("rubric", "new", rubric, "--from", package)).returncode == 0
-    assert run(("rubric", "check", rubric)).returncode == 0
-    found = data(rubric)
-    assert found["mutants"]["tried"] and found["reference"]["lost"] == []
