@@ -208,10 +208,12 @@ def test_the_changelog_knows_the_version() -> None:
 
 
 def test_every_test_that_the_security_page_names_exists() -> None:
-    """Each row names tests, or files of tests; `::name` is in the file that is named before."""
+    """Each row names tests, files of tests, or tables of the corpus; `::name` is in the file that is named before."""
     text = (ROOT / "docs" / "security.md").read_text(encoding="utf-8")
     named = re.findall(r"`(?=::|\w+/)([\w/]+/test_\w+\.py)?(?:::(\w+))?`", text)
-    assert len(named) > 70
+    tables = re.findall(r"`(corpus/[\w/-]+\.toml)`", text)
+    assert [table for table in tables if not (ROOT / "tests" / table).is_file()] == []
+    assert len(named) + len(tables) > 70
     tests = ""
     for file, function in named:
         tests = (ROOT / "tests" / file).read_text(encoding="utf-8") if file else tests
