@@ -13,7 +13,7 @@ from tests.samples import ROOT, SAMPLES
 def test_a_copy_works_as_it_is(name: str, tmp_path: Path) -> None:
     """Its reference gets full marks, its model answers are there, and it gives the same points and hints."""
     assert grader("rubric", "copy", name, tmp_path).returncode == 0
-    copy = tmp_path / f"{name}.toml"
+    copy = tmp_path / name / "rubric.toml"
     assert grader("rubric", "check", copy).stdout.endswith("its reference gets full marks\n")
     answers = sorted(file.name for file in tmp_path.glob("*.answers.toml"))
     assert answers == sorted(file.name for file in (ROOT / "rubrics").glob(f"{name}.answers.toml"))
