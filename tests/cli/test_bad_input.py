@@ -9,8 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.command_line import HANG_TIMEOUT, run_with_input
-from tests.golden.cases import ROOT, run
+from tests.command_line import HANG_TIMEOUT, ROOT, run, run_with_input
 
 REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 MEBIBYTE = 1024 * 1024

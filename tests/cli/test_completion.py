@@ -12,8 +12,7 @@ from grader.cli.app import COMMANDS
 from grader.grading.rubric import shipped_rubrics
 from grader.report.formats import Format
 from grader.report.rubrics import EVERY_KIND
-from tests.command_line import HANG_TIMEOUT
-from tests.golden.cases import ROOT, run
+from tests.command_line import HANG_TIMEOUT, ROOT, run
 
 PARTS = ["task1", "task2", "task3", "questions"]
 FORMATS = [f"{kind.value}=" for kind in Format]

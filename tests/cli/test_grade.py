@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.golden.cases import ROOT, run
+from tests.command_line import ROOT, run
 
 REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 MISTAKEN = "submissions/lidar-offset-in-visual/my_robot.urdf"  # 64 of 70

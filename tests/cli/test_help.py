@@ -9,7 +9,7 @@ import pytest
 from typer.main import get_command
 
 from grader.cli.app import COMMANDS, make_app
-from tests.golden.cases import ROOT, run
+from tests.command_line import ROOT, run
 
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.golden.cases import ROOT, run
+from tests.command_line import ROOT, run
 
 REFERENCE = ROOT / "submissions" / "reference"
 URDF = ROOT / "rubrics" / "lab6" / "my_robot" / "urdf" / "my_robot.urdf"

@@ -1,4 +1,4 @@
-"""One line for each outcome of the cases of checks; for each wording among the samples; and for each fact of references."""
+"""One line for each outcome of the cases of checks, and for each fact of references."""
 
 from collections.abc import Iterator
 from dataclasses import asdict
@@ -12,9 +12,9 @@ from tests.checks.outcomes import ask, row, wording
 from tests.checks.package_cases import PACKAGE_CASES, PENDING_CASES
 from tests.checks.robots import inertial, joint, link, scene
 from tests.checks.submissions import LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF
-from tests.samples import RUBRICS, SAMPLES
+from tests.samples import RUBRICS
 
-FILES = {name: Path(__file__).parent / f"outcomes-of-{name}.txt" for name in ("cases", "samples", "references")}
+FILES = {name: Path(__file__).parent / f"outcomes-of-{name}.txt" for name in ("cases", "references")}
 
 CMAKE = "my_robot/CMakeLists.txt"
 PACKAGES = (  # references whose package lacks something, or has something unusual
@@ -46,20 +46,6 @@ def outcomes_of_cases() -> Iterator[str]:
             yield row(pending.name, ask(pending.check, submitted, **pending.arguments)._asdict())
 
 
-def outcomes_of_samples() -> Iterator[str]:
-    """Yield what failed or needs manual grading in the samples, and what is noted about them, each wording once."""
-    seen = set()
-    for name, sample in SAMPLES.items():
-        report = sample.grade()
-        wrong = [result for result in report.results if result.outcome.status in ("failed", "pending")]
-        rows = [row(f"{name}: {result.criterion.id}", result.outcome._asdict()) for result in wrong]
-        rows += [f"{name}: message {note}" for note in report.notes]
-        for found in rows:
-            if wording(found) not in seen:
-                seen.add(wording(found))
-                yield found
-
-
 def facts_of_references() -> Iterator[str]:
     """Yield what a new rubric asks for, of the references and of the robots in the cases, each wording once."""
     references = [rubric.solution.submission for rubric in RUBRICS.values() if rubric.solution is not None]
@@ -78,4 +64,4 @@ def facts_of_references() -> Iterator[str]:
                     yield found
 
 
-ROWS = {"cases": outcomes_of_cases, "samples": outcomes_of_samples, "references": facts_of_references}
+ROWS = {"cases": outcomes_of_cases, "references": facts_of_references}
