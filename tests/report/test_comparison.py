@@ -7,7 +7,7 @@ import pytest
 
 from grader.checks.outcome import Status
 from grader.grading.report import Report, Result
-from grader.report.comparison import comparison_lines, unchanged_line
+from grader.report.comparison import comparison_lines
 from tests.samples import SAMPLES
 
 SHORT = SAMPLES["lidar-offset-in-visual"].grade()  # 64 of 70: lidar-frame fails
@@ -40,16 +40,6 @@ def test_score_passes_and_failures() -> None:
     ]
 
 
-def test_an_equal_score_hides_no_change() -> None:
-    """One criterion passes and one fails, for the same points."""
-    after = changed(SHORT, lidar_frame=with_status("passed"), base_green=with_status("failed"))
-    assert comparison_lines(SHORT, after) == [
-        "64 of 70 points, as before",
-        "now passed: lidar-frame (+6)",
-        "now failed: base-green (-6)",
-    ]
-
-
 @pytest.mark.parametrize(
     ("status", "words"),
     [("skipped", "now skipped"), ("pending", "now needs manual grading"), ("errored", "now errored")],
@@ -72,11 +62,6 @@ def test_other_changes() -> None:
     """Notes, problems and locations do not belong to the criteria."""
     after = SHORT._replace(notes=("something else",))
     assert comparison_lines(SHORT, after) == ["64 of 70 points, as before; only other parts of the report changed"]
-
-
-def test_no_changes() -> None:
-    """One line with the score."""
-    assert unchanged_line(SHORT) == "nothing has changed: 64 of 70 points"
 
 
 def test_many_are_counted() -> None:

@@ -69,15 +69,6 @@ def test_eleven_findings_are_nine_and_the_rest() -> None:
         assert found[-1].get("title") == last
 
 
-def test_a_whole_archive_is_annotated_as_one_file() -> None:
-    """Its lines cannot be shown, so the text has the location inside it."""
-    report = SAMPLES["several-mistakes"].grade()
-    for reported in annotated(report, Base(archive="lab/lab6.zip"))[1:]:
-        assert reported.get("file") in ("lab/lab6.zip", None)
-        assert reported.get("line") is None
-        assert ("In my_robot.urdf:" in reported.data) == (reported.get("file") is not None)
-
-
 def test_a_long_message_is_cut_before_escaping() -> None:
     """No escape is cut in two."""
     (reported,) = read_commands(command("error", None, "t", "%" * 5000))

@@ -8,10 +8,8 @@ from typing import Any
 
 import pytest
 
-from grader.drawing.curves import SIDE
 from grader.drawing.picture import picture_of
-from grader.drawing.sheet import single_panel
-from grader.report.drawing import drawing_element, inspection_svg, thumbnail_element
+from grader.report.drawing import drawing_element, inspection_svg
 from grader.report.formats import Format, render
 from grader.report.inspection import Inspection, main_root
 from grader.report.svg_elements import DARK_RULES, LOOKS, wrap
@@ -138,14 +136,6 @@ def test_views_show_the_robot_at_one_scale() -> None:
     assert float(bar[2]) - float(bar[1]) == pytest.approx(scale * float(length[1]) / 100.0, abs=0.2)
 
 
-def test_xacro_is_drawn_as_it_expands() -> None:
-    """An arm in xacro with macros looks as the same arm in plain URDF."""
-    one, other = (bodies(shown("inspect", f"submissions/equivalent-arm-{name}")) for name in ("plain", "xacro-macros"))
-    assert {name: [path.get("d") for path in found] for name, found in one.items()} == {
-        name: [path.get("d") for path in found] for name, found in other.items()
-    }
-
-
 def test_long_names_are_cut() -> None:
     """A name of 200,000 letters makes the drawing neither large nor slow."""
     text = f'<robot name="{"x" * 200_000}">' + link("y" * 200_000, '<sphere radius="1"/>') + "</robot>"
@@ -205,16 +195,3 @@ def test_units_are_never_cut() -> None:
         *lines, last = wrap(text, width, 2)
         assert not any(re.search(r"\d$", line) for line in lines)
         assert not re.search(r"\d( m?)?\.\.\.$", last) or last.endswith(" m..."), last
-
-
-def test_thumbnail_is_small() -> None:
-    """One view with the outline of the reference, and no labels."""
-    picture = picture_of(SAMPLES["lidar-buried"].grade())
-    assert picture is not None
-    root = thumbnail_element(picture)
-    assert len(bodies(root)) == 5
-    assert all(len(found) == 1 for found in bodies(root).values())
-    assert paths(root, "reference")
-    assert not paths(root, "badge")
-    cell = single_panel(picture, SIDE, 100.0, 50.0, 5.0)
-    assert cell.width == 100.0
