@@ -20,16 +20,6 @@ def test_a_mutant_makes_one_change(change: dict[str, str]) -> None:
     assert FOUND[change["id"]].applied(ARM) == ARM.replace(change["old"], change["new"], 1)
 
 
-def test_elements_are_deleted_duplicated_and_moved_up() -> None:
-    """An element with its children, and only where the robot is ROS 2's: simulators read two of a kind in their own way."""
-    text = ARM[ARM.index("  <gazebo>\n") :].partition("  <transmission")[0]
-    assert FOUND["element deleted: gazebo"].applied(ARM) == ARM.replace(text.strip(), "")
-    assert "element duplicated: gazebo" not in FOUND
-    assert FOUND["element duplicated: link plate"].applied(ARM).count('<link name="plate">') == 2
-    moved = FOUND["element moved up: joint slide/limit"].applied(ARM)
-    assert moved.index('upper="0.1"') < moved.index('<joint name="slide"')
-
-
 def test_a_link_that_must_show_nothing_gets_a_visual() -> None:
     """Whether its tag is empty or not; other links do not."""
     box = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'

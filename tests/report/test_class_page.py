@@ -42,24 +42,6 @@ def test_text_of_students_stays_text(tmp_path: Path) -> None:
         assert "\n::error" not in file.read_text(encoding="utf-8")
 
 
-def test_grades_of_an_earlier_rubric(tmp_path: Path) -> None:
-    """They are in the table with their reason, and in no figure."""
-    old, new = lab(), lab(loads="1")
-    with Gradebook(tmp_path / "book.db", create=True) as book:
-        record_run(book, old, [graded_as(old, key, "fspp!") for key in ("ash", "birch")])
-        record_run(book, new, [graded_as(new, "ash", "ppppp")])
-        grades = Grades(book)
-        text = render_class_page(summary_of(grades, with_fixes=True), grades, {"birch": "birch.html"}, {})
-    (tmp_path / "index.html").write_text(text, encoding="utf-8")
-    page = ClassPageReader(tmp_path / "index.html")
-    rows = {row["name"]: row for row in page.table("students")}
-    assert "graded with an earlier version of the rubric" in rows["birch"]["status"]
-    assert (rows["ash"]["grade"], rows["birch"]["grade"]) == ("9", "4.5 of 11")
-    assert page.members("attention") == ["birch"]
-    assert [name for name in page.groups if "birch" in page.members(name)] == ["status-errored", "attention"]
-    assert page.links() == ["birch.html"]
-
-
 def test_a_thousand_students_of_lab6_take_half_a_megabyte(tmp_path: Path) -> None:
     """With names, ids, links, late penalties, and mistakes in every criterion."""
     dice = Random(1).random

@@ -50,20 +50,6 @@ def test_every_status_is_described(status: Status, words: str) -> None:
     assert comparison_lines(SHORT, after) == ["64 of 70 points, as before", f"{words}: lidar-frame"]
 
 
-def test_another_failure_of_the_same_criterion() -> None:
-    """The points are the same, and the message is not. A pass has no message."""
-    after = changed(
-        SHORT, lidar_frame=with_status("failed", "it is 2 mm off"), base_box=with_status("passed", "it is 1 m wide")
-    )
-    assert comparison_lines(SHORT, after) == ["64 of 70 points, as before", "with another message: lidar-frame"]
-
-
-def test_other_changes() -> None:
-    """Notes, problems and locations do not belong to the criteria."""
-    after = SHORT._replace(notes=("something else",))
-    assert comparison_lines(SHORT, after) == ["64 of 70 points, as before; only other parts of the report changed"]
-
-
 def test_many_are_counted() -> None:
     """Of many criteria the first eight are named."""
     after = SHORT._replace(results=tuple(with_status("skipped")(result) for result in SHORT.results))

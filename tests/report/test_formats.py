@@ -75,7 +75,7 @@ def test_junit_has_a_case_for_each_criterion(report: Report) -> None:
     text = render(report, Format.JUNIT)
     READERS[Format.JUNIT].parse(text)
     xml = JUnitXml.fromstring(text.encode())
-    found = [case for suite in xml for case in suite]
+    found: list[Any] = [case for suite in xml for case in suite]
     for result, case in zip(report.results, found, strict=True):
         earned = {entry.name: entry.value for entry in case.properties()}["points"].partition("/")[0]
         assert (earned == "–") if result.is_open else (Decimal(earned) == result.points)

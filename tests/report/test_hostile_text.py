@@ -20,7 +20,6 @@ from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.report.formats import Format, InspectFormat, render
 from grader.source import Base
-from grader.submission.opening import read_submission
 from tests.examples import examples, spread
 from tests.report.harmless import is_harmless
 from tests.report.hostile import BREAKING, PIECES, SLOTS, TEXT, UNASKED, name_of, write_submission
@@ -28,7 +27,6 @@ from tests.report.readers import reader
 from tests.report.reports import hinted
 from tests.report.rewording import recast
 from tests.report.workflow_commands import commands
-from tests.robot.edge_cases import EDGE_CASES, EdgeCase
 from tests.samples import LAB6, SAMPLES, opened
 
 TEXTS = st.dictionaries(st.sampled_from(SLOTS + BREAKING), TEXT, min_size=1, max_size=6)
@@ -80,12 +78,6 @@ def test_text_of_a_submission_stays_text(texts: Mapping[str, str]) -> None:
 def test_irrelevant_text_does_not_affect_the_score(texts: Mapping[str, str]) -> None:
     """The score is that of the reference, whatever its robot, a colour, or a file beside it is called."""
     assert written(texts).score == 90
-
-
-@pytest.mark.parametrize("case", spread(EDGE_CASES[1::40], 6), ids=[case.name for case in EDGE_CASES[1::40]])
-def test_text_of_a_broken_file_stays_text(case: EdgeCase) -> None:
-    """Some of the URDFs on which the reader is compared with ROS 2."""
-    assert_harmless(grade(LAB6, read_submission(case.text, identity=case.name, path="a.urdf")), Base())
 
 
 @cache

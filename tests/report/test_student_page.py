@@ -11,14 +11,12 @@ from typing import Any
 import pytest
 from lxml import html
 
-from grader.checks.outcome import Outcome
 from grader.grading.grade import grade
-from grader.grading.graded_submission import Grade
 from grader.grading.report import ManualMark, Report
 from grader.report.formats import Format, render
 from grader.report.pages.student import render_html
 from grader.submission.opening import read_submission
-from tests.report.reports import AXLE, adjusted, hinted, marked
+from tests.report.reports import AXLE, hinted, marked
 from tests.samples import LAB6, ROOT, SAMPLES, opened
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
@@ -48,18 +46,6 @@ def test_number_of_a_failure_is_that_of_the_picture() -> None:
     assert "see below" not in page.text_content()  # as in a picture of its own, which lists the criteria
 
 
-def shares(page: Any) -> tuple[list[str], list[str]]:
-    """Return the widths of the bar's parts, and the words below it."""
-    bars = [part.get("width") for part in page.find_class("bar")[0].findall("rect")] if page.find_class("bar") else []
-    return bars, [words.text_content().strip() for words in page.xpath("//*[@class='shares']/span")]
-
-
-def test_excused_student_has_no_bar() -> None:
-    """No points count."""
-    report = SAMPLES["reference"].grade()._replace(grade=Grade(points=None))
-    assert shares(read(render_html(report))) == ([], [])
-
-
 def test_mark_in_place_of_a_hint_hides_no_other_card() -> None:
     """The card of a manual mark shows no edit: what the same edit fixes has its own card."""
     mark = ManualMark(Decimal(0), "Ada", "")
@@ -68,16 +54,6 @@ def test_mark_in_place_of_a_hint_hides_no_other_card() -> None:
     page = read(render_html(report._replace(results=tuple(results))))
     assert not page.get_element_by_id(f"criterion-{AXLE[0]}").xpath(".//article")
     assert "180 degrees off" in page.get_element_by_id(f"criterion-{AXLE[1]}").text_content()
-
-
-def test_corrected_criteria_each_have_a_card() -> None:
-    """Also if the checks have the same reason to need manual grading: their points and reasons are others."""
-    pending = Outcome("pending", "the same reason")
-    report = adjusted()
-    corrected = [one.criterion.id for one in report.results if one.is_adjusted]
-    results = tuple(one._replace(outcome=pending) if one.is_adjusted else one for one in report.results)
-    page = read(render_html(report._replace(results=results)))
-    assert {f"criterion-{name}" for name in corrected} <= set(page.xpath("//article/@id"))
 
 
 def mark_of_the_cause() -> Report:
@@ -103,14 +79,6 @@ def test_every_link_of_a_page_has_a_target(report: Callable[[], Report]) -> None
     targets = {link.removeprefix("#") for link in page.xpath("//a/@href")}
     assert targets <= set(page.xpath("//@id"))
     assert any(target.startswith("criterion-") for target in targets)
-
-
-def test_page_says_why_it_has_no_picture() -> None:
-    """Nothing was submitted that a picture could show, or it is no longer there."""
-    assert "no robot could be read from the submission" in render_html(SAMPLES["pictures-only"].grade())
-    report = SAMPLES["lidar-buried"].grade()
-    gone = report._replace(submission=replace(report.submission, originals=None))
-    assert "has changed or moved since it was graded" in render_html(gone)
 
 
 @pytest.mark.parametrize(("level", "is_shown"), [("none", False), ("place", False), ("cause", True), ("edit", True)])
