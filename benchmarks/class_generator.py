@@ -26,7 +26,7 @@ from random import Random
 from typing import Any, NamedTuple, TypeVar
 
 ROOT = Path(__file__).resolve().parent.parent
-RUBRIC = ROOT / "rubrics" / "lab6.toml"
+RUBRIC = ROOT / "rubrics/lab6/rubric.toml"
 PACKAGE = ROOT / "rubrics" / "lab6" / "my_robot"
 URDF = "urdf/my_robot.urdf"
 LAYOUTS = ("folders", "canvas", "moodle")

@@ -75,7 +75,7 @@ def pages() -> Iterator[tuple[str, str, float]]:
     """Yield the name and the page of samples and of a robot with many links, and how long the page takes in milliseconds."""
     rubric = load_rubric("lab6")
     for name in SAMPLES:
-        submission = open_submission(str(ROOT / "submissions" / name), rubric.lab)
+        submission = open_submission(str(ROOT / "submissions/lab6" / name), rubric.lab)
         yield name, *_timed(grade(rubric, submission))
     yield (
         f"{LINKS} links",

@@ -22,7 +22,7 @@ from class_generator import make_class
 from timing import PACKAGE, ROOT, URDF, Command, in_turn, ratio
 
 _HERE = Path(__file__).resolve().parent
-_MISTAKES = ROOT / "submissions" / "several-mistakes" / "my_robot.urdf"
+_MISTAKES = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 _IMPORTS = "import typer, lxml.etree, numpy, rich.console; print('imported')"
 _READERS = {
     "pinocchio": "import pinocchio as p; m = p.buildModelFromUrdf({0!r}); p.forwardKinematics(m, m.createData(), p.neutral(m)); print(m.nframes)",

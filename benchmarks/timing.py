@@ -13,7 +13,7 @@ from resource import RUSAGE_CHILDREN, getrusage
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
-PACKAGE = ROOT / "submissions" / "reference" / "roscourse_sim_ws" / "src" / "my_robot"
+PACKAGE = ROOT / "submissions/lab6/reference" / "roscourse_sim_ws" / "src" / "my_robot"
 URDF = PACKAGE / "urdf" / "my_robot.urdf"
 _SET_CHILD_SUBREAPER = 36  # of Linux's prctl
 _SAMPLED = 0.05  # seconds between two measurements of the memory

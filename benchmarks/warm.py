@@ -23,8 +23,8 @@ from grader.submission.opening import open_submission, read_submission
 from grader.submission.surroundings import Surroundings
 from grader.xacro.expansion import expand
 
-ZIPPED = ROOT / "submissions" / "equivalent-zipped-with-wrapper" / "lab6.zip"
-XACRO = ROOT / "submissions" / "equivalent-xacro-inertials" / "my_robot.urdf.xacro"
+ZIPPED = ROOT / "submissions/lab6/equivalent-zipped-with-wrapper" / "lab6.zip"
+XACRO = ROOT / "submissions/lab6/equivalent-xacro-inertials/my_robot/urdf/my_robot.urdf.xacro"
 RUBRIC = load_rubric("lab6")
 TEMPORARY = TemporaryDirectory()
 _COPIES = 8  # more than the grader keeps results of

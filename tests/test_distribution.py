@@ -21,6 +21,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 URLS = PROJECT["project"]["urls"]
 SITE, REPOSITORY = URLS["Documentation"], URLS["Repository"]
 _ADDRESS = r"https://[\w./#%-]*urdf-grader[\w./#%-]*"
+ANSWERS = "answers.toml"
 RAW = REPOSITORY.replace("github.com", "raw.githubusercontent.com")
 
 
@@ -57,7 +58,7 @@ def test_the_wheel_has_no_model_answers_and_no_samples(built: Path) -> None:
     """It has the package, and the rubrics with their references; the sdist has what the README's first command needs, too."""
     (wheel,), (sdist,) = built.glob("*.whl"), built.glob("*.tar.gz")
     files = contents(wheel)
-    answers = [path for path in ROOT.rglob("rubrics/*.answers.toml") if ".venv" not in path.parts]
+    answers = [path for path in (ROOT / "rubrics").rglob("*") if path.name.endswith(ANSWERS)]
     secrets = [text.encode() for path in answers for text in tomllib.loads(path.read_text(encoding="utf-8")).values()]
     assert secrets
     assert not [name for name, data in files.items() if any(text in data for text in secrets)]
@@ -67,19 +68,21 @@ def test_the_wheel_has_no_model_answers_and_no_samples(built: Path) -> None:
     }
     rubrics = {f"grader/{path.relative_to(ROOT)}" for path in (ROOT / "rubrics").rglob("*") if path.is_file()}
     assert {name for name in files if name.startswith("grader/rubrics/")} == {
-        name for name in rubrics if not name.endswith((".answers.toml", ".pyc"))
+        name for name in rubrics if not name.endswith((ANSWERS, ".pyc"))
     }
     with tarfile.open(sdist) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
     assert {
-        "submissions/reference/expected.toml",
-        "rubrics/lab6.toml",
+        "submissions/lab6/reference/expected.toml",
+        "rubrics/lab6/rubric.toml",
         "LICENSE",
         "README.md",
         "pyproject.toml",
     } <= names
     assert not [
-        name for name in names if re.match(r"tests|benchmarks|submissions/(?!reference/)|.*\.answers\.toml", name)
+        name
+        for name in names
+        if name.endswith(ANSWERS) or re.match(r"tests|benchmarks|submissions/(?!lab6/reference/)", name)
     ]
 
 
@@ -147,7 +150,7 @@ def lab(installed: Path, tmp_path: Path) -> Path:
     """Return a folder with a copy of lab6 and its reference, made by the installed command."""
     done = do((installed, "rubric", "copy", "lab6", "lab"), tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
-    assert not list(tmp_path.rglob("*.answers.toml"))
+    assert not list(tmp_path.rglob(f"*{ANSWERS}"))
     return tmp_path
 
 
@@ -174,9 +177,9 @@ def test_one_submission(installed: Path, lab: Path) -> None:
 @pytest.mark.exhaustive
 def test_a_class(installed: Path, lab: Path) -> None:
     """A class is graded, marked, exported; the model answers come from a file that the installation has not."""
-    answers = ROOT / "rubrics" / "lab6.answers.toml"
+    answers = ROOT / "rubrics/lab6/answers.toml"
     for name in ("ash", "birch"):
-        shutil.copytree(ROOT / "submissions" / "reference", lab / "class" / name)
+        shutil.copytree(ROOT / "submissions/lab6/reference", lab / "class" / name)
     book = ("--gradebook", "lab6.db")
     done = do((installed, "batch", "class", *book, "--answers", answers), lab)
     assert done.returncode == 0, done.stderr
@@ -191,7 +194,7 @@ def test_a_class(installed: Path, lab: Path) -> None:
 @pytest.mark.exhaustive
 def test_ci_of_a_student(installed: Path, lab: Path) -> None:
     """A job of GitHub Actions gets its report and its summary."""
-    shutil.copytree(ROOT / "submissions" / "several-mistakes", lab / "repository")
+    shutil.copytree(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf", lab / "repository")
     job = {"GITHUB_ACTIONS": "true", "GITHUB_STEP_SUMMARY": str(lab / "summary.md")}
     done = do((installed, "grade", ".", "--save", "json=../report.json"), lab / "repository", **job)
     assert done.returncode == 1

@@ -18,8 +18,8 @@ pytestmark = pytest.mark.exhaustive
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
 OTHER_FILES = {  # what only these pages presume, and what it is
     "pictures.md": {"arm.urdf": "rubrics/arm/arm.urdf"},
-    "gradescope.md": {"my_lab.toml": "rubrics/arm.toml"},
-    "rubric-test.md": {"my_lab.toml": "rubrics/arm.toml"},
+    "gradescope.md": {"my_lab.toml": "rubrics/arm/rubric.toml"},
+    "rubric-test.md": {"my_lab.toml": "rubrics/arm/rubric.toml"},
 }
 ELSEWHERE = {  # beginnings of command lines that are run by another test, or not by any
     "grader batch submissions --gradebook lab6.db --roster canvas.csv": "classroom/test_walkthrough.py",
@@ -33,7 +33,7 @@ ELSEWHERE = {  # beginnings of command lines that are run by another test, or no
     "grader rubric check arm_lab.toml": "a plug-in: cli/test_plugin_template.py",
 }
 CODES = {"grader grade ": 1}  # the robot has a mistake
-FOLDERS = {"grader grade . ": "src/my_robot"}  # a student's repository
+FOLDERS = dict.fromkeys(("grader grade . ", "grader grade  "), "src/my_robot")  # a student's repository
 STUDENTS = ("alice", "bob", "carol", "dave")
 CANVAS = "Student,ID,SIS User ID,SIS Login ID,Section,Lab 6 (12345)\n    Points Possible,,,,,100\n"
 
@@ -42,13 +42,13 @@ CANVAS = "Student,ID,SIS User ID,SIS Login ID,Section,Lab 6 (12345)\n    Points 
 def presumed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with a robot, a package, a rubric and a class of four students with a gradebook."""
     folder = tmp_path_factory.mktemp("presumed")
-    shutil.copy(ROOT / "submissions/lidar-offset-in-visual/my_robot.urdf", folder)
+    shutil.copy(ROOT / "submissions/lab6/lidar-offset-in-visual/my_robot/urdf/my_robot.urdf", folder)
     shutil.copytree(ROOT / "rubrics/lab6/my_robot", folder / "src/my_robot")
     for path in folder.glob("src/my_robot/urdf/*.urdf"):
         shutil.copy(folder / "my_robot.urdf", path)
     shutil.copy(ROOT / "rubrics/arm/arm.urdf", folder / "solution.urdf")
-    shutil.copytree(ROOT / "rubrics/arm", folder / "arm")
-    shutil.copytree(ROOT / "submissions/arm-axis-sign", folder / "samples/arm-axis-sign")
+    shutil.copy(ROOT / "rubrics/arm/arm.urdf", folder)
+    shutil.copytree(ROOT / "submissions/arm/axis-sign", folder / "samples/arm-axis-sign")
     (folder / "submissions").mkdir()
     for number, student in ((1, "alice"), (2, "bob"), (4, "dave")):  # as Canvas names them
         shutil.make_archive(

@@ -13,7 +13,7 @@ from grader.submission.opening import open_submission
 from tests.command_line import ROOT, run
 from tests.work import limited_work
 
-PACKAGE = ROOT / "submissions" / "reference" / "roscourse_sim_ws" / "src" / "my_robot"
+PACKAGE = ROOT / "submissions/lab6/reference" / "roscourse_sim_ws" / "src" / "my_robot"
 SYSTEM_CALLS = ("open", "read", "stat", "lstat", "fstat", "scandir", "listdir")
 URDF = PACKAGE / "urdf" / "my_robot.urdf"
 

@@ -8,7 +8,7 @@ from pathlib import Path, PurePosixPath
 from grader.errors import InputError
 from grader.files.zip_writing import zip_of
 from grader.grading.grade import grade
-from grader.grading.rubric import Rubric, shipped_rubrics
+from grader.grading.rubric import RUBRIC_FILE, Rubric, shipped_rubrics
 
 SECONDS = 300  # of the ten minutes that Gradescope gives
 _SCRIPTS = Path(__file__).resolve().parent / "on_gradescope"
@@ -16,7 +16,6 @@ _EXECUTABLES = ("setup.sh", "run_autograder")
 DISTRIBUTION = "urdf-grader"
 _PACKAGE = Path(__file__).resolve().parent.parent
 _EXTRA = re.compile(r"""(?:\band\s+)?\bextra\s*==\s*["']([\w.-]+)["']""")  # and extra == 'documents'
-_RUBRIC = "rubric.toml"
 
 
 def autograder_zip(rubric: Rubric) -> bytes:
@@ -31,14 +30,14 @@ def autograder_zip(rubric: Rubric) -> bytes:
     files = package_files()
     for name in (*_EXECUTABLES, "autograder.py"):  # a checkout on Windows has line ends that bash does not accept
         files[name] = (_SCRIPTS / name).read_bytes().replace(b"\r\n", b"\n")
-    name = rubric.id if rubric.is_shipped else f"source/{_RUBRIC}"
+    name = rubric.id if rubric.is_shipped else f"source/{RUBRIC_FILE}"
     settings = {"rubric": name, "sha256": rubric.sha256, "seconds": SECONDS}
     files["autograder.json"] = (json.dumps(settings, indent=1) + "\n").encode()
     needed = requirements("documents")  # the extra reads answers in Word and PDF files
     files["requirements.txt"] = "".join(f"{requirement}\n" for requirement in needed).encode()
     if not rubric.is_shipped:
-        files[_RUBRIC] = rubric.data
-    folder = f"{_PACKAGE.name}/rubrics" if rubric.is_shipped else ""
+        files[RUBRIC_FILE] = rubric.data
+    folder = f"{_PACKAGE.name}/rubrics/{rubric.id}" if rubric.is_shipped else ""
     files |= {str(PurePosixPath(folder, path)): data for path, data in _reference(rubric).items()}
     return zip_of(files, _EXECUTABLES)
 
@@ -65,7 +64,9 @@ def package_files() -> dict[str, bytes]:
     """Return the files of the package by their paths in a wheel: with the rubrics, without references and examples."""
     data = ("rubrics", "examples")  # in a wheel; in a checkout they are outside of the package
     own = {path: content for path, content in _files_of(_PACKAGE, _PACKAGE).items() if path.parts[0] not in data}
-    rubrics = {PurePosixPath("rubrics", path.name): path.read_bytes() for path in shipped_rubrics().values()}
+    rubrics = {
+        PurePosixPath("rubrics", name, RUBRIC_FILE): path.read_bytes() for name, path in shipped_rubrics().items()
+    }
     return {str(_PACKAGE.name / path): data for path, data in (own | rubrics).items()}
 
 

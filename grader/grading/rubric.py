@@ -24,7 +24,7 @@ from grader.submission.submission import Lab
 from grader.text import printable_path, shell_quoted
 
 _URDF = "robot.urdf"
-_ANSWERS = ".answers.toml"  # the ending of files with model answers next to the shipped rubrics
+RUBRIC_FILE = "rubric.toml"  # in the folder of a shipped rubric
 _LIST = "(`grader rubric list` lists the rubrics that come with the grader)"
 
 
@@ -107,8 +107,7 @@ class Rubric:
 @cache
 def shipped_rubrics() -> Mapping[str, Path]:
     """Return the rubrics that come with the grader, by id."""
-    paths = sorted(shipped_folder("rubrics").glob("*.toml"))
-    return {path.stem: path for path in paths if not path.name.endswith(_ANSWERS)}
+    return {path.parent.name: path for path in sorted(shipped_folder("rubrics").glob(f"*/{RUBRIC_FILE}"))}
 
 
 def find_rubric(name: str) -> Path:

@@ -85,7 +85,7 @@ def copy(name: str, folder: Path) -> str:
     file = shipped_rubrics().get(name)
     if file is None:
         raise GraderError(f"{printable_path(name)} is not a rubric of the grader: {', '.join(shipped_rubrics())}")
-    copies = {source: folder / source.relative_to(file.parent) for source in files_of(name) if source.exists()}
+    copies = {source: folder / name / source.relative_to(file.parent) for source in files_of(name) if source.exists()}
     if there := [*filter(os.path.lexists, copies.values())]:
         raise GraderError(f"{printable_path(there[0])} exists already: nothing was copied")
     for source, target in copies.items():

@@ -289,7 +289,7 @@ def test_page_works_without_scripts(open_page: Open, tmp_path: Path) -> None:
 
 def test_page_without_webgl_says_so(open_page: Open, tmp_path: Path) -> None:
     """Where WebGL is missing, a sentence takes the place of the canvas."""
-    file = write(tmp_path, "inspect", SAMPLES["arm-axis-sign"].path)
+    file = write(tmp_path, "inspect", SAMPLES["arm/axis-sign"].path)
     opened = open_page("about:blank")
     opened.page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
     opened.page.goto(file.as_uri())

@@ -45,7 +45,7 @@ class Autograder:
 
     def submit(self, sample: str) -> None:
         """Copy one of the sample submissions into the submission folder."""
-        shutil.copytree(ROOT / "submissions" / sample, self.submission, dirs_exist_ok=True)
+        shutil.copytree(ROOT / "submissions/lab6" / sample, self.submission, dirs_exist_ok=True)
 
     def run(self, **variables: str) -> dict[str, Any]:
         """Run the autograder as Gradescope does and return the results, which are valid and without paths of this machine."""

@@ -25,7 +25,7 @@ from tests.bundle.gradescope import Autograder, environment_for, unpacked
 from tests.classroom.gradebooks import grader, lab_text, write_submission
 from tests.samples import LAB6, ROOT
 
-RUBRICS = [f"grader/rubrics/{name}.toml" for name in shipped_rubrics()]
+RUBRICS = [f"grader/rubrics/{name}/rubric.toml" for name in shipped_rubrics()]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 
 
@@ -44,7 +44,7 @@ def test_the_files(bundle: Path) -> None:
         "setup.sh", "run_autograder", "autograder.py", "autograder.json", "requirements.txt",
     }  # fmt: skip
     rendered = {name for name in names if name.startswith("grader/")}
-    reference = {f"grader/{path.relative_to(ROOT)}" for path in (ROOT / "rubrics/lab6").rglob("*") if path.is_file()}
+    reference = {f"grader/{path.relative_to(ROOT)}" for path in (ROOT / "rubrics/lab6/my_robot").rglob("*") if path.is_file()}
     assert reference
     assert rendered == {*second, "grader/bundle/on_gradescope/run_autograder", *RUBRICS, *reference}
     assert {name for name in names if "rubrics/" in name} == {*RUBRICS, *reference}
@@ -184,7 +184,7 @@ def test_unrelated_files_are_excluded(monkeypatch: pytest.MonkeyPatch, tmp_path:
         "__pycache__/a.pyc",
         "b/d.pyc",
         ".git/x",
-        "rubrics/old.toml",
+        "rubrics/old/rubric.toml",
     ):
         (tmp_path / "grader" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "grader" / name).touch()
@@ -221,7 +221,7 @@ def test_a_custom_rubric(tmp_path: Path) -> None:
 def test_a_file_named_like_a_shipped_rubric(tmp_path: Path) -> None:
     """A path to a file selects that file, not the shipped rubric of the same id."""
     own = tmp_path / "lab6.toml"
-    own.write_bytes((ROOT / "rubrics/lab6.toml").read_bytes() + b"# changed\n")
+    own.write_bytes((ROOT / "rubrics/lab6/rubric.toml").read_bytes() + b"# changed\n")
     assert grader("bundle", "gradescope", tmp_path / "out.zip", "--rubric", own).returncode == 0
     with zipfile.ZipFile(tmp_path / "out.zip") as archive:
         assert archive.read("rubric.toml") == own.read_bytes()

@@ -44,7 +44,7 @@ def test_a_submission_that_passes(autograder: Autograder) -> None:
 def test_a_submission_with_mistakes(autograder: Autograder) -> None:
     """Students see the same report as on any other machine."""
     autograder.submit("several-mistakes")
-    report = grader("grade", ROOT / "submissions" / "several-mistakes", "--format", "gradescope")
+    report = grader("grade", ROOT / "submissions/lab6/several-mistakes", "--format", "gradescope")
     assert report.returncode == 1
     results = autograder.run()
     assert results == json.loads(report.stdout)
@@ -66,7 +66,7 @@ def test_the_same_submission_gives_the_same_bytes(autograder: Autograder) -> Non
 def test_an_archive_that_is_not_unpacked(autograder: Autograder) -> None:
     """Gradescope unpacks zips but not tars; a tar is read in place."""
     with tarfile.open(autograder.submission / "lab6.tar.gz", "w:gz") as archive:
-        archive.add(ROOT / "submissions" / "reference", "lab6")
+        archive.add(ROOT / "submissions/lab6/reference", "lab6")
     assert autograder.run()["score"] == 90
 
 
@@ -111,7 +111,7 @@ def huge(folder: Path) -> None:
 
 def named(folder: Path) -> None:
     """Write files whose names contain escapes, markup, newlines, bidirectional marks and undecodable bytes."""
-    text = (ROOT / "submissions/several-mistakes/my_robot.urdf").read_bytes()
+    text = (ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf").read_bytes()
     for name in (
         b"a\nb.urdf",
         b"\x1b[31m\x1b]0;t\x07.urdf",

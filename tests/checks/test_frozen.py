@@ -48,7 +48,7 @@ def inside(value: object, found: dict[int, object]) -> Iterator[object]:
 
 def test_what_a_check_gets_is_frozen() -> None:
     """Assigning a field of a submission, of anything in it, of a pose or of an outcome raises AttributeError."""
-    submission = opened("submissions/reference")
+    submission = opened("submissions/lab6/reference")
     subjects, results = Subjects(LAB6, submission), grade(LAB6, submission).results
     assert subjects.robot is not None
     examined = (

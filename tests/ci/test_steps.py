@@ -72,7 +72,7 @@ class Job:
 @pytest.fixture
 def job(tmp_path: Path, temp: Path) -> Job:
     """Return a job in a repository that contains the reference."""
-    shutil.copytree(ROOT / "submissions" / "reference", tmp_path / "work")
+    shutil.copytree(ROOT / "submissions/lab6/reference", tmp_path / "work")
     return Job(tmp_path / "work", temp)
 
 
@@ -91,7 +91,7 @@ def test_a_green_check(job: Job) -> None:
 def test_a_red_check(job: Job, tmp_path: Path) -> None:
     """A mistake exits with 1, is annotated on its line, and the outputs are set all the same."""
     [urdf] = (tmp_path / "work").rglob("*.urdf")
-    urdf.write_bytes((ROOT / "submissions" / "several-mistakes" / "my_robot.urdf").read_bytes())
+    urdf.write_bytes((ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf").read_bytes())
     done = job.grade()
     path = urdf.relative_to(tmp_path / "work").as_posix()
     assert done.code == 1
@@ -165,7 +165,7 @@ def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
         return Done(0, "", "")
 
     for sample, code in (("reference", 0), ("missing-import-os", 1)):
-        shutil.copytree(ROOT / "submissions" / sample, tmp_path / sample)
+        shutil.copytree(ROOT / "submissions/lab6" / sample, tmp_path / sample)
         runner = Runner(tmp_path / sample, temp)
         runner.actions = {
             CHECKOUT: nothing,
@@ -209,7 +209,7 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     """The template for a class organisation fetches and grades every student's repository, even if some are broken."""
     host = tmp_path / "host"
     for name, sample in (("lab6-ada", "reference"), ("lab6-grace", "missing-import-os"), ("other", "reference")):
-        shutil.copytree(ROOT / "submissions" / sample, host / name)
+        shutil.copytree(ROOT / "submissions/lab6" / sample, host / name)
         repository(host / name)
     too_large(host)
     (host / "lab6-none").mkdir()
@@ -260,7 +260,7 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
 def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
     """The autograder for Classroom 50 writes both files to the student's checkout, and exits with 0 for a low mark."""
     work = tmp_path / "work"
-    shutil.copytree(ROOT / "submissions" / "missing-import-os", work)
+    shutil.copytree(ROOT / "submissions/lab6/missing-import-os", work)
     (tmp_path / "victim").write_text("precious")
     (work / "result.json").symlink_to(tmp_path / "victim")
     (work / "release-body.md").mkdir()
@@ -297,7 +297,7 @@ def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
 def test_the_gitlab_job(tmp_path: Path, sample: str, code: int | None) -> None:
     """The exit code is the grader's; reports are not written through a student's symlinks, and old reports are removed."""
     work = tmp_path / "work"
-    shutil.copytree(ROOT / "submissions" / sample, work)
+    shutil.copytree(ROOT / "submissions/lab6" / sample, work)
     (tmp_path / "victim").mkdir()
     (work / "grader-reports").symlink_to("../victim")
     job = load(WORKFLOWS / "gitlab-ci.yml")["lab6"]

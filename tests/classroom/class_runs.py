@@ -156,11 +156,10 @@ def without_hints() -> Path:
     """Return the rubric of Lab 6 without hints, whose search takes ten times as long as grading."""
     folder = Path(mkdtemp())
     atexit.register(shutil.rmtree, folder)
-    text = (ROOT / "rubrics/lab6.toml").read_text(encoding="utf-8")
+    shutil.copytree(ROOT / "rubrics/lab6", folder, dirs_exist_ok=True)
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text(encoding="utf-8")
     assert text.count('hints = "edit"') == 1
     (folder / "lab6.toml").write_text(text.replace('hints = "edit"', 'hints = "none"'), encoding="utf-8")
-    shutil.copy(ROOT / "rubrics/lab6.answers.toml", folder)
-    shutil.copytree(ROOT / "rubrics/lab6", folder / "lab6")
     return folder / "lab6.toml"
 
 

@@ -14,7 +14,7 @@ _NODES = ("robot_state_publisher", "joint_state_publisher", "joint_state_publish
 
 def make_desk_class(folder: Path) -> Path:
     """Write STUDENTS submissions and a roster with two sections; ANSWERS have answers, PICTURES a picture."""
-    urdf = next((ROOT / "submissions" / "reference").rglob("*.urdf")).read_text()
+    urdf = next((ROOT / "submissions/lab6/reference").rglob("*.urdf")).read_text()
     chance = random.Random(30)
     rows = ["id,name,section"]
     for number in range(STUDENTS):

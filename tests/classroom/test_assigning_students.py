@@ -11,7 +11,7 @@ import pytest
 from tests.classroom.class_runs import Done, grader, without_hints
 from tests.samples import ROOT
 
-GOOD, BAD = ROOT / "submissions" / "reference", ROOT / "submissions" / "lidar-buried"
+GOOD, BAD = ROOT / "submissions/lab6/reference", ROOT / "submissions/lab6/lidar-buried/my_robot/urdf"
 TEAMS = "id,login,name,group\n1,alice,Alice Ash,team2\n2,mallory,Mallory Moss,team1\n"
 
 
@@ -209,8 +209,8 @@ def test_another_rubric_is_refused(tmp_path: Path) -> None:
     """Results of two labs are mixed only on request."""
     submit(tmp_path / "class/ann", BAD)
     batch(tmp_path)
-    text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8").replace('id = "lab6"', 'id = "lab7"', 1)
-    (tmp_path / "lab7.toml").write_text(text.replace('reference = "lab6/my_robot"', "", 1), encoding="utf-8")
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text(encoding="utf-8").replace('id = "lab6"', 'id = "lab7"', 1)
+    (tmp_path / "lab7.toml").write_text(text.replace('reference = "my_robot"', "", 1), encoding="utf-8")
     done = batch(tmp_path, "--rubric", tmp_path / "lab7.toml")
     assert (done.returncode, done.stdout) == (2, "")
     assert "it was graded by the rubric lab6, not lab7 (it contains ann)" in done.stderr

@@ -8,7 +8,7 @@ from tests.command_line import Done, run_with_input
 from tests.report.workflow_commands import commands
 from tests.samples import ROOT
 
-MISTAKEN = ROOT / "submissions/several-mistakes/my_robot.urdf"
+MISTAKEN = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 ON_GITHUB: Mapping[str, str] = {}
 ELSEWHERE: Mapping[str, str] = {"GITHUB_ACTIONS": ""}
 

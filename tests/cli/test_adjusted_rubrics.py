@@ -290,9 +290,9 @@ def test_an_adjustment_of_nothing_is_refused(tmp_path: Path) -> None:
 
 def test_hints(tmp_path: Path) -> None:
     """None for adjusted criteria, and none counts their points as gained; extra credit has hints."""
-    text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8").replace('"lab6"', f'"{ROOT}/rubrics/lab6"', 1)
-    text = text.replace('reference = "', f'reference = "{ROOT}/rubrics/')
-    sample = ROOT / "submissions" / "several-mistakes"
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text(encoding="utf-8")
+    text = text.replace('reference = "', f'reference = "{ROOT}/rubrics/lab6/')
+    sample = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf"
     base = with_bonus(text.replace("points = 70\n", "").replace("points = 100\n", ""), "base-green")
     _, data = report(sample, rubric(tmp_path, adjusted(base, "stands-on-ground", "full")))
     gains = [set(hint["gains"]) for row in data["results"] for hint in row["hints"]]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.grading.rubric import load_rubric, shipped_rubrics
+from grader.grading.rubric import load_rubric
 from grader.report.formats import Format
 from tests.classroom.gradebooks import batch, grader, lab_text, refusal
 from tests.report.reports import CLASSROOM50
@@ -14,7 +14,7 @@ from tests.samples import ROOT
 
 SECRET = "Because of the roots."
 INLINE = f', answer = "{SECRET}"'
-REFERENCE = ROOT / "submissions" / "reference"
+REFERENCE = ROOT / "submissions/lab6/reference"
 OF_LAB6 = ("The model vanishes", "joint_state_publisher_gui, publishes")
 
 
@@ -200,12 +200,10 @@ def test_a_symlink_to_another_file_is_not_followed(tmp_path: Path) -> None:
 
 
 def test_lab6_has_a_separate_file() -> None:
-    """The file is no rubric, its answers are shown on request, and the rubric that students may have contains none."""
-    assert "lab6" in shipped_rubrics()
-    assert "lab6.answers" not in shipped_rubrics()
-    shown = grader("rubric", "show", "lab6", "--answers", ROOT / "rubrics" / "lab6.answers.toml").stdout
+    """Its answers are shown on request, and the rubric that students may have contains none."""
+    shown = grader("rubric", "show", "lab6", "--answers", ROOT / "rubrics/lab6/answers.toml").stdout
     assert all(answer in " ".join(shown.split()) for answer in OF_LAB6)
-    text = " ".join((ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8").split())
+    text = " ".join((ROOT / "rubrics/lab6/rubric.toml").read_text(encoding="utf-8").split())
     for arguments in (("rubric", "show", "lab6"), ("grade", REFERENCE), ("grade", REFERENCE, "--format", "json")):
         text += " ".join(grader(*arguments).stdout.split())
     assert not any(answer in text for answer in OF_LAB6)

@@ -11,7 +11,7 @@ import pytest
 
 from tests.command_line import HANG_TIMEOUT, ROOT, run, run_with_input
 
-REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
+REFERENCE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 MEBIBYTE = 1024 * 1024
 
 
@@ -176,7 +176,7 @@ def test_usage() -> None:
     refuse("grade", reference, "--save", "pdf=x.pdf", words="terminal, markdown, json")
     refuse("grade", reference, "--save", "json=/nowhere/at/all.json", words="cannot write")
     refuse("grade", reference, "--hints", words="--hints")
-    refuse("grade", words="PATH")
+    refuse("inspect", words="PATH")
     refuse("grad", reference, words="grad")
     refuse("inspect", reference, "--joint", "base_left_wheel_joint", words="--joint takes NAME=VALUE")
     refuse("inspect", reference, "--joint", "base_left_wheel_joint=fast", words="--joint takes NAME=VALUE")
@@ -209,7 +209,7 @@ def test_a_rubric_with_mistakes_is_refused_with_all_of_them(tmp_path: Path) -> N
 @pytest.mark.parametrize("form", ["terminal", pytest.param("json", marks=pytest.mark.exhaustive)])
 def test_closed_standard_output(form: str) -> None:
     """One line on standard error and exit code 2, whether it was closed before or during the output."""
-    command = f'"{sys.executable}" -m grader grade submissions/reference --format {form}'
+    command = f'"{sys.executable}" -m grader grade submissions/lab6/reference --format {form}'
     for redirected in (f"{command} >&-", f"({command}; echo $? >&2) | true", f"{command} > /dev/full"):
         done = subprocess.run(
             ["bash", "-c", redirected], cwd=ROOT, capture_output=True, check=False, timeout=HANG_TIMEOUT

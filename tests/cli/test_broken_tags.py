@@ -117,7 +117,15 @@ def test_broken_xacro_is_expanded_around_the_tag(tmp_path: Path) -> None:
 
 def test_elements_for_simulators_are_graded(tmp_path: Path) -> None:
     """What is written for Gazebo in a file with a broken tag earns its points."""
-    sensors = (ROOT / "submissions/equivalent-sensors-plain/sensor_robot.urdf").read_text(encoding="utf-8")
+    sensors = (ROOT / "submissions/sensors/equivalent-plain/sensor_robot/urdf/sensor_robot.urdf.xacro").read_text(
+        encoding="utf-8"
+    )
+    for xacro, plain in (
+        ('<xacro:include filename="shapes.xacro"/>', ""),
+        ("<xacro:lidar_shape/>", ""),
+        ("${length} ${width}", "0.4 0.3"),
+    ):
+        sensors = sensors.replace(xacro, plain)
     statuses = []
     for text in (sensors, sensors.replace("</visual>", "", 1)):
         path = tmp_path / "sensor_robot.urdf"
@@ -252,7 +260,7 @@ PACKAGE = {
 def test_the_xml_of_a_package_has_a_proven_hint(path: str, change: tuple[str, str], tmp_path: Path) -> None:
     """package.xml and launch files in XML are corrected by the same search, which knows nothing of their format."""
     folder, fixed = tmp_path / "my_robot", tmp_path / "fixed"
-    shutil.copytree(ROOT / "submissions/equivalent-launch-file-in-xml/my_robot", folder)
+    shutil.copytree(ROOT / "submissions/lab6/equivalent-launch-file-in-xml/my_robot", folder)
     text = (folder / path).read_text(encoding="utf-8")
     assert change[0] in text
     (folder / path).write_text(text.replace(*change, 1), encoding="utf-8")

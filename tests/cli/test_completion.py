@@ -50,7 +50,7 @@ def in_bash(line: str) -> list[str]:
         ("grader rubric check la", rubrics("la")),
         ("grader grade --part ", PARTS),
         ("grader grade x --rubric lab6 --part ta", PARTS[:3]),
-        ("grader grade x --rubric rubrics/lab6.toml --part q", ["questions"]),
+        ("grader grade x --rubric rubrics/lab6/rubric.toml --part q", ["questions"]),
         ("grader grade x --save ", FORMATS),
         ("grader grade x --save js", ["json="]),
         ("grader grade x --format js", ["json"]),

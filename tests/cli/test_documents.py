@@ -256,10 +256,10 @@ def test_every_kind_of_evidence_counts(name: str, tmp_path: Path) -> None:
 
 def test_pictures_alone_need_manual_grading_in_every_part(tmp_path: Path) -> None:
     """Without a package the criteria of the package need manual grading too; with one they are decided."""
-    text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8")
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text(encoding="utf-8")
     (tmp_path / "lab6.toml").write_text(text.replace('without_package = "manual"', ""), encoding="utf-8")
-    for name in ("lab6.answers.toml", "lab6"):
-        (tmp_path / name).symlink_to(ROOT / "rubrics" / name)
+    for name in ("answers.toml", "my_robot"):
+        (tmp_path / name).symlink_to(ROOT / "rubrics/lab6" / name)
     path = submitted(tmp_path / "Ash", {"Task2_Step6.png": png(), "notes.txt": b"none"})
     report = as_json(path, "--rubric", tmp_path / "lab6.toml")
     assert (report["score"], report["pending"]) == (0, 100)
@@ -325,5 +325,5 @@ def test_one_submission_with_evidence_only(tmp_path: Path) -> None:
 def test_lab6_leaves_pictures_to_manual_grading() -> None:
     """The shipped rubric: the course took pictures."""
     assert (LAB6.without_urdf, LAB6.without_package) == ("manual", "manual")
-    text = grade(ROOT / "submissions" / "pictures-only")
+    text = grade(ROOT / "submissions/lab6/pictures-only")
     assert "no URDF was submitted; 47 need manual grading" in text

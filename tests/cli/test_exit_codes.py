@@ -8,9 +8,8 @@ import pytest
 from tests.command_line import run_with_input
 from tests.samples import ROOT, SAMPLES
 
-GOOD, WRONG, FAULTS, ARM = (
-    ROOT / SAMPLES[name].path for name in ("reference", "lidar-buried", "several-mistakes", "arm-axis-sign")
-)
+GOOD, ARM = (ROOT / SAMPLES[name].path for name in ("reference", "arm/axis-sign"))
+WRONG, FAULTS = (ROOT / SAMPLES[name].alone.path for name in ("lidar-buried", "several-mistakes"))
 NOT_XML = b"<robot name='r'><link name='a'"
 BOOK = ("--gradebook", "no.db")
 # Exit code, arguments, standard input. `new` is a folder that does not exist, `file` a file of another kind.
@@ -34,7 +33,7 @@ ROWS: tuple[tuple[int, Sequence[object], bytes], ...] = (
     (1, ("grade", "-"), NOT_XML),
     (1, ("grade", "-"), b"\xff\x00"),
     (1, ("grade", "-"), b""),
-    (2, ("grade",), b""),
+    (2, ("inspect",), b""),
     (2, ("grade", "new"), b""),
     (2, ("grade", GOOD, "--rubric", "lab7"), b""),
     (2, ("grade", GOOD, "--rubric", "new.toml"), b""),
@@ -62,7 +61,7 @@ ROWS: tuple[tuple[int, Sequence[object], bytes], ...] = (
     (2, ("explain", "URDF999"), b""),
     (0, ("rubric", "list"), b""),
     (0, ("rubric", "show", "lab6"), b""),
-    (0, ("rubric", "check", ROOT / "rubrics/lab6.toml"), b""),
+    (0, ("rubric", "check", ROOT / "rubrics/lab6/rubric.toml"), b""),
     (2, ("rubric", "check", "file.txt"), b""),
     (2, ("rubric", "show", "lab7"), b""),
     (2, ("rubric", "new", "lab.toml", "--from", "new"), b""),

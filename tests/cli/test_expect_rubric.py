@@ -17,7 +17,7 @@ def job(tmp_path: Path) -> GithubJob:
 def test_an_id_is_the_shipped_rubric(job: GithubJob) -> None:
     """Whatever files a repository contains, an id means the shipped rubric and a path means the file."""
     own = LAB6.data.replace(b"IRP Lab 6", b"My own")
-    for name in ("lab6", "lab6.toml", "rubrics/lab6.toml", "grader/rubrics/lab6.toml", ".toml/lab6"):
+    for name in ("lab6", "lab6.toml", "rubrics/lab6/rubric.toml", "grader/rubrics/lab6/rubric.toml", ".toml/lab6"):
         file = job.checkout / name
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_bytes(own)
@@ -25,7 +25,7 @@ def test_an_id_is_the_shipped_rubric(job: GithubJob) -> None:
         done = job.run("grade", "my_robot.urdf", *arguments, "--expect-rubric", LAB6.sha256)
         assert done.returncode == 1, done.stderr
         assert b"My own" not in done.stdout
-    for name in ("lab6.toml", "./lab6", "rubrics/lab6.toml"):
+    for name in ("lab6.toml", "./lab6", "rubrics/lab6/rubric.toml"):
         assert b"My own" in job.run("grade", "my_robot.urdf", "--rubric", name).stdout
         done = job.run("grade", "my_robot.urdf", "--rubric", name, "--expect-rubric", LAB6.sha256)
         assert (done.returncode, done.stdout) == (2, b"")

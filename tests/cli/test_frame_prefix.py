@@ -94,7 +94,7 @@ def test_a_prefix_that_robot_state_publisher_does_not_have(tmp_path: Path) -> No
 
 def test_a_prefix_in_an_xml_launch_file(tmp_path: Path) -> None:
     """A <param> gives it as well."""
-    sample = ROOT / "submissions/equivalent-launch-file-in-xml"
+    sample = ROOT / "submissions/lab6/equivalent-launch-file-in-xml"
     shutil.copytree(sample, tmp_path / "sample")
     (launch,) = (tmp_path / "sample").rglob("*.launch.xml")
     (rviz,) = (tmp_path / "sample").rglob("*.rviz")

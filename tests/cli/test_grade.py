@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.command_line import ROOT, run
+from tests.command_line import ROOT, run, run_with_input
 
-REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
-MISTAKEN = "submissions/lidar-offset-in-visual/my_robot.urdf"  # 64 of 70
+REFERENCE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
+MISTAKEN = "submissions/lab6/lidar-offset-in-visual/my_robot/urdf/my_robot.urdf"  # 64 of 70
 
 
 @pytest.mark.parametrize(
@@ -22,7 +22,14 @@ def test_fail_under(threshold: str, code: int) -> None:
 def test_without_a_threshold_every_criterion_must_pass() -> None:
     """One failed criterion is exit code 1."""
     assert run(("grade", MISTAKEN)).returncode == 1
-    assert run(("grade", "submissions/reference", "--part", "task1")).returncode == 0
+    assert run(("grade", "submissions/lab6/reference", "--part", "task1")).returncode == 0
+
+
+def test_without_a_path_the_current_folder_is_graded() -> None:
+    """The report is that of the path `.`."""
+    folder = ROOT / "submissions/lab6/lidar-buried"
+    given, default = (run_with_input(words, b"", folder=folder) for words in (("grade", "."), ("grade",)))
+    assert (default.stdout, default.returncode) == (given.stdout, 1)
 
 
 def test_saved_reports_equal_printed_ones(tmp_path: Path) -> None:
@@ -90,7 +97,7 @@ def test_max_size(tmp_path: Path) -> None:
 )
 def test_a_pipe_gets_no_escape_codes(variables: dict[str, str]) -> None:
     """A report in a pipe is plain text, at any width and in any encoding."""
-    done = run(("grade", "submissions/several-mistakes/my_robot.urdf"), **variables)
+    done = run(("grade", "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"), **variables)
     assert done.returncode == 1
     assert b"\x1b" not in done.stdout
     width = int(variables.get("COLUMNS", "80"))

@@ -13,8 +13,8 @@ from grader.report.comparison import applied_hints, hinted_texts
 from tests.command_line import run
 from tests.samples import ROOT, SAMPLES
 
-MISTAKES = ROOT / "submissions/several-mistakes/my_robot.urdf"
-REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
+MISTAKES = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
+REFERENCE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 ROLL = {"path": "my_robot.urdf", "line": 73, "column": 34, "old": 'rpy="1.57 0 0"', "new": 'rpy="-1.57 0 0"'}
 
 
@@ -31,10 +31,10 @@ def hints(*arguments: object) -> dict[str, list[dict[str, Any]]]:
 
 def lab(folder: Path, level: str) -> Path:
     """Return a copy of the rubric of lab 6 with another level of hints."""
-    text = (ROOT / "rubrics/lab6.toml").read_text()
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text()
     assert 'hints = "edit"' in text
     text = text.replace('hints = "edit"', f'hints = "{level}"' if level else "")
-    text = text.replace('reference = "', f'reference = "{ROOT}/rubrics/').replace("answers =", "# answers =")
+    text = text.replace('reference = "', f'reference = "{ROOT}/rubrics/lab6/').replace("answers =", "# answers =")
     (folder / "lab.toml").write_text(text)
     return folder / "lab.toml"
 
@@ -129,7 +129,7 @@ def test_fix_writes_the_robot_with_all_edits(tmp_path: Path) -> None:
 
 def test_fix_of_several_files_needs_a_folder(tmp_path: Path) -> None:
     """Each file is written under its path in the submission."""
-    submission = ROOT / "submissions/setup-as-created"
+    submission = ROOT / "submissions/lab6/setup-as-created"
     (tmp_path / "in").mkdir()
     for name in ("my_robot/setup.py", "my_robot/urdf/my_robot.urdf"):
         assert (submission / name).is_file()
@@ -271,7 +271,7 @@ def test_a_fault_of_the_search_costs_no_report(monkeypatch: pytest.MonkeyPatch) 
     assert done.stderr == b"grader: no hints: the grader itself failed (ZeroDivisionError); please report it\n"
 
 
-MISSPELT_FRAME = ROOT / "submissions/rviz-fixed-frame-misspelt"
+MISSPELT_FRAME = ROOT / "submissions/lab6/rviz-fixed-frame-misspelt"
 
 
 def test_a_missing_resource_index_costs_no_other_hint(tmp_path: Path) -> None:
@@ -335,7 +335,7 @@ def test_a_hint_that_was_applied_is_named() -> None:
     from grader.grading.hints.hinting import hinted
     from grader.submission.opening import read_submission
 
-    sample = SAMPLES["several-mistakes"]
+    sample = SAMPLES["several-mistakes"].alone
     submission = sample.open()
     before = hinted(sample.grade(), submission, "edit").report
     text = MISTAKES.read_text()

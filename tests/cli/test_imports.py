@@ -8,7 +8,7 @@ import pytest
 
 from tests.command_line import ROOT
 
-URDF = "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
+URDF = "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 _PROGRAM = """
 import sys
 before = {*sys.modules}  # what else is installed may import modules when Python starts

@@ -141,7 +141,7 @@ def test_what_python_3_12_added_is_no_failure(path: str, code: str, tmp_path: Pa
 
 def test_what_ros2_launch_starts_is_no_failure(tmp_path: Path) -> None:
     """Its XML frontend reads files that end in .launch, and a Node takes any iterable of arguments."""
-    shutil.copytree(ROOT / "submissions/equivalent-launch-file-in-xml/my_robot", tmp_path / "xml")
+    shutil.copytree(ROOT / "submissions/lab6/equivalent-launch-file-in-xml/my_robot", tmp_path / "xml")
     (path,) = (tmp_path / "xml").rglob("*.launch.xml")
     path.rename(path.with_suffix(""))
     report = json.loads(run(("grade", tmp_path / "xml", "--format", "json", "--hints", "none")).stdout)

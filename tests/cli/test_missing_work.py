@@ -11,7 +11,7 @@ import pytest
 from tests.checks.submissions import png
 from tests.command_line import ROOT, run
 
-REFERENCE = ROOT / "submissions" / "reference"
+REFERENCE = ROOT / "submissions/lab6/reference"
 IN_SAMPLE = "roscourse_sim_ws/src/my_robot"
 BOX = b'<robot name="box">\n <link name="box"><visual><geometry><box size="0.6 0.4 0.2"/></geometry></visual></link>\n</robot>\n'
 FORMATS = (
@@ -45,13 +45,13 @@ def results(path: Path, *more: object) -> dict[str, Any]:
 def rubric(folder: Path, *keys: str) -> Path:
     """Write the rubric of Lab 6 with only these keys set to "manual"."""
     folder.mkdir(parents=True, exist_ok=True)
-    text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8")
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text(encoding="utf-8")
     path = folder / "lab6.toml"
     for key in {"without_urdf", "without_package"}.difference(keys):
         text = re.sub(rf"^{key} = .*\n", "", text, flags=re.MULTILINE)
     path.write_text(text, encoding="utf-8")
-    shutil.copy(ROOT / "rubrics" / "lab6.answers.toml", folder)
-    (folder / "lab6").symlink_to(ROOT / "rubrics" / "lab6")
+    shutil.copy(ROOT / "rubrics/lab6/answers.toml", folder)
+    (folder / "my_robot").symlink_to(ROOT / "rubrics/lab6/my_robot")
     return path
 
 
@@ -172,7 +172,7 @@ def test_criteria_of_a_missing_package_need_manual_grading(files: dict[str, byte
 def test_a_package_of_the_lab_is_graded_whatever_the_key_says(tmp_path: Path) -> None:
     """With a package of the lab, also in another lab's folder, or without evidence, the checks decide."""
     manual, default = rubric(tmp_path / "manual", "without_package"), rubric(tmp_path / "default")
-    misnamed = shutil.copytree(ROOT / "submissions/package-misnamed", tmp_path / "misnamed")
+    misnamed = shutil.copytree(ROOT / "submissions/lab6/package-misnamed", tmp_path / "misnamed")
     written(misnamed, {"Task2_Step6.png": png()})
     elsewhere = written(tmp_path / "Ash", PICTURES)
     shutil.copytree(REFERENCE / IN_SAMPLE, elsewhere / "Lab7/my_robot")

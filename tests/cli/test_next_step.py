@@ -10,8 +10,8 @@ from grader.cli.app import COMMANDS
 from tests.command_line import Done, run_with_input
 from tests.samples import ROOT
 
-SAMPLE = ROOT / "submissions/lidar-offset-in-visual/my_robot.urdf"
-PACKAGE = "submissions/reference/roscourse_sim_ws/src/my_robot"
+SAMPLE = ROOT / "submissions/lab6/lidar-offset-in-visual/my_robot/urdf/my_robot.urdf"
+PACKAGE = "submissions/lab6/reference/roscourse_sim_ws/src/my_robot"
 BATCH = "grader batch PATH --gradebook book.db"
 
 

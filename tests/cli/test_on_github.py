@@ -136,6 +136,6 @@ def test_the_threshold_decides_whether_the_step_fails(job: GithubJob, threshold:
 
 def test_help_is_plain_text_in_a_job(job: GithubJob) -> None:
     """Some libraries colour their help there."""
-    for arguments in (("--help",), ("grade", "--help"), ("grade",), ("grad",)):
+    for arguments in (("--help",), ("grade", "--help"), ("inspect",), ("grad",)):
         done = job.run(*arguments)
         assert b"\x1b" not in done.stdout + done.stderr

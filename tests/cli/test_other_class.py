@@ -8,7 +8,10 @@ import pytest
 
 from tests.command_line import ROOT, Done, run
 
-GOOD, BAD = ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf", ROOT / "submissions/lidar-buried/my_robot.urdf"
+GOOD, BAD = (
+    ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf",
+    ROOT / "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf",
+)
 NAMES = ("Jane Doe", "Al Ash", "Bo Birch")
 ROSTERS = {
     "none": "",

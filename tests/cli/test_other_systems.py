@@ -10,7 +10,7 @@ import pytest
 
 from tests.samples import ROOT
 
-REFERENCE = ROOT / "submissions" / "reference"
+REFERENCE = ROOT / "submissions/lab6/reference"
 # A process without everything that Windows' Python lacks.
 _WITHOUT = """
 import os, signal, sys

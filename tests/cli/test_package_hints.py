@@ -63,7 +63,7 @@ def graded(folder: Path, *options: str) -> dict[str, Any]:
 
 def with_mistake(folder: Path, sample: str, name: str, old: str, new: str) -> Path:
     """Return a copy of a sample with another text in the file that a pattern names."""
-    shutil.copytree(ROOT / "submissions" / sample, folder / "lab", ignore=shutil.ignore_patterns("expected.toml"))
+    shutil.copytree(ROOT / "submissions/lab6" / sample, folder / "lab", ignore=shutil.ignore_patterns("expected.toml"))
     [path] = (folder / "lab").rglob(name)
     text = path.read_text(encoding="utf-8")
     assert old in text
@@ -107,7 +107,7 @@ def test_the_cause_gives_no_answer_away(name: str, tmp_path: Path) -> None:
 
 def test_the_reference_is_not_pasted_over_the_student(tmp_path: Path) -> None:
     """A launch file that is written in another way keeps its calls: only the path is replaced."""
-    shutil.copytree(ROOT / "submissions/sensors-launch-home-path/sensor_robot", tmp_path / "sensor_robot")
+    shutil.copytree(ROOT / "submissions/sensors/launch-home-path/sensor_robot", tmp_path / "sensor_robot")
     [hint] = hints(graded(tmp_path / "sensor_robot", "--rubric", "sensors", "--hints", "edit"))
     assert hint["edits"] == [] or [edit["old"] for edit in hint["edits"]] == [
         "'/home/student/ros2_ws/src/sensor_robot/urdf/sensor_robot.urdf.xacro'"
@@ -117,7 +117,7 @@ def test_the_reference_is_not_pasted_over_the_student(tmp_path: Path) -> None:
 
 def test_a_node_that_is_created_and_not_used_is_added_by_its_name(tmp_path: Path) -> None:
     """The node is not written a second time."""
-    shutil.copytree(ROOT / "submissions/launch-without-rviz/my_robot", tmp_path / "my_robot")
+    shutil.copytree(ROOT / "submissions/lab6/launch-without-rviz/my_robot", tmp_path / "my_robot")
     [hint] = hints(graded(tmp_path / "my_robot"))
     assert [(edit["old"], edit["new"].strip(", \n")) for edit in hint["edits"]] == [("", "rviz")]
 

@@ -8,7 +8,7 @@ import pytest
 
 from tests.command_line import GRADER, ROOT, run_with_input
 
-MISTAKES = ROOT / "submissions/several-mistakes/my_robot.urdf"
+MISTAKES = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 REFUSALS = {
     "no path": (),
     "a path that does not exist": ("none.urdf",),
@@ -72,16 +72,16 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for name in ("a", "b", "class/ada/ada", "class/bob/bob"):
         Path(name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(MISTAKES, f"{name}.urdf")
-    rubric = (ROOT / "rubrics/lab6.toml").read_text()
+    rubric = (ROOT / "rubrics/lab6/rubric.toml").read_text()
     for old, new in (
-        ('reference = "lab6/my_robot"', 'reference = "solution/my_robot"'),
-        ('"lab6.answers.toml"', '"lab.answers.toml"'),
+        ('reference = "my_robot"', 'reference = "solution/my_robot"'),
+        ('"answers.toml"', '"lab.answers.toml"'),
     ):
         assert old in rubric
         rubric = rubric.replace(old, new)
     Path("lab.toml").write_text(rubric)
     shutil.copytree(ROOT / "rubrics/lab6", "solution")
-    shutil.copy(ROOT / "rubrics/lab6.answers.toml", "lab.answers.toml")
+    shutil.copy(ROOT / "rubrics/lab6/answers.toml", "lab.answers.toml")
     Path("broken.toml").write_text("id = ")
     Path("hard.toml").hardlink_to("lab.toml")
     Path("mine.urdf").symlink_to("a.urdf")

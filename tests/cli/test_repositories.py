@@ -14,9 +14,9 @@ from tests.cli.jobs import GithubJob
 from tests.command_line import run_with_input
 from tests.samples import ROOT
 
-PACKAGE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot"
+PACKAGE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot"
 URDF = PACKAGE / "urdf/my_robot.urdf"
-BURIED = ROOT / "submissions/lidar-buried/my_robot.urdf"
+BURIED = ROOT / "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf"
 
 
 def grade(path: Path | str, *more: str, folder: Path = ROOT) -> tuple[int, str, str]:
@@ -163,8 +163,8 @@ def test_several_students_are_not_graded_as_one(team: Path) -> None:
 def test_the_refusal_names_the_rubric(team: Path) -> None:
     """A rubric of one's own is named in the commands, quoted."""
     rubric = team.parent / "my lab.toml"
-    shutil.copy(ROOT / "rubrics/lab6.toml", rubric)
-    shutil.copytree(ROOT / "rubrics/lab6", team.parent / "lab6")
+    shutil.copy(ROOT / "rubrics/lab6/rubric.toml", rubric)
+    shutil.copytree(ROOT / "rubrics/lab6/my_robot", team.parent / "my_robot")
     _, _, error = grade(team, "--rubric", str(rubric))
     assert error.count(f" --rubric {shlex.quote(str(rubric))}\n") == 3
 
@@ -288,7 +288,7 @@ def test_commands_quote_names(tmp_path: Path) -> None:
     urdf = put(tmp_path / "it's mine/my_robot.urdf")
     book = tmp_path / "my book.db"
     rubric = tmp_path / "my lab.toml"
-    shutil.copy(ROOT / "rubrics/lab6.toml", rubric)
+    shutil.copy(ROOT / "rubrics/lab6/rubric.toml", rubric)
     package = put(tmp_path / "my robot", PACKAGE)
     commands = {
         f"grader grade {shlex.quote(str(urdf))}": (urdf,),

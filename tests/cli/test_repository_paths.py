@@ -13,7 +13,7 @@ from tests.cli.jobs import MISTAKEN, GithubJob
 from tests.command_line import HANG_TIMEOUT, run_with_input
 from tests.samples import ROOT
 
-REFERENCE = ROOT / "submissions/reference"
+REFERENCE = ROOT / "submissions/lab6/reference"
 URDF = "roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 
 

@@ -55,14 +55,14 @@ def data(*arguments: object) -> dict[str, Any]:
 @pytest.mark.parametrize("name", shipped_rubrics())
 def test_a_shipped_rubric_catches_every_mutant(name: str) -> None:
     """Or says in the rubric why not; no criterion is idle, no pattern unused, no correct robot loses points, no sample differs."""
-    found = data(name, "submissions", "--mutants", 100_000)
+    found = data(name, f"submissions/{name}", "--mutants", 100_000)
     assert (found["score"], found["survivors"], found["idle"], found["unused_patterns"]) == (100, [], [], [])
     assert found["equivalents"]["lost"] == found["reference"]["lost"] == []
     assert sum(found["equivalents"]["tried"].values()) >= 30
     assert found["mutants"]["caught"] > 5 * len(found["ignored"])
     own = sum(sample.expected.rubric == name for sample in SAMPLES.values())
     assert own
-    assert found["samples"] == {"tried": own, "skipped": len(SAMPLES) - own, "different": []}
+    assert found["samples"] == {"tried": own, "skipped": 0, "different": []}
 
 
 @pytest.fixture(scope="module")

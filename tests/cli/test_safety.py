@@ -11,7 +11,7 @@ import pytest
 from tests.command_line import HANG_TIMEOUT, run
 from tests.samples import ROOT
 
-REFERENCE = ROOT / "submissions" / "reference"
+REFERENCE = ROOT / "submissions/lab6/reference"
 # Modules that the grader or its dependencies import late.
 MODULES = (
     "yaml",

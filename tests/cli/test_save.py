@@ -15,7 +15,7 @@ from tests.command_line import run
 from tests.report.reports import CLASSROOM50
 from tests.samples import ROOT
 
-MISTAKEN = "submissions/several-mistakes/my_robot.urdf"
+MISTAKEN = "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 
 
 def saved(*texts: str) -> subprocess.CompletedProcess[bytes]:
@@ -180,7 +180,7 @@ def test_temporary_names_are_unpredictable(sub: Path) -> None:
 def test_what_is_graded_is_never_removed(sub: Path) -> None:
     """Neither a URDF, nor the rubric, nor any robot is removed, because it may be the graded file."""
     robot, rubric = sub / "my_robot.urdf", sub.parent / "lab.toml"
-    rubric.write_bytes((ROOT / "rubrics" / "lab6.toml").read_bytes())
+    rubric.write_bytes((ROOT / "rubrics/lab6/rubric.toml").read_bytes())
     (sub.parent / "hard.json").hardlink_to(robot)
     for graded, target in ((robot, robot), (sub, robot), (sub, rubric), (robot, sub.parent / "hard.json")):
         before = target.read_bytes()

@@ -8,7 +8,7 @@ import pytest
 from tests.command_line import ROOT, run, run_with_input
 from tests.report.readers import read_as_github, read_markdown, read_svg
 
-BURIED = "submissions/lidar-buried/my_robot.urdf"
+BURIED = "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf"
 
 
 def images(markdown: Path) -> list[tuple[str, str]]:
@@ -51,7 +51,7 @@ def test_markdown_without_a_file_beside_it_shows_none(tmp_path: Path) -> None:
     assert b"![" not in printed.stdout
     run(("grade", BURIED, "--save", f"markdown={report}"))
     assert images(report) == []
-    run(("grade", "submissions/pictures-only", "--save", f"markdown={report}", "--save", f"svg={picture}"))
+    run(("grade", "submissions/lab6/pictures-only", "--save", f"markdown={report}", "--save", f"svg={picture}"))
     assert images(report) == []
     run(("grade", BURIED, "--save", f"markdown={report}", "--save", "svg=/dev/null"))
     assert images(report) == []

@@ -208,7 +208,7 @@ def test_sections_in_json(tmp_path: Path) -> None:
 
 def test_the_table_of_criteria_fits_on_80_columns(tmp_path: Path) -> None:
     """With criteria that are not deducted, or marked, no header and no id is cut."""
-    shutil.copytree(ROOT / "submissions" / "wheel-too-small", tmp_path / "class" / "ash")
+    shutil.copytree(ROOT / "submissions/lab6/wheel-too-small/my_robot/urdf", tmp_path / "class" / "ash")
     book = ("--gradebook", tmp_path / "book.db")
     assert grader("batch", tmp_path / "class", *book, "--jobs", 1).returncode == 0
     assert grader("mark", "ash", "answer-floating-link", "1", *book).returncode == 0

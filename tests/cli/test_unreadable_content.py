@@ -9,7 +9,7 @@ import pytest
 
 from tests.command_line import ROOT, run
 
-REFERENCE = ROOT / "submissions" / "reference"
+REFERENCE = ROOT / "submissions/lab6/reference"
 URDF = ROOT / "rubrics" / "lab6" / "my_robot" / "urdf" / "my_robot.urdf"
 
 
@@ -80,7 +80,7 @@ def test_xacro_that_cannot_be_determined_is_not_green(tmp_path: Path) -> None:
 def test_findings_in_an_archive_are_on_the_archive(tmp_path: Path) -> None:
     """The repository has no file inside it; the text has the location."""
     with zipfile.ZipFile(tmp_path / "lab6.zip", "w") as archive:
-        archive.write(ROOT / "submissions" / "several-mistakes" / "my_robot.urdf", "my_robot.urdf")
+        archive.write(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf", "my_robot.urdf")
     (tmp_path / ".git").mkdir()
     _, reported = graded(tmp_path)
     assert "::error file=lab6.zip,title=base-green (6 points lost)::" in reported
@@ -91,7 +91,7 @@ def test_findings_in_an_archive_are_on_the_archive(tmp_path: Path) -> None:
 
 def test_the_most_consequential_failure_comes_first() -> None:
     """A criterion counts for those that are skipped because of it; what is about a missing package comes last."""
-    _, reported = graded(ROOT / "submissions" / "several-mistakes")
+    _, reported = graded(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf")
     first, *_, last = [line for line in reported.splitlines() if line.startswith("::error ")]
     assert "title=lidar-frame (6 points lost)::" in first
     assert "title=package-found (20 points lost)::" in last
@@ -114,7 +114,7 @@ def test_many_files_hide_nothing(tmp_path: Path) -> None:
 def test_inputs_are_not_overwritten(tmp_path: Path) -> None:
     """Neither the URDF, alone or in its folder, nor the rubric; and nothing else is written then."""
     shutil.copy(URDF, tmp_path / "my_robot.urdf")
-    shutil.copy(ROOT / "rubrics" / "lab6.toml", tmp_path / "lab.toml")
+    shutil.copy(ROOT / "rubrics/lab6/rubric.toml", tmp_path / "lab.toml")
     for folder, over in (
         (tmp_path / "my_robot.urdf", "my_robot.urdf"),
         (tmp_path, "my_robot.urdf"),

@@ -20,9 +20,9 @@ from grader.usecases.watch import Watched, _stamps, file_changes
 from tests.classroom.class_runs import shell_code, started
 from tests.command_line import HANG_TIMEOUT, ROOT, clean_environment, run
 
-REFERENCE = ROOT / "submissions/reference"
+REFERENCE = ROOT / "submissions/lab6/reference"
 URDF = REFERENCE / "roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"  # 70 of 70
-SHORT = ROOT / "submissions/lidar-offset-in-visual/my_robot.urdf"  # 64 of 70
+SHORT = ROOT / "submissions/lab6/lidar-offset-in-visual/my_robot/urdf/my_robot.urdf"  # 64 of 70
 BETTER = "\n64 -> 70 of 70 points (+6)\nnow passed: lidar-frame (+6)\n"
 WORSE = "\n70 -> 64 of 70 points (-6)\nnow failed: lidar-frame (-6)\n"
 END = "  IRP Lab 6: a wheeled base\n"  # of a report
@@ -163,7 +163,7 @@ def test_a_rubric_in_a_file_is_watched(robot: Path, tmp_path: Path, watch: Watch
     """Its mistakes are reported line by line and waited out; the URDF is graded by the current rubric."""
     rubric = tmp_path / "rules" / "lab.toml"
     rubric.parent.mkdir()
-    text = (ROOT / "rubrics" / "lab6.toml").read_text()
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text()
     rubric.write_text(text)
     renamed = text.replace('id = "lidar-frame"', 'id = "lidar-place"')
     texts = text.replace("points = 6", "points = -6"), "id = [", renamed
@@ -335,5 +335,5 @@ def test_only_changes_are_yielded(tmp_path: Path) -> None:
 
 def test_all_graded_files_are_watched() -> None:
     """Every file that is graded counts when it changes."""
-    for folder in sorted((ROOT / "submissions").iterdir())[:20]:
+    for folder in sorted((ROOT / "submissions/lab6").glob("*/"))[:20]:
         assert [path for path in read_folder(folder).files if not is_looked_at(folder, path)] == [], folder

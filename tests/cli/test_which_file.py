@@ -9,10 +9,10 @@ import pytest
 from tests.checks.submissions import png
 from tests.command_line import ROOT, run
 
-REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot"
+REFERENCE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot"
 URDF = (REFERENCE / "urdf/my_robot.urdf").read_text()
 BOX = '<robot name="box"><link name="base_link"/></robot>'
-NO_LIDAR = (ROOT / "submissions/lidar-missing/my_robot.urdf").read_text()
+NO_LIDAR = (ROOT / "submissions/lab6/lidar-missing/my_robot/urdf/my_robot.urdf").read_text()
 PICTURE = "Lab6/Task1_Step8.png"
 MANIFEST = "<package format='3'><name>my_robot</name></package>"
 XACRO = '<robot name="my_robot" xmlns:xacro="http://www.ros.org/wiki/xacro">'

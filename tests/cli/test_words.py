@@ -16,7 +16,7 @@ from tests.examples import examples
 
 ROWS = tomllib.loads((Path(__file__).parent / "words.toml").read_text(encoding="utf-8"))
 PLAIN = ROOT / "rubrics/lab6/my_robot/urdf"
-XACRO = ROOT / "submissions/equivalent-xacro-macros/my_robot/urdf"
+XACRO = ROOT / "submissions/lab6/equivalent-xacro-macros/my_robot/urdf"
 
 
 def graded(kind: str, edits: list[list[str]], folder: Path) -> dict[str, Any]:

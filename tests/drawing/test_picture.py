@@ -23,7 +23,7 @@ ROOT = Path(__file__).parents[2]
 def picture(name: str, rubric: str = "lab6") -> Picture:
     """Return the picture of a sample submission."""
     loaded = load_rubric(rubric)
-    found = picture_of(grade(loaded, open_submission(str(ROOT / "submissions" / name), loaded.lab)))
+    found = picture_of(grade(loaded, open_submission(str(ROOT / "submissions" / rubric / name), loaded.lab)))
     assert found is not None
     return found
 
@@ -33,7 +33,7 @@ def test_a_number_that_overflows_costs_neither_picture_nor_hints(kind: str, pict
     """A mesh at the end of the range of numbers in a link that is turned: the number of the callout is at the link's frame."""
     far = '<visual><origin xyz="1e308 1.7e308 1.7e308"/><geometry><mesh filename="a.stl"/></geometry></visual>'
     link = '<link name="left_wheel">'
-    text = (ROOT / "submissions/axis-negated/my_robot.urdf").read_text().replace(link, link + far)
+    text = (ROOT / "submissions/lab6/axis-negated/my_robot/urdf/my_robot.urdf").read_text().replace(link, link + far)
     turned = '<origin xyz="-0.15 0.2 0" rpy="-0.78 0 0.78"/>'
     (tmp_path / "my_robot.urdf").write_text(text.replace('<origin xyz="-0.15 0.2 0" rpy="-1.57 0 0"/>', turned))
     assert (tmp_path / "my_robot.urdf").read_text().count(turned) == text.count(far) == 1
@@ -82,7 +82,7 @@ def test_no_outline_of_what_is_right(name: str, old: str, new: str, tmp_path: Pa
 
 def changed_picture(folder: Path, name: str, old: str, new: str) -> Picture:
     """Return the picture of a sample with another text in its URDF."""
-    text = (ROOT / "submissions" / name / "my_robot.urdf").read_text()
+    text = (ROOT / "submissions/lab6" / name / "my_robot/urdf/my_robot.urdf").read_text()
     assert old in text
     (folder / "my_robot.urdf").write_text(text.replace(old, new))
     loaded = load_rubric("lab6")

@@ -55,7 +55,7 @@ class Scenario(NamedTuple):
 def prepare(top: Path) -> None:
     """Make a class, its gradebook, another gradebook with marks, and the files that commands read."""
     make_class(top)
-    shutil.copytree(ROOT / "submissions/reference", top / "lab6", ignore=shutil.ignore_patterns("expected.toml"))
+    shutil.copytree(ROOT / "submissions/lab6/reference", top / "lab6", ignore=shutil.ignore_patterns("expected.toml"))
     (urdf,) = (top / "lab6").rglob("*.urdf")
     (top / "robot.urdf").write_text(urdf.read_text().replace("0.15 0 0.225", "0.15 0 0.2"))
     write_submission(top / "zipped" / "finn")

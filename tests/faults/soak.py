@@ -100,7 +100,7 @@ def make_class(folder: Path, count: int) -> Counter[str]:
 def rubric_in(folder: Path) -> Path:
     """Write Lab 6 with a criterion that misbehaves, without hints."""
     shutil.copytree(without_hints().parent, folder)
-    (folder / "lab6.answers.toml").unlink()
+    (folder / "answers.toml").unlink()
     text = (folder / "lab6.toml").read_text(encoding="utf-8")
     part = text.partition('[[part]]\nid = "')[2].partition('"')[0]
     (folder / "lab6.toml").write_text(text + _CRITERION.format(part=part), encoding="utf-8")

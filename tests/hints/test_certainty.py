@@ -37,7 +37,7 @@ ROBOTS = ["lidar-buried", "green-0-1-0", "lidar-missing", "several-mistakes"]
 
 def hints_of(name: str, *options: str) -> list[dict[str, Any]]:
     """Return the hints of a sample as JSON."""
-    done = run(("grade", ROOT / "submissions" / name, "--format", "json", *options))
+    done = run(("grade", ROOT / "submissions/lab6" / name, "--format", "json", *options))
     return [hint for result in json.loads(done.stdout)["results"] for hint in result["hints"]]
 
 
@@ -46,7 +46,7 @@ def test_real_mistakes(name: str, certain: set[str]) -> None:
     """The same at each level; only what is one of several says so in words."""
     for level in ("place", "cause", "edit"):
         assert {hint["certainty"] for hint in hints_of(name, "--hints", level)} == certain
-        shown = " ".join(run(("grade", ROOT / "submissions" / name, "--hints", level)).stdout.decode().split())
+        shown = " ".join(run(("grade", ROOT / "submissions/lab6" / name, "--hints", level)).stdout.decode().split())
         assert ("Other edits are as good." in shown) == ("one of several" in certain)
 
 
@@ -67,7 +67,7 @@ def test_stored_hints_say_no_more_than_the_level() -> None:
 
 def test_sarif_has_it_in_the_properties_of_a_fix() -> None:
     """Each fix has the certainty of its hint."""
-    done = run(("grade", ROOT / "submissions/setup-syntax-error", "--format", "sarif"))
+    done = run(("grade", ROOT / "submissions/lab6/setup-syntax-error", "--format", "sarif"))
     fixes = [fix for result in json.loads(done.stdout)["runs"][0]["results"] for fix in result.get("fixes", ())]
     assert [fix["properties"] for fix in fixes] == [{"certainty": "one of several"}]
 

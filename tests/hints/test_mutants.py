@@ -31,12 +31,12 @@ def test_sample_mistakes_get_hints_that_lead_to_full_marks() -> None:
     without_a_file = {"empty-urdf", "pictures-only", "no-launch-folder", "no-package-xml"}
     without_an_edit = {
         *(
-            "arm-joints-without-underscore",
-            "arm-origin-in-the-visual",
-            "arm-world-missing",
-            "sensors-box-around-the-frame",
+            "arm/joints-without-underscore",
+            "arm/origin-in-the-visual",
+            "arm/world-missing",
+            "sensors/box-around-the-frame",
         ),
-        *("sensors-macro-never-called", "sensors-no-xacro", "sensors-nothing-included", "sensors-properties-unused"),
+        *("sensors/macro-never-called", "sensors/no-xacro", "sensors/nothing-included", "sensors/properties-unused"),
     }
     assert left <= without_a_file | without_an_edit
 
@@ -100,7 +100,7 @@ def test_a_number_near_the_expected_one_becomes_the_expected_one(written: str) -
     assert [[edit.new for edit in found.edits] for found in hints.found] == [['xyz="0 0 0.025"']]
 
 
-@pytest.mark.parametrize(("name", "link"), [("arm-diameter-for-radius", "shoulder"), ("arm-box-lying", "forearm")])
+@pytest.mark.parametrize(("name", "link"), [("arm/diameter-for-radius", "shoulder"), ("arm/box-lying", "forearm")])
 def test_an_inertia_is_not_fitted_to_a_wrong_shape(name: str, link: str) -> None:
     """The only hint corrects the shape, with which the inertia is correct."""
     hints = hints_for(SAMPLES[name].open(), SAMPLES[name].rubric)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from tests.samples import ROOT
 
-REFERENCE = ROOT / "submissions" / "reference"
+REFERENCE = ROOT / "submissions/lab6/reference"
 PACKAGE = "roscourse_sim_ws/src/my_robot"
 
 # Each is dangerous to some viewer of reports: texts by the viewer or the sign, those for pages as `attacks`.

@@ -14,7 +14,7 @@ from tests.report.reports import hinted
 from tests.samples import ROOT
 
 CHANGE = 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 73). Also fixes right-wheel-axis, -1.'
-MISTAKEN = ROOT / "submissions/several-mistakes/my_robot.urdf"
+MISTAKEN = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 
 
 def _with_hint(results: tuple[Result, ...], **changes: Any) -> tuple[Result, ...]:

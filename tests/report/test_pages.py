@@ -62,7 +62,7 @@ def test_grade_without_html_imports_nothing_of_it() -> None:
     program = """
 import sys
 from grader.cli.app import run
-assert run(["grade", "submissions/axis-negated", "--save", "markdown=/dev/null", "--save", "json=/dev/null"]) == 1
+assert run(["grade", "submissions/lab6/axis-negated", "--save", "markdown=/dev/null", "--save", "json=/dev/null"]) == 1
 loaded = [name for name in sys.modules if name.startswith(("jinja2", "markupsafe", "grader.report.pages", "grader.drawing"))]
 assert not loaded, loaded
 """

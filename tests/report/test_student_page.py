@@ -103,7 +103,7 @@ def test_only_continuous_joints_of_their_own_are_driven(
     change: tuple[str, str], free: list[bool], has_button: bool, tmp_path: Path
 ) -> None:
     """`Drive` neither turns a mimic joint against the one that it follows, nor a revolute joint beyond its limits."""
-    text = (ROOT / "submissions/axis-negated/my_robot.urdf").read_text()
+    text = (ROOT / "submissions/lab6/axis-negated/my_robot/urdf/my_robot.urdf").read_text()
     assert change[0] in text
     (tmp_path / "my_robot.urdf").write_text(text.replace(*change))
     page = render_html(grade(LAB6, opened(tmp_path)))

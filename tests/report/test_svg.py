@@ -22,7 +22,7 @@ from tests.robot.edge_cases import EDGE_CASES
 from tests.samples import REPORTED, SAMPLES
 from tests.work import limited_work
 
-REFERENCE = "submissions/reference"
+REFERENCE = "submissions/lab6/reference"
 BOX = '<box size="0.6 0.4 0.2"/>'
 
 
@@ -83,7 +83,7 @@ def test_drawing_of_a_sample_is_well_formed_and_says_what_it_calls_out(name: str
         assert ("not in the picture" in said) or callout.point is not None
 
 
-@pytest.mark.parametrize("name", ["reference", "several-mistakes", "wheels-lying-flat", "arm-elbow-to-the-side"])
+@pytest.mark.parametrize("name", ["reference", "several-mistakes", "wheels-lying-flat", "arm/elbow-to-the-side"])
 def test_numbers_do_not_overlap(name: str) -> None:
     """The discs of all callouts are beside each other, inside the sheet, and there is one in each view."""
     picture = picture_of(SAMPLES[name].grade())
@@ -169,7 +169,7 @@ def test_two_hundred_links_are_drawn_in_a_second() -> None:
     assert len(bodies(root)) == 200
 
 
-@pytest.mark.parametrize("name", ["reference", "several-mistakes", "arm-elbow-to-the-side", "sensors-imu-upside-down"])
+@pytest.mark.parametrize("name", ["reference", "several-mistakes", "arm/elbow-to-the-side", "sensors/imu-upside-down"])
 def test_letters_of_axes_cover_neither_each_other_nor_numbers_nor_the_ground(name: str) -> None:
     """Each is behind its axis or beside it."""
     picture = picture_of(SAMPLES[name].grade())

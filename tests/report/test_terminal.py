@@ -21,7 +21,7 @@ from grader.submission.opening import read_submission
 from grader.text import printable
 from tests.samples import SAMPLES, opened
 
-URDF = "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
+URDF = "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 RUBRIC = load_rubric("lab6")
 HOSTILE = (
     b'<robot name="[bold red]\x1b[31m"><link name="lidar\x1b]8;;http://x\x07"/>\n'

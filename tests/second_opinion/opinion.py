@@ -25,9 +25,10 @@ class Rubric:
     """The rows of a rubric in its order, with their defaults."""
 
     def __init__(self, name: str) -> None:
-        with (RUBRICS / f"{name}.toml").open("rb") as file:
+        with (RUBRICS / name / "rubric.toml").open("rb") as file:
             rubric = tomllib.load(file)
-        solution = RUBRICS / rubric["reference"] / rubric["urdf"]
+        solution = RUBRICS / name / rubric["reference"]
+        solution = solution / rubric["urdf"] if solution.is_dir() else solution
         self.reference = Robot(solution.read_bytes()) if solution.suffix == ".urdf" else None
         self.defaults = rubric.get("defaults", {}).get("with", {})
         self._posed: dict[tuple[tuple[str, float], ...], Posed] = {}

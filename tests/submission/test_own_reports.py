@@ -14,7 +14,7 @@ from tests.samples import LAB6, ROOT, opened
 def test_a_report_is_no_answer(tmp_path: Path, kind: Format) -> None:
     """A report repeats questions and model answers, but grading gives the same with and without it."""
     work = tmp_path / "lab"
-    shutil.copytree(ROOT / "submissions" / "equivalent-answers-in-text-file", work)
+    shutil.copytree(ROOT / "submissions/lab6/equivalent-answers-in-text-file", work)
     (work / "my answers.txt").unlink()
     before = grade(LAB6, opened(work))
     (work / f"a_report.{kind.ending}").write_text(render(before, kind), encoding="utf-8")

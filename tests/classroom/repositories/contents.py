@@ -10,8 +10,8 @@ from tests.samples import ROOT
 
 Contents = dict[str, bytes]  # by path
 
-REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot"
-PICTURE_FILE = (ROOT / "submissions/reference/evidence/Task1_Step8.png").read_bytes()
+REFERENCE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot"
+PICTURE_FILE = (ROOT / "submissions/lab6/reference/evidence/Task1_Step8.png").read_bytes()
 
 _REPORT = (
     ("Lab 6 report", "Task 1: Step 8", PICTURE, "Task 1: Step 18", PICTURE),
@@ -27,14 +27,16 @@ _OTHER_ROBOT = '<robot name="{}"><link name="chassis"/></robot>'
 def robot(sample: str) -> str:
     """Return the plain URDF of a sample submission."""
     path = (
-        REFERENCE / "urdf/my_robot.urdf" if sample == "reference" else ROOT / "submissions" / sample / "my_robot.urdf"
+        REFERENCE / "urdf/my_robot.urdf"
+        if sample == "reference"
+        else ROOT / "submissions/lab6" / sample / "my_robot/urdf/my_robot.urdf"
     )
     return path.read_text(encoding="utf-8")
 
 
 def package(launched: str, name: str = "my_robot") -> Contents:
     """Return a package without a URDF, whose launch file opens my_robot.urdf or runs xacro on the file that is `launched`."""
-    sample = ROOT / "submissions/equivalent-xacro-macros/my_robot" if launched else REFERENCE
+    sample = ROOT / "submissions/lab6/equivalent-xacro-macros/my_robot" if launched else REFERENCE
     found = {
         path.relative_to(sample).as_posix(): path.read_bytes()
         for path in sorted(sample.rglob("*"))
@@ -78,7 +80,7 @@ def _docx() -> bytes:
 
 
 def _answers() -> Contents:
-    return {"answers.md": (ROOT / "submissions/reference/answers.md").read_bytes()}
+    return {"answers.md": (ROOT / "submissions/lab6/reference/answers.md").read_bytes()}
 
 
 def _stale_build() -> Contents:

@@ -26,7 +26,7 @@ from tests.command_line import GRADER
 from tests.samples import LAB6_SAMPLES, ROOT
 
 JSON = ("--report-format", "json")
-REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
+REFERENCE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 
 
 def batch(path: Path, out: Path, *arguments: str, cwd: str = "") -> dict[str, bytes]:
@@ -165,7 +165,7 @@ def test_several_files_are_graded_like_a_folder(tmp_path: Path) -> None:
 # --- What has not changed ---------------------------------------------------------------------------------------------
 
 
-PACKAGE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot"
+PACKAGE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot"
 PACKED = ("more", "fewer", "emptier", "renamed", "packed")
 SIZE = 6 + len(PACKED) + 1
 
@@ -267,7 +267,7 @@ def test_new_and_removed_students(graded: Path, tmp_path: Path) -> None:
 def test_another_rubric_and_force_grade_all_again(graded: Path, tmp_path: Path) -> None:
     """A rubric that differs by a word is another one; --force grades everything, and no result is duplicated."""
     rubric = tmp_path / "lab6.toml"
-    text = (ROOT / "rubrics/lab6.toml").read_text()
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text()
     rubric.write_text(text + "\n# another year\n")
     before = results(graded)
     assert again(graded, "--rubric", str(rubric)) == f"{SIZE} graded, 0 unchanged"
@@ -324,8 +324,8 @@ def test_reports_have_safe_names_whatever_students_are_called(tmp_path: Path) ->
 def test_reports_quote_unchanged_files_only(tmp_path: Path) -> None:
     """A text report has the quoted line, as `grader grade` has; once the file has changed, only its number."""
     folder = tmp_path / "class"
-    shutil.copytree(ROOT / "submissions/several-mistakes", folder / "ann")
-    shutil.copytree(ROOT / "submissions/several-mistakes", folder / "bea")
+    shutil.copytree(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf", folder / "ann")
+    shutil.copytree(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf", folder / "bea")
     words = tmp_path / "words"
     command = ("batch", folder, "--gradebook", tmp_path / "lab6.db", "--reports", words)
     grader(*command)

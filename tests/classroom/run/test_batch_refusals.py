@@ -37,11 +37,11 @@ def _empty(top: Path) -> Path:
 
 
 def _one_submission(_: Path) -> Path:
-    return ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot"
+    return ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot"
 
 
 def _one_file(_: Path) -> Path:
-    return ROOT / "submissions/lidar-buried/my_robot.urdf"
+    return ROOT / "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf"
 
 
 def _broken_zip(top: Path) -> Path:
@@ -127,7 +127,7 @@ def test_wrong_usage(arguments: tuple[str, str], folder: Path, tmp_path: Path) -
 def test_a_broken_rubric_and_a_broken_roster(folder: Path, tmp_path: Path) -> None:
     """The mistake is reported with its line, and nothing is started."""
     (tmp_path / "broken.toml").write_text(
-        (ROOT / "rubrics/lab6.toml").read_text().replace("points = 6", "points = 'six'", 1)
+        (ROOT / "rubrics/lab6/rubric.toml").read_text().replace("points = 6", "points = 'six'", 1)
     )
     (tmp_path / "broken.csv").write_text("colour\nred\n")
     command = ("batch", folder, "--gradebook", tmp_path / "lab6.db")

@@ -15,8 +15,8 @@ import pytest
 from tests.classroom.class_runs import WITH_HOSTILE, Done, grader, rows
 from tests.samples import ROOT
 
-LAB = ROOT / "rubrics"
-REFERENCE = (LAB / "lab6/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
+LAB = ROOT / "rubrics/lab6"
+REFERENCE = (LAB / "my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
 _RIGHT = 'xyz="-0.15 -0.2 0" rpy="-1.57 0 0"'
 MIRRORED = REFERENCE.replace(_RIGHT, _RIGHT.replace("-1.57", "1.57"))
 BURIED = REFERENCE.replace('xyz="0.15 0 0.225"', 'xyz="0.15 0 0.2"')
@@ -213,7 +213,7 @@ def test_a_manual_mark_settles_a_criterion(top: Path) -> None:
 def test_text_of_students_is_escaped(tmp_path: Path) -> None:
     """Comments in an element that is replaced neither colour the terminal, nor reverse it, nor command a runner."""
     sneaky = "<!-- [red]\u202e\n::error::x -->"
-    text = (ROOT / "submissions/caster-a-cylinder/my_robot.urdf").read_text(encoding="utf-8")
+    text = (ROOT / "submissions/lab6/caster-a-cylinder/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
     at = text.index("/>", text.index("<cylinder", text.index('<link name="caster_wheel"')))
     make(tmp_path / "class", {"ash.urdf": f"{text[:at]}>{sneaky}</cylinder>{text[at + 2 :]}"})
     batch(tmp_path)
@@ -267,8 +267,8 @@ def test_the_number_of_jobs_does_not_matter(tmp_path: Path) -> None:
 @pytest.mark.parametrize("level", ["none", "place", "cause"])
 def test_the_rubric_says_how_much_reports_tell(tmp_path: Path, level: str) -> None:
     """Below the level edit reports have no edit; statistics are for the grader and always have it."""
-    shutil.copytree(LAB / "lab6", tmp_path / "lab/lab6")
-    text = (LAB / "lab6.toml").read_text(encoding="utf-8").replace('hints = "edit"', f'hints = "{level}"')
+    shutil.copytree(LAB / "my_robot", tmp_path / "lab/my_robot")
+    text = (LAB / "rubric.toml").read_text(encoding="utf-8").replace('hints = "edit"', f'hints = "{level}"')
     rubric = tmp_path / "lab/lab6.toml"
     rubric.write_text(text, encoding="utf-8")
     make(tmp_path / "class", {"ash.urdf": MIRRORED})
@@ -299,9 +299,9 @@ def test_a_manual_mark_replaces_a_hint(top: Path) -> None:
 
 def test_hints_are_stored_until_something_changes(tmp_path: Path) -> None:
     """Kept by an unchanged run; searched again for a changed file, for another rubric, and with --force."""
-    shutil.copytree(LAB / "lab6", tmp_path / "lab/lab6")
+    shutil.copytree(LAB / "my_robot", tmp_path / "lab/my_robot")
     rubric = tmp_path / "lab/lab6.toml"
-    rubric.write_text((LAB / "lab6.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    rubric.write_text((LAB / "rubric.toml").read_text(encoding="utf-8"), encoding="utf-8")
     make(tmp_path / "class", {"ash.urdf": MIRRORED, "birch.urdf": BURIED})
 
     def hinted(*more: str) -> dict[str, bool]:

@@ -16,8 +16,8 @@ BOTH = "id,login,name\n101,alice,Alice Ash\n102,bob,Bob Birch\n"
 @pytest.fixture
 def top(tmp_path: Path) -> Path:
     """Make a class of two, graded without a roster, with one mark."""
-    shutil.copytree(ROOT / "submissions" / "reference", tmp_path / "class" / "alice")
-    shutil.copytree(ROOT / "submissions" / "lidar-buried", tmp_path / "class" / "bob")
+    shutil.copytree(ROOT / "submissions/lab6/reference", tmp_path / "class" / "alice")
+    shutil.copytree(ROOT / "submissions/lab6/lidar-buried/my_robot/urdf", tmp_path / "class" / "bob")
     assert batch(tmp_path).returncode == 0
     assert grader("mark", "alice", "answer-floating-link", "3.5", "--gradebook", tmp_path / "g.db").returncode == 0
     return tmp_path
@@ -64,7 +64,7 @@ def test_the_roster_is_remembered(top: Path) -> None:
     assert "0 graded, 2 unchanged" in done.stderr
     assert students(top) == before
     assert set(before) == {"101", "102", "103"}
-    shutil.copytree(ROOT / "submissions" / "reference", top / "class" / "zoe")
+    shutil.copytree(ROOT / "submissions/lab6/reference", top / "class" / "zoe")
     assert "zoe is not on the roster" in batch(top).stderr
 
 
@@ -81,7 +81,7 @@ def test_an_lms_number_is_stronger_than_a_path(tmp_path: Path) -> None:
     """A new download has other file names; the user's id is the same, and the roster comes late."""
     first, second = tmp_path / "class" / "ashalice_7_1_my_robot.urdf", tmp_path / "class" / "ashalice_7_2_my_robot.urdf"
     first.parent.mkdir()
-    shutil.copy(ROOT / "submissions" / "lidar-buried" / "my_robot.urdf", first)
+    shutil.copy(ROOT / "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf", first)
     batch(tmp_path, "--layout", "canvas")
     assert grader("mark", "ashalice_7", "lidar-frame", "6", "--gradebook", tmp_path / "g.db").returncode == 0
     first.rename(second)
@@ -92,7 +92,7 @@ def test_an_lms_number_is_stronger_than_a_path(tmp_path: Path) -> None:
 
 def test_a_folders_key_that_the_roster_gives_to_another(top: Path) -> None:
     """Results of a folder named like a student's id stay with the folder, and the student's own move along."""
-    shutil.copytree(ROOT / "submissions" / "wheels-black", top / "class" / "101")
+    shutil.copytree(ROOT / "submissions/lab6/wheels-black/my_robot/urdf", top / "class" / "101")
     batch(top)
     assert grader("mark", "101", "lidar-frame", "0", "--gradebook", top / "g.db").returncode == 0
     shutil.rmtree(top / "class" / "101")
@@ -121,7 +121,7 @@ def test_removed_submissions_have_no_grade(top: Path) -> None:
 
 def test_another_class_folder_removes_nobody(top: Path) -> None:
     """A run over a folder with one late submission does not affect the others."""
-    shutil.copytree(ROOT / "submissions" / "wheels-black", top / "late" / "carol")
+    shutil.copytree(ROOT / "submissions/lab6/wheels-black/my_robot/urdf", top / "late" / "carol")
     done = grader("batch", top / "late", "--gradebook", top / "g.db", "--add")
     assert "any more" not in done.stdout
     assert set(students(top)) == {"alice", "bob", "carol"}
@@ -129,9 +129,9 @@ def test_another_class_folder_removes_nobody(top: Path) -> None:
 
 def test_grades_by_an_older_rubric_are_not_exported(top: Path) -> None:
     """Students who were not graded by the newest rubric have no final grade."""
-    text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8")
-    (top / "lab6.toml").write_text(text.replace('reference = "lab6/my_robot"', "", 1) + "\n# newer\n", encoding="utf-8")
-    shutil.copytree(ROOT / "submissions" / "wheels-black", top / "late" / "carol")
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text(encoding="utf-8")
+    (top / "lab6.toml").write_text(text.replace('reference = "my_robot"', "", 1) + "\n# newer\n", encoding="utf-8")
+    shutil.copytree(ROOT / "submissions/lab6/wheels-black/my_robot/urdf", top / "late" / "carol")
     done = grader("batch", top / "late", "--gradebook", top / "g.db", "--rubric", top / "lab6.toml", "--add")
     assert done.returncode == 0, done.stderr
     done = grader("export", "csv", "--gradebook", top / "g.db")
@@ -140,10 +140,10 @@ def test_grades_by_an_older_rubric_are_not_exported(top: Path) -> None:
 
 def test_the_deadline_is_remembered(tmp_path: Path) -> None:
     """The deadline given to batch applies to later exports and runs, and can be changed."""
-    text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8")
-    policy = text.replace('reference = "lab6/my_robot"', "", 1) + "\n[late]\npercent_per_day = 10\n"
+    text = (ROOT / "rubrics/lab6/rubric.toml").read_text(encoding="utf-8")
+    policy = text.replace('reference = "my_robot"', "", 1) + "\n[late]\npercent_per_day = 10\n"
     (tmp_path / "lab6.toml").write_text(policy, encoding="utf-8")
-    shutil.copytree(ROOT / "submissions" / "lidar-buried", tmp_path / "class" / "bob")
+    shutil.copytree(ROOT / "submissions/lab6/lidar-buried/my_robot/urdf", tmp_path / "class" / "bob")
     roster = "id,login,submitted\n102,bob,2026-11-21T10:00+01:00\n"
     done = batch(tmp_path, "--rubric", tmp_path / "lab6.toml", "--due", "2026-11-20T23:59+01:00", roster=roster)
     assert done.returncode == 0, done.stderr

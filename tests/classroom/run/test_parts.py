@@ -12,7 +12,7 @@ import pytest
 from tests.classroom.class_runs import grader, rows, without_hints
 from tests.samples import ROOT
 
-REFERENCE = ROOT / "submissions/reference"
+REFERENCE = ROOT / "submissions/lab6/reference"
 URDF = REFERENCE / "roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 CANVAS = "Student,ID,SIS User ID,SIS Login ID,Section,IRP Lab 6: a wheeled base (77)\n    Points Possible,,,,,{}\n{}"
 
@@ -21,7 +21,7 @@ CANVAS = "Student,ID,SIS User ID,SIS Login ID,Section,IRP Lab 6: a wheeled base 
 def top(tmp_path: Path) -> Path:
     """Make a class of a folder, a single URDF, a broken archive and pictures."""
     shutil.copytree(REFERENCE, tmp_path / "class/ash")
-    shutil.copy(ROOT / "submissions/lidar-buried/my_robot.urdf", tmp_path / "class/birch.urdf")
+    shutil.copy(ROOT / "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf", tmp_path / "class/birch.urdf")
     (tmp_path / "class/cedar.zip").write_bytes(b"PK\x03\x04 broken")
     (tmp_path / "class/dale").mkdir()
     (tmp_path / "class/dale/Task1_Step8.png").write_bytes(b"\x89PNG")

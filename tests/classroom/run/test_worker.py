@@ -14,7 +14,7 @@ from grader.classroom.run.worker import ClassContext, Task, grade_all
 from tests.classroom.class_runs import report_in_process
 from tests.samples import LAB6, ROOT
 
-URDF = (ROOT / "submissions/lidar-buried/my_robot.urdf").read_bytes()
+URDF = (ROOT / "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf").read_bytes()
 LARGE = URDF + b" " * 1024 * 1024
 
 
@@ -70,7 +70,7 @@ def test_the_folder_around_it_does_not_matter(kind: str, wrapped: str, tmp_path:
 
 def test_a_folder_has_the_same_report(tmp_path: Path) -> None:
     """Points, pending criteria and messages of a folder equal those of `grader grade`."""
-    shutil.copytree(ROOT / "submissions/reference", tmp_path / "ann")
+    shutil.copytree(ROOT / "submissions/lab6/reference", tmp_path / "ann")
     (urdf,) = (tmp_path / "ann").rglob("*.urdf")
     urdf.write_bytes(LARGE)
     result = graded(tmp_path, "ann")
