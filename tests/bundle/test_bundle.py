@@ -44,7 +44,9 @@ def test_the_files(bundle: Path) -> None:
         "setup.sh", "run_autograder", "autograder.py", "autograder.json", "requirements.txt",
     }  # fmt: skip
     rendered = {name for name in names if name.startswith("grader/")}
-    reference = {f"grader/{path.relative_to(ROOT)}" for path in (ROOT / "rubrics/lab6/my_robot").rglob("*") if path.is_file()}
+    reference = {
+        f"grader/{path.relative_to(ROOT)}" for path in (ROOT / "rubrics/lab6/my_robot").rglob("*") if path.is_file()
+    }
     assert reference
     assert rendered == {*second, "grader/bundle/on_gradescope/run_autograder", *RUBRICS, *reference}
     assert {name for name in names if "rubrics/" in name} == {*RUBRICS, *reference}
