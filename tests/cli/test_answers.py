@@ -9,7 +9,7 @@ import pytest
 from grader.grading.rubric import load_rubric
 from grader.report.formats import Format
 from tests.classroom.gradebooks import batch, grader, lab_text, refusal
-from tests.golden.cases import CLASSROOM50
+from tests.report.reports import CLASSROOM50
 from tests.samples import ROOT
 
 SECRET = "Because of the roots."

@@ -33,7 +33,7 @@ def _generated(found: Expected) -> Iterator[str]:
     for key, text in found.items():
         if not key.startswith("files/"):
             yield f"{key} = {text if text.isdigit() and key == 'exit' else _quoted(text)}\n"
-    written = [f"{_basic(key[6:])} = {_basic(text)}" for key, text in found.items() if key.startswith("files/")]
+    written = [f"{_basic(key[6:])} = {_quoted(text)}" for key, text in found.items() if key.startswith("files/")]
     if written:
         yield f"written = {{ {', '.join(written)} }}\n"
 
