@@ -7,7 +7,7 @@ import pytest
 
 from grader.checks.outcome import Status
 from grader.grading.report import Report, Result
-from grader.report.comparison import comparison_lines
+from grader.report.comparison import comparison_lines, unchanged_line
 from tests.samples import SAMPLES
 
 SHORT = SAMPLES["lidar-offset-in-visual"].alone.grade()  # 64 of 70: lidar-frame fails
@@ -48,6 +48,17 @@ def test_every_status_is_described(status: Status, words: str) -> None:
     """Points are named only if they change."""
     after = changed(SHORT, lidar_frame=with_status(status))
     assert comparison_lines(SHORT, after) == ["64 of 70 points, as before", f"{words}: lidar-frame"]
+
+
+def test_other_changes() -> None:
+    """Notes, problems and locations do not belong to the criteria."""
+    after = SHORT._replace(notes=("something else",))
+    assert comparison_lines(SHORT, after) == ["64 of 70 points, as before; only other parts of the report changed"]
+
+
+def test_no_changes() -> None:
+    """One line with the score."""
+    assert unchanged_line(SHORT) == "nothing has changed: 64 of 70 points"
 
 
 def test_many_are_counted() -> None:

@@ -110,3 +110,11 @@ def test_only_continuous_joints_of_their_own_are_driven(
     data = json.loads(read(page).get_element_by_id("data").text_content())
     assert [wheel["free"] for wheel in data["robot"]["wheels"]] == free
     assert ('data-part="drive"' in page) is has_button
+
+
+def test_page_says_why_it_has_no_picture() -> None:
+    """Nothing was submitted that a picture could show, or it is no longer there."""
+    assert "no robot could be read from the submission" in render_html(SAMPLES["pictures-only"].grade())
+    report = SAMPLES["lidar-buried"].grade()
+    gone = report._replace(submission=replace(report.submission, originals=None))
+    assert "has changed or moved since it was graded" in render_html(gone)
