@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.command_line import ROOT, Done, run_with_input
+from tests.corpus.results import results
 
 CORPUS = Path(__file__).parent
 _TIME = r"[T ]\d\d:\d\d(:\d\d(\.\d+)?)?(Z|[+-]\d\d:?\d\d)?"
@@ -37,9 +38,12 @@ class Case:
     edits: tuple[tuple[str, str, str], ...] = ()  # path, a text that stands there, the text that replaces it everywhere
     files: Mapping[str, str] = field(default_factory=dict)
     hex: Mapping[str, str] = field(default_factory=dict)  # files that are no text
+    sizes: Mapping[str, int] = field(default_factory=dict)  # files that zeros follow up to this size
+    links: Mapping[str, str] = field(default_factory=dict)  # path of a symlink: where it leads
     zips: Mapping[str, str] = field(default_factory=dict)  # path of an archive: the folder that moves into it
     variables: Mapping[str, str] = field(default_factory=dict)
     stdin: str = ""
+    folder: str = ""  # where the commands run
     keep: tuple[str, ...] = ()  # patterns of the written files whose content is compared
     view: str = ""  # "results": of a JSON report, what is not passed, in one line each
     shown: tuple[str, ...] = ()  # criteria that this view shows even if they are passed
@@ -56,9 +60,9 @@ class Case:
         before = _contents(here)
         found: Expected = {"exit": "", "stdout": "", "stderr": ""}
         for command in self.commands:
-            done = run_with_input(
-                shlex.split(command.replace("ROOT", str(ROOT))), self.stdin.encode(), self.variables, here
-            )
+            words = shlex.split(command.replace("ROOT", str(ROOT)))
+            variables = {name: text.replace("HERE", str(here)) for name, text in self.variables.items()}
+            done = run_with_input(words, self.stdin.encode(), variables, here / self.folder)
             heading = f"$ grader {command}\n" if len(self.commands) > 1 else ""
             found["exit"] += f"{' ' if found['exit'] else ''}{done.returncode}"
             found["stdout"] += heading + _masked(self._shown(done), here)
@@ -73,19 +77,25 @@ class Case:
     def _prepare(self, here: Path) -> None:
         if (self.path / "input").is_dir():
             shutil.copytree(self.path / "input", here, dirs_exist_ok=True)
-        for path, source in self.copies.items():
+        data = {path: text.encode() for path, text in self.files.items()}
+        data |= {path: bytes.fromhex(digits) for path, digits in self.hex.items()}
+        for path in (*self.copies, *data, *self.links):
             (here / path).parent.mkdir(parents=True, exist_ok=True)
-            (shutil.copytree if (ROOT / source).is_dir() else shutil.copyfile)(ROOT / source, here / path)
+        for path, source in self.copies.items():
+            if (ROOT / source).is_dir():
+                shutil.copytree(ROOT / source, here / path, dirs_exist_ok=True)
+            else:
+                shutil.copyfile(ROOT / source, here / path)
         for path in self.removed:
             (shutil.rmtree if (here / path).is_dir() else Path.unlink)(here / path)
-        data = {path: text.encode() for path, text in self.files.items()}
-        for path, content in (data | {path: bytes.fromhex(digits) for path, digits in self.hex.items()}).items():
-            (here / path).parent.mkdir(parents=True, exist_ok=True)
-            (here / path).write_bytes(content)
+        for path, content in data.items():
+            (here / path).write_bytes(content.ljust(self.sizes.get(path, 0)))
         for path, old, new in self.edits:
             text = (here / path).read_bytes().decode()
             assert old in text, f"{old!r} does not stand in {path}"
             (here / path).write_bytes(text.replace(old, new).encode())
+        for path, target in self.links.items():
+            (here / path).symlink_to(target)
         for path, folder in self.zips.items():
             with zipfile.ZipFile(here / path, "w") as archive:
                 for file in sorted((here / folder).rglob("*")):
@@ -107,22 +117,6 @@ def _masked(text: str, here: Path) -> str:
     now = datetime.now(UTC)
     days = "|".join(f"{now - timedelta(days=days):%Y-%m-%d}" for days in (0, 1))
     return re.sub(f"({days}){_TIME}", "TIME", text.replace(str(here), "HERE").replace(str(ROOT), "ROOT"))
-
-
-def results(report: Mapping[str, Any], shown: tuple[str, ...] = ()) -> Iterator[str]:
-    """Yield the score of a JSON report, its notes, and what did not pass or is to be shown, with place, message and hints."""
-    yield f"{report['score']:g} of {report['max_score']:g}, {report['pending']:g} pending"
-    yield from (f"note: {note}" for note in report["notes"])
-    for row in report["results"]:
-        if row["status"] != "passed" or row["id"] in shown:
-            carried = " (carried)" if row["carried"] else ""
-            yield f"{row['status']}{carried} {row['id']}{_place(row['location'])}: {row['message']}"
-            yield from (f"  hint: {hint['message']}" for hint in row["hints"])
-    yield from (f"{row['code']}{_place(row['location'])}: {row['message']}" for row in report["problems"])
-
-
-def _place(location: Mapping[str, Any] | None) -> str:
-    return f" {location['path']}:{location['line']}:{location['column']}" if location else ""
 
 
 def read_corpus() -> Iterator[Case]:
