@@ -1,11 +1,15 @@
-"""A JSON report in a few lines: its score, and what did not pass."""
+"""A JSON report, of a submission or a class, in a few lines."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 
 def results(report: Mapping[str, Any], shown: tuple[str, ...] = ()) -> Iterator[str]:
-    """Yield the score of a JSON report, its notes, and what did not pass or is to be shown, with place, message and hints."""
+    """Yield the lines of a class, or the score of a report, its notes, and what did not pass or is to be shown."""
+    if "students" in report:
+        yield from map(_student, report["students"])
+        yield from (f"{group['reason']}: {_ids(group['students'])}" for group in report["attention"])
+        return
     yield f"{report['score']:g} of {report['max_score']:g}, {report['pending']:g} pending"
     yield from (f"note: {note}" for note in report["notes"])
     for row in report["results"]:
@@ -14,6 +18,29 @@ def results(report: Mapping[str, Any], shown: tuple[str, ...] = ()) -> Iterator[
             yield f"{row['status']}{carried} {row['id']}{_place(row['location'])}: {row['message']}"
             yield from (f"  hint: {hint['message']}" for hint in row["hints"])
     yield from (f"{row['code']}{_place(row['location'])}: {row['message']}" for row in report["problems"])
+
+
+def _student(row: Mapping[str, Any]) -> str:
+    """Return a student's identity, status, points, lateness, marks and files."""
+    late = row["late"]
+    parts = (
+        f"{row['score']:g}/{row['max_score']:g}" if row["score"] is not None else "",
+        f"{row['pending']:g} pending" if row["pending"] else "",
+        f"{late['days']:g} days late -{late['points']:g}" if late["days"] else "",
+        late["reason"],
+        f"total {row['total']:g}" if row["total"] not in (None, row["score"]) else "",
+        f"final mark {row['final_mark']:g}" if row["final_mark"] is not None else "",
+        "excused" if row["is_excused"] else "",
+        f"{row['manual_marks']} manual" if row["manual_marks"] else "",
+        f"attempt {row['attempt']} after {' '.join(row['earlier'])}" if row["attempt"] > 1 else "",
+    )
+    who = f"{row['id']} ({row['name']})" if row["name"] not in ("", row["id"]) else row["id"]
+    files = f" <- {', '.join(row['paths'])}" if row["paths"] else ""
+    return f"{who}: {', '.join(part for part in (row['status'], *parts) if part)}{files}"
+
+
+def _ids(students: list[Mapping[str, str]]) -> str:
+    return ", ".join(f"{row['id']} ({row['detail']})" if row["detail"] else row["id"] for row in students)
 
 
 def _place(location: Mapping[str, Any] | None) -> str:
