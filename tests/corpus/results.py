@@ -23,9 +23,10 @@ def results(report: Mapping[str, Any], shown: tuple[str, ...] = ()) -> Iterator[
 def _student(row: Mapping[str, Any]) -> str:
     """Return a student's identity, status, points, lateness, marks and files."""
     late = row["late"]
+    is_unread = row["status"] == "unreadable" and not row["manual_marks"]
     parts = (
-        f"{row['score']:g}/{row['max_score']:g}" if row["score"] is not None else "",
-        f"{row['pending']:g} pending" if row["pending"] else "",
+        f"{row['score']:g}/{row['max_score']:g}" if row["score"] is not None and not is_unread else "",
+        f"{row['pending']:g} pending" if row["pending"] and not is_unread else "",
         f"{late['days']:g} days late -{late['points']:g}" if late["days"] else "",
         late["reason"],
         f"total {row['total']:g}" if row["total"] not in (None, row["score"]) else "",
@@ -40,7 +41,8 @@ def _student(row: Mapping[str, Any]) -> str:
 
 
 def _ids(students: list[Mapping[str, str]]) -> str:
-    return ", ".join(f"{row['id']} ({row['detail']})" if row["detail"] else row["id"] for row in students)
+    details = {row["id"]: row["detail"] for row in students if len(students) < 3}  # few, so that a table can be read
+    return ", ".join(f"{row['id']} ({details[row['id']]})" if details.get(row["id"]) else row["id"] for row in students)
 
 
 def _place(location: Mapping[str, Any] | None) -> str:
