@@ -111,9 +111,10 @@ class Case:
             shutil.rmtree(here / folder)
 
     def _shown(self, done: Done) -> str:
-        if self.view == "results" and done.stdout.startswith(b"{"):
-            return "".join(f"{line}\n" for line in results(json.loads(done.stdout), self.shown))
-        return done.stdout.decode()
+        report = json.loads(done.stdout) if self.view == "results" and done.stdout.startswith(b"{") else {}
+        if "results" in report or "attention" in report:
+            return "".join(f"{line}\n" for line in results(report, self.shown))
+        return done.stdout.decode(errors="backslashreplace")
 
 
 def read_corpus() -> Iterator[Case]:

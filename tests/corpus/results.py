@@ -6,7 +6,7 @@ from typing import Any
 
 def results(report: Mapping[str, Any], shown: tuple[str, ...] = ()) -> Iterator[str]:
     """Yield the lines of a class, or the score of a report, its notes, and what did not pass or is to be shown."""
-    if "students" in report:
+    if "attention" in report:
         yield from map(_student, report["students"])
         yield from (f"{group['reason']}: {_ids(group['students'])}" for group in report["attention"])
         return
@@ -27,7 +27,7 @@ def _student(row: Mapping[str, Any]) -> str:
     parts = (
         f"{row['score']:g}/{row['max_score']:g}" if row["score"] is not None and not is_unread else "",
         f"{row['pending']:g} pending" if row["pending"] and not is_unread else "",
-        f"{late['days']:g} days late -{late['points']:g}" if late["days"] else "",
+        f"late {late['days']:g}: {late['points']:g}" if late["days"] else "",
         late["reason"],
         f"total {row['total']:g}" if row["total"] not in (None, row["score"]) else "",
         f"final mark {row['final_mark']:g}" if row["final_mark"] is not None else "",

@@ -8,7 +8,7 @@ def copy(here: Path, source: str, target: str) -> None:
     """Copy a file, or the content of a folder into another."""
     (here / target).parent.mkdir(parents=True, exist_ok=True)
     if (here / source).is_dir():
-        shutil.copytree(here / source, here / target, dirs_exist_ok=True)
+        shutil.copytree(here / source, here / target, symlinks=True, dirs_exist_ok=True)
     else:
         shutil.copyfile(here / source, here / target)
 
