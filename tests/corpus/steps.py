@@ -1,6 +1,7 @@
 """What a case does with its files before a command, as a person between two runs: `cp FROM TO`, `rm PATH`."""
 
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 
 
@@ -21,4 +22,4 @@ def remove(here: Path, path: str) -> None:
         (here / path).unlink()
 
 
-STEPS = {"cp": copy, "rm": remove}
+STEPS: dict[str, Callable[..., None]] = {"cp": copy, "rm": remove}
