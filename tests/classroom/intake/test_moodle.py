@@ -3,10 +3,11 @@
 import tempfile
 from pathlib import Path
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.classroom.class_folders import pack
+from tests.classroom.class_folders import assigned, lay_out, pack
 from tests.classroom.lab6_class import read_class
 from tests.examples import examples
 
@@ -30,3 +31,13 @@ def test_any_download_is_grouped_again(people: dict[int, str]) -> None:
         found = {submission.student.moodle: submission.student.name for submission in read_class(target).submissions()}
     are_hidden = len(set(names.values())) == 1
     assert found == {number: "" if are_hidden else name for number, name in names.items()}
+
+
+def test_too_many_files_are_not_put_beside_a_text(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The folder of files is the submission then."""
+    top = "Jane Doe_12_assignsubmission_file"
+    names = (*(f"{top}/{name}" for name in "abc"), "Jane Doe_12_assignsubmission_onlinetext/onlinetext.html")
+    monkeypatch.setattr("grader.classroom.intake.layouts.moodle._MAX_FILES", 2)
+    intake = read_class(lay_out(tmp_path, *names))
+    assert assigned(intake) == {"Jane Doe_12": (top,)}
+    assert intake.ignored == (f"{top} has more than 2 files: the files beside it were not read",)
