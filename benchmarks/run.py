@@ -1,4 +1,4 @@
-"""Every speed that the project claims: `python benchmarks/run.py [FIGURE...]`. Needs `pip install '.[test,oracle,bench]'`.
+"""Every speed that the project claims: `python benchmarks/run.py [FIGURE...]`. Needs `pip install '.[test]' --group oracle --group bench`.
 
 All figures are ratios of alternatives that run in turn; absolute times depend on the machine. Every command must end
 with the expected exit code and print an expected word. `--against FOLDER` also runs each command of the grader with the
@@ -22,7 +22,7 @@ from class_generator import make_class
 from timing import PACKAGE, ROOT, URDF, Command, in_turn, ratio
 
 _HERE = Path(__file__).resolve().parent
-_MISTAKES = ROOT / "submissions/lab6/several-mistakes" / "my_robot.urdf"
+_MISTAKES = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 _IMPORTS = "import typer, lxml.etree, numpy, rich.console; print('imported')"
 _READERS = {
     "pinocchio": "import pinocchio as p; m = p.buildModelFromUrdf({0!r}); p.forwardKinematics(m, m.createData(), p.neutral(m)); print(m.nframes)",

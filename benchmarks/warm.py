@@ -24,7 +24,7 @@ from grader.submission.surroundings import Surroundings
 from grader.xacro.expansion import expand
 
 ZIPPED = ROOT / "submissions/lab6/equivalent-zipped-with-wrapper" / "lab6.zip"
-XACRO = ROOT / "submissions/lab6/equivalent-xacro-inertials" / "my_robot.urdf.xacro"
+XACRO = ROOT / "submissions/lab6/equivalent-xacro-inertials/my_robot/urdf/my_robot.urdf.xacro"
 RUBRIC = load_rubric("lab6")
 TEMPORARY = TemporaryDirectory()
 _COPIES = 8  # more than the grader keeps results of

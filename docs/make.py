@@ -42,7 +42,7 @@ LANGUAGES = {
     ".xml": "xml",
 }
 DOCS = Path(__file__).resolve().parent
-SAMPLE = DOCS.parent / "submissions/lab6/lidar-offset-in-visual" / "my_robot.urdf"
+SAMPLE = DOCS.parent / "submissions/lab6/lidar-offset-in-visual/my_robot/urdf/my_robot.urdf"
 
 
 def pages() -> dict[str, str]:

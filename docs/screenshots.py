@@ -43,7 +43,7 @@ def grader(*arguments: str | Path) -> None:
 
 def take(started: "Browser", page: Path, name: str) -> None:
     """Save a screenshot of the top of a page."""
-    opened = started.new_page(viewport=SIZE)  # type: ignore[arg-type]  # its type is a TypedDict of Playwright
+    opened = started.new_page(viewport=SIZE)
     opened.goto(page.as_uri())
     opened.wait_for_load_state("load")
     opened.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")

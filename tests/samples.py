@@ -1,6 +1,6 @@
 """The sample submissions in submissions/, each with its expected.toml, as `grader rubric test` reads them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -35,6 +35,12 @@ class Sample:
         return (self.expected.folder / self.expected.path).relative_to(ROOT)
 
     @property
+    def alone(self) -> "Sample":
+        """Return the sample that consists of the URDF of this one, without its package."""
+        (urdf,) = self.expected.folder.glob("*/urdf/*_robot.urdf*")
+        return Sample(replace(self.expected, path=urdf.relative_to(self.expected.folder).as_posix()))
+
+    @property
     def rubric(self) -> Rubric:
         """Return the rubric for its grading."""
         return RUBRICS[self.expected.rubric]
@@ -64,7 +70,8 @@ def reference(rubric: Rubric = LAB6) -> Submission:
     return rubric.solution.submission
 
 
-_READ = [Sample(sample) for name in RUBRICS for sample in read_samples(ROOT / "submissions" / name)]
+_FOLDERS = [ROOT / "submissions" / name for name in RUBRICS]
+_READ = [Sample(sample) for folder in _FOLDERS if folder.exists() for sample in read_samples(folder)]
 SAMPLES = {sample.name: sample for sample in _READ}
 LAB6_SAMPLES = {name: sample for name, sample in SAMPLES.items() if sample.rubric is LAB6}
 # What every format of reports is tested on: together these reports reach every branch of the formats, and have each status with

@@ -36,14 +36,14 @@ def test_the_stub_and_the_page_name_what_there_is() -> None:
 @pytest.mark.parametrize(("code", "shown"), EXAMPLES)
 def test_the_examples_print_what_the_page_shows(code: str, shown: str, tmp_path: Path) -> None:
     """With a sample as my_robot.urdf."""
-    shutil.copy(SAMPLES / "lidar-offset-in-visual" / "my_robot.urdf", tmp_path)
+    shutil.copy(SAMPLES / "lidar-offset-in-visual/my_robot/urdf/my_robot.urdf", tmp_path)
     with contextlib.chdir(tmp_path), contextlib.redirect_stdout(io.StringIO()) as printed:
         exec(code, {})
     assert printed.getvalue() == shown
 
 
 @pytest.mark.parametrize(
-    "path", ["several-mistakes", "reference", "pictures-only", "lidar-over-the-edge/my_robot.urdf"]
+    "path", ["several-mistakes", "reference", "pictures-only", "lidar-over-the-edge/my_robot/urdf/my_robot.urdf"]
 )
 def test_a_report_is_that_of_the_command(path: str) -> None:
     """Points, messages and hints, with a rubric by id, by path, and loaded."""
@@ -64,7 +64,7 @@ def test_parts_are_graded_alone() -> None:
 def test_what_cannot_be_graded_raises_one_error(tmp_path: Path) -> None:
     """A class, a missing file and a broken rubric."""
     for name in ("anna_1_2_my_robot.urdf", "ben_3_4_my_robot.urdf"):
-        shutil.copy(SAMPLES / "lidar-missing" / "my_robot.urdf", tmp_path / name)
+        shutil.copy(SAMPLES / "lidar-missing/my_robot/urdf/my_robot.urdf", tmp_path / name)
     (tmp_path / "lab.toml").write_text("id = 3", encoding="utf-8")
     with pytest.raises(grader.GraderError, match="download of Canvas"):
         grader.grade(tmp_path)

@@ -194,7 +194,7 @@ def test_a_class(installed: Path, lab: Path) -> None:
 @pytest.mark.exhaustive
 def test_ci_of_a_student(installed: Path, lab: Path) -> None:
     """A job of GitHub Actions gets its report and its summary."""
-    shutil.copytree(ROOT / "submissions/lab6/several-mistakes", lab / "repository")
+    shutil.copytree(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf", lab / "repository")
     job = {"GITHUB_ACTIONS": "true", "GITHUB_STEP_SUMMARY": str(lab / "summary.md")}
     done = do((installed, "grade", ".", "--save", "json=../report.json"), lab / "repository", **job)
     assert done.returncode == 1

@@ -116,10 +116,11 @@ def keys(schema: Any) -> Iterator[str]:
 
 def test_every_dependency_has_a_reason_and_a_licence() -> None:
     """Each package in pyproject.toml has a line in docs/decisions.md, and one of users its licence."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    extras = project["optional-dependencies"]
+    whole = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    project, extras = whole["project"], whole["project"]["optional-dependencies"]
     of_users = [*project["dependencies"], *extras["documents"], *extras["cluster"]]
-    for page, needed in (("decisions", [*of_users, *chain(*extras.values())]), ("dependencies", of_users)):
+    of_developers = chain(*extras.values(), *whole["dependency-groups"].values())
+    for page, needed in (("decisions", [*of_users, *of_developers]), ("dependencies", of_users)):
         text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
         names = {re.split(r"[<>=,;\[]", requirement)[0] for requirement in needed}
         assert [name for name in sorted(names) if not re.search(rf"\| .*\b{name}\b.*\|", text)] == []
@@ -192,16 +193,6 @@ def test_the_lab_page_names_every_criterion() -> None:
         assert f"| `{name}`" in text, criterion.id
 
 
-def test_every_dependency_has_its_reason() -> None:
-    """Each package of pyproject.toml has a line in the decisions."""
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    decisions = (ROOT / "docs" / "decisions.md").read_text(encoding="utf-8")
-    extras = [requirement for group in project["optional-dependencies"].values() for requirement in group]
-    for requirement in [*project["dependencies"], *extras]:
-        name = re.split(r"[<>=\[ ]", requirement)[0].removesuffix("-stubs").removeprefix("types-")
-        assert name in decisions, name
-
-
 def test_the_readme_has_two_commands_first() -> None:
     """The first code blocks are the command that grades a sample and the one that runs the tests."""
     blocks = re.findall(r"```sh\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
@@ -217,10 +208,12 @@ def test_the_changelog_knows_the_version() -> None:
 
 
 def test_every_test_that_the_security_page_names_exists() -> None:
-    """Each row names tests, or files of tests; `::name` is in the file that is named before."""
+    """Each row names tests, files of tests, or tables of the corpus; `::name` is in the file that is named before."""
     text = (ROOT / "docs" / "security.md").read_text(encoding="utf-8")
     named = re.findall(r"`(?=::|\w+/)([\w/]+/test_\w+\.py)?(?:::(\w+))?`", text)
-    assert len(named) > 70
+    tables = re.findall(r"`(corpus/[\w/-]+\.toml)`", text)
+    assert [table for table in tables if not (ROOT / "tests" / table).is_file()] == []
+    assert len(named) + len(tables) > 70
     tests = ""
     for file, function in named:
         tests = (ROOT / "tests" / file).read_text(encoding="utf-8") if file else tests

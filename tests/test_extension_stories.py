@@ -27,15 +27,20 @@ def shows_cube(robot: Configuration, *, link: str, distance: NonNegative, tolera
     """
     return shows_box(robot, link=link, size=(distance, distance, distance), tolerance=tolerance)
 '''
-SAMPLE = """CASES = (
-    Case(
-        appearance.shows_cube,
-        {"link": "base", "distance": 0.2, "tolerance": 0.002},
-        passing=scene(link("base", visual(box(0.2, 0.2, 0.2)))),
-        failing=scene(link("base", visual(box(0.2, 0.2, 0.3)))),
-        edges={"tolerance": lambda off: scene(link("base", visual(box(0.2, 0.2, 0.2 + off))))},
-        mesh_status="failed",
-    ),
+ROWS = """\
+with = { link = "base", distance = 0.2, tolerance = 0.002 }
+meshes = "failed"
+
+[edges]
+tolerance = [["0.2 0.2 0.2", "0.2 0.2 {}", 0.2, 1]]
+
+[[row]]
+about = "Opposite faces have the distance."
+scene = "base"
+edits = [["0.6 0.4", "0.2 0.2"]]
+
+[[row]]
+scene = "base"
 """
 EXAMPLE = """
 [shows_cube]
@@ -76,6 +81,19 @@ def render_line(report: Report) -> str:
     """Return a report in one line."""
     return f"{printable(report.submission.id)}: {report.score} of {report.max_score}\\n"
 '''
+LMS = """
+
+SAKAI = OfflineFormat(
+    lms="Sakai",
+    example="Lab 6 [100]",
+    header=re.compile(r"(?P<title>.*?) \\[(?P<maximum>[0-9.,]+)\\]"),
+    login="Student ID",
+    sis="Student Number",
+    email="",
+    kept=frozenset(),
+    above="",
+)
+"""
 
 
 @pytest.fixture
@@ -121,7 +139,8 @@ def test_a_new_check(project: Path) -> None:
         with (project / file).open("a", encoding="utf-8") as family:
             family.write(text)
     replace(project / "grader/checks/registry.py", "CHECKS = (\n", 'CHECKS = (\n    "appearance.shows_cube",\n')
-    replace(project / "tests/checks/cases.py", "CASES = (\n", SAMPLE)
+    (project / "tests/corpus/checks/shows_cube.toml").write_text(ROWS, encoding="utf-8")
+    python(project, "-m", "tests.checks", "shows_cube")
     python(project, "tests/golden/update.py")
     python(project, "docs/make.py")
     add_to_changelog(project, "The check `shows_cube`.")
@@ -164,3 +183,22 @@ def test_a_new_format(project: Path) -> None:
     )
     passes(project, "tests/report", "tests/cli/test_save.py", "tests/cli/test_completion.py", "tests/submission",
            "tests/test_architecture.py", "tests/test_docs.py")  # fmt: skip
+
+
+def test_a_new_lms(project: Path) -> None:
+    """A grade file of an LMS is a form, a row of the table of fillers, a name of the command and of its documentation."""
+    with (project / "grader/classroom/lms/offline.py").open("a", encoding="utf-8") as forms:
+        forms.write(LMS)
+    files = project / "grader/usecases/grade_files.py"
+    replace(files, "import BLACKBOARD, BRIGHTSPACE,", "import BLACKBOARD, BRIGHTSPACE, SAKAI,")
+    replace(files, '    "brightspace": ', '    "sakai": partial(fill_offline, form=SAKAI),\n    "brightspace": ')
+    replace(project / "grader/cli/export.py", '"brightspace", ', '"brightspace", "sakai", ')
+    replace(project / "docs/command-line.md", "|brightspace|", "|brightspace|sakai|")
+    book, exported, filled = (str(project / name) for name in ("class.db", "sakai.csv", "upload.csv"))
+    Path(exported).write_text("Student ID,Name,Lab 6 [100]\nash,Ash,\n", encoding="utf-8")
+    shutil.copytree(project / "submissions/lab6/reference", project / "class/ash")
+    python(project, "-m", "grader", "batch", "class", "--gradebook", book)
+    export = ("export", "sakai", "--gradebook", book, "--into", exported, "--output", filled, "--pending-as-zero")
+    python(project, "-m", "grader", *export)
+    assert Path(filled).read_text(encoding="utf-8") == "Student ID,Name,Lab 6 [100]\nash,Ash,90.00\n"
+    passes(project, "tests/classroom/lms", "tests/test_docs.py", "tests/cli/test_completion.py")

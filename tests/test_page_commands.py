@@ -22,6 +22,7 @@ OTHER_FILES = {  # what only these pages presume, and what it is
     "rubric-test.md": {"my_lab.toml": "rubrics/arm/rubric.toml"},
 }
 ELSEWHERE = {  # beginnings of command lines that are run by another test, or not by any
+    "grader batch submissions/class/files": "test_submissions.py",
     "grader batch submissions --gradebook lab6.db --roster canvas.csv": "classroom/test_walkthrough.py",
     'grader mark "Anik Tagrigri"': "classroom/test_walkthrough.py",
     "grader mark namargri000100": "classroom/test_walkthrough.py",
@@ -33,7 +34,7 @@ ELSEWHERE = {  # beginnings of command lines that are run by another test, or no
     "grader rubric check arm_lab.toml": "a plug-in: cli/test_plugin_template.py",
 }
 CODES = {"grader grade ": 1}  # the robot has a mistake
-FOLDERS = {"grader grade . ": "src/my_robot"}  # a student's repository
+FOLDERS = dict.fromkeys(("grader grade . ", "grader grade  "), "src/my_robot")  # a student's repository
 STUDENTS = ("alice", "bob", "carol", "dave")
 CANVAS = "Student,ID,SIS User ID,SIS Login ID,Section,Lab 6 (12345)\n    Points Possible,,,,,100\n"
 
@@ -42,7 +43,7 @@ CANVAS = "Student,ID,SIS User ID,SIS Login ID,Section,Lab 6 (12345)\n    Points 
 def presumed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with a robot, a package, a rubric and a class of four students with a gradebook."""
     folder = tmp_path_factory.mktemp("presumed")
-    shutil.copy(ROOT / "submissions/lab6/lidar-offset-in-visual/my_robot.urdf", folder)
+    shutil.copy(ROOT / "submissions/lab6/lidar-offset-in-visual/my_robot/urdf/my_robot.urdf", folder)
     shutil.copytree(ROOT / "rubrics/lab6/my_robot", folder / "src/my_robot")
     for path in folder.glob("src/my_robot/urdf/*.urdf"):
         shutil.copy(folder / "my_robot.urdf", path)

@@ -1,7 +1,9 @@
 """The sample submissions: the reference and its equivalents get full marks, each mistake loses its criteria."""
 
+import csv
 import filecmp
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -9,6 +11,9 @@ from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric, shipped_rubrics
 from grader.submission.opening import open_submission
 from grader.submission.urdf import Read
+from tests.command_line import run
+from tests.sample_class import FOLDER, STUDENTS, TOP, package_files
+from tests.sample_files import generated, packages
 from tests.samples import LAB6, ROOT, SAMPLES, Sample
 
 REFERENCE = "submissions/lab6/reference/roscourse_sim_ws/src/my_robot"
@@ -72,3 +77,26 @@ def test_the_rubric_contains_the_reference() -> None:
         folders = waiting.pop()
         assert not (folders.left_only or folders.right_only or folders.diff_files), folders.left
         waiting += folders.subdirs.values()
+
+
+def test_the_files_that_follow_from_others_are_current() -> None:
+    """READMEs, packages and the class are those that `python tests/sample_files.py` writes, and nothing is beside them."""
+    expected = dict(generated())
+    assert [path for path, data in expected.items() if not path.is_file() or path.read_bytes() != data] == []
+    for folder, files in packages():
+        assert package_files(folder).keys() == files.keys(), folder
+    assert {path for path in (FOLDER / "files").iterdir()} == {path for path in expected if path.parent.name == "files"}
+
+
+def test_the_class_is_graded_by_the_command_of_its_readme(tmp_path: Path) -> None:
+    """Two are perfect, most lose something; a file is missing, another broken, one is late, one was submitted again."""
+    command = next(line for line in TOP.splitlines() if line.startswith("grader ")).removeprefix("grader ")
+    book = str(tmp_path / "class.db")
+    done = run(command.replace("class.db", book).split())
+    assert (done.returncode, done.stderr.count(b"\n")) == (0, 3), done.stderr
+    rows = [*csv.DictReader(run(("export", "csv", "--gradebook", book)).stdout.decode().splitlines())]
+    assert [row["name"] for row in rows] == [student["name"] for student in STUDENTS]
+    graded = {row["name"]: int(row["score"]) for row in rows if row["status"] == "graded"}
+    assert graded == {student["name"]: student["points"] for student in STUDENTS if "points" in student}
+    assert [row["name"] for row in rows if row["late_days"] not in ("", "0")] == ["Jon Juniper"]
+    assert [row["status"] for row in rows if row["name"] not in graded] == ["missing", "unreadable"]

@@ -27,7 +27,7 @@ _EXPECT = "Refuse a rubric with another hash (see grader rubric show)."
 
 
 def grade(
-    path: Annotated[str, typer.Argument(metavar="PATH", help=_PATH)],
+    path: Annotated[str, typer.Argument(metavar="[PATH]", help=_PATH, show_default="the current folder")] = ".",
     rubric: RubricOption = DEFAULT_RUBRIC,
     expect_rubric: Annotated[str | None, typer.Option(metavar="SHA256", help=_EXPECT)] = None,
     part: PartOption = None,
@@ -58,6 +58,8 @@ def grade(
     3 a check is faulty.
 
     Examples:
+
+      grader grade
 
       grader grade my_robot.urdf
 

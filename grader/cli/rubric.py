@@ -112,13 +112,13 @@ def new_rubric(
 @rubric.command("copy")
 def copy_rubric(
     name: Annotated[str, typer.Argument(metavar="ID", help="A rubric of the grader.", autocompletion=rubric_ids)],
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="The folder to write into.")],
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="The folder to write into: FOLDER/ID.")],
 ) -> str:
     """Copy a rubric with its files, to change it.
 
     Examples:
 
-      grader rubric copy lab6 rubrics   # writes rubrics/lab6/rubric.toml and its reference
+      grader rubric copy lab6 rubrics
     """
     return rubrics.copy(name, folder)
 

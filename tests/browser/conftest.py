@@ -22,7 +22,7 @@ CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.whic
 def browser() -> Iterator["Browser"]:
     """Return a headless browser."""
     sync_api = pytest.importorskip(
-        "playwright.sync_api", reason="Playwright is not installed: pip install '.[browser]'"
+        "playwright.sync_api", reason="Playwright is not installed: pip install --group browser"
     )
     if CHROMIUM is None:
         pytest.skip("Chromium is not installed")
@@ -66,7 +66,7 @@ def open_pages(browser: "Browser") -> Callable[..., OpenPage]:
     """Return a function that opens a file or an address. Whoever opens a page checks it."""
 
     def open_one(address: Path | str, **options: object) -> OpenPage:
-        page = browser.new_page(**options)  # type: ignore[arg-type]  # viewport=..., color_scheme=...
+        page = browser.new_page(**options)
         found = OpenPage(page)
         page.on("request", lambda request: found.requests.append(request.url))
         page.on("console", lambda message: found.messages.append(message.text))

@@ -31,7 +31,8 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def names(opened: OpenPage) -> list[str]:
     """Return the names that the table of students shows, from the top."""
-    return opened.page.locator("#students tbody tr:not([hidden]) th").all_inner_texts()
+    found: list[str] = opened.page.locator("#students tbody tr:not([hidden]) th").all_inner_texts()
+    return found
 
 
 def test_sort_search_and_groups(open_page: Open, pages: Path) -> None:

@@ -166,7 +166,7 @@ def test_pictures(open_page: Open, review: Review) -> None:
     press(page, "ArrowRight")
     assert page.locator("#large-words").inner_text() == "2 of 2: screen.png (640 x 400 pixels)"
     press(page, "z")
-    assert page.locator("#large-picture").bounding_box()["width"] == 640  # type: ignore[index]
+    assert page.locator("#large-picture").bounding_box()["width"] == 640
     press(page, "z")
     assert not page.locator("#large").is_visible()
     page.goto(f"{review.url}8")

@@ -22,7 +22,7 @@ pytestmark = [pytest.mark.exhaustive, pytest.mark.filterwarnings("default")]  # 
 @pytest.fixture(scope="module")
 def builder() -> ModuleType:
     """Return docs/build_site.py."""
-    pytest.importorskip("sphinx", reason="Sphinx is not installed: pip install '.[site]'")
+    pytest.importorskip("sphinx", reason="Sphinx is not installed: pip install --group site")
     spec = spec_from_file_location("build_site", ROOT / "docs" / "build_site.py")
     assert spec and spec.loader
     module = module_from_spec(spec)

@@ -111,7 +111,7 @@ def huge(folder: Path) -> None:
 
 def named(folder: Path) -> None:
     """Write files whose names contain escapes, markup, newlines, bidirectional marks and undecodable bytes."""
-    text = (ROOT / "submissions/lab6/several-mistakes/my_robot.urdf").read_bytes()
+    text = (ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf").read_bytes()
     for name in (
         b"a\nb.urdf",
         b"\x1b[31m\x1b]0;t\x07.urdf",

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import radians
+from math import pi, radians
 
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading, read_urdf
@@ -161,6 +161,44 @@ def _origin(xyz: Numbers, rpy: Numbers) -> str:
 
 def _attribute(name: str, value: Numbers) -> str:
     return f' {name}="{numbers(value)}"' if value else ""
+
+
+BASE = link("base", visual(box(0.6, 0.4, 0.2), xyz=(0.0, 0.0, 0.1), material=paint("0 0.6 0 1", "green")))
+LIDAR = link("lidar", visual(cylinder()))
+WHEEL = link("wheel", visual(cylinder()))
+CASTER = link("caster", visual(sphere(0.05)))
+MOUNT = joint("base_lidar_joint", "fixed", "base", "lidar", xyz=(0.15, 0.0, 0.225))
+
+
+def rolling(
+    *,
+    kind: str = "continuous",
+    xyz: Numbers = (-0.15, 0.225, 0.0),
+    rpy: Numbers = (-pi / 2, 0.0, 0.0),
+    axis: Numbers = "0 0 1",
+    wheel: str = WHEEL,
+) -> Scene:
+    """Return a base with one wheel on its left side, which drives it forward by default."""
+    return scene(BASE, wheel, joint("wheel_joint", kind, "base", "wheel", xyz=xyz, rpy=rpy, axis=axis))
+
+
+def swinging(
+    *,
+    kind: str = "revolute",
+    xyz: Numbers = (0.1, 0.0, 0.2),
+    rpy: Numbers = "",
+    axis: Numbers = "0 1 0",
+    limit: str = 'lower="-1.5708" upper="0.7854" effort="10" velocity="2"',
+    more: str = "",
+) -> Scene:
+    """Return a base with an arm on a joint, and a tip that is fixed to the arm by a frame turned about x."""
+    return scene(
+        link("base"),
+        link("arm"),
+        link("tip"),
+        joint("shoulder", kind, "base", "arm", xyz=xyz, rpy=rpy, axis=axis, limit=limit, more=more),
+        joint("tip_joint", "fixed", "arm", "tip", xyz="0.3 0 0", rpy=turned(roll=90)),
+    )
 
 
 def arm(

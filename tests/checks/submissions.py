@@ -11,7 +11,6 @@ from grader.errors import InputError
 from grader.files.tree import File, IgnoredFile, make_tree
 from grader.package.package import Package
 from grader.robot.kinematics import Configuration
-from grader.source import Location
 from grader.submission.opening import submission_of
 from grader.submission.submission import Lab, Submission
 
@@ -92,18 +91,6 @@ class Submitted:
         text = self.data(path).decode()
         assert old in text, f"{old!r} does not stand in {path}:\n{text}"
         return self.with_files({path: text.replace(old, new)})
-
-    def location_of(self, path: str, text: str) -> Location:
-        """Return the location of a text in a file, which must occur exactly once."""
-        whole = self.data(path).decode()
-        assert whole.count(text) == 1, f"{text!r} stands {whole.count(text)} times in {path}:\n{whole}"
-        before = whole[: whole.index(text)]
-        return Location(path, before.count("\n") + 1, len(before) - before.rfind("\n"))
-
-
-def start_of(path: str) -> Location:
-    """Return the location of something that is missing in a file: its start."""
-    return Location(path, 1, 1)
 
 
 def png(width: int = 640, height: int = 480) -> bytes:

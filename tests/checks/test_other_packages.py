@@ -18,8 +18,7 @@ from grader.grading.rubric import Rubric
 from grader.grading.schema import rubric_schema
 from grader.robot.kinematics import Configuration
 from grader.submission.opening import read_submission
-from tests.checks.cases import BASE
-from tests.checks.robots import PATH, scene
+from tests.checks.robots import BASE, PATH, scene
 
 
 def takes_any(robot: Configuration, *names: str) -> Outcome:

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.exhaustive
 def test_a_commit_with_a_mistake_is_rejected(tmp_path: Path, published: Path) -> None:
     """A robot with a mistake cannot be committed, a correct one can; the hook's arguments are those of the grader."""
     work = tmp_path / "work"
-    shutil.copytree(ROOT / "submissions/lab6/several-mistakes", work)
+    shutil.copytree(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf", work)
     (work / ".pre-commit-config.yaml").write_text(
         f"repos:\n  - repo: {published.as_uri()}/YOUR-ORG/grader\n    rev: v1\n    hooks:\n"
         "      - id: grader\n        args: [--rubric, lab6, --part, task1]\n",

@@ -91,7 +91,7 @@ def test_a_green_check(job: Job) -> None:
 def test_a_red_check(job: Job, tmp_path: Path) -> None:
     """A mistake exits with 1, is annotated on its line, and the outputs are set all the same."""
     [urdf] = (tmp_path / "work").rglob("*.urdf")
-    urdf.write_bytes((ROOT / "submissions/lab6/several-mistakes" / "my_robot.urdf").read_bytes())
+    urdf.write_bytes((ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf").read_bytes())
     done = job.grade()
     path = urdf.relative_to(tmp_path / "work").as_posix()
     assert done.code == 1

@@ -5,10 +5,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from tests.command_line import Done, run_with_input
-from tests.report.workflow_commands import commands
 from tests.samples import ROOT
 
-MISTAKEN = ROOT / "submissions/lab6/several-mistakes/my_robot.urdf"
+MISTAKEN = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 ON_GITHUB: Mapping[str, str] = {}
 ELSEWHERE: Mapping[str, str] = {"GITHUB_ACTIONS": ""}
 
@@ -31,9 +30,3 @@ class GithubJob:
         }
         hints = ("--hints", "none") if "grade" in arguments and "--hints" not in arguments else ()
         return run_with_input((*arguments, *hints), b"", {**job, **around}, start or self.checkout)
-
-    def files(self, path: str, start: Path | None = None, around: Mapping[str, str] = ON_GITHUB) -> set[str | None]:
-        """Return the files that the annotations of a path refer to."""
-        done = self.run("grade", path, start=start, around=around)
-        assert done.returncode in (0, 1), done.stderr
-        return {command.get("file") for command in commands(done.stderr.decode())} - {None}

@@ -6,11 +6,8 @@ from typing import Any
 
 import pytest
 
-from tests.classroom.gradebooks import batch, grader, lab_text, refusal, urdf, write_submission
-from tests.command_line import ROOT
+from tests.classroom.gradebooks import batch, grader, lab_text, urdf, write_submission
 from tests.report.class_pages import ClassPageReader
-
-DROPPED = "Not counted: odd handout."
 
 
 def adjusted(text: str, name: str, action: str) -> str:
@@ -28,12 +25,6 @@ def rubric(folder: Path, text: str, name: str = "lab.toml") -> Path:
     """Write a rubric and return its path."""
     (folder / name).write_text(text)
     return folder / name
-
-
-def report(path: Path, lab: Path, *more: object) -> tuple[int, Any]:
-    """Return the exit code and the report of `grader grade`."""
-    done = grader("grade", path, "--rubric", lab, "--format", "json", *more)
-    return done.returncode, json.loads(done.stdout) if done.stdout else done.stderr
 
 
 def result(data: Any, name: str) -> Any:
@@ -60,57 +51,6 @@ def wrong(tmp_path: Path) -> Path:
 
 
 # --- One submission -----------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(("action", "points", "score", "most"), [("full", 2.5, 6, 11), ("drop", 0, 3.5, 8.5)])
-def test_one_submission(wrong: Path, tmp_path: Path, action: str, points: float, score: float, most: float) -> None:
-    """Everybody gets the points, or the maximum is smaller; what requires the criterion is checked; the exit code is 0."""
-    lab = rubric(tmp_path, adjusted(lab_text(tall="1").replace("height = -0.5", "height = -1"), "box", action))
-    code, data = report(wrong, lab)
-    row = result(data, "box")
-    assert (code, row["status"], row["points"], row["feedback"], row["hints"]) == (0, "failed", points, "", [])
-    assert row["adjustment"] == {"action": action, "reason": "odd handout"}
-    assert result(data, "tall")["status"] == "passed"
-    assert (data["score"], data["max_score"]) == (score + 0.5, most + 0.5)
-    shown = grader("grade", wrong, "--rubric", lab)
-    assert (shown.returncode, "1 1 2" in shown.stdout) == (0, False)  # not the student's mistake
-    assert shown.stdout.count("odd handout") == 1
-
-
-def test_a_criterion_that_requires_a_missing_thing_fails_itself(tmp_path: Path) -> None:
-    """What an adjusted criterion misses is not said to be its fault: the next one that misses it fails."""
-    write_submission(tmp_path / "anna")
-    (tmp_path / "anna" / "robot.urdf").write_text(urdf().replace('name="base"', 'name="bass"'))
-    _, data = report(tmp_path / "anna", rubric(tmp_path, adjusted(lab_text(), "box", "drop")))
-    assert (result(data, "tall")["status"], result(data, "tall")["because"]) == ("failed", None)
-    code, data = report(tmp_path / "anna", rubric(tmp_path, lab_text()))
-    assert (code, result(data, "tall")["because"]) == (1, "box")
-
-
-def test_pending_criteria(wrong: Path, tmp_path: Path) -> None:
-    """Nobody needs to grade an adjusted question."""
-    for action, points in (("full", 4), ("drop", 0)):
-        _, data = report(wrong, rubric(tmp_path, adjusted(lab_text(), "essay", action)))
-        assert (result(data, "essay")["points"], data["pending"]) == (points, 1)
-
-
-def test_extra_credit_is_above_the_maximum(tmp_path: Path) -> None:
-    """It is in the score and not in the maximum; without it the exit code is 0, and the threshold is of the maximum."""
-    write_submission(tmp_path / "anna")
-    lab = rubric(tmp_path, with_bonus(lab_text(), "box"))
-    code, data = report(tmp_path / "anna", lab)
-    assert (code, data["score"], data["max_score"]) == (0, 6, 8.5)
-    assert (result(data, "box")["bonus"], result(data, "box")["max_points"]) == (True, 2.5)
-    (tmp_path / "anna" / "robot.urdf").write_text(urdf("1 1 2"))
-    text = lab_text().replace('requires = ["box"]', "").replace("-0.5", "-1")
-    free = rubric(tmp_path, with_bonus(text, "box"), "free.toml")
-    assert report(tmp_path / "anna", free)[0] == 0
-    assert report(tmp_path / "anna", lab)[0] == 1  # `tall` requires the box and is skipped: this counts
-    assert report(tmp_path / "anna", free, "--fail-under", "42%")[0] == 1  # 3.5 of 8.5
-    assert report(tmp_path / "anna", free, "--fail-under", "41%")[0] == 0
-    shown = grader("grade", tmp_path / "anna", "--rubric", free).stdout
-    assert "box  0/2.5 bonus" in shown
-    assert "Extra credit: 0 of 2.5 points, in addition to the maximum." in " ".join(shown.split())
 
 
 @pytest.mark.usefixtures("hostile_checks")
@@ -226,43 +166,6 @@ def test_the_late_penalty_is_of_the_maximum_without_extra_credit(top: Path) -> N
         assert students(top)["anna"]["late"]["points"] == points
 
 
-def test_rubric_commands(tmp_path: Path) -> None:
-    """`check` takes sums without extra credit and adjustments; `show`, the handout and `explain` name both."""
-    (tmp_path / "robot.urdf").write_text(urdf())
-    text = 'points = 8.5\nreference = "robot.urdf"\n' + with_bonus(lab_text(), "box")
-    lab = rubric(tmp_path, adjusted(text, "picture", "drop"))
-    assert "5 criteria, 7.5 points and 2.5 bonus points, no mistakes" in grader("rubric", "check", lab).stdout
-    shown = grader("rubric", "show", lab).stdout
-    assert "(7.5 points and 2.5 bonus points)" in shown
-    assert "About box (bonus)\n" in shown
-    assert f"About picture\n    {DROPPED}\n" in shown
-    handout = grader("rubric", "show", lab, "--format", "markdown").stdout
-    assert "| 2.5 bonus |" in handout
-    assert DROPPED.removesuffix(".") in handout
-    assert "box (2.5 bonus points, part robot of small)" in grader("explain", "box", "--rubric", lab).stdout
-    assert DROPPED in grader("explain", "picture", "--rubric", lab).stdout
-    wrong = rubric(tmp_path, text.replace("points = 8.5", "points = 11"))
-    assert (
-        "the rubric declares 11 points, but its criteria add up to 8.5 without extra credit"
-        in grader("rubric", "check", wrong).stderr
-    )
-
-
-def test_the_reference_needs_no_extra_credit(tmp_path: Path) -> None:
-    """Neither `check` nor `test` miss a bonus or an adjusted criterion that the reference does not get; others they do."""
-    (tmp_path / "robot.urdf").write_text(urdf("1 1 2"))
-    text = 'reference = "robot.urdf"\n' + lab_text().replace('requires = ["box"]', "").replace("-0.5", "-1")
-    for chosen in (with_bonus(text, "box"), adjusted(text, "box", "drop"), adjusted(text, "box", "full")):
-        lab = rubric(tmp_path, chosen)
-        assert "its reference gets full marks" in grader("rubric", "check", lab).stdout
-        data = json.loads(grader("rubric", "test", lab, "--format", "json").stdout)
-        assert data["reference"]["lost"] == []
-        assert data["mutants"]["caught"] > 0
-        assert "box" not in data["idle"]
-    lab = rubric(tmp_path, text)
-    assert "the reference does not get box" in grader("rubric", "check", lab).stderr
-
-
 def test_a_mutant_is_not_caught_by_an_adjusted_criterion(tmp_path: Path) -> None:
     """It loses no points there; a bonus catches it."""
     (tmp_path / "robot.urdf").write_text(urdf())
@@ -273,33 +176,6 @@ def test_a_mutant_is_not_caught_by_an_adjusted_criterion(tmp_path: Path) -> None
     ]
     caught = [found["mutants"]["caught"] for found in data]
     assert caught[0] == caught[1] > caught[2]
-
-
-def test_the_gradescope_bundle_counts_what_gradescope_grades(tmp_path: Path) -> None:
-    """Autograder points are the maximum without manual grading; an adjusted question needs none."""
-    lab = rubric(tmp_path, with_bonus(adjusted(lab_text(), "essay", "full"), "picture"))
-    done = grader("bundle", "gradescope", tmp_path / "a.zip", "--rubric", lab)
-    assert "autograder points: 10; manual grading: 1 bonus point for picture (1 bonus)" in done.stdout
-
-
-def test_an_adjustment_of_nothing_is_refused(tmp_path: Path) -> None:
-    """With the criterion that may be meant."""
-    lab = rubric(tmp_path, adjusted(lab_text(), "esay", "drop"))
-    assert "adjusts 'esay', which does not exist" in refusal(grader("grade", tmp_path, "--rubric", lab))
-
-
-def test_hints(tmp_path: Path) -> None:
-    """None for adjusted criteria, and none counts their points as gained; extra credit has hints."""
-    text = (ROOT / "rubrics/lab6/rubric.toml").read_text(encoding="utf-8")
-    text = text.replace('reference = "', f'reference = "{ROOT}/rubrics/lab6/')
-    sample = ROOT / "submissions/lab6/several-mistakes"
-    base = with_bonus(text.replace("points = 70\n", "").replace("points = 100\n", ""), "base-green")
-    _, data = report(sample, rubric(tmp_path, adjusted(base, "stands-on-ground", "full")))
-    gains = [set(hint["gains"]) for row in data["results"] for hint in row["hints"]]
-    assert {"footprint-at-wheel-bottoms"} in gains
-    assert not any("stands-on-ground" in names for names in gains)
-    assert result(data, "stands-on-ground")["hints"] == []
-    assert result(data, "base-green")["hints"][0]["gains"] == {"base-green": 6}
 
 
 def test_comments_are_in_reports_of_the_class(top: Path) -> None:

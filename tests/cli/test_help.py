@@ -9,6 +9,7 @@ import pytest
 from typer.main import get_command
 
 from grader.cli.app import COMMANDS, make_app
+from tests.corpus.cases import read_corpus
 from tests.golden.cases import ROOT, run
 
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
@@ -106,3 +107,11 @@ def test_commands_in_the_documentation_are_valid(page: Any) -> None:
         for line in block.replace("\\\n", " ").splitlines():
             if line.startswith("grader "):
                 parse(line)
+
+
+def test_messages_name_commands_that_exist() -> None:
+    """Every command in backticks in the corpus's messages is one of the grader, whatever its arguments are."""
+    named = {
+        name for case in read_corpus() for name in re.findall(r"`grader ([a-z]+)", case.expected.get("stderr", ""))
+    }
+    assert {"batch", "grade", "rubric"} <= named <= set(COMMANDS)

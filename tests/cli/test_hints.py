@@ -13,7 +13,7 @@ from grader.report.comparison import applied_hints, hinted_texts
 from tests.command_line import run
 from tests.samples import ROOT, SAMPLES
 
-MISTAKES = ROOT / "submissions/lab6/several-mistakes/my_robot.urdf"
+MISTAKES = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 REFERENCE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 ROLL = {"path": "my_robot.urdf", "line": 73, "column": 34, "old": 'rpy="1.57 0 0"', "new": 'rpy="-1.57 0 0"'}
 
@@ -335,7 +335,7 @@ def test_a_hint_that_was_applied_is_named() -> None:
     from grader.grading.hints.hinting import hinted
     from grader.submission.opening import read_submission
 
-    sample = SAMPLES["several-mistakes"]
+    sample = SAMPLES["several-mistakes"].alone
     submission = sample.open()
     before = hinted(sample.grade(), submission, "edit").report
     text = MISTAKES.read_text()

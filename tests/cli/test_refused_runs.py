@@ -8,7 +8,7 @@ import pytest
 
 from tests.command_line import GRADER, ROOT, run_with_input
 
-MISTAKES = ROOT / "submissions/lab6/several-mistakes/my_robot.urdf"
+MISTAKES = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 REFUSALS = {
     "no path": (),
     "a path that does not exist": ("none.urdf",),

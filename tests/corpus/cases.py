@@ -39,7 +39,7 @@ class Case:
     empty: tuple[str, ...] = ()  # files without content; a path that ends in a slash is a folder
     files: Mapping[str, str] = field(default_factory=dict)
     hex: Mapping[str, str] = field(default_factory=dict)  # files that are no text
-    sizes: Mapping[str, int] = field(default_factory=dict)  # files that zeros follow up to this size
+    sizes: Mapping[str, int] = field(default_factory=dict)  # files that spaces follow up to this size
     links: Mapping[str, str] = field(default_factory=dict)  # path of a symlink: where it leads
     zips: Mapping[str, str] = field(default_factory=dict)  # path of an archive: the folder that moves into it
     variables: Mapping[str, str] = field(default_factory=dict)
@@ -80,7 +80,7 @@ class Case:
         return {key: text for key, text in found.items() if text or key.startswith("files/")}
 
     def _run(self, command: str, here: Path) -> Done:
-        words = shlex.split(command.replace("ROOT", str(ROOT)))
+        words = shlex.split(command.replace("ROOT", str(ROOT)).replace("HERE", str(here)))
         variables = {name: text.replace("HERE", str(here)) for name, text in self.variables.items()}
         return run_with_input(words, self.stdin.encode(), variables, here / self.folder)
 

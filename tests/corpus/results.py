@@ -5,18 +5,24 @@ from typing import Any
 
 
 def results(report: Mapping[str, Any], shown: tuple[str, ...] = ()) -> Iterator[str]:
-    """Yield the lines of a class, or the score of a report, its notes, and what did not pass or is to be shown."""
+    """Yield the lines of a class, or the score of a report, its notes, what did not pass or is to be shown, and the problems."""
     if "attention" in report:
         yield from map(_student, report["students"])
         yield from (f"{group['reason']}: {_ids(group['students'])}" for group in report["attention"])
         return
     yield f"{report['score']:g} of {report['max_score']:g}, {report['pending']:g} pending"
     yield from (f"note: {note}" for note in report["notes"])
-    for row in report["results"]:
-        if row["status"] != "passed" or row["id"] in shown:
-            carried = " (carried)" if row["carried"] else ""
-            yield f"{row['status']}{carried} {row['id']}{_place(row['location'])}: {row['message']}"
-            yield from (f"  hint: {hint['message']}" for hint in row["hints"])
+    others = report["submission"].get("other_candidates", ())
+    yield from (f"graded: {report['submission']['path']}" for _ in others[:1])
+    yield from (f"not graded: {other['path']}: {other['reason']}" for other in others)
+    rows = [row for row in report["results"] if row["status"] != "passed" or row["id"] in shown]
+    texts = [_result(row, row["id"] in shown) for row in rows]
+    for what in dict.fromkeys(texts):
+        ids = ", ".join(row["id"] for row, text in zip(rows, texts, strict=True) if text == what)
+        yield from what.replace("IDS", ids, 1).splitlines()
+    for piece in report.get("evidence", ()) if "evidence" in shown else ():
+        yield from (f"evidence {piece['id']}: {_found(file)}" for file in piece["files"])
+        yield from (f"evidence {piece['id']}: perhaps {_found(file)}" for file in piece["possible"])
     yield from (f"{row['code']}{_place(row['location'])}: {row['message']}" for row in report["problems"])
 
 
@@ -43,6 +49,21 @@ def _student(row: Mapping[str, Any]) -> str:
 def _ids(students: list[Mapping[str, str]]) -> str:
     details = {row["id"]: row["detail"] for row in students if len(students) < 3}  # few, so that a table can be read
     return ", ".join(f"{row['id']} ({details[row['id']]})" if details.get(row["id"]) else row["id"] for row in students)
+
+
+def _result(row: Mapping[str, Any], is_shown: bool) -> str:
+    """Return a result with its hints, and the text of an answer that is to be shown; several may differ in their ids only."""
+    carried = " (carried)" if row["carried"] else ""
+    answer = row["measured"] if is_shown and isinstance(row["measured"], str) else ""
+    return "\n".join((
+        f"{row['status']}{carried} IDS{_place(row['location'])}: {row['message']}",
+        *(f"  | {line}" for line in answer.splitlines()),
+        *(f"  hint: {hint['message']}" for hint in row["hints"]),
+    ))  # fmt: skip
+
+
+def _found(file: Mapping[str, Any]) -> str:
+    return ", ".join(str(file[key]) for key in ("path", "heading", "page") if file.get(key))
 
 
 def _place(location: Mapping[str, Any] | None) -> str:

@@ -7,7 +7,7 @@ import pytest
 from tests.corpus.cases import CORPUS, Case, read_corpus
 
 CASES = [
-    pytest.param(case, id=case.name, marks=pytest.mark.xdist_group(case.path.relative_to(CORPUS).parts[0]))
+    pytest.param(case, id=case.name, marks=pytest.mark.xdist_group("/".join(case.path.relative_to(CORPUS).parts[:2])))
     for case in read_corpus()
 ]
 

@@ -1,4 +1,4 @@
-"""Word and PDF files are converted in this process; tests/checks/test_manual.py tests the processes."""
+"""Word and PDF files are converted in this process; tests/checks/test_converter.py tests the processes."""
 
 import pytest
 

@@ -2,8 +2,6 @@
 
 from collections.abc import Mapping
 
-import pytest
-
 from grader.documents.evidence import FoundEvidence, find_all_evidence, find_evidence
 from tests.checks.submissions import REFERENCE, URDF, Submitted, png
 from tests.documents.files import PICTURE, docx, pdf
@@ -23,75 +21,6 @@ def words(files: Files, names: list[str]) -> tuple[list[str], list[str]]:
     """Return what is found and what is perhaps meant, in words and without sizes."""
     found = find(files, names)
     return tuple([file.words.partition(" (")[0] for file in found_files] for found_files in found)  # type: ignore[return-value]
-
-
-@pytest.mark.parametrize(
-    ("path", "names"),
-    [
-        ("Part3_step3.png", WEBCAM),
-        ("Taks1_Step8.png", STEP_8),
-        ("Task1_Setp8.png", STEP_8),
-        ("Tsak 1 stpe 8.png", STEP_8),
-        ("Exercise 1/step 8.png", STEP_8),
-        ("task1step8.png", STEP_8),
-        ("T1S8.png", STEP_8),
-        ("Step8_Task1.png", STEP_8),
-        ("section1-step8.pdf", STEP_8),
-        ("Task1_part18.png", ["task 1 step 18"]),
-    ],
-)
-def test_misspelt_names_that_are_unambiguous(path: str, names: list[str]) -> None:
-    """A misspelt name with a task and a step, or another word for a task, is matched."""
-    assert words({path: png()}, names) == ([path], [])
-
-
-@pytest.mark.parametrize(
-    ("path", "names"),
-    [
-        ("step8.png", STEP_8),
-        ("Lab6_Step8.png", STEP_8),
-        ("setp 8.jpg", STEP_8),
-        ("webcm.png", WEBCAM),
-        ("my_camrea.png", WEBCAM),
-        ("pictures/step3.png", WEBCAM),
-        ("prelab/Task1_Step8.png", STEP_8),
-        ("Pre-Lab Taks1_Step8.png", STEP_8),
-        ("prelab_webcam.png", WEBCAM),
-    ],
-)
-def test_ambiguous_names_are_perhaps_meant(path: str, names: list[str]) -> None:
-    """A step without a task, a misspelt word, or what is of a pre-lab is listed as perhaps meant."""
-    assert words({path: png()}, names) == ([], [path])
-
-
-@pytest.mark.parametrize(
-    ("path", "names"),
-    [
-        ("Part3_step3.png", STEP_8),
-        ("Taks1_Step18.png", STEP_8),
-        ("Taks2_Step8.png", STEP_8),
-        ("Task2_Step8.png", STEP_8),
-        ("Task1_Step18 (8).png", STEP_8),
-        ("Screenshot 2026-03-08.png", STEP_8),
-        ("Task1_Step8_webcm.png", WEBCAM),
-        ("Part3_desk.png", WEBCAM),
-        ("desk.png", WEBCAM),
-    ],
-)
-def test_other_names_are_not_meant(path: str, names: list[str]) -> None:
-    """A name of another task or step is neither found nor perhaps meant."""
-    assert words({path: png()}, names) == ([], [])
-
-
-def test_the_number_of_a_copy_is_no_step() -> None:
-    """A copy of a picture has the step of the original."""
-    assert [file.path for file in find({"Task1_Step8 (1).png": png()}, STEP_8).files] == ["Task1_Step8 (1).png"]
-
-
-def test_a_correct_name_wins() -> None:
-    """If a file has the correct name, neither misspelt names nor documents are searched."""
-    files = {"Task1_Step8.png": png(), "Taks1_Step8.png": png(), "step8.png": png(), "report.pdf": b"damaged"}
-    assert words(files, STEP_8) == (["Task1_Step8.png"], [])
 
 
 def test_a_heading_in_a_pdf_is_named_with_its_page() -> None:
@@ -181,26 +110,3 @@ def test_a_file_whose_headings_name_several_steps_is_offered_for_each() -> None:
     assert offered({"report.pdf": data})[:2] == [(["report.pdf"], []), (["report.pdf"], [])]
     contents = docx("Task 1: Step 8", "See below.", "Task 1: Step 18", "See below.")
     assert offered({"a.docx": contents})[:2] == [([], ["a.docx"]), ([], ["a.docx"])]
-
-
-@pytest.mark.parametrize(
-    ("files", "step"),
-    [
-        (["Task2_Step3.png"], 2),
-        (["Task1_Step9.png"], 0),
-        (["Task1_Step14.png"], 1),
-        (["Task1_Step13.png"], 0),  # as near as the other
-        (["Task1_Step9.png", "Task1_Step8.png"], 1),  # which is filled
-        (["Task3_Step1.png"], 3),
-        (["lab6_task2.png"], 2),  # the only step of its task
-        (["lab6_task1.png"], None),
-        (["lab6_task2.png", "Task2_Step6.png"], None),
-        (["Task4_Step6.png"], None),
-        (["Task2_Step3.png", "Task2_Step6.png"], None),
-    ],
-)
-def test_a_file_of_another_step_is_offered_for_the_nearest_one(files: list[str], step: int | None) -> None:
-    """Of its task, and without a file; a file of another task is not."""
-    names = [*STEPS[:3], ["task 3 step 3", "webcam"]]
-    perhaps = [index for index, (_, files) in enumerate(offered(dict.fromkeys(files, png()), names)) if files]
-    assert perhaps == ([step] if step is not None else [])

@@ -82,7 +82,9 @@ def test_missing_link_is_marked_where_the_reference_has_it() -> None:
 def test_rubric_that_hides_hints_hides_the_reference() -> None:
     """Below the level `cause` a picture shows nothing of the reference."""
     rubric = replace(load_rubric("lab6"), hints="place")
-    found = picture_of(grade(rubric, open_submission(str(ROOT / "submissions/lab6/lidar-buried"), rubric.lab)))
+    found = picture_of(
+        grade(rubric, open_submission(str(ROOT / "submissions/lab6/lidar-buried/my_robot/urdf"), rubric.lab))
+    )
     assert found is not None
     assert found.reference is None
     assert found.outlines == ()
@@ -111,7 +113,7 @@ def test_a_number_that_overflows_costs_neither_picture_nor_hints(kind: str, pict
     """A mesh at the end of the range of numbers in a link that is turned: the number of the callout is at the link's frame."""
     far = '<visual><origin xyz="1e308 1.7e308 1.7e308"/><geometry><mesh filename="a.stl"/></geometry></visual>'
     link = '<link name="left_wheel">'
-    text = (ROOT / "submissions/lab6/axis-negated/my_robot.urdf").read_text().replace(link, link + far)
+    text = (ROOT / "submissions/lab6/axis-negated/my_robot/urdf/my_robot.urdf").read_text().replace(link, link + far)
     turned = '<origin xyz="-0.15 0.2 0" rpy="-0.78 0 0.78"/>'
     (tmp_path / "my_robot.urdf").write_text(text.replace('<origin xyz="-0.15 0.2 0" rpy="-1.57 0 0"/>', turned))
     assert (tmp_path / "my_robot.urdf").read_text().count(turned) == text.count(far) == 1
@@ -128,7 +130,7 @@ def test_a_number_that_overflows_costs_neither_picture_nor_hints(kind: str, pict
 def test_only_round_links_on_the_ground_are_wheels() -> None:
     """A part of an arm that turns without limit is no wheel; in a rubric without wheels, those of a rover still are."""
     assert picture("joint-continuous", "arm").scene.wheels == ()
-    rover = read_urdf((ROOT / "submissions/lab6/axis-negated/my_robot.urdf").read_bytes(), "r.urdf").robot
+    rover = read_urdf((ROOT / "submissions/lab6/axis-negated/my_robot/urdf/my_robot.urdf").read_bytes(), "r.urdf").robot
     assert rover is not None
     assert {wheel.link for wheel in scene_of(Configuration(rover), "base_link").wheels} == {"left_wheel", "right_wheel"}
 
@@ -168,7 +170,7 @@ def test_no_outline_of_what_is_right(name: str, old: str, new: str, tmp_path: Pa
 
 def changed_picture(folder: Path, name: str, old: str, new: str) -> Picture:
     """Return the picture of a sample with another text in its URDF."""
-    text = (ROOT / "submissions/lab6" / name / "my_robot.urdf").read_text()
+    text = (ROOT / "submissions/lab6" / name / "my_robot/urdf/my_robot.urdf").read_text()
     assert old in text
     (folder / "my_robot.urdf").write_text(text.replace(old, new))
     loaded = load_rubric("lab6")

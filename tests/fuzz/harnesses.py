@@ -57,7 +57,7 @@ HARNESSES: dict[str, Harness] = {
     "roster": _row(classes.roster, "csv", 1024, classes.rosters),
     **{name: _row(run, "csv lms", 2048, classes.LMS_SEEDS[name]) for name, run in classes.LMS.items()},
     "requests": _row(classes.requests, "http", 1024, classes.sent_requests),
-    "grade-lab6": _graded(submissions.urdf, "lab6", "xml urdf", 4096, "../rubrics/lab6/**/*.urdf", "lab6/*/my_robot.urdf"),
+    "grade-lab6": _graded(submissions.urdf, "lab6", "xml urdf", 4096, "../rubrics/lab6/**/*.urdf", "lab6/*/my_robot/urdf/*.urdf"),
     "grade-arm": _graded(submissions.urdf, "arm", "xml urdf", 6144, "../rubrics/arm/*.urdf", "arm/*/*.urdf"),
     "grade-package": _graded(
         submissions.package, "lab6", "xml urdf python launch", 16384,

@@ -84,14 +84,18 @@ GOLDEN = (
     Golden("reference", ("grade", "submissions/lab6/reference"), 0),
     Golden("reference-verbose", ("grade", "submissions/lab6/reference", "--verbose"), 0),
     Golden("reference-json", ("grade", "submissions/lab6/reference", "--format", "json"), 0),
-    Golden("several-mistakes", ("grade", "submissions/lab6/several-mistakes/my_robot.urdf"), 1),
+    Golden("several-mistakes", ("grade", "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"), 1),
     Golden(
-        "several-mistakes-json", ("grade", "submissions/lab6/several-mistakes/my_robot.urdf", "--format", "json"), 1
+        "several-mistakes-json",
+        ("grade", "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf", "--format", "json"),
+        1,
     ),
-    Golden("lidar-without-joint", ("grade", "submissions/lab6/lidar-without-joint/my_robot.urdf"), 1),
-    Golden("broken-tag-parent", ("grade", "submissions/lab6/broken-tag-parent/my_robot.urdf"), 1),
+    Golden("lidar-without-joint", ("grade", "submissions/lab6/lidar-without-joint/my_robot/urdf/my_robot.urdf"), 1),
+    Golden("broken-tag-parent", ("grade", "submissions/lab6/broken-tag-parent/my_robot/urdf/my_robot.urdf"), 1),
     Golden(
-        "broken-tag-parent-json", ("grade", "submissions/lab6/broken-tag-parent/my_robot.urdf", "--format", "json"), 1
+        "broken-tag-parent-json",
+        ("grade", "submissions/lab6/broken-tag-parent/my_robot/urdf/my_robot.urdf", "--format", "json"),
+        1,
     ),
     Golden("no-launch-folder", ("grade", "submissions/lab6/no-launch-folder", "--part", "task2"), 1),
     Golden("launch-home-path", ("grade", "submissions/lab6/launch-home-path", "--part", "task2"), 1),
@@ -126,5 +130,5 @@ GOLDEN = (
         ),
         0,
     ),
-    *_in_every_format("several-mistakes", "submissions/lab6/several-mistakes/my_robot.urdf", 1),
+    *_in_every_format("several-mistakes", "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf", 1),
 )

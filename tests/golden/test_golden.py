@@ -1,4 +1,4 @@
-"""The golden cases, run through the real command line, and the outcomes of all checks."""
+"""The golden cases, run through the real command line, and the outcomes of the samples."""
 
 import pytest
 
@@ -17,5 +17,5 @@ def test_output_is_unchanged(case: Golden) -> None:
 
 @pytest.mark.parametrize("name", ROWS)
 def test_outcomes_are_unchanged(name: str) -> None:
-    """What the checks find in their cases and in the samples is approved, with all that they measure and where."""
+    """What the checks find in the samples and in references is approved, with all that they measure and where."""
     assert [*ROWS[name]()] == FILES[name].read_text(encoding="utf-8").splitlines()

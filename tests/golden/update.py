@@ -8,9 +8,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent))
 
-import pytest
-
-from tests.command_line import ROOT, run
+from tests.command_line import run
 from tests.golden.cases import GOLDEN
 from tests.golden.outcomes import FILES, ROWS
 
@@ -22,4 +20,3 @@ if __name__ == "__main__":
             print(f"{case.name}: exit code {done.returncode}, not {case.exit_code}")
     for name, rows in ROWS.items():
         FILES[name].write_text("".join(f"{row}\n" for row in rows()), encoding="utf-8")
-    pytest.main([str(ROOT / "tests/checks"), "-q", "-n0", "--approve"])

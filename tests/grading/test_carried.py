@@ -17,16 +17,15 @@ from grader.grading.rubric import Rubric
 from grader.report.formats import Format
 from grader.robot.kinematics import Configuration
 from grader.submission.opening import read_submission
-from tests.checks.cases import BASE
 from tests.checks.outcomes import AnyCheck
-from tests.checks.robots import scene
+from tests.checks.robots import BASE, scene
 from tests.classroom.gradebooks import grader
 from tests.grading.test_grade import ask, breaks, fails_, passes_, pends, statuses
 from tests.grading.test_rubric import GOOD, announced, complaints, loaded
 from tests.samples import LAB6, SAMPLES
 
 REFERENCE = (LAB6.path.parent / LAB6.reference / LAB6.urdf).read_text(encoding="utf-8")
-SMALL_WHEELS = "submissions/lab6/wheel-too-small/my_robot.urdf"
+SMALL_WHEELS = "submissions/lab6/wheel-too-small/my_robot/urdf/my_robot.urdf"
 
 
 def carried_from(name: str, causes: list[str], check: AnyCheck, other: AnyCheck = passes_) -> Criterion:
@@ -318,7 +317,7 @@ def test_explain_says_when_it_is_carried() -> None:
 
 def test_a_record_keeps_it() -> None:
     """A gradebook gives the same report."""
-    report = SAMPLES["wheel-too-small"].grade()
+    report = SAMPLES["wheel-too-small"].alone.grade()
     again = from_record(to_record(report), report.rubric)
     assert [result.carried for result in again.results] == carried(report)
     assert again.score == report.score == 68

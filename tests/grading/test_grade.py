@@ -27,9 +27,8 @@ from grader.robot.model import Mesh
 from grader.robot.reader import Reading
 from grader.robot.shapes import UnknownShape
 from grader.submission.opening import read_submission
-from tests.checks.cases import BASE, LIDAR, MOUNT, WHEEL, rolling
 from tests.checks.outcomes import Arguments
-from tests.checks.robots import PATH, Scene, joint, mesh, scene
+from tests.checks.robots import BASE, LIDAR, MOUNT, PATH, WHEEL, Scene, joint, mesh, rolling, scene
 from tests.examples import examples
 
 NOT_XML = Scene("this is no XML <")

@@ -22,10 +22,11 @@ from tests.examples import spread
 from tests.samples import LAB6, SAMPLES, reference
 
 REFERENCE = reference()
-INERTIALS = SAMPLES["equivalent-xacro-inertials"]
+INERTIALS = SAMPLES["equivalent-xacro-inertials"].alone
 MACROS = SAMPLES["equivalent-xacro-macros"]
 WHEEL = "my_robot/urdf/wheel.xacro"
 URDF = "my_robot/urdf/my_robot.urdf"
+PROCESSED = ["import xacro\n", "xacro.process_file(os.path.join(share, 'my_robot.urdf')).toxml()"]
 
 
 def results_of(submission: Submission) -> dict[str, Result]:
@@ -98,9 +99,8 @@ def texts(edits: Sequence[Edit]) -> list[str]:
     ("sample", "expected"),
     [
         ("raw-xacro", ["my_robot.urdf.xacro"]),
-        ("xacro-macro-for-wheels", ["my_robot.urdf.xacro"]),
-        ("xacro-in-urdf",
-         ["import xacro\n", "xacro.process_file(os.path.join(share, 'my_robot.urdf')).toxml()"]),
+        ("xacro-macro-for-wheels", PROCESSED),
+        ("xacro-in-urdf", PROCESSED),
     ],
 )  # fmt: skip
 def test_xacro_that_ros_2_loads_as_it_stands(sample: str, expected: list[str]) -> None:

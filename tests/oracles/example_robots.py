@@ -1,11 +1,11 @@
-"""The URDFs of real robots that the `oracle` extra installs (example-robot-data)."""
+"""The URDFs of real robots that the group `oracle` installs (example-robot-data)."""
 
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
 import pytest
 
-MISSING = "the oracle extra is not installed: pip install --editable '.[oracle]'"
+MISSING = "the group oracle is not installed: pip install --group oracle"
 
 
 def _folder() -> Path | None:

@@ -6,7 +6,7 @@ from xml.sax.saxutils import quoteattr
 from tests.classroom.class_runs import grader
 from tests.samples import ROOT
 
-LIDAR = (ROOT / "submissions/lab6/lidar-buried/my_robot.urdf").read_text(encoding="utf-8")
+LIDAR = (ROOT / "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
 CORPUS = (
     "<script>document.title='run'</script>",
     "<img src=x onerror=\"document.title='run'\">",

@@ -33,7 +33,7 @@ def half_points(folder: Path) -> Report:
     file = folder / "fractions.toml"
     file.write_text(f'id = "fractions"\ntitle = "Fractions"\n[[part]]\nid = "p"\ntitle = "P"\n{rows}', encoding="utf-8")
     rubric = load_rubric(str(file))
-    report = grade(rubric, opened("submissions/lab6/several-mistakes/my_robot.urdf", rubric))
+    report = grade(rubric, opened("submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf", rubric))
     *others, last = report.results
     own = last._replace(outcome=Outcome("errored", "the grader itself failed here (KeyError); please report it"))
     return report._replace(results=(*others, own))
@@ -45,7 +45,7 @@ LIFT = ("footprint-at-wheel-bottoms", "stands-on-ground")
 
 def hinted(report: Report | None = None) -> Report:
     """Return the report on several mistakes, or a given one, with hints: one edit of one line, and two edits of two files."""
-    report = SAMPLES["several-mistakes"].grade() if report is None else report
+    report = SAMPLES["several-mistakes"].alone.grade() if report is None else report
     where = report.submission.path or ""
     rpy = Edit(where, 73, 34, 'rpy="1.57 0 0"', 'rpy="-1.57 0 0"')
     xyz = Edit(where, 99, 15, 'xyz="0 0 0.05"', 'xyz="0 0 0.1"')
@@ -119,7 +119,7 @@ COMMENTED = ("base-green", "base-box", "answer-launch-nodes", "launch-found", "f
 def adjusted() -> Report:
     """Return a report with extra credit, earned and not, with all kinds of adjusted criteria, and with comments without points."""
     rubric = read_rubric(LAB6.data + _ADJUSTED.encode(), LAB6.path)
-    report = grade(rubric, opened("submissions/lab6/several-mistakes", rubric))
+    report = grade(rubric, opened("submissions/lab6/several-mistakes/my_robot/urdf", rubric))
     comments = {name: ManualComment(f"seen <{name}>\nin *class*", "Ada") for name in COMMENTED}
     results = tuple(result._replace(comment=comments.get(result.criterion.id)) for result in report.results)
     return report._replace(results=results)

@@ -15,7 +15,7 @@ from tests.report.reports import half_points, marked
 from tests.samples import REPORTED, SAMPLES
 
 READ = read_by_schema("classroom50")
-MISTAKEN = "submissions/lab6/several-mistakes/my_robot.urdf"
+MISTAKEN = "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 
 
 def result_of(report: Report) -> Any:

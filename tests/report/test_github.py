@@ -30,8 +30,12 @@ def annotated(report: Report, base: Base = LAB) -> list[Command]:
 
 def test_each_finding_is_on_its_line() -> None:
     """File, line and columns are those of the finding, the title has criterion and points, the most points come first."""
-    report = SAMPLES["several-mistakes"].grade()
-    lines = (ROOT / "submissions/lab6/several-mistakes/my_robot.urdf").read_text(encoding="utf-8").splitlines()
+    report = SAMPLES["several-mistakes"].alone.grade()
+    lines = (
+        (ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf")
+        .read_text(encoding="utf-8")
+        .splitlines()
+    )
     lost = sorted((result for result in report.results if result.is_lost), key=lambda item: -item.criterion.points)
     summary, *found = annotated(report)
     assert [command.get("title") for command in found][:2] == [
@@ -108,7 +112,7 @@ def test_eleven_findings_are_nine_and_the_rest() -> None:
 
 def test_a_whole_archive_is_annotated_as_one_file() -> None:
     """Its lines cannot be shown, so the text has the location inside it."""
-    report = SAMPLES["several-mistakes"].grade()
+    report = SAMPLES["several-mistakes"].alone.grade()
     for reported in annotated(report, Base(archive="lab/lab6.zip"))[1:]:
         assert reported.get("file") in ("lab/lab6.zip", None)
         assert reported.get("line") is None

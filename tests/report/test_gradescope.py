@@ -53,7 +53,7 @@ def test_every_criterion_is_a_test(name: str) -> None:
 def test_one_part_alone_keeps_its_numbers() -> None:
     """A criterion has the same number whatever else is graded."""
     whole = results(SAMPLES["reference"].grade())
-    alone = results(SAMPLES["several-mistakes"].grade())
+    alone = results(SAMPLES["several-mistakes"].alone.grade())
     by_id = {test["tags"][0]: test["number"] for test in whole["tests"]}
     assert all(by_id[test["tags"][0]] == test["number"] for test in alone["tests"])
 
@@ -88,7 +88,7 @@ def test_manual_marks_have_their_points() -> None:
 
 def test_each_output_is_complete_markdown() -> None:
     """The submission's output is first, and each test has its own; every one is rendered alone."""
-    data = results(SAMPLES["several-mistakes"].grade())
+    data = results(SAMPLES["several-mistakes"].alone.grade())
     assert read_as_github(data["output"]).findtext("h1") == "43 / 70 points: IRP Lab 6: a wheeled base"
     by_id = {test["tags"][0]: read_as_github(test["output"]) for test in data["tests"]}
     assert [element.tag for element in by_id["base-green"]] == ["p", "p", "p", "pre", "p"]

@@ -15,7 +15,7 @@ from tests.samples import ROOT
 
 CHANGE = 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 73). Also fixes right-wheel-axis, -1.'
 AGAIN = f"Fixed by the same edit as {AXLE[0]}."
-MISTAKEN = ROOT / "submissions/lab6/several-mistakes/my_robot.urdf"
+MISTAKEN = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 
 
 def _with_hint(results: tuple[Result, ...], **changes: Any) -> tuple[Result, ...]:

@@ -88,7 +88,7 @@ def test_the_submission_is_in_the_properties() -> None:
 
 def test_a_file_in_an_archive_has_no_line_in_the_repository() -> None:
     """Readers would look for the file beside the archive."""
-    for _, case in cases(SAMPLES["several-mistakes"].grade(), Base(archive="lab6.zip")):
+    for _, case in cases(SAMPLES["several-mistakes"].alone.grade(), Base(archive="lab6.zip")):
         assert case._elem.get("file") is None
 
 

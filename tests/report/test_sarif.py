@@ -20,7 +20,7 @@ from tests.report.readers import read_sarif
 from tests.report.rewording import recast
 from tests.samples import LAB6, REPORTED, ROOT, SAMPLES
 
-MISTAKEN = ROOT / "submissions/lab6/several-mistakes/my_robot.urdf"
+MISTAKEN = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 MAX_RESULTS = 5000  # results that GitHub shows
 MAX_DESCRIPTION = 1024  # characters of a rule's descriptions
 FOLDER = "a lab #1/50%/ü?:x/"
@@ -122,7 +122,7 @@ def test_a_moved_finding_keeps_its_fingerprint() -> None:
 
 def test_the_number_of_results_is_limited() -> None:
     """The first ones are kept, which cost points, and the run says how many are missing."""
-    report = SAMPLES["several-mistakes"].grade()
+    report = SAMPLES["several-mistakes"].alone.grade()
     problems = tuple(
         Problem(UNDEFINED_MATERIAL, "no such colour", Location("a.urdf", 1, 1)) for _ in range(MAX_RESULTS + 100)
     )
@@ -143,7 +143,7 @@ def test_a_file_of_one_long_line_has_a_small_report() -> None:
 
 def test_findings_in_an_archive_are_at_the_archive() -> None:
     """Code scanning only knows files of the repository, and needs a line for each."""
-    run = run_of(SAMPLES["several-mistakes"].grade(), Base(archive="lab 6.zip"))
+    run = run_of(SAMPLES["several-mistakes"].alone.grade(), Base(archive="lab 6.zip"))
     for result in run["results"]:
         at_location = result["locations"][0]["physicalLocation"]
         assert at_location["artifactLocation"]["uri"] == "lab%206.zip"
@@ -166,7 +166,7 @@ def test_the_rest_of_the_report_is_in_the_properties() -> None:
 
 def test_a_message_contains_no_link() -> None:
     """Viewers interpret links as in Markdown, and nothing else."""
-    report = recast(SAMPLES["several-mistakes"].grade(), lambda: "[x](http://e.org) ![y](z)")
+    report = recast(SAMPLES["several-mistakes"].alone.grade(), lambda: "[x](http://e.org) ![y](z)")
     messages = [result["message"]["text"] for result in run_of(report)["results"]]
     assert all("[x]" in message for message in messages)
     assert not any("](" in message for message in messages)

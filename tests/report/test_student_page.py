@@ -35,7 +35,7 @@ def read(text: str | bytes) -> Any:
 
 def test_page_has_score_and_failures_first() -> None:
     """The score is large, and the costliest failure is the first one."""
-    page = read(run(("grade", "submissions/lab6/axis-negated/my_robot.urdf", "--format", "html")).stdout)
+    page = read(run(("grade", "submissions/lab6/axis-negated/my_robot/urdf/my_robot.urdf", "--format", "html")).stdout)
     assert page.find_class("score")[0].text_content().strip() == "64 / 70 points"
     first = page.xpath("//article")[0]
     assert first.get("id") == "criterion-left-wheel-forward"
@@ -94,7 +94,7 @@ def shares(page: Any) -> tuple[list[str], list[str]]:
 
 def test_bar_explains_its_colours() -> None:
     """What is earned, needs manual grading and is lost stands below it; without points to grade there is no such part."""
-    page = read(run(("grade", "submissions/lab6/right-wheel-mirrored", "--format", "html")).stdout)
+    page = read(run(("grade", "submissions/lab6/right-wheel-mirrored/my_robot/urdf", "--format", "html")).stdout)
     assert shares(page) == (["63.0%", "10.0%", "27.0%"], ["Earned: 63", "Needs manual grading: 10", "Lost: 27"])
     page = read(run(("grade", "submissions/lab6/reference", "--part", "task1", "--format", "html")).stdout)
     assert shares(page) == (["100.0%"], ["Earned: 70"])
@@ -108,7 +108,7 @@ def test_excused_student_has_no_bar() -> None:
 
 def test_every_criterion_has_its_title_behind_its_status() -> None:
     """On cards and in the list of all criteria; so that the title of a failed one does not read as a fact."""
-    page = read(run(("grade", "submissions/lab6/axis-negated/my_robot.urdf", "--format", "html")).stdout)
+    page = read(run(("grade", "submissions/lab6/axis-negated/my_robot/urdf/my_robot.urdf", "--format", "html")).stdout)
     name, title = "left-wheel-forward", "Failed: A positive turn of the left wheel drives the base forward"
     heading = page.get_element_by_id(f"criterion-{name}").find("h3").text_content()
     (row,) = (row.text_content() for row in page.iter("tr") if f"#criterion-{name}" in row.xpath(".//a/@href"))
@@ -313,7 +313,7 @@ def test_only_continuous_joints_of_their_own_are_driven(
     change: tuple[str, str], free: list[bool], has_button: bool, tmp_path: Path
 ) -> None:
     """`Drive` neither turns a mimic joint against the one that it follows, nor a revolute joint beyond its limits."""
-    text = (ROOT / "submissions/lab6/axis-negated/my_robot.urdf").read_text()
+    text = (ROOT / "submissions/lab6/axis-negated/my_robot/urdf/my_robot.urdf").read_text()
     assert change[0] in text
     (tmp_path / "my_robot.urdf").write_text(text.replace(*change))
     page = render_html(grade(LAB6, opened(tmp_path)))
@@ -331,5 +331,5 @@ def test_an_answer_keeps_its_lines() -> None:
 
 def test_what_is_not_deducted_says_so() -> None:
     """A criterion that fails only because of an earlier mistake is no plain failure."""
-    page = read(run(("grade", "submissions/lab6/broken-tag-origin", "--format", "html")).stdout)
+    page = read(run(("grade", "submissions/lab6/broken-tag-origin/my_robot/urdf", "--format", "html")).stdout)
     assert "Failed, but not deducted:" in page.get_element_by_id("criterion-lidar-on-top").find("h3").text_content()

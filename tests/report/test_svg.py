@@ -117,7 +117,7 @@ def test_twenty_numbers_at_one_place_do_not_overlap() -> None:
 
 def test_every_text_is_legible_at_600_pixels() -> None:
     """A drawing is 600 pixels wide, and no text is smaller than 11 of them."""
-    root = shown("grade", "submissions/lab6/several-mistakes/my_robot.urdf", code=1)
+    root = shown("grade", "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf", code=1)
     assert root.get("viewBox").startswith("0 0 600 ")
     sizes = [float(element.get("font-size")) for element in root.iter() if element.get("font-size")]
     assert min(sizes) >= 11.0
@@ -168,7 +168,7 @@ def test_views_show_the_robot_at_one_scale() -> None:
 @pytest.mark.parametrize(("level", "is_shown"), [("none", False), ("place", False), ("cause", True), ("edit", True)])
 def test_reference_is_shown_from_the_level_cause_on(level: str, is_shown: bool) -> None:
     """Also if the option asks for less than the rubric allows; the numbers are there at each level."""
-    root = shown("grade", "submissions/lab6/lidar-buried/my_robot.urdf", "--hints", level, code=1)
+    root = shown("grade", "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf", "--hints", level, code=1)
     assert (bool(paths(root, "reference")), "reference solution" in words(root)) == (is_shown, is_shown)
     assert paths(root, "badge")
 
@@ -299,7 +299,7 @@ def test_two_hundred_links_are_drawn_in_a_second() -> None:
 
 def test_opposite_arrows_at_one_place_are_side_by_side() -> None:
     """In the side view one wheel hides the other: each arrow keeps to the right of its direction, 14 pixels apart."""
-    root = shown("grade", "submissions/lab6/several-mistakes", code=1)
+    root = shown("grade", "submissions/lab6/several-mistakes/my_robot/urdf", code=1)
     views = [re.findall(r"M([\d.]+) ([\d.]+)H", path) for path in paths(root, "arrow")]
     pairs = [[tuple(map(float, start)) for start in starts] for starts in views if len(starts) == 2]
     assert [abs(one[1] - other[1]) for one, other in pairs if one[0] == other[0]] == [180.0, 14.0]

@@ -9,7 +9,7 @@ from grader.robot.joint_elements import Calibration, Dynamics, Limit, Mimic, Saf
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.reader import read_urdf
-from tests.robot.edge_cases.case import joint, links, one_joint, robot
+from tests.robot.builders import joint, links, one_joint, robot
 
 
 def only_joint(body: str, kind: str = "continuous") -> Joint:

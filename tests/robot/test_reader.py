@@ -13,7 +13,7 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Origin
 from grader.robot.reader import Reading, read_urdf
 from tests.examples import examples, spread
-from tests.robot.edge_cases.case import joint, links, robot
+from tests.robot.builders import joint, links, robot
 from tests.robot.problem_samples import SAMPLES, ProblemSample
 from tests.robot.random_text import data
 from tests.work import limited_work

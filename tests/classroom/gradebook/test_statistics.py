@@ -177,7 +177,7 @@ def test_a_manually_overridden_failure_is_not_counted(tmp_path: Path) -> None:
 
 def test_names_do_not_split_a_group(tmp_path: Path) -> None:
     """Two students who made the same mistake with other names of joints are in one group."""
-    text = (ROOT / "submissions/lab6/lidar-buried/my_robot.urdf").read_text()
+    text = (ROOT / "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf").read_text()
     (tmp_path / "class").mkdir()
     for key, joint in (("anna", "base_lidar_joint"), ("ben", "lidar's joint")):
         (tmp_path / "class" / f"{key}.urdf").write_text(text.replace("base_lidar_joint", joint))

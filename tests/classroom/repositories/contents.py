@@ -29,7 +29,7 @@ def robot(sample: str) -> str:
     path = (
         REFERENCE / "urdf/my_robot.urdf"
         if sample == "reference"
-        else ROOT / "submissions/lab6" / sample / "my_robot.urdf"
+        else ROOT / "submissions/lab6" / sample / "my_robot/urdf/my_robot.urdf"
     )
     return path.read_text(encoding="utf-8")
 

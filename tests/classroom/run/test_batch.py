@@ -280,8 +280,8 @@ def test_reports_have_safe_names_whatever_students_are_called(tmp_path: Path) ->
 def test_reports_quote_unchanged_files_only(tmp_path: Path) -> None:
     """A text report has the quoted line, as `grader grade` has; once the file has changed, only its number."""
     folder = tmp_path / "class"
-    shutil.copytree(ROOT / "submissions/lab6/several-mistakes", folder / "ann")
-    shutil.copytree(ROOT / "submissions/lab6/several-mistakes", folder / "bea")
+    shutil.copytree(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf", folder / "ann")
+    shutil.copytree(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf", folder / "bea")
     words = tmp_path / "words"
     command = ("batch", folder, "--gradebook", tmp_path / "lab6.db", "--reports", words)
     grader(*command)

@@ -213,7 +213,7 @@ def test_a_manual_mark_settles_a_criterion(top: Path) -> None:
 def test_text_of_students_is_escaped(tmp_path: Path) -> None:
     """Comments in an element that is replaced neither colour the terminal, nor reverse it, nor command a runner."""
     sneaky = "<!-- [red]\u202e\n::error::x -->"
-    text = (ROOT / "submissions/lab6/caster-a-cylinder/my_robot.urdf").read_text(encoding="utf-8")
+    text = (ROOT / "submissions/lab6/caster-a-cylinder/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
     at = text.index("/>", text.index("<cylinder", text.index('<link name="caster_wheel"')))
     make(tmp_path / "class", {"ash.urdf": f"{text[:at]}>{sneaky}</cylinder>{text[at + 2 :]}"})
     batch(tmp_path)

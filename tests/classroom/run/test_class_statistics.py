@@ -11,11 +11,11 @@ from tests.classroom.class_runs import grader
 from tests.report.class_pages import ClassPageReader
 from tests.samples import ROOT
 
-URDF = (ROOT / "submissions/lab6/lidar-buried/my_robot.urdf").read_text(encoding="utf-8")
-HANDED_OUT = (ROOT / "submissions/lab6/base-half-sunk/my_robot.urdf").read_text(encoding="utf-8")
+URDF = (ROOT / "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
+HANDED_OUT = (ROOT / "submissions/lab6/base-half-sunk/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
 REFERENCE = (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
-SMALL_WHEELS = (ROOT / "submissions/lab6/wheel-too-small/my_robot.urdf").read_text(encoding="utf-8")
-FORWARD = (ROOT / "submissions/lab6/axis-negated/my_robot.urdf").read_text(encoding="utf-8")
+SMALL_WHEELS = (ROOT / "submissions/lab6/wheel-too-small/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
+FORWARD = (ROOT / "submissions/lab6/axis-negated/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
 XACRO = (
     '<robot name="r" xmlns:xacro="http://ros.org/wiki/xacro"><xacro:include filename="$(find other)/a.xacro"/></robot>'
 )

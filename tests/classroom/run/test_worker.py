@@ -14,7 +14,7 @@ from grader.classroom.run.worker import ClassContext, Task, grade_all
 from tests.classroom.class_runs import report_in_process
 from tests.samples import LAB6, ROOT
 
-URDF = (ROOT / "submissions/lab6/lidar-buried/my_robot.urdf").read_bytes()
+URDF = (ROOT / "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf").read_bytes()
 LARGE = URDF + b" " * 1024 * 1024
 
 
