@@ -7,6 +7,7 @@ import tomllib
 import zipfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
@@ -64,9 +65,10 @@ class Case:
         before = contents(here)
         found: Expected = {"exit": "", "stdout": "", "stderr": ""}
         for command in self.commands:
-            if shlex.split(command)[0] in STEPS:
+            step, *words = shlex.split(command) or [""]
+            if step in STEPS:
                 known = contents(here)
-                STEPS[shlex.split(command)[0]](here, *shlex.split(command)[1:])
+                STEPS[step](here, *words)
                 before |= {path: content for path, content in contents(here).items() if known.get(path) != content}
                 continue
             done = self._run(command, here)
@@ -81,8 +83,9 @@ class Case:
 
     def _run(self, command: str, here: Path) -> Done:
         words = shlex.split(command.replace("ROOT", str(ROOT)).replace("HERE", str(here)))
-        variables = {name: text.replace("HERE", str(here)) for name, text in self.variables.items()}
-        return run_with_input(words, self.stdin.encode(), variables, here / self.folder)
+        own = dict(word.split("=", 1) for word in takewhile(lambda word: "=" in word, words))
+        variables = {name: text.replace("HERE", str(here)) for name, text in {**self.variables, **own}.items()}
+        return run_with_input(words[len(own) :], self.stdin.encode(), variables, here / self.folder)
 
     def _prepare(self, here: Path) -> None:
         if (self.path / "input").is_dir():
