@@ -9,7 +9,7 @@ from tests.command_line import ROOT
 
 pytestmark = pytest.mark.exhaustive
 
-DRAWING = ROOT / "tests/golden/drawing-several-mistakes.svg"
+DRAWING = ROOT / "tests/corpus/reports/several-mistakes/expected/files/drawing.svg"
 FILL = "name => getComputedStyle(document.querySelector(name)).fill"
 LIGHT, DARK = "rgb(255, 255, 255)", "rgb(22, 25, 29)"
 

@@ -12,7 +12,7 @@ from grader.report.formats import Format, render
 from tests.browser.conftest import OpenPage
 from tests.browser.test_kinematics import ODD
 from tests.command_line import run
-from tests.report.hostile import HTML, LINKS, XML
+from tests.report.hostile import HOSTILE
 from tests.report.reports import hinted, marked
 from tests.report.rewording import recast
 from tests.samples import SAMPLES
@@ -20,7 +20,8 @@ from tests.samples import SAMPLES
 pytestmark = pytest.mark.exhaustive
 Open = Callable[..., OpenPage]
 PIXELS = "() => { viewer.draw(); return viewer.canvas.toDataURL(); }"
-HOSTILE = "".join(("</script><script>document.title='run'</script>", *HTML, *LINKS, *XML)) + "\"onerror='x' javascript:"
+PIECES = (*HOSTILE["html"], *HOSTILE["links"], *HOSTILE["xml"])
+ATTACK = "".join(("</script><script>document.title='run'</script>", *PIECES)) + "\"onerror='x' javascript:"
 
 
 def write(folder: Path, *arguments: object) -> Path:
@@ -300,13 +301,13 @@ def test_page_without_webgl_says_so(open_page: Open, tmp_path: Path) -> None:
 @pytest.mark.parametrize("made", [hinted, marked])
 def test_hostile_report_stays_text(open_page: Open, tmp_path: Path, made: Callable[[], Report]) -> None:
     """The same in messages, notes, problems, paths, source lines, hints and comments of manual marks."""
-    report = recast(made(), lambda: HOSTILE)
+    report = recast(made(), lambda: ATTACK)
     results = (
-        result._replace(manual_mark=result.manual_mark and result.manual_mark._replace(by=HOSTILE, comment=HOSTILE))
+        result._replace(manual_mark=result.manual_mark and result.manual_mark._replace(by=ATTACK, comment=ATTACK))
         for result in report.results
     )
     file = tmp_path / "page.html"
-    file.write_text(render(report._replace(results=tuple(results), notes=(HOSTILE,)), Format.HTML), encoding="utf-8")
+    file.write_text(render(report._replace(results=tuple(results), notes=(ATTACK,)), Format.HTML), encoding="utf-8")
     opened = open_page(file)
     assert "<script>document.title" in opened.page.locator("main").inner_text()
     assert opened.page.title() != "run"

@@ -8,7 +8,6 @@ import subprocess
 import sys
 import tomllib
 import zipfile
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,13 +19,11 @@ from grader.checks.check import describe
 from grader.checks.outcome import Outcome
 from grader.errors import InputError
 from grader.files.reading import sha256_of
-from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric, shipped_rubrics
 from grader.robot.kinematics import Configuration
-from grader.usecases import bundle as command
 from tests.bundle.gradescope import Autograder, environment_for, unpacked
-from tests.classroom.gradebooks import grader, lab_text, refusal, write_submission
-from tests.samples import LAB6, ROOT, opened
+from tests.classroom.gradebooks import grader, lab_text, write_submission
+from tests.samples import LAB6, ROOT
 
 RUBRICS = [f"grader/rubrics/{name}/rubric.toml" for name in shipped_rubrics()]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
@@ -231,63 +228,6 @@ def test_a_file_named_like_a_shipped_rubric(tmp_path: Path) -> None:
     with zipfile.ZipFile(tmp_path / "out.zip") as archive:
         assert archive.read("rubric.toml") == own.read_bytes()
         assert json.loads(archive.read("autograder.json"))["rubric"] == "source/rubric.toml"
-
-
-def test_a_rubric_without_manual_grading(tmp_path: Path) -> None:
-    """The command mentions no manual grading if the rubric needs none."""
-    own = tmp_path / "lab.toml"
-    own.write_text(
-        "".join(
-            f"{table}\n\n" for table in lab_text().split("\n\n") if '"essay"' not in table and '"picture"' not in table
-        )
-    )
-    done = grader("bundle", "gradescope", tmp_path / "out.zip", "--rubric", own)
-    assert done.stdout.splitlines()[1] == "next: upload it under Configure Autograder; autograder points: 6"
-
-
-def test_manual_points_are_those_that_the_reference_lacks() -> None:
-    """The criteria listed for manual grading are those that stay pending for the reference."""
-    report = grade(LAB6, opened("submissions/lab6/reference"))
-    pending = [result.criterion for result in report.results if result.outcome.status == "pending"]
-    output = command._next_step(LAB6)
-    assert (
-        f"{sum(criterion.points for criterion in pending)} points for {', '.join(f'{criterion.id} ({criterion.points})' for criterion in pending)}"
-        in output
-    )
-
-
-def broken(folder: Path) -> tuple[object, ...]:
-    """Return the path of a rubric with two mistakes."""
-    (folder / "lab.toml").write_text(
-        lab_text().replace('"urdf_loads"', '"urdf_lods"').replace("size = [1, 1, 1]", "size = [1]")
-    )
-    return (folder / "out.zip", "--rubric", folder / "lab.toml")
-
-
-REFUSALS: dict[str, tuple[Callable[[Path], tuple[object, ...]], str]] = {
-    "no zip": (lambda folder: (folder / "out.tar.gz",), "give a name that ends in .zip"),
-    "no name": (lambda folder: (folder,), "give a name that ends in .zip"),
-    "no rubric": (lambda folder: (folder / "out.zip", "--rubric", "lab66"), "there is no rubric 'lab66'"),
-    "no file": (lambda folder: (folder / "out.zip", "--rubric", folder / "no.toml"), "No such file"),
-    "no folder": (lambda folder: (folder / "no" / "out.zip",), "cannot write"),
-}
-
-
-@pytest.mark.parametrize("name", REFUSALS)
-def test_refusals(tmp_path: Path, name: str) -> None:
-    """The command prints one clear line and writes nothing."""
-    arguments, words = REFUSALS[name]
-    assert words in refusal(grader("bundle", "gradescope", *arguments(tmp_path)))
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_broken_rubric(tmp_path: Path) -> None:
-    """Every mistake of the rubric is reported, and nothing is written."""
-    done = grader("bundle", "gradescope", *broken(tmp_path))
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.count("lab.toml:") >= 2
-    assert not (tmp_path / "out.zip").exists()
-    assert "another" in refusal(grader("bundle", "another", tmp_path / "out.zip"))
 
 
 def test_a_plugin_check() -> None:

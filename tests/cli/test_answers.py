@@ -7,7 +7,7 @@ import pytest
 
 from grader.report.formats import Format
 from tests.classroom.gradebooks import batch, grader, lab_text
-from tests.golden.cases import CLASSROOM50
+from tests.report.reports import CLASSROOM50
 
 SECRET = "Because of the roots."
 INLINE = f', answer = "{SECRET}"'

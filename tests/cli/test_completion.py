@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.command_line import HANG_TIMEOUT
-from tests.golden.cases import ROOT
+from tests.command_line import HANG_TIMEOUT, ROOT
 
 
 @pytest.mark.exhaustive

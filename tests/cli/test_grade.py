@@ -11,7 +11,7 @@ import pytest
 
 from grader.report.formats import Format
 from tests.command_line import ROOT, run
-from tests.golden.cases import CLASSROOM50
+from tests.report.reports import CLASSROOM50
 
 PACKAGE = ROOT / "rubrics/lab6/my_robot"
 MACROS = ROOT / "submissions/lab6/equivalent-xacro-macros/my_robot/urdf"

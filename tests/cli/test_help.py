@@ -9,8 +9,8 @@ import pytest
 from typer.main import get_command
 
 from grader.cli.app import COMMANDS, make_app
+from tests.command_line import ROOT, run
 from tests.corpus.cases import read_corpus
-from tests.golden.cases import ROOT, run
 
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
 

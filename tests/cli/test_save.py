@@ -9,7 +9,8 @@ import pytest
 
 from grader.report.formats import Format
 from grader.usecases.writing import save
-from tests.golden.cases import CLASSROOM50, run
+from tests.command_line import run
+from tests.report.reports import CLASSROOM50
 
 MISTAKEN = "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.corpus.cases import CORPUS, Case, read_corpus
+from tests.samples import SAMPLES
 
 CASES = [
     pytest.param(case, id=case.name, marks=pytest.mark.xdist_group("/".join(case.path.relative_to(CORPUS).parts[:2])))
@@ -16,3 +17,9 @@ CASES = [
 def test_the_case_is_as_expected(case: Case, tmp_path: Path) -> None:
     """Standard output, standard error, exit codes and written files; `python -m tests.corpus` writes them again."""
     assert case.outcome(tmp_path) == case.expected
+
+
+def test_every_sample_has_a_row() -> None:
+    """With its results, in the table of its rubric."""
+    found = {case.about for case in read_corpus() if case.path.parent.name == "samples" and case.path.stem != "hints"}
+    assert found == set(SAMPLES)

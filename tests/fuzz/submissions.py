@@ -18,9 +18,9 @@ from grader.submission.submission import Submission
 from grader.usecases.hints import add_hints, files_to_fix, write_fix
 from tests.checks.submissions import file_of
 from tests.fuzz.harness import GUARD, check_location, check_message, decoded, files_of, user_errors
-from tests.golden.cases import CLASSROOM50
 from tests.hints.trials import with_edits
 from tests.report.harmless import is_harmless
+from tests.report.reports import CLASSROOM50
 from tests.samples import RUBRICS
 
 

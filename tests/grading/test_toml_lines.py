@@ -12,61 +12,6 @@ from grader.grading.toml_file import TomlPath as Path
 from grader.grading.toml_file import key_lines, line_of
 from tests.examples import examples
 
-# Texts, and the paths of the keys that begin on their lines.
-WITH_PATHS = (
-    """\
-id = "r"  # id
-
-[[part]]  # part.0
-id = "a"  # part.0.id
-[[part]]  # part.1
-id = "b"  # part.1.id
-
-[[criterion]]  # criterion.0
-  id = "c"  # criterion.0.id
-  [criterion.with]  # criterion.0.with
-  link = "l"  # criterion.0.with.link
-  [criterion.with.joints]  # criterion.0.with.joints
-  j = "l"  # criterion.0.with.joints.j
-[[criterion]]  # criterion.1
-[criterion.with]  # criterion.1.with
-link = "m"  # criterion.1.with.link
-[other]  # other
-x = 1  # other.x
-""",
-    """\
-[[a]]  # a.0
-[[a.b]]  # a.0.b.0
-x = 1  # a.0.b.0.x
-[[a.b]]  # a.0.b.1
-[a.b.c]  # a.0.b.1.c
-z = 1  # a.0.b.1.c.z
-[[a]]  # a.1
-[[a.b]]  # a.1.b.0
-w = 1  # a.1.b.0.w
-[[d.e]]  # d.e.0
-""",
-    """\
-a.b.c = 1  # a a.b a.b.c
-a.d = 2  # a.d
-[x.y]  # x x.y
-z.w = 1  # x.y.z
-[x.v]  # x.v
-[[l]]  # l l.0
-m.n = 1  # l.0.m
-""",
-)
-
-
-@pytest.mark.parametrize("text", WITH_PATHS, ids=["tables", "arrays", "implicit"])
-def test_tables_and_keys_have_lines(text: str) -> None:
-    """Headers, keys and arrays of tables are found; a table that is only part of a header has the line of the first."""
-    lines = key_lines(text)
-    for number, line in enumerate(text.splitlines(), 1):
-        for words in line.partition("#")[2].split():
-            path = tuple(int(step) if step.isdigit() else step for step in words.split("."))
-            assert line_of(lines, path) == number, path
-
 
 def test_a_missing_key_has_the_line_of_its_table() -> None:
     """A missing key has the line of its table, or the first line of the file, which an empty one has too."""
@@ -93,23 +38,6 @@ def test_keys_after_a_value_have_their_lines(value: str) -> None:
     lines, height = key_lines(text), value.count("\n")
     assert (lines["x",], lines["y",], lines["z",]) == (1, 2 + height, 4 + height)
     assert (lines["z", "w"], lines["z", "v"]) == (5 + height, 6 + 2 * height)
-
-
-@pytest.mark.parametrize(
-    ("key", "name"),
-    [
-        ("a-b_1", "a-b_1"), ("1", "1"), ('"a b"', "a b"), ("'a b'", "a b"), ('"a.b"', "a.b"), ('"a#b"', "a#b"),
-        ('"["', "["), ('"="', "="), ('""', ""), ("'it\"s'", 'it"s'), ("\"'quoted'\"", "'quoted'"), ('"\\u0061"', "a"),
-        ('"a\\"b"', 'a"b'),
-    ],
-)  # fmt: skip
-def test_a_key_may_be_quoted(key: str, name: str) -> None:
-    """A quoted key is the text in the quotes, on a line of its own and in a header."""
-    text = f"\n{key} = 1\n\n[t . {key}] # ]\nx = 1\n[[ u ]]\n{key} = 2\n"
-    assert tomllib.loads(text) == {name: 1, "t": {name: {"x": 1}}, "u": [{name: 2}]}
-    lines = key_lines(text)
-    assert (lines[name,], lines["t", name], lines["t", name, "x"]) == (2, 4, 5)
-    assert (lines["u", 0], lines["u", 0, name]) == (6, 7)
 
 
 # --- Any text ---------------------------------------------------------------------------------------------------------

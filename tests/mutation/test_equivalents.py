@@ -168,12 +168,6 @@ def test_a_material_that_a_visual_defines_keeps_its_place(tmp_path: Path) -> Non
         assert ">Text &amp; more<" in equivalent.text
 
 
-def test_the_seed_decides(tmp_path: Path) -> None:
-    """The same seed gives the same bytes."""
-    rubric = rubric_in(tmp_path, TOP)
-    assert made(rubric) == made(rubric)
-
-
 def test_a_mesh_that_xacro_has_found_stays_that_of_its_package() -> None:
     """The expansion has a made-up path for $(find package), which no equivalent may contain."""
     robot = b'<robot><mesh filename="file:///install/arm/share/arm/meshes/a.stl"/><mesh filename="package://b/c.stl"/></robot>'

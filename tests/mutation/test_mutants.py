@@ -9,48 +9,15 @@ from grader.mutation.elements import elements
 from grader.mutation.mutants import Mutant, mutants, with_visuals
 from grader.mutation.mutation_test import sampled
 from grader.mutation.result import hunk
-from tests.mutation.robots import ARM
+from tests.mutation.robots import ARM, CHANGES
 
 FOUND = {mutant.id: mutant for mutant in mutants(ARM, "birch.urdf")}
 
 
-@pytest.mark.parametrize(
-    ("name", "old", "new"),
-    [
-        ("number x10: joint slide/origin xyz.z", "0 0 0.4", "0 0 4"),
-        ("number negated: joint shoulder/limit lower", 'lower="-1.5"', 'lower="1.5"'),
-        ("number in degrees: joint shoulder/limit upper", 'upper="1.4"', 'upper="80.2141"'),
-        ("limits exchanged: joint shoulder/limit", 'lower="-1.5" upper="1.4"', 'lower="1.4" upper="-1.5"'),
-        ("attribute deleted: joint shoulder/dynamics damping", '<dynamics damping="0.1"/>', "<dynamics/>"),
-        ("name exchanged: joint finger_joint/mimic joint -> slide", 'mimic joint="shoulder"', 'mimic joint="slide"'),
-        ("number halved: joint finger_joint/mimic multiplier", 'multiplier="-0.5"', 'multiplier="-0.25"'),
-        ("element deleted: joint finger_joint/mimic", '<mimic joint="shoulder" multiplier="-0.5" offset="0.1"/>', ""),
-        ("number doubled: link upper/inertial/mass value", 'mass value="1.2"', 'mass value="2.4"'),
-        ("number exchanged: link upper/inertial/origin xyz.y", '"0 0 0.2" rpy="0.1', '"0 0.2 0" rpy="0.1'),
-        ("number +0.05: link base/collision/geometry/cylinder radius", 'radius="0.11"', 'radius="0.16"'),
-        ("text misspelt: link slider/visual/geometry/mesh filename", "birch/meshes", "birchmeshes"),
-        ("number x10: link slider/visual/geometry/mesh scale.y", "0.001 0.001 0.001", "0.001 0.01 0.001"),
-        ("number zero: gazebo base/mu1", "<mu1>0.2</mu1>", "<mu1>0</mu1>"),
-        ("name exchanged: gazebo base reference -> tool", 'reference="base"', 'reference="tool"'),
-        ("text misspelt: gazebo/plugin control filename", "libcontrol.so", "libconrol.so"),
-        ("name exchanged: transmission drive/joint shoulder name -> slide", '<joint name="shoulder"/>', '<joint name="slide"/>'),
-        ("number negated: ros2_control arm/joint slide/param min", ">-1<", ">1<"),
-        ("type: joint slide type -> revolute", '"slide" type="prismatic"', '"slide" type="revolute"'),
-    ],
-)  # fmt: skip
-def test_a_mutant_makes_one_change(name: str, old: str, new: str) -> None:
+@pytest.mark.parametrize("change", CHANGES["robot"], ids=lambda change: change["id"])
+def test_a_mutant_makes_one_change(change: dict[str, str]) -> None:
     """The family and the place by names say what the mutant changes."""
-    assert FOUND[name].applied(ARM) == ARM.replace(old, new, 1)
-
-
-def test_elements_are_deleted_duplicated_and_moved_up() -> None:
-    """An element with its children, and only where the robot is ROS 2's: simulators read two of a kind in their own way."""
-    text = ARM[ARM.index("  <gazebo>\n") :].partition("  <transmission")[0]
-    assert FOUND["element deleted: gazebo"].applied(ARM) == ARM.replace(text.strip(), "")
-    assert "element duplicated: gazebo" not in FOUND
-    assert FOUND["element duplicated: link plate"].applied(ARM).count('<link name="plate">') == 2
-    moved = FOUND["element moved up: joint slide/limit"].applied(ARM)
-    assert moved.index('upper="0.1"') < moved.index('<joint name="slide"')
+    assert FOUND[change["id"]].applied(ARM) == ARM.replace(change["old"], change["new"], 1)
 
 
 def test_a_link_that_must_show_nothing_gets_a_visual() -> None:

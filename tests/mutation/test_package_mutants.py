@@ -10,6 +10,7 @@ from grader.mutation.package_mutants import package_mutants
 from grader.mutation.python_mutants import launch_changes, setup_changes
 from grader.submission.editing import content, overlaid
 from grader.submission.submission import Submission
+from tests.mutation.robots import CHANGES
 from tests.samples import LAB6, reference
 
 REFERENCE = reference()
@@ -29,29 +30,13 @@ def found_in(submission: Submission, text: Callable[[str], str] = text) -> dict[
 FOUND = found_in(REFERENCE)
 
 
-@pytest.mark.parametrize(
-    ("name", "old", "new"),
-    [
-        ("build type: package.xml build_type -> ament_cmake", ">ament_python<", ">ament_cmake<"),
-        ("text misspelt: package.xml name", "<name>my_robot<", "<name>my_rbot<"),
-        ("import deleted: setup.py import os", "import os\n", "pass\n"),
-        ("data_files entry deleted: setup.py (os.path.join('share', package_name), glob('urdf/*'))", "(os.path.join('share', package_name), glob('urdf/*')),", ""),
-        ("string misspelt: setup.py urdf/*", "'urdf/*'", "'urd/*'"),
-        ("string misspelt: setup.py my_robot", "'my_robot'", "'my_rbot'"),
-        ("action removed: launch/my_robot_rviz.launch.py rviz2", "        Node(\n            package='rviz2',\n            executable='rviz2',\n            arguments=['-d', os.path.join(share, 'my_robot.rviz')],\n        ),", "        "),
-        ("string misspelt: launch/my_robot_rviz.launch.py my_robot.urdf", "'my_robot.urdf'", "'my_robt.urdf'"),
-        ("fixed frame: rviz/my_robot.rviz -> base_link", "Fixed Frame: base_footprint", "Fixed Frame: base_link"),
-        ("fixed frame: rviz/my_robot.rviz -> base_fotprint", "Fixed Frame: base_footprint", "Fixed Frame: base_fotprint"),
-        ("display disabled: rviz/my_robot.rviz RobotModel", "Enabled: true\n      Name: RobotModel", "Enabled: false\n      Name: RobotModel"),
-        ("text misspelt: rviz/my_robot.rviz RobotModel Description Topic/Value /robot_description", "Value: /robot_description", "Value: /robot_decription"),
-    ],
-)  # fmt: skip
-def test_a_mutant_makes_one_change(name: str, old: str, new: str) -> None:
+@pytest.mark.parametrize("change", CHANGES["package"], ids=lambda change: change["id"])
+def test_a_mutant_makes_one_change(change: dict[str, str]) -> None:
     """The file, the place in it and the mistake."""
-    mutant = FOUND[name]
+    mutant = FOUND[change["id"]]
     before = text(mutant.path)
-    assert before.count(old) >= 1
-    assert mutant.applied(before) == before.replace(old, new, 1)
+    assert change["old"] in before
+    assert mutant.applied(before) == before.replace(change["old"], change["new"], 1)
 
 
 def test_files_are_deleted_and_renamed() -> None:

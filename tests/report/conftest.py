@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.golden.cases import CLASSROOM50
+from tests.report.reports import CLASSROOM50
 
 
 @pytest.fixture(autouse=True)

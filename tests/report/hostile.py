@@ -1,5 +1,6 @@
 """Text that a student may write to attack a viewer of reports, and submissions full of it."""
 
+import json
 import os
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,47 +13,10 @@ from tests.samples import ROOT
 REFERENCE = ROOT / "submissions/lab6/reference"
 PACKAGE = "roscourse_sim_ws/src/my_robot"
 
-# Each is dangerous to some viewer of reports.
-TERMINALS = (
-    "[bold red]",
-    "[/]",
-    "[link=http://e.org]x[/link]",
-    "\x1b[31m",
-    "\x1b]8;;http://e.org\x07",
-    "\x9b31m",
-    "\0",
-)
-COMMANDS = ("::error::", "::error file=a.py,line=1::", "::stop-commands::x", "::add-mask::0", "##[error]", "##[", "::")
-ESCAPES = ("%0A::error::", "%0D%0A", "%25", "%3A%3A", ":", ",line=9", ",title=x::", "\n::error::", "\r::error::x")
-LINES = ("\r", "\n", "\r\n", "\x0b", "\x85", "\u2028", "\u2029", "\t", "  \n", "    x")
-XML = ("</testcase>", "</failure>", "]]>", "<![CDATA[", "<!--", "-->", "&lt;", "&#10;", "&x;", "<x>", '"', "'", "<?x?>")
-LINKS = ("](http://e.org)", "![x](http://e.org/y.png)", "[x]: http://e.org", "<http://e.org>", "javascript:alert(1)")
-BARE = ("http://e.org", "https://e.org/x", "ftp://e.org", "www.e.org", "WWW.E.ORG", "mailto:a@e.org", "a@e.org")
-BLOCKS = (
-    "# h",
-    "\n# h",
-    "- x",
-    "+ x",
-    "1. x",
-    "1) x",
-    "> x",
-    "===",
-    "---",
-    "| a | b |\n|---|---|",
-    "|-|",
-    "[ ] ",
-    "~~~",
-)
-MARKS = ("`", "``", "```", "`````", "`" * 90, "\n" + "`" * 300 + "\n", "~~x~~", "***", "__x__", "_x_", "\\", "[^1]")
-HTML = ("<script>alert(1)</script>", "<img src=x onerror=alert(1)>", "</details>", "<a href='javascript:x'>", "<b>")
-MENTIONS = ("@octocat", "@org/team", "#123", "GH-123", "org/repo#1", "$math$", "$$", "$`x`$", ":tada:", "{{x}}", "${x}")
-CELLS = ("=1+1", "=cmd|' /C calc'!A0", "+1", "-1", "@SUM(1)", ";", ",")
-UNSEEN = ("\ud800", "\udfff", "\udc80", "\ufffe", "\uffff", "\ufeff", "\u202e", "\u2066", "\u200f", "\u200b", "\u2060")
-ODD = ("\xad", "\u3000", "\xa0", "\ufffd", "x" * 300, " " * 60, "a\u0301" * 20, "\U0001f600", "\U000e0041", "e" * 5000)
-PIECES = (
-    *(*TERMINALS, *COMMANDS, *ESCAPES, *LINES, *XML, *LINKS, *BARE),
-    *(*BLOCKS, *MARKS, *HTML, *MENTIONS, *CELLS, *UNSEEN, *ODD),
-)
+# Each is dangerous to some viewer of reports: texts by the viewer or the sign, those for pages as `attacks`.
+HOSTILE: dict[str, list[str]] = json.loads((Path(__file__).parent / "hostile.json").read_text(encoding="utf-8"))
+LONG = ("`" * 90, "\n" + "`" * 300 + "\n", "x" * 300, "e" * 5000)
+PIECES = (*(text for name, texts in HOSTILE.items() if name != "attacks" for text in texts), *LONG)
 TEXT = st.lists(st.sampled_from(PIECES) | st.text(max_size=6), max_size=5).map("".join)
 
 

@@ -10,6 +10,18 @@ from grader.grading.rubric import load_rubric, read_rubric
 from grader.source import Edit, Location
 from tests.samples import LAB6, SAMPLES, opened
 
+# The variables that the runner of Classroom 50 sets for an autograder.
+CLASSROOM50 = {
+    "CLASSROOM": "robotics",
+    "ASSIGNMENT": "lab6",
+    "ASSIGNMENT_TYPE": "individual",
+    "USERNAME": "alice",
+    "SUBMISSION_TAG": "submit/2026-11-20T18-30-05Z-ab12cd3",
+    "COMMIT_URL": "https://github.com/robotics/lab6-alice/commit/ab12cd3",
+    "RELEASE_URL": "https://github.com/robotics/lab6-alice/releases/tag/submit%2F2026-11-20T18-30-05Z-ab12cd3",
+    "REVIEW_URL": "https://github.com/robotics/lab6-alice/compare/0a1b2c3...ab12cd3",
+}
+
 _BOX = """
 [[criterion]]
 id = "{id}"

@@ -14,10 +14,9 @@ from grader.classroom.students import Student
 from grader.grading.rubric import load_rubric
 from grader.report.pages.class_page import render_class_page
 from grader.text import without_commands
-from tests.classroom.class_runs import grader
 from tests.classroom.gradebooks import graded_as, lab, record_run
 from tests.report.class_pages import ClassPageReader
-from tests.report.hostile_class import CORPUS, LIDAR, export_hostile_class
+from tests.report.hostile_class import CORPUS, export_hostile_class
 
 ELEMENTS = {
     "html", "head", "meta", "title", "style", "body", "script", "header", "main", "footer", "nav", "section", "article", "div",
@@ -41,52 +40,6 @@ def test_text_of_students_stays_text(tmp_path: Path) -> None:
     for file in pages.glob("*.html"):
         assert "<script>document" not in file.read_text(encoding="utf-8")
         assert "\n::error" not in file.read_text(encoding="utf-8")
-
-
-def test_a_class_without_students(tmp_path: Path) -> None:
-    """A run without submissions has a page, which says so."""
-    rubric = lab()
-    with Gradebook(tmp_path / "book.db", create=True) as book:
-        record_run(book, rubric, [])
-        grades = Grades(book)
-        text = render_class_page(summary_of(grades, with_fixes=True), grades, {}, {})
-    (tmp_path / "index.html").write_text(text, encoding="utf-8")
-    page = ClassPageReader(tmp_path / "index.html")
-    assert page.texts("//p[@class='counts']") == ["no students"]
-    assert not page.root.xpath("//section")
-
-
-def test_grades_of_an_earlier_rubric(tmp_path: Path) -> None:
-    """They are in the table with their reason, and in no figure."""
-    old, new = lab(), lab(loads="1")
-    with Gradebook(tmp_path / "book.db", create=True) as book:
-        record_run(book, old, [graded_as(old, key, "fspp!") for key in ("ash", "birch")])
-        record_run(book, new, [graded_as(new, "ash", "ppppp")])
-        grades = Grades(book)
-        text = render_class_page(summary_of(grades, with_fixes=True), grades, {"birch": "birch.html"}, {})
-    (tmp_path / "index.html").write_text(text, encoding="utf-8")
-    page = ClassPageReader(tmp_path / "index.html")
-    rows = {row["name"]: row for row in page.table("students")}
-    assert "graded with an earlier version of the rubric" in rows["birch"]["status"]
-    assert (rows["ash"]["grade"], rows["birch"]["grade"]) == ("9", "4.5 of 11")
-    assert page.members("attention") == ["birch"]
-    assert [name for name in page.groups if "birch" in page.members(name)] == ["status-errored", "attention"]
-    assert page.links() == ["birch.html"]
-
-
-def test_a_picture_shows_the_robot_with_the_fewest_other_mistakes(tmp_path: Path) -> None:
-    """So that it shows the one that the edit is about."""
-    (tmp_path / "class").mkdir()
-    (tmp_path / "class/ash.urdf").write_text(LIDAR.replace("0 0.6 0 1", "0 0 1 1"), encoding="utf-8")
-    (tmp_path / "class/birch.urdf").write_text(LIDAR, encoding="utf-8")
-    book = tmp_path / "g.db"
-    for command in (("batch", tmp_path / "class"), ("export", "html", "--output", tmp_path / "pages")):
-        assert grader(*command, "--gradebook", book).returncode == 0
-    page = ClassPageReader(tmp_path / "pages/index.html")
-    (lidar,) = page.root.xpath("//article[contains(h3, 'lidar')]//*[local-name()='svg']")
-    assert page.members("edit-0") == ["ash", "birch"]
-    assert {path.get("fill") for path in lidar.iter("path")} >= {"#009900"}
-    assert "#0000ff" not in {path.get("fill") for path in lidar.iter("path")}
 
 
 def test_a_thousand_students_of_lab6_take_half_a_megabyte(tmp_path: Path) -> None:

@@ -2,25 +2,8 @@
 
 import pytest
 
-from grader.classroom.gradebook.identical import IdenticalWork
-from grader.report.class_words import edit_lines, identical_line, percent
+from grader.report.class_words import edit_lines, percent
 from grader.source import Edit
-
-TREES = ("ash", "birch", "cedar")
-
-
-@pytest.mark.parametrize(
-    ("same_file", "line"),
-    [
-        ((), "Ash (ash), birch and cedar: the same robot"),
-        ((TREES,), "Ash (ash), birch and cedar: the same file"),
-        ((("ash", "cedar"),), "Ash (ash), birch and cedar: the same robot; the same file: Ash (ash) and cedar"),
-    ],
-)
-def test_identical_work_in_a_line(same_file: tuple[tuple[str, ...], ...], line: str) -> None:
-    """It says who of them has the same file."""
-    names = {"ash": "Ash (ash)", "birch": "birch", "cedar": "cedar"}
-    assert identical_line(IdenticalWork(TREES, same_file), names) == line
 
 
 @pytest.mark.parametrize(("share", "words"), [(0, "0%"), (0.001, "1%"), (0.5, "50%"), (0.999, "99%"), (1, "100%")])

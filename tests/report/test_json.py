@@ -1,7 +1,6 @@
 """Reports and inspections as JSON: valid under their schemas, exact, and harmless whatever a student writes."""
 
 import json
-from decimal import Decimal
 from typing import Any
 
 import jsonschema
@@ -15,12 +14,11 @@ from grader.grading.schema import rubric_schema
 from grader.report.as_json import render_json
 from grader.report.formats import json_schema
 from grader.report.inspection import Inspection, inspection_json, main_root
-from grader.report.json_data import exact, rounded, to_json
+from grader.report.json_data import rounded, to_json
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
 from grader.submission.opening import read_submission
 from tests.robot.edge_cases import EDGE_CASES
-from tests.samples import REPORTED, SAMPLES
 
 RUBRIC = load_rubric("lab6")
 
@@ -47,20 +45,6 @@ def test_schemas_are_json_schemas(schema: dict[str, Any]) -> None:
     jsonschema.Draft202012Validator.check_schema(schema)
 
 
-@pytest.mark.parametrize("name", REPORTED)
-def test_reports_are_valid(name: str) -> None:
-    """The report of every sample is valid, and its points add up."""
-    report = SAMPLES[name].grade()
-    data = valid(render_json(report), json_schema("report"))
-    single, whole = {"lab6": (70, 100), "arm": (100, 100), "sensors": (56, 70)}[report.rubric.id]
-    assert data["max_score"] == (single if report.submission.is_single else whole)
-    assert data["score"] == sum(result["points"] for result in data["results"])
-    for result in data["results"]:
-        assert (result["status"] == "skipped") == (result["because"] is not None)
-        assert result["status"] in ("failed", "pending") or result["location"] is None
-        assert result["status"] == "failed" or result["feedback"] == ""
-
-
 def test_reports_and_inspections_of_edge_cases_are_valid() -> None:
     """Whatever the file: no exception, no NaN, no invalid Unicode."""
     report_schema, inspect_schema = (
@@ -73,13 +57,6 @@ def test_reports_and_inspections_of_edge_cases_are_valid() -> None:
         assert report.counts("errored") == 0, case.name
         report_schema.validate(json.loads(render_json(report)))
         inspect_schema.validate(json.loads(inspected(case.text)))
-
-
-def test_points_are_exact() -> None:
-    """Ten tenths are one, and 99.5 is not 100."""
-    assert exact(sum([Decimal("0.1")] * 10, Decimal(0))) == 1
-    assert to_json({"a": exact(Decimal("99.5"))}) == '{\n "a": 99.5\n}\n'
-    assert isinstance(exact(Decimal("70.0")), int)
 
 
 def test_measured_values_have_no_minus_zero_and_no_nan() -> None:
