@@ -1,7 +1,6 @@
 """grader stats: a class at a glance, for people at any terminal and for programs."""
 
 import json
-import shutil
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +11,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.run_writer import save_student
 from grader.classroom.gradebook.stored import Enrolment
 from grader.classroom.students import Student
-from tests.classroom.gradebooks import batch, graded_as, grader, lab, record_run, refusal, write_submission
-from tests.samples import LAB6, ROOT
+from tests.classroom.gradebooks import graded_as, grader, lab, record_run, refusal
 
 
 def stats(path: Path, *more: object, **variables: str) -> str:
@@ -28,54 +26,6 @@ def as_json(path: Path) -> dict[str, Any]:
     data = json.loads(stats(path, "--format", "json"))
     jsonschema.validate(data, json.loads(grader("schema", "class").stdout))
     return dict(data)
-
-
-def test_at_a_glance(top: Path) -> None:
-    """Marks, criteria, failures, and who needs attention."""
-    for key in ("anna", "emil"):
-        grader("mark", key, "essay", "1.5", "--gradebook", top / "book.db")
-    text = stats(top / "book.db")
-    assert text.startswith(
-        "A small lab\n3 graded, 1 could not be graded, 1 without a submission\n\n"
-        "Grades out of 11 (scaled up from the points that need no manual grading): mean\n8.1, standard deviation 2.5, "
-        "lowest 4.95, median 8.25, highest 11\n"
-        "Points on average: 6.0 earned, 2.7 lost, 2.3 need manual grading; 3 submissions\nneed manual grading\n"
-    )
-    assert "criterion  points  passed   marks  of  share  discrimination\n" in text
-    assert "whether students who earned the rest of the" in text
-    assert "box           2.5       2       0   3    67%           -0.19\n" in text
-    assert "essay           4       0       2   3    38%                \n" in text
-    assert "     1  box: 'base' shows a box 1 1 2 m; it should be 1 1 1 m (x, y, z)\n" in text
-    assert "Needs attention\n  could not be graded (1)\n    Cleo Ray (cleo): " in text
-    assert "  nothing was submitted (1): Dora Fi (dora)\n" in text
-
-
-def test_as_json(top: Path) -> None:
-    """Batch, stats and export give the same."""
-    done = batch(top, "--format", "json")
-    reported = json.loads(done.stdout)
-    jsonschema.validate(reported, json.loads(grader("schema", "class").stdout))
-    run = reported.pop("run")
-    assert (run["total"], run["graded"] + run["unchanged"], run["errored"]) == (4, 4, 0)
-    assert (
-        reported
-        == as_json(top / "book.db")
-        == json.loads(grader("export", "json", "--gradebook", top / "book.db").stdout)
-    )
-    assert reported["needs_attention"] == 2
-
-
-@pytest.mark.parametrize(
-    "variables",
-    [{"COLUMNS": "40"}, {"COLUMNS": "1"}, {"COLUMNS": "9999"}, {"NO_COLOR": "1"}, {"PYTHONIOENCODING": "ascii"}],
-)
-def test_any_terminal(variables: dict[str, str], graded_class: Path) -> None:
-    """No line is longer than the width, and a pipe gets no colour."""
-    text = stats(graded_class / "book.db", **variables)
-    width = min(500, max(40, int(variables.get("COLUMNS", "80"))))
-    assert max(map(len, text.splitlines())) <= width
-    assert "\x1b" not in text
-    assert "loads" in text
 
 
 def test_an_empty_gradebook(tmp_path: Path) -> None:
@@ -101,41 +51,6 @@ def test_few_or_none(signs: dict[str, str], tmp_path: Path) -> None:
     assert (grades in " ".join(text.split())) == ("pps?f" in signs.values())
     assert ("no students" in text) == (not signs)
     assert grader("export", "csv", "--gradebook", tmp_path / "book.db").stdout.count("\n") == 1 + len(signs)
-
-
-def test_almost_all_is_not_all(tmp_path: Path) -> None:
-    """A mean just below full marks is not rounded up to them, nor is a share to 100 % or 0 %."""
-    rubric = lab()
-    with Gradebook(tmp_path / "book.db", create=True) as book:
-        found = [graded_as(rubric, f"s{number}", "ppppp" if number else "ppppf") for number in range(300)]
-        record_run(book, rubric, found)
-    text = stats(tmp_path / "book.db")
-    assert "Grades out of 11: mean 10.9, standard deviation 0.1" in text
-    assert "picture         1     299  300    99%" in text
-    assert "essay           4     300  300   100%" in text
-
-
-def test_older_rubrics_are_reported(tmp_path: Path) -> None:
-    """Grades that do not count are mentioned."""
-    old, new = lab(), lab(loads="1")
-    with Gradebook(tmp_path / "book.db", create=True) as book:
-        record_run(book, old, [graded_as(old, key, "ppppp") for key in ("anna", "ben")])
-        record_run(book, new, [graded_as(new, "anna", "ppppp")])
-    text = stats(tmp_path / "book.db")
-    assert "2 graded\n1 graded by an earlier rubric only: not in these statistics\n" in text
-    assert "  graded with an earlier version of the rubric (1): ben\n" in text
-
-
-def test_names_are_escaped(top: Path) -> None:
-    """Names of students and files cannot colour, reverse or end the terminal's text."""
-    write_submission(top / "class" / "x[red]\x1b[31m\u202ey")
-    (top / "class" / "[bold]\x1b]0;z\x07.zip").write_bytes(b"no zip")
-    (top / "roster.csv").write_bytes("id,name\nanna,\u202eA\x1b[31mn[red]\n".encode())
-    done = batch(top)
-    assert done.returncode == 0
-    for text in (done.stdout, done.stderr, stats(top / "book.db")):
-        assert not set(text) & set("\x1b\x07\u202e\r")
-    assert "[red]" in done.stdout
 
 
 def sections(path: Path) -> None:
@@ -204,17 +119,3 @@ def test_sections_in_json(tmp_path: Path) -> None:
     assert comparison["groups"][0]["late_points"] == 2.2
     assert comparison["groups"][0]["shares"]["box"] == 0.5
     assert comparison["differing"][0] == "essay"
-
-
-def test_the_table_of_criteria_fits_on_80_columns(tmp_path: Path) -> None:
-    """With criteria that are not deducted, or marked, no header and no id is cut."""
-    shutil.copytree(ROOT / "submissions/lab6/wheel-too-small/my_robot/urdf", tmp_path / "class" / "ash")
-    book = ("--gradebook", tmp_path / "book.db")
-    assert grader("batch", tmp_path / "class", *book, "--jobs", 1).returncode == 0
-    assert grader("mark", "ash", "answer-floating-link", "1", *book).returncode == 0
-    lines = stats(tmp_path / "book.db").splitlines()
-    header = next(line for line in lines if line.startswith("criterion"))
-    assert header.split() == ["criterion", "points", "passed", "deducted", "marks", "of", "share", "discrimination"]
-    assert lines[lines.index(header) - 1].split() == ["not", "manual"]
-    ids = {line.split()[0] for line in lines[lines.index(header) :] if line}
-    assert {criterion.id for criterion in LAB6.criteria if criterion.part == "task1"} <= ids

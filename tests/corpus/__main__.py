@@ -39,14 +39,16 @@ def _generated(found: Expected) -> Iterator[str]:
 
 
 def _quoted(text: str) -> str:
-    """Return a text as a value of TOML: lines as they are, if they have neither control characters nor ''' ."""
-    if "\n" in text and "'''" not in text and not re.search(r"[^\n\t -~\u00a0-\uffff]", text):
+    """Return a text as a value of TOML: lines as they are, and with escapes if they have control characters or ''' ."""
+    if "\n" not in text:
+        return _basic(text)
+    if "'''" not in text and not re.search(r"[^\n\t -~\u00a0-\uffff]", text):
         return f"'''\n{text}'''"
-    return _basic(text)
+    return '"""\n' + "\n".join(_basic(line)[1:-1] for line in text.split("\n")) + '"""'
 
 
 def _basic(text: str) -> str:
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\r", "\\r")
     return '"' + re.sub(r"[\x00-\x1f\x7f-\x9f]", lambda match: f"\\u{ord(match[0]):04x}", escaped) + '"'
 
 

@@ -1,23 +1,22 @@
 """Cases of the corpus: what a user gives to the command line, and what comes back. README.md describes their form."""
 
 import json
-import re
 import shlex
 import shutil
 import tomllib
 import zipfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from datetime import UTC, datetime, timedelta
 from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
 from tests.command_line import ROOT, Done, run_with_input
+from tests.corpus.outputs import contents, kept, masked
 from tests.corpus.results import results
+from tests.corpus.steps import STEPS, copy, remove
 
 CORPUS = Path(__file__).parent
-_TIME = r"[T ]\d\d:\d\d(:\d\d(\.\d+)?)?(Z|[+-]\d\d:?\d\d)?"
 
 Expected = dict[str, str]  # exit, stdout, stderr and files/PATH; what is empty is left out
 
@@ -34,9 +33,11 @@ class Case:
     expected: Expected
     about: str
     commands: tuple[str, ...]
+    setup: tuple[str, ...] = ()  # commands before them, which succeed and whose output is not compared
     copies: Mapping[str, str] = field(default_factory=dict)  # path here: path in the project
     removed: tuple[str, ...] = ()
     edits: tuple[tuple[str, str, str], ...] = ()  # path, a text that stands there, the text that replaces it everywhere
+    empty: tuple[str, ...] = ()  # files without content; a path that ends in a slash is a folder
     files: Mapping[str, str] = field(default_factory=dict)
     hex: Mapping[str, str] = field(default_factory=dict)  # files that are no text
     sizes: Mapping[str, int] = field(default_factory=dict)  # files that spaces follow up to this size
@@ -58,38 +59,46 @@ class Case:
     def outcome(self, here: Path) -> Expected:
         """Return what the commands print, their exit codes, and the files that they write, in an empty folder."""
         self._prepare(here)
-        before = _contents(here)
+        for command in self.setup:
+            done = self._run(command, here)
+            assert done.returncode == 0, done.stderr
+        before = contents(here)
         found: Expected = {"exit": "", "stdout": "", "stderr": ""}
         for command in self.commands:
-            words = shlex.split(command.replace("ROOT", str(ROOT)).replace("HERE", str(here)))
-            own = dict(word.split("=", 1) for word in takewhile(lambda word: "=" in word, words))
-            variables = {name: text.replace("HERE", str(here)) for name, text in {**self.variables, **own}.items()}
-            done = run_with_input(words[len(own) :], self.stdin.encode(), variables, here / self.folder)
+            step, *words = shlex.split(command) or [""]
+            if step in STEPS:
+                known = contents(here)
+                STEPS[step](here, *words)
+                before |= {path: content for path, content in contents(here).items() if known.get(path) != content}
+                continue
+            done = self._run(command, here)
             heading = f"$ grader {command}\n" if len(self.commands) > 1 else ""
             found["exit"] += f"{' ' if found['exit'] else ''}{done.returncode}"
-            found["stdout"] += heading + _masked(self._shown(done), here)
-            found["stderr"] += _masked(done.stderr.decode(), here)
-        written = [path for path, content in _contents(here).items() if before.get(path) != content]
+            found["stdout"] += heading + masked(self._shown(done), here)
+            found["stderr"] += masked(done.stderr.decode(), here)
+        written = [path for path, content in contents(here).items() if before.get(path) != content]
         for path in written:
-            is_kept = any(Path(path).match(pattern) for pattern in self.keep)
-            text = (here / path).read_bytes().decode(errors="backslashreplace") if is_kept else ""
-            found[f"files/{path}"] = _masked(text, here)
+            found[f"files/{path}"] = masked(kept(path, here / path, self.keep), here)
         return {key: text for key, text in found.items() if text or key.startswith("files/")}
+
+    def _run(self, command: str, here: Path) -> Done:
+        words = shlex.split(command.replace("ROOT", str(ROOT)).replace("HERE", str(here)))
+        own = dict(word.split("=", 1) for word in takewhile(lambda word: "=" in word, words))
+        variables = {name: text.replace("HERE", str(here)) for name, text in {**self.variables, **own}.items()}
+        return run_with_input(words[len(own) :], self.stdin.encode(), variables, here / self.folder)
 
     def _prepare(self, here: Path) -> None:
         if (self.path / "input").is_dir():
             shutil.copytree(self.path / "input", here, dirs_exist_ok=True)
-        data = {path: text.encode() for path, text in self.files.items()}
+        data = {path: b"" for path in self.empty if not path.endswith("/")}
+        data |= {path: text.encode() for path, text in self.files.items()}
         data |= {path: bytes.fromhex(digits) for path, digits in self.hex.items()}
-        for path in (*self.copies, *data, *self.links):
+        for path in (*data, *self.links, *(f"{folder}x" for folder in self.empty if folder.endswith("/"))):
             (here / path).parent.mkdir(parents=True, exist_ok=True)
         for path, source in self.copies.items():
-            if (ROOT / source).is_dir():
-                shutil.copytree(ROOT / source, here / path, dirs_exist_ok=True)
-            else:
-                shutil.copyfile(ROOT / source, here / path)
+            copy(here, str(ROOT / source), path)
         for path in self.removed:
-            (shutil.rmtree if (here / path).is_dir() else Path.unlink)(here / path)
+            remove(here, path)
         for path, content in data.items():
             (here / path).write_bytes(content.ljust(self.sizes.get(path, 0)))
         for path, old, new in self.edits:
@@ -105,22 +114,10 @@ class Case:
             shutil.rmtree(here / folder)
 
     def _shown(self, done: Done) -> str:
-        if self.view == "results" and done.stdout.startswith(b"{"):
-            return "".join(f"{line}\n" for line in results(json.loads(done.stdout), self.shown))
-        return done.stdout.decode()
-
-
-def _contents(folder: Path) -> dict[str, bytes]:
-    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
-
-
-def _masked(text: str, here: Path) -> str:
-    """Return a text without what differs from run to run, and a page without its styles and scripts."""
-    if text.startswith("<!DOCTYPE html>"):
-        text = re.sub(r"(?s)(?<=<style>).*?(?=</style>)|(?<=<script>).*?(?=</script>)|&#39;sha256-.*?&#39; ?", "", text)
-    now = datetime.now(UTC)
-    days = "|".join(f"{now - timedelta(days=days):%Y-%m-%d}" for days in (0, 1))
-    return re.sub(f"({days}){_TIME}", "TIME", text.replace(str(here), "HERE").replace(str(ROOT), "ROOT"))
+        report = json.loads(done.stdout) if self.view == "results" and done.stdout.startswith(b"{") else {}
+        if "results" in report or "attention" in report:
+            return "".join(f"{line}\n" for line in results(report, self.shown))
+        return done.stdout.decode(errors="backslashreplace")
 
 
 def read_corpus() -> Iterator[Case]:

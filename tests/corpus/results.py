@@ -1,11 +1,15 @@
-"""A JSON report in a few lines: its score, and what did not pass."""
+"""A JSON report, of a submission or a class, in a few lines."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 
 def results(report: Mapping[str, Any], shown: tuple[str, ...] = ()) -> Iterator[str]:
-    """Yield the score of a JSON report, its notes, what did not pass or is to be shown, what was found, and the problems."""
+    """Yield the lines of a class, or the score of a report, its notes, what did not pass or is to be shown, and the problems."""
+    if "attention" in report:
+        yield from map(_student, report["students"])
+        yield from (f"{group['reason']}: {_ids(group['students'])}" for group in report["attention"])
+        return
     yield f"{report['score']:g} of {report['max_score']:g}, {report['pending']:g} pending"
     yield from (f"note: {note}" for note in report["notes"])
     others = report["submission"].get("other_candidates", ())
@@ -20,6 +24,31 @@ def results(report: Mapping[str, Any], shown: tuple[str, ...] = ()) -> Iterator[
         yield from (f"evidence {piece['id']}: {_found(file)}" for file in piece["files"])
         yield from (f"evidence {piece['id']}: perhaps {_found(file)}" for file in piece["possible"])
     yield from (f"{row['code']}{_place(row['location'])}: {row['message']}" for row in report["problems"])
+
+
+def _student(row: Mapping[str, Any]) -> str:
+    """Return a student's identity, status, points, lateness, marks and files."""
+    late = row["late"]
+    is_unread = row["status"] == "unreadable" and not row["manual_marks"]
+    parts = (
+        f"{row['score']:g}/{row['max_score']:g}" if row["score"] is not None and not is_unread else "",
+        f"{row['pending']:g} pending" if row["pending"] and not is_unread else "",
+        f"late {late['days']:g}: {late['points']:g}" if late["days"] else "",
+        late["reason"],
+        f"total {row['total']:g}" if row["total"] not in (None, row["score"]) else "",
+        f"final mark {row['final_mark']:g}" if row["final_mark"] is not None else "",
+        "excused" if row["is_excused"] else "",
+        f"{row['manual_marks']} manual" if row["manual_marks"] else "",
+        f"attempt {row['attempt']} after {' '.join(row['earlier'])}" if row["attempt"] > 1 else "",
+    )
+    who = f"{row['id']} ({row['name']})" if row["name"] not in ("", row["id"]) else row["id"]
+    files = f" <- {', '.join(row['paths'])}" if row["paths"] else ""
+    return f"{who}: {', '.join(part for part in (row['status'], *parts) if part)}{files}"
+
+
+def _ids(students: list[Mapping[str, str]]) -> str:
+    details = {row["id"]: row["detail"] for row in students if len(students) < 3}  # few, so that a table can be read
+    return ", ".join(f"{row['id']} ({details[row['id']]})" if details.get(row["id"]) else row["id"] for row in students)
 
 
 def _result(row: Mapping[str, Any], is_shown: bool) -> str:

@@ -53,63 +53,6 @@ def is_open(standings: Grades, queued: QueuedCriterion) -> bool:
     return found.result.is_open
 
 
-@pytest.mark.parametrize(
-    ("text", "points"),
-    [
-        ("0", "0"),
-        ("4", "4"),
-        ("4.25", "4.25"),
-        ("3,5", "3.5"),
-        (" 3.5 ", "3.5"),
-        ("0.0001", "0.0001"),
-        ("3.50000", "3.5"),
-        ("4e0", "4"),
-        ("-0", "0"),
-        ("+1", "1"),
-        (".5", "0.5"),
-    ],
-)
-def test_points(text: str, points: str) -> None:
-    """Points from 0 to the maximum, with up to 4 decimals after a point or a comma."""
-    assert read_points(text, ESSAY.id, ESSAY.points) == Decimal(points)
-
-
-@pytest.mark.parametrize(
-    ("text", "why"),
-    [
-        ("4.2501", "is worth 0 to 4.25 points, not 4.2501"),
-        ("5", "is worth 0 to 4.25 points, not 5"),
-        ("-1", "is worth 0 to 4.25 points, not -1"),
-        ("-0.0001", "is worth 0 to 4.25 points"),
-        ("1e30", "is worth 0 to 4.25 points"),
-        ("1e999999999", "is worth 0 to 4.25 points"),
-        ("-1e999999999", "is worth 0 to 4.25 points"),
-        ("1e-999999999", "at most 4 decimals"),
-        ("1e-5", "at most 4 decimals"),
-        ("3.00001", "at most 4 decimals"),
-        ("3." + "9" * 40, "at most 4 decimals"),  # which rounds to all points
-        ("nan", "points are a number from 0 to 4.25"),
-        ("snan", "points are a number"),
-        ("-nan", "points are a number"),
-        ("inf", "points are a number"),
-        ("-inf", "points are a number"),
-        ("", "points are a number"),
-        ("1_0", "points are a number"),
-        ("-", "points are a number"),
-        ("--", "points are a number"),
-        ("four", "points are a number"),
-        ("3/4", "points are a number"),
-        ("50%", "points are a number"),
-        ("1,000.5", "points are a number"),
-        ("\x1b[31m3", r"not '\\x1b\[31m3'"),
-    ],
-)
-def test_invalid_points(text: str, why: str) -> None:
-    """One line says which points are valid."""
-    with pytest.raises(InputError, match=why):
-        read_points(text, ESSAY.id, ESSAY.points)
-
-
 @given(st.text())
 def test_any_text_is_points_or_refused(text: str) -> None:
     """Any text is refused or gives points between 0 and the maximum."""
@@ -118,14 +61,6 @@ def test_any_text_is_points_or_refused(text: str) -> None:
     except InputError:
         return
     assert 0 <= points <= ESSAY.points and points * 10_000 % 1 == 0
-
-
-def test_a_criterion_without_points() -> None:
-    """A mark on a criterion without points can only add a comment."""
-    nothing = ESSAY._replace(points=Decimal(0))
-    assert read_points("0", nothing.id, nothing.points) == 0
-    with pytest.raises(InputError, match="is worth 0 to 0 points, not 1"):
-        read_points("1", nothing.id, nothing.points)
 
 
 def test_a_container_may_have_no_account(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -208,21 +143,3 @@ def test_an_error_of_the_grader_does_not_block_manual_grading(standings: Grades)
         put(standings, "emil", name, points)
     assert standings.find("emil").why_not_final == ""
     assert standings.find("emil").score == Decimal("11")
-
-
-def test_an_unreadable_submission_can_be_marked(standings: Grades) -> None:
-    """It is marked criterion by criterion, and final when all have marks."""
-    for number, criterion in enumerate(LAB.criteria):
-        assert standings.find("dora").why_not_final == "it could not be graded: no zip", number
-        put(standings, "dora", criterion.id, str(criterion.points))
-    found = standings.find("dora")
-    assert (found.score, found.out_of, found.pending, found.why_not_final) == (LAB.points, LAB.points, Decimal(0), "")
-
-
-def test_parts_that_were_not_graded_can_be_marked(standings: Grades) -> None:
-    """A single URDF has no written answers; a mark for them adds to both score and maximum."""
-    put(standings, "cleo", "essay", "4")
-    found = standings.find("cleo")
-    assert (found.score, found.out_of, found.pending) == (Decimal(10), Decimal("10.25"), Decimal(0))
-    (essay,) = [result for result in standings.report(found).results if result.criterion.id == "essay"]
-    assert (essay.points, essay.outcome.status) == (Decimal(4), "skipped")

@@ -19,7 +19,6 @@ from tests.classroom.class_runs import (
     report_in_process,
     rows,
     urdf_class,
-    verdicts,
     without_hints,
 )
 from tests.command_line import GRADER
@@ -217,13 +216,6 @@ def test_the_same_bytes_are_not_graded_again(graded: Path) -> None:
     assert results(graded) == before
 
 
-def test_a_class_may_move(graded: Path) -> None:
-    """The path of the class does not matter; reports quote the files at the new path."""
-    moved = graded.rename(graded.parent / "elsewhere")
-    assert again(moved, "--reports", str(graded.parent / "reports")) == f"0 graded, {SIZE} unchanged"
-    assert len(contents(graded.parent / "reports")) == SIZE
-
-
 def _change_one_byte(path: Path) -> None:
     """Change a number without changing the size or the time of the file."""
     before = path.stat()
@@ -253,42 +245,6 @@ def test_exactly_the_changed_submissions_are_graded_again(graded: Path, tmp_path
     assert {path for path in after if after[path] != before[path]} == changed
     assert all(after[path][:-1] == before[path] for path in changed)
     assert reports_of(tmp_path / "lab6.db", tmp_path / "reports") == batch(graded, tmp_path / "fresh")
-
-
-def test_new_and_removed_students(graded: Path, tmp_path: Path) -> None:
-    """Only the new one is graded; the grade of a removed submission stays."""
-    shutil.copy(REFERENCE, graded / "new.urdf")
-    gone = min(graded.glob("*.urdf"))
-    gone.unlink()
-    assert again(graded) == f"1 graded, {SIZE - 1} unchanged"
-    assert verdicts(tmp_path / "lab6.db")[gone.stem] == "graded"
-
-
-def test_another_rubric_and_force_grade_all_again(graded: Path, tmp_path: Path) -> None:
-    """A rubric that differs by a word is another one; --force grades everything, and no result is duplicated."""
-    rubric = tmp_path / "lab6.toml"
-    text = (ROOT / "rubrics/lab6/rubric.toml").read_text()
-    rubric.write_text(text + "\n# another year\n")
-    before = results(graded)
-    assert again(graded, "--rubric", str(rubric)) == f"{SIZE} graded, 0 unchanged"
-    assert again(graded, "--rubric", str(rubric)) == f"0 graded, {SIZE} unchanged"
-    assert again(graded) == f"0 graded, {SIZE} unchanged"  # with the rubric of the last run
-    assert again(graded, "--rubric", "lab6") == f"{SIZE} graded, 0 unchanged"
-    once_more = results(graded)
-    assert {len(row) for row in once_more.values()} == {3}
-    assert again(graded, "--force") == f"{SIZE} graded, 0 unchanged"
-    assert results(graded) == once_more != before
-
-
-def test_lateness_is_updated_without_grading(graded: Path, tmp_path: Path) -> None:
-    """A change of the roster changes the grade, not the result."""
-    path = min(graded.glob("*.urdf"))
-    before = results(graded)
-    for late in ("yes", "no"):
-        (tmp_path / "roster.csv").write_text(f"id,late\n{path.stem},{late}\n")
-        assert again(graded, "--roster", str(tmp_path / "roster.csv"), "--add") == f"0 graded, {SIZE} unchanged"
-        assert rows(tmp_path / "lab6.db", "SELECT is_late FROM grade WHERE key = ?", path.stem) == [(late == "yes",)]
-    assert results(graded) == before
 
 
 # --- Reports ----------------------------------------------------------------------------------------------------------
