@@ -30,14 +30,8 @@ for name in [name for name in os.environ if name in _NAMES or name.startswith(_B
 os.environ |= {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
 
 
-def pytest_itemcollected(item: pytest.Item) -> None:
-    """Have one worker run a file, whose fixtures are made once; tests may name smaller groups, as the cases of the corpus do."""
-    if not item.get_closest_marker("xdist_group"):
-        item.add_marker(pytest.mark.xdist_group(str(item.path)))
-
-
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Start with the files that contain slow tests, because no other worker should wait for them."""
+    """Start with the files that contain slow tests, because one worker runs a file and no other should wait for it."""
     slow = {item.path for item in items if item.get_closest_marker("slow")}
     items.sort(key=lambda item: item.path not in slow)
 

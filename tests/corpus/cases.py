@@ -72,7 +72,7 @@ class Case:
                 before |= {path: content for path, content in contents(here).items() if known.get(path) != content}
                 continue
             done = self._run(command, here)
-            heading = f"$ grader {command}\n" if len(self.commands) > 1 else ""
+            heading = f"$ {' '.join(command.split()[:2])}\n" if len(self.commands) > 1 else ""
             found["exit"] += f"{' ' if found['exit'] else ''}{done.returncode}"
             found["stdout"] += heading + masked(self._shown(done), here)
             found["stderr"] += masked(done.stderr.decode(), here)

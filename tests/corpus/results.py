@@ -23,7 +23,9 @@ def results(report: Mapping[str, Any], shown: tuple[str, ...] = ()) -> Iterator[
     for piece in report.get("evidence", ()) if "evidence" in shown else ():
         yield from (f"evidence {piece['id']}: {_found(file)}" for file in piece["files"])
         yield from (f"evidence {piece['id']}: perhaps {_found(file)}" for file in piece["possible"])
-    yield from (f"{row['code']}{_place(row['location'])}: {row['message']}" for row in report["problems"])
+    for problem in report["problems"]:
+        is_told = any(problem["message"] in row["message"] for row in rows)
+        yield f"{problem['code']}{_place(problem['location'])}{'' if is_told else ': ' + problem['message']}"
 
 
 def _student(row: Mapping[str, Any]) -> str:
@@ -52,7 +54,12 @@ def _ids(students: list[Mapping[str, str]]) -> str:
 
 
 def _result(row: Mapping[str, Any], is_shown: bool) -> str:
-    """Return a result with its hints, and the text of an answer that is to be shown; several may differ in their ids only."""
+    """Return a result with its hints, and the text of an answer that is to be shown; several may differ in their ids only.
+
+    Of pictures and answers that need manual grading, as they do in most cases, there are the ids only.
+    """
+    if row["status"] == "pending" and row["id"].startswith(("evidence-", "answer-")) and not is_shown:
+        return "pending IDS"
     carried = " (carried)" if row["carried"] else ""
     answer = row["measured"] if is_shown and isinstance(row["measured"], str) else ""
     return "\n".join((

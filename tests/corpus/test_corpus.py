@@ -4,16 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.corpus.cases import CORPUS, Case, read_corpus
+from tests.corpus.cases import Case, read_corpus
 from tests.samples import SAMPLES
 
-CASES = [
-    pytest.param(case, id=case.name, marks=pytest.mark.xdist_group("/".join(case.path.relative_to(CORPUS).parts[:2])))
-    for case in read_corpus()
-]
-
-
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.slow
+@pytest.mark.parametrize("case", list(read_corpus()), ids=lambda case: case.name)
 def test_the_case_is_as_expected(case: Case, tmp_path: Path) -> None:
     """Standard output, standard error, exit codes and written files; `python -m tests.corpus` writes them again."""
     assert case.outcome(tmp_path) == case.expected
