@@ -16,6 +16,7 @@ from grader.classroom.run.worker import ClassContext, Task, grade_all
 from grader.grading.grade import grade
 from grader.submission.opening import read_submission
 from tests.classroom.lab6_class import read_class
+from tests.examples import spread
 from tests.samples import LAB6, ROOT
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
@@ -93,7 +94,7 @@ def test_a_generated_class_loses_the_expected_criteria() -> None:
         assert lost(submission.made.text) == set(submission.made.lost), submission.made
 
 
-@pytest.mark.parametrize("variant", ALL_VARIANTS, ids=lambda variant: variant.name)
+@pytest.mark.parametrize("variant", spread(ALL_VARIANTS, 20), ids=lambda variant: variant.name)
 def test_a_variant_loses_the_expected_criteria(variant: made_up.Variant) -> None:
     """Each way to build or break the robot alone, in two styles; each of its edits finds its text once."""
     for edit in variant.edits:
@@ -128,7 +129,7 @@ def test_all_kinds_and_names_occur(tmp_path: Path) -> None:
     assert written[-1].person.login.endswith(str(MANY))
 
 
-@pytest.mark.parametrize("layout", made_up.LAYOUTS)
+@pytest.mark.parametrize("layout", spread(made_up.LAYOUTS, 1))
 def test_every_mixed_submission_is_opened(layout: str, tmp_path: Path) -> None:
     """None causes an error of the grader, and those with a known result get it."""
     folder = tmp_path / "class"

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from tests.command_line import run
+from tests.examples import spread
 from tests.samples import ROOT
 
 LAUNCH, SETUP, RVIZ = "*.launch.py", "setup.py", "*.rviz"
@@ -77,7 +78,7 @@ def hints(report: dict[str, Any]) -> list[dict[str, Any]]:
     return list(found.values())
 
 
-@pytest.mark.parametrize("name", MISTAKES)
+@pytest.mark.parametrize("name", spread(MISTAKES, 6))
 def test_the_mistake_itself_is_corrected(name: str, tmp_path: Path) -> None:
     """The only hint changes what the student got wrong and nothing else, and --fix reaches all automatic points."""
     *mistake, edits = MISTAKES[name]

@@ -28,8 +28,9 @@ def kept(name: str, file: Path | zipfile.Path, patterns: Iterable[str]) -> str:
 
 
 def masked(text: str, here: Path) -> str:
-    """Return a text without what differs from run to run, and a page without its styles and scripts."""
+    """Return a text without what differs from run to run, and a page without its styles, scripts and pictures."""
     if text.startswith("<!DOCTYPE html>"):
+        text = re.sub(r"(?s)(<svg\b).*?(?=</svg>)", r"\1>", text)
         text = re.sub(r"(?s)(?<=<style>).*?(?=</style>)|(?<=<script>).*?(?=</script>)|&#39;sha256-.*?&#39; ?", "", text)
     now = datetime.now(UTC)
     days = "|".join(f"{now - timedelta(days=days):%Y-%m-%d}" for days in (0, 1))

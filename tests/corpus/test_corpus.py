@@ -7,6 +7,7 @@ import pytest
 from tests.corpus.cases import Case, read_corpus
 from tests.samples import SAMPLES
 
+
 @pytest.mark.slow
 @pytest.mark.parametrize("case", list(read_corpus()), ids=lambda case: case.name)
 def test_the_case_is_as_expected(case: Case, tmp_path: Path) -> None:

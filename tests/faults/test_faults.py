@@ -42,7 +42,7 @@ def found(module: str, *arguments: str) -> str:
 
 
 @needs_shim
-@pytest.mark.slow
+@pytest.mark.exhaustive
 def test_a_failed_call_of_each_kind() -> None:
     """The gradebook is sound, no mark is lost, no file is half written, and rerunning the command completes it."""
     calls = ("batch:open", "batch:read", "batch:list", "grade:list", "merge:write", "merge:sync", "export-into:rename")

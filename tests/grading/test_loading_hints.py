@@ -16,6 +16,7 @@ from grader.robot.reader import Reading, read_urdf
 from grader.submission.editing import edited_files
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
+from tests.examples import spread
 from tests.grading.broken_urdfs import BROKEN, REFERENCE, Broken
 from tests.robot.problem_samples import SAMPLES as PROBLEMS
 from tests.samples import LAB6, LAB6_SAMPLES, SAMPLES, opened
@@ -78,7 +79,7 @@ def repaired_text(submission: Submission, found: FoundHint) -> bytes:
     return data
 
 
-@pytest.mark.parametrize("broken", BROKEN, ids=[broken.name for broken in BROKEN])
+@pytest.mark.parametrize("broken", spread(BROKEN, 30), ids=[broken.name for broken in BROKEN])
 def test_repair_restores_the_robot(broken: Broken, tmp_path: Path) -> None:
     """One hint restores the robot that the student meant, and all points, with edits of few characters."""
     submission = written(tmp_path, broken.text)

@@ -20,6 +20,7 @@ from grader.mutation.mutation_test import MutationTest
 from grader.mutation.trial import Trial
 from grader.submission.opening import open_submission
 from tests.command_line import run
+from tests.examples import spread
 
 FOLDER = Path(__file__).parent
 LABS = sorted(path.parent.name for path in FOLDER.glob("*/rubric.toml"))
@@ -105,7 +106,7 @@ def reference_pending(lab: str) -> frozenset[str]:
     return frozenset(result.criterion.id for result in results if result.outcome.status == "pending")
 
 
-@pytest.mark.parametrize("robot", ROBOTS, ids=lambda robot: f"{robot.lab}-{robot.kind}-{robot.name}")
+@pytest.mark.parametrize("robot", spread(ROBOTS, 80), ids=lambda robot: f"{robot.lab}-{robot.kind}-{robot.name}")
 def test_a_robot_loses_what_it_should(robot: Robot, tmp_path: Path) -> None:
     """A correct robot loses nothing, a wrong one exactly the expected criteria, and nothing is errored."""
     report = graded(robot, tmp_path)

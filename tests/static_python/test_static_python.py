@@ -266,7 +266,7 @@ SLOW = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", spread(SLOW, 3))
+@pytest.mark.parametrize("name", spread(SLOW, 2))
 def test_repeated_expensive_steps_are_bounded(name: str) -> None:
     """A large value is evaluated only so often."""
     evaluated(SLOW[name])

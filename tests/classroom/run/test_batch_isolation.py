@@ -44,7 +44,7 @@ ENDED = ("dies", "crashes", "leaves", "leaves_loudly", "eats")
 RUBRIC = ("--rubric", HOSTILE_RUBRIC)
 
 
-@pytest.mark.slow
+@pytest.mark.exhaustive
 def test_each_misbehaviour_affects_one_submission(tmp_path: Path) -> None:
     """All of them at once among many others: each is errored with its reason, and only these are tried again."""
     folder = hostile_class(tmp_path / "class", *REASONS, *GOOD)
