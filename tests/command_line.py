@@ -17,6 +17,7 @@ from unittest.mock import patch
 
 from grader.__main__ import main
 from tests.conversion import convert_here
+from tests.faults.shim import is_preloaded
 from tests.parsed_rubrics import validated_once
 
 ROOT = Path(__file__).parent.parent
@@ -129,7 +130,7 @@ class _Pool:
 
 
 class _Unsynced(sqlite3.Connection):
-    """A connection that leaves it to the system when it writes to the disk; power failures are tested in processes."""
+    """A connection that leaves it to the system when it writes to the disk, unless failures of the disk are tested."""
 
     def execute(self, statement: str, *parameters: Any) -> sqlite3.Cursor:
         """Execute a statement."""
@@ -147,8 +148,8 @@ def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[
         patch("grader.documents.collection.DocumentCollection._run", convert_here),
         patch("grader.classroom.run.pool.ProcessPool", _Pool),
         patch("grader.classroom.run.forks.start_server", bool),
-        patch("sqlite3.connect", partial(sqlite3.connect, factory=_Unsynced)),
-        patch("os.fsync", bool),
+        patch("sqlite3.connect", partial(sqlite3.connect, factory=sqlite3.Connection if is_preloaded() else _Unsynced)),
+        patch("os.fsync", os.fsync if is_preloaded() else bool),
         _redirected(0, files[0]),
         _redirected(1, files[1]),
         _redirected(2, files[2]),

@@ -246,7 +246,7 @@ def test_dark_mode_and_print(fresh: Any) -> None:
         == "rgb(218, 251, 225)"
     )
     assert not fresh.locator("canvas").is_visible()
-    assert fresh.get_by_role("heading", name="The robot").count() == 0
+    assert fresh.get_by_role("heading", name="The robot", exact=True).count() == 0
     tops = [
         fresh.locator(f"{part} h2").first.bounding_box()["y"] for part in ("header + main .picture", ".report", ".all")
     ]

@@ -98,7 +98,7 @@ def test_a_red_check(job: Job, tmp_path: Path) -> None:
     assert (
         f"::error file={path},line=39,endLine=39,col=15,endColumn=30,title=lidar-frame (6 points lost)::" in done.stderr
     )
-    assert job.output("score") == "62"
+    assert job.output("score") == "63"
     assert "lidar-frame" in job.runner.summary
 
 

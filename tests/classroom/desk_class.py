@@ -1,6 +1,7 @@
 """A class of Lab 6 as a teaching assistant gets it: few of the submissions have answers, and some of them are equal."""
 
 import random
+import shutil
 from pathlib import Path
 
 from tests.checks.submissions import png
@@ -14,15 +15,16 @@ _NODES = ("robot_state_publisher", "joint_state_publisher", "joint_state_publish
 
 def make_desk_class(folder: Path) -> Path:
     """Write STUDENTS submissions and a roster with two sections; ANSWERS have answers, PICTURES a picture."""
-    urdf = next((ROOT / "submissions/lab6/reference").rglob("*.urdf")).read_text()
+    package = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot"
+    urdf = (package / "urdf/my_robot.urdf").read_text()
     chance = random.Random(30)
     rows = ["id,name,section"]
     for number in range(STUDENTS):
         key = f"s{number:03}"
         rows.append(f"{key},Student {number},{'AB'[number % 2]}")
         top = folder / "class" / key
-        top.mkdir(parents=True)
-        (top / "my_robot.urdf").write_text(f"{urdf}<!-- {key} -->\n")
+        shutil.copytree(package, top / "my_robot")
+        (top / "my_robot/urdf/my_robot.urdf").write_text(f"{urdf}<!-- {key} -->\n")
         if number < ANSWERS:
             why = f"The link {chance.choice(_ENDS)}, because {chance.choice(_WHYS)}."
             nodes = f"It starts {' and '.join(chance.sample(_NODES, 2))}, which show the robot."

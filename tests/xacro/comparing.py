@@ -10,6 +10,7 @@ from lxml import etree
 from grader.errors import InputError
 from grader.robot.reader import read_urdf
 from grader.static_python.closed_values import READING, Budget
+from grader.xml.catalogue import MISPLACED_DECLARATION
 from tests.xacro import oracle
 from tests.xacro.documents.document import PACKAGES, Document
 
@@ -37,10 +38,11 @@ def difference(document: Document, expected: oracle.Accepted | oracle.Refused) -
     """Return how the grader's expansion of a document differs from what is expected, xacro's; None if they agree.
 
     What xacro accepts is never refused; what it refuses is, unless that depends on what is outside of the submission. Every
-    other document is determined.
+    other document is determined. A processing instruction is xacro's to keep and ROS 2's to reject.
     """
     found = expand(document)
-    refusals = [problem.message for problem in found.problems if problem.kind.effect == "rejects"]
+    rejected = [problem for problem in found.problems if problem.kind.effect == "rejects"]
+    refusals = [problem.message for problem in rejected if problem.kind is not MISPLACED_DECLARATION]
     reasons = [undetermined.reason for undetermined in found.undetermined]
     if isinstance(expected, oracle.Accepted) and refusals:
         return f"xacro accepts it, the grader refuses it: {refusals[0]}"
@@ -55,13 +57,11 @@ def difference(document: Document, expected: oracle.Accepted | oracle.Refused) -
     text = etree.tostring(found.root, encoding="utf-8", with_tail=False)
     for name, folder in PACKAGES.items():
         text = text.replace(f"/install/{name}/share/{name}".encode(), f"/{folder}".rstrip("/").encode())
-    return _difference_of_texts(expected.text.encode(), text)
+    place = _difference_of_trees(tree(etree.fromstring(expected.text)), tree(etree.fromstring(text)), "")
+    return place if place is not None or rejected else _difference_of_robots(expected.text.encode(), text)
 
 
-def _difference_of_texts(expected: bytes, found: bytes) -> str | None:
-    place = _difference_of_trees(tree(etree.fromstring(expected)), tree(etree.fromstring(found)), "")
-    if place is not None:
-        return place
+def _difference_of_robots(expected: bytes, found: bytes) -> str | None:
     readings = [read_urdf(data) for data in (expected, found)]
     robots = [(reading.verdict, repr(reading.robot)) for reading in readings]  # their representation shows every number
     return None if robots[0] == robots[1] else f"the robots differ: {robots[0]} and {robots[1]}"
