@@ -1,111 +1,159 @@
-"""The rubric, roster and handed-out robots of a class: from the command, else from the last run into the gradebook."""
+"""The inputs of a run over a class: the options of the command, else what the gradebook has; their copies in it."""
 
+import os
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
+from shutil import copyfile, copytree, ignore_patterns, rmtree
 
-from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.lateness import read_time, time_text
-from grader.classroom.gradebook.marks import EXTENSION
-from grader.classroom.gradebook.run_writer import save_answers
-from grader.classroom.intake.roster import Roster, roster_from_json
-from grader.classroom.intake.roster_file import read_roster
-from grader.classroom.run.worker import work_hashes
+from grader.classroom import folder as names
+from grader.classroom.lateness import read_time, time_text
+from grader.classroom.roster import Roster, read_roster
+from grader.classroom.run.worker import reference_hashes
+from grader.classroom.equal_work import hashes_of
+from grader.classroom.settings import CLASS_FILE, ClassSettings, read_settings, settings_text
+from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import InputError
-from grader.grading.answers import load_with_answers, read_answers
-from grader.grading.rubric import Rubric
+from grader.files.reading import read_capped, sha256_of
+from grader.grading.rubric import Rubric, load_rubric
 from grader.submission.opening import open_submission
-from grader.text import counted, enumerated, named, people_text, printable, printable_path, shell_quoted
-from grader.usecases.class_summary import read_deadline
-from grader.usecases.rubrics import DEFAULT_RUBRIC
+from grader.text import printable_path
+from grader.usecases.rubrics import DEFAULT_RUBRIC, files_of
+from grader.usecases.saves import read_arguments
 from grader.usecases.terminal import Warn
+from grader.usecases.writing import save, save_bytes
 
-_MAX_NAMED = 5
-_EXTENDED = "SELECT key FROM current_mark JOIN student ON student.id = student WHERE criterion = ?"
+_PRIVATE = 0o600
 
 
-def handed_out_hashes(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
+@dataclass(frozen=True, slots=True)
+class ClassOptions:
+    """The options of `grader batch` that its gradebook keeps. `max_size` is in bytes; None stands for what is kept."""
+
+    paths: tuple[Path, ...] = ()
+    gradebook: Path | None = None
+    rubric: str | None = None
+    roster: Path | None = None
+    due: str | None = None
+    layout: str | None = None
+    assignment: str | None = None
+    part: tuple[str, ...] = ()
+    argument: tuple[str, ...] = ()
+    ignore_file: tuple[Path, ...] = ()
+    max_size: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ClassInputs:
+    """What a run reads: the gradebook and its settings, the rubric as it was named, the roster."""
+
+    folder: Path
+    settings: ClassSettings
+    rubric: Rubric
+    roster: Roster | None
+
+    @property
+    def roots(self) -> tuple[Path, ...]:
+        """The absolute paths of the submissions."""
+        return tuple(path.resolve() for path in self.settings.roots(self.folder))
+
+    @property
+    def deadline(self) -> datetime | None:
+        """The deadline of the class."""
+        return read_time(self.settings.due) if self.settings.due else None
+
+
+def read_inputs(options: ClassOptions, warn: Warn) -> ClassInputs:
+    """Return the inputs of a run; raise InputError and RubricError. Nothing is written."""
+    rubric = load_rubric(options.rubric) if options.rubric is not None else None
+    default = names.default_folder(rubric.id if rubric is not None else DEFAULT_RUBRIC)
+    folder = options.gradebook if options.gradebook is not None else default
+    is_new = not names.is_gradebook(folder)
+    names.check_free(folder)
+    settings = ClassSettings() if is_new else read_settings(folder)
+    if rubric is None:
+        rubric = load_rubric(DEFAULT_RUBRIC if is_new else folder / settings.rubric)
+    elif not is_new and (recorded := load_rubric(folder / settings.rubric)).id != rubric.id:
+        raise InputError(f"{printable_path(folder)} is the gradebook of {recorded.id}, not of {rubric.id}: name another folder")
+    if not (options.paths or settings.submissions):
+        raise InputError("name the PATH of the submissions, a folder or the zip of an LMS")
+    if settings.due and options.due is None:
+        due = read_time(settings.due)
+        warn(f"deadline of the last run: {time_text(due, due.tzinfo)} (--due changes it)")
+    roster_file = options.roster or (folder / names.ROSTER)
+    roster = None
+    if options.roster is not None or roster_file.exists():
+        roster = read_roster(read_capped(roster_file, SIZE_LIMIT, advice=""), printable_path(roster_file))
+    return ClassInputs(folder, _updated(options, settings, folder, rubric), rubric, roster)
+
+
+def _updated(options: ClassOptions, settings: ClassSettings, folder: Path, rubric: Rubric) -> ClassSettings:
+    """Return the settings with the options of the command."""
+    for name in options.part:
+        rubric.part(name)
+    given = {
+        "due": read_time(options.due).isoformat() if options.due else None,
+        "layout": options.layout,
+        "assignment": options.assignment,
+        "parts": options.part or None,
+        "arguments": read_arguments(options.argument) or None,
+        "max_size": options.max_size,
+    }
+    settings = replace(settings, **{name: value for name, value in given.items() if value is not None})
+    if options.ignore_file or not settings.handed_out:
+        own = tuple(_handed_out(options.ignore_file, rubric))
+        settings = replace(settings, handed_out=(*own, *reference_hashes(rubric.data, str(rubric.path))))
+    return settings.with_roots(folder, options.paths) if options.paths else settings
+
+
+def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
     """Yield the hashes of the work that the course handed out. Raises InputError for a file without any."""
     for path in files:
-        hashes = work_hashes(open_submission(str(path), rubric.lab))
+        hashes = hashes_of(open_submission(str(path), rubric.lab))
         if not hashes:
             raise InputError(f"--ignore-file {printable_path(path)}: there is no URDF and no package in it")
         yield from hashes
 
 
-def rubric_of(name: str | None, gradebook: Path, answers: Path | None, warn: Warn) -> Rubric:
-    """Return the rubric with answers, so that `review` has them on any machine; without a name that of the last run.
-
-    If the file of the last run no longer exists, its text in the gradebook counts.
-    """
-    if name is None and gradebook.exists():
-        with Gradebook(gradebook) as book:
-            run = book.newest_run()
-            last = book.rubric(run.rubric, answers=True) if run is not None else None
-        if last is not None:
-            if last.path.exists():
-                rubric = load_with_answers(str(last.path), answers)
-            else:
-                rubric = read_answers(last, answers) if answers is not None else last
-            if not rubric.is_shipped:
-                warn(f"rubric of the last run: {printable_path(rubric.path)}")
-            return rubric
-    return load_with_answers(name or DEFAULT_RUBRIC, answers)
-
-
-def deadline_of(due: str | None, gradebook: Path, warn: Warn) -> datetime | None:
-    """Return the deadline of `--due`, else that of the last run. Raises InputError."""
-    if due is None and gradebook.exists():
-        with Gradebook(gradebook) as book:
-            run = book.newest_run()
-        if run is not None and run.deadline:
-            deadline = read_time(run.deadline)
-            warn(f"deadline of the last run: {time_text(deadline, deadline.tzinfo)} (--due changes it)")
-            return deadline
-    return read_deadline(due)
+def keep_inputs(inputs: ClassInputs, options: ClassOptions, warn: Warn) -> ClassInputs:
+    """Write the settings and the copies of the roster and the rubric into the gradebook. Raises InputError."""
+    folder, settings = inputs.folder, inputs.settings
+    if options.roster is not None:
+        data = read_capped(options.roster, SIZE_LIMIT, advice="")
+        file = folder / names.ROSTER
+        if file.exists() and _hash(file) not in (settings.roster_hash, sha256_of(data)):
+            warn(f"{printable_path(file)} was edited: it is replaced by {printable_path(options.roster)}")
+        save_bytes(file, data, inputs.roots, _PRIVATE)
+        settings = replace(settings, roster_hash=sha256_of(data))
+    if options.rubric is not None or not settings.rubric:
+        place = folder / settings.rubric
+        if settings.rubric and place.exists() and _hash(place) not in (settings.rubric_hash, inputs.rubric.sha256):
+            warn(f"{printable_path(place)} was edited: it is replaced by {printable_path(inputs.rubric.path)}")
+        settings = replace(settings, rubric=_copy_rubric(folder, inputs.rubric), rubric_hash=inputs.rubric.sha256)
+    text = settings_text(settings)
+    if not (folder / CLASS_FILE).exists() or settings != read_settings(folder):
+        save(folder / CLASS_FILE, text, inputs.roots, _PRIVATE)
+    return replace(inputs, settings=settings, rubric=load_rubric(folder / settings.rubric))
 
 
-def keep_answers(gradebook: Path, answers: Path) -> None:
-    """Save the model answers in a file in a gradebook, for this review and later ones. Raises InputError."""
-    with Gradebook(gradebook) as book:
-        rubric = read_answers(Grades(book).newest_rubric(), answers)
-        book.check_writable()
-        with book.transaction():
-            save_answers(book, rubric)
+def _copy_rubric(folder: Path, rubric: Rubric) -> str:
+    """Copy a rubric and its reference into a gradebook, where they stand to each other as before; return where it is."""
+    target = folder / names.RUBRIC
+    files = [file for file in files_of(str(rubric.path)) if file.name != rubric.answers and file.exists()]
+    near = [file.resolve() for file in files if not Path(rubric.reference).is_absolute() or file == rubric.path]
+    base = Path(os.path.commonpath([file.parent for file in near]))
+    if target.exists():
+        rmtree(target)
+    for file in near:
+        place = target / file.relative_to(base)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        if file.is_dir():
+            copytree(file, place, ignore=ignore_patterns("__pycache__"), dirs_exist_ok=True)
+        else:
+            copyfile(file, place)
+    return (target / rubric.path.resolve().relative_to(base)).relative_to(folder).as_posix()
 
 
-def warn_of_parts(book: Gradebook, wanted: tuple[str, ...], rubric: Rubric, warn: Warn) -> None:
-    """Say that the last run graded fewer parts than this one, which grades all."""
-    last = Grades(book).parts if not wanted and book.newest_run() is not None else ()
-    if last and set(last) < {criterion.part for criterion in rubric.criteria}:
-        options = " ".join(f"--part {shell_quoted(part)}" for part in last)
-        warn(
-            f"the last run graded {', '.join(last)} only, and this one grades all parts: "
-            f"pass {options} to grade the same"
-        )
-
-
-def roster_of(file: Path | None, gradebook: Path, warn: Warn) -> Roster | None:
-    """Return the roster, or that of an earlier run into the gradebook, with the LMS ids that the gradebook knows."""
-    roster = read_roster(file) if file is not None else None
-    if not gradebook.exists():
-        return roster
-    with Gradebook(gradebook) as book:
-        earlier = roster_from_json(book.roster_entries())
-        for line in _roster_changes(roster, earlier, book) if roster is not None else ():
-            warn(printable(line))
-        roster = roster or earlier
-        return roster.with_lms_numbers(book.students()) if roster is not None else None
-
-
-def _roster_changes(roster: Roster, earlier: Roster | None, book: Gradebook) -> Iterator[str]:
-    """Yield that a roster has fewer students than the earlier one, and whose deadline in it does not count."""
-    missing = [one.key for one in (earlier.students if earlier is not None else ()) if roster.entry(one.key) is None]
-    if earlier is not None and missing and len(roster.entries) < len(earlier.entries):
-        count = f"the roster has {counted(len(roster.entries), 'student')}, but the gradebook's roster has"
-        yield f"{count} {len(earlier.entries)}. Missing on the new one: {enumerated(missing, _MAX_NAMED)}"
-    extended = {key for (key,) in book.rows(_EXTENDED, EXTENSION)}
-    own = (one.student for one in roster.entries if (one.due or one.extension_days) and one.student.key in extended)
-    if names := [named(one.key, one.name) for one in own]:
-        yield f"the deadline of `grader extend` counts, not that of the roster: {people_text(names, _MAX_NAMED)}"
+def _hash(file: Path) -> str:
+    return sha256_of(read_capped(file, SIZE_LIMIT, advice=""))

@@ -1,71 +1,122 @@
-"""Write a report for each student of a class, from the gradebook, and the class's page beside reports in HTML."""
+"""Write a report for each student of a class, and the class's page beside reports in HTML."""
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 
 from grader.checks.outcome import Outcome
-from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.remarks import remarks_of
-from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.classroom.run.pool import WorkerError, processors
+from grader.classroom.grades import Class, StudentGrade
+from grader.classroom.reopening import reopened
+from grader.classroom.run.pool import Processes, WorkerError, processors
 from grader.classroom.run.progress import Progress
 from grader.classroom.run.queue import Queue
-from grader.errors import InputError, MachineError, RubricError
+from grader.errors import InputError, MachineError, OutOfTime, RubricError
+from grader.grading.criterion import TOTAL
+from grader.grading.grade import grade as grade_submission
 from grader.grading.graded_submission import Grade, GradedSubmission
+from grader.grading.hints.hinting import hinted
 from grader.grading.report import Report, Result
 from grader.report.formats import Format, render
-from grader.text import counted, enumerated, format_points, printable, printable_path
-from grader.usecases.class_page import write_class_page
-from grader.usecases.report_names import CLASS_PAGE, INDEX, report_names, update_index
+from grader.submission.submission import Submission
+from grader.text import by_name, counted, counted_points, enumerated, format_points, printable, printable_path
+from grader.usecases.report_names import CLASS_PAGE, INDEX, file_names, update_index
 from grader.usecases.saves import address
-from grader.usecases.terminal import Warn
+from grader.usecases.terminal import Terminal
 from grader.usecases.writing import make_folder, refuse_symlinks, save
 
-_TASK_SIZE = 50  # reports
+_TASK_SIZE = 4  # reports
 _MAX_NAMED = 3
-REPORT_SECONDS = 600.0  # for a task that writes a few dozen reports
+_SECONDS = 120.0  # in which hints are searched, and a few reports written
+_MOVED = "The submission has moved or changed since it was graded, so this report has no details: run `grader batch` again."
 
 
 @dataclass(frozen=True, slots=True)
 class ReportRun:
-    """The reports to write from a gradebook into a folder; `feedback` adds who graded."""
+    """The reports to write of a gradebook into a folder; `answers` is the file of the model answers."""
 
-    book: Path
+    gradebook: Path
     folder: Path
     formats: tuple[Format, ...]
-    deadline: datetime | None = None
-    feedback: bool = False
+    answers: Path | None = None
 
 
-def report_of(grades: Grades, grade: StudentGrade, *, feedback: bool = False) -> Report:
-    """Return the report on a student's newest submission, with the grade and notes.
+@dataclass(frozen=True, slots=True)
+class _Task:
+    """A report to write: the student and the name of the file; without hints if their search was lost."""
 
-    There is a note for a final mark, an excuse, a comment and a late penalty. Another one says who graded if a person
-    did, and always in `feedback`. Without notes, the report is the same as that of `grader grade`. Without a
-    submission, it has notes, but no points.
+    key: str
+    name: str
+    has_hints: bool = True
+
+
+def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True, feedback: bool = False) -> Report:
+    """Return the report on a student's submission, with the marks, the grade and notes.
+
+    There is a note for a final mark, an excuse, a comment and a late penalty. Another one says who graded if a person did, and
+    always in `feedback`. Without notes, the report is the same as that of `grader grade`. A submission that has changed since has its
+    points only.
     """
-    report = grades.report(grade) if grade.result is not None else _nothing_submitted(grades, grade)
-    note = grade.late.reason
-    if grade.late.points:
-        penalty = format_points(-grade.late.points)
-        note += f": the late penalty is {penalty} points, the grade is {format_points(grade.total)}"
-    remarks = remarks_of(grades, grade)
-    graded = remarks.graded if feedback or remarks.graders.is_manual else []
-    is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
-    counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final is not None)
-    notes = (*report.notes, *remarks.notes, *graded, *([note] if note else []))
-    return report._replace(notes=notes, grade=counting if is_changed else None)
+    report = _nothing_submitted(book, grade)
+    if grade.graded is not None and grade.report is not None:
+        found = reopened(book, grade.graded)
+        report = grade.report._replace(notes=(_MOVED,)) if found is None else _graded(book, found, has_hints=has_hints)
+        report = book.with_marks(report, grade.graded)[0]
+    marked = any(result.manual_mark for result in report.results)
+    counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final_points is not None)
+    is_changed = grade.has_final or grade.late.points or marked
+    notes = (*report.notes, *_whole(grade), *_graders(grade, report, feedback=feedback), *_late(grade))
+    return report._replace(notes=notes, grade=counting if is_changed and counting.points is not None or grade.is_excused else None)
 
 
-def _nothing_submitted(grades: Grades, grade: StudentGrade) -> Report:
+def _graded(book: Class, submission: Submission, *, has_hints: bool) -> Report:
+    report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
+    if not has_hints or book.rubric.hints == "none" or not report.has_failures:
+        return report
+    try:
+        return hinted(report, submission, book.rubric.hints).report
+    except (Exception, OutOfTime):  # noqa: BLE001  a fault of the search must not cost the report
+        return report
+
+
+def _nothing_submitted(book: Class, grade: StudentGrade) -> Report:
     outcome = Outcome("skipped", "not graded, because nothing was submitted")
-    results = tuple(Result(criterion, outcome) for criterion in grades.criteria)
-    return Report(GradedSubmission(grade.student.key), grades.newest_rubric(), grades.parts, results)
+    results = tuple(Result(criterion, outcome) for criterion in book.criteria)
+    return Report(GradedSubmission(grade.student.key), book.rubric, book.settings.parts, results)
+
+
+def _whole(grade: StudentGrade) -> list[str]:
+    """Return the sentence about the mark, the excuse or the comment of the whole submission."""
+    mark = grade.final
+    if mark is None:
+        return []
+    words = " ".join(mark.comment.split())
+    by, comment = by_name(mark.by), f" {words}" if words else ""
+    if mark.points is not None:
+        return [f"Final mark: {counted_points(mark.points)}, given{by or ' manually'} instead of the sum of the criteria.{comment}"]
+    return [f"Excused{by}.{comment}" if grade.is_excused else f"Comment{by}:{comment}"]
+
+
+def _graders(grade: StudentGrade, report: Report, *, feedback: bool) -> list[str]:
+    """Return who graded, the checks or people, as a sentence; empty if that is clear or nothing is graded yet."""
+    marks = [row.manual_mark for row in report.results if row.manual_mark is not None]
+    people = {mark.by for mark in marks}
+    is_automatic = any(row.manual_mark is None and not row.is_open and grade.graded is not None for row in report.results)
+    if grade.final_points is not None and grade.final is not None:
+        marks, people, is_automatic = [], {grade.final.by}, False
+    if not (people or (feedback and is_automatic)):
+        return []
+    manually = f"manually{by_name(enumerated(sorted(filter(None, people))))}" if people else ""
+    return [f"Graded {', and '.join(filter(None, ['automatically' * is_automatic, manually]))}."]
+
+
+def _late(grade: StudentGrade) -> list[str]:
+    if not grade.late.reason:
+        return []
+    penalty = format_points(-grade.late.points)
+    total = format_points(grade.total) if grade.total is not None else ""
+    more = f": the late penalty is {penalty} points, the grade is {total}" if grade.late.points else ""
+    return [f"{grade.late.reason}{more}"]
 
 
 def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: Sequence[Path]) -> None:
@@ -85,61 +136,64 @@ def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: S
         raise InputError(f"cannot write {page}: it exists, and grader did not write it; choose another folder")
 
 
-def write_reports(executor: Executor, run: ReportRun, warn: Warn, show: Callable[[Progress], None]) -> None:
-    """Write a report for each student in `report_names`; in HTML also the class's page. Raises InputError."""
-    make_folder(run.folder)
-    with Gradebook(run.book) as opened:
-        names = report_names(opened)
-    earlier = update_index(run.folder, names)
-    lost = render_reports(executor, run, names, show)
-    if Format.HTML in run.formats:
-        there = {key: names[key] for key in names if key not in lost}
-        write_class_page(executor, run.book, run.folder, there, run.deadline)
-    shown = printable_path(run.folder)
-    warn(f"{counted(len(names) - len(lost), 'report')} written to {shown}")
-    for key, why in lost.items():
-        warn(printable(f"no report for {key}: {why}"))
-    if earlier:
-        reports = f"{counted(len(earlier), 'report')} of students who are not in the gradebook"
-        warn(f"{shown} also has {reports}: {printable(enumerated(earlier, _MAX_NAMED))}")
-
-
-def render_reports(
-    executor: Executor, run: ReportRun, names: dict[str, str], show: Callable[[Progress], None]
-) -> dict[str, str]:
-    """Write the reports of students, by their file names; return who has none, and why.
+def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -> None:
+    """Write a report for each student who has a result, a final mark or an excuse; in HTML also the class's page.
 
     Raises InputError and RubricError, which concern all reports.
     """
-    progress = Progress(len(names))
-    show(progress)
-    lost: dict[str, str] = {}
-    queue = Queue(executor, processors(), partial(_write_some, run), _give_up, _TASK_SIZE)
-    for results in queue.all(names.items()):
-        lost |= {key: why for key, why in results if why}
-        progress = replace(progress, graded=progress.graded + len(results))
-        show(progress)
-    return {key: lost[key] for key in names if key in lost}
+    make_folder(run.folder)
+    book = Class(run.gradebook)
+    keys = [one.student.key for one in book if one.graded is not None or one.has_final]
+    files = file_names(keys)
+    earlier = update_index(run.folder, files)
+    lost = _render_all(run, files, terminal, jobs)
+    if Format.HTML in run.formats:
+        from grader.usecases.class_page import write_class_page
+
+        write_class_page(book, run.folder, {key: name for key, name in files.items() if key not in lost})
+    shown = printable_path(run.folder)
+    terminal.warn(f"{counted(len(files) - len(lost), 'report')} written to {shown}")
+    for key, why in lost.items():
+        terminal.warn(printable(f"no report for {key}: {why}"))
+    if earlier:
+        reports = f"{counted(len(earlier), 'report')} of students who are not in the gradebook"
+        terminal.warn(f"{shown} also has {reports}: {printable(enumerated(earlier, _MAX_NAMED))}")
 
 
-def _give_up(named: tuple[str, str], error: Exception) -> tuple[str, str]:
-    """Return the student without a report, and why."""
-    if isinstance(error, InputError | RubricError):
-        raise error
-    fault = f"the grader itself failed: {type(error).__name__}: {error}"
-    return named[0], str(error) if isinstance(error, WorkerError | MachineError) else fault
+def _render_all(run: ReportRun, files: dict[str, str], terminal: Terminal, jobs: int | None) -> dict[str, str]:
+    """Write the reports of students, by their file names; return who has none, and why."""
+    workers, lost = jobs or processors(), dict[str, str]()
+
+    def give_up(task: _Task, error: Exception) -> tuple[str, str] | None:
+        if isinstance(error, InputError | RubricError):
+            raise error
+        if task.has_hints and isinstance(error, WorkerError):
+            queue.put_back(replace(task, has_hints=False))
+            return None
+        fault = f"the grader itself failed: {type(error).__name__}: {error}"
+        return task.key, str(error) if isinstance(error, WorkerError | MachineError) else fault
+
+    with Processes(workers, _SECONDS) as executor, terminal.show_class("writing reports") as show:
+        show(progress := Progress(len(files)))
+        queue = Queue(executor, workers, partial(_write_some, run), give_up, _TASK_SIZE)
+        for results in queue.all(_Task(key, name) for key, name in files.items()):
+            lost |= {key: why for key, why in results if why}
+            show(progress := replace(progress, graded=progress.graded + len(results)))
+    return {key: lost[key] for key in files if key in lost}
 
 
-def _write_some(run: ReportRun, named: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Write the reports of students, given with their file names in the order of the keys; return the students."""
-    names = dict(named)
-    with Gradebook(run.book) as opened:
-        grades = Grades(opened, run.deadline)
-        for grade in list(grades.between(min(names), max(names))):
-            name = names.get(grade.student.key)
-            if name is not None:
-                report = report_of(grades, grade, feedback=run.feedback)
-                picture = address(f"{name}.{Format.SVG.ending}") if Format.SVG in run.formats else ""
-                for kind in run.formats:
-                    save(Path(run.folder, f"{name}.{kind.ending}"), render(report, kind, picture=picture))
-    return [(key, "") for key in names]
+def _write_some(run: ReportRun, tasks: Sequence[_Task]) -> list[tuple[str, str]]:
+    """Write the reports of some students; return the students."""
+    book = _class(run)
+    for task in tasks:
+        report = report_of(book, book.grade(task.key), has_hints=task.has_hints)
+        picture = address(f"{task.name}.{Format.SVG.ending}") if Format.SVG in run.formats else ""
+        for kind in run.formats:
+            save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind, picture=picture))
+    return [(task.key, "") for task in tasks]
+
+
+@lru_cache(maxsize=1)
+def _class(run: ReportRun) -> Class:
+    """Return the class of a run, in a worker."""
+    return Class(run.gradebook, answers=run.answers)

@@ -1,147 +1,157 @@
-"""Grade a class into a gradebook, and write its reports and grades."""
+"""Grade a class into its gradebook, and write its grades and reports."""
 
 import gc
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
-from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass
-from datetime import datetime
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from math import isfinite
 from pathlib import Path
 
-from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.hints import remove_hints
-from grader.classroom.intake.intake import Intake
-from grader.classroom.intake.reading import read_class
-from grader.classroom.run.batch import Batch, RunSettings
-from grader.classroom.run.class_check import check_roster
+from grader import __version__
+from grader.classroom import folder as names
+from grader.classroom.grade_table import grade_table
+from grader.classroom.grades import Class, StudentGrade
+from grader.classroom.results import Results, ResultsWriter, Run, digest_of
+from grader.classroom.run.batch import Batch
 from grader.classroom.run.pool import Processes, processors
 from grader.classroom.run.progress import Progress
+from grader.classroom.run.worker import ClassContext
+from grader.classroom.submissions import Intake, read_class
+from grader.classroom.tables import write_table
 from grader.errors import InputError
+from grader.files.reading import sha256_of
+from grader.report.class_table import ClassTable
 from grader.report.formats import Format, OutputFormat
-from grader.text import counted, first_lines, printable, printable_path
-from grader.usecases.class_hints import HintOptions, search_class_hints
-from grader.usecases.class_inputs import deadline_of, handed_out_hashes, roster_of, rubric_of, warn_of_parts
-from grader.usecases.class_summary import SummaryRequest, class_summary, warn_of_due
-from grader.usecases.rubrics import files_of
-from grader.usecases.terminal import Terminal, Warn, one_total
-from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_inputs, refuse_symlinks, save
+from grader.report.screen import draw
+from grader.text import counted, enumerated, first_lines, format_points, printable, printable_path
+from grader.usecases.class_inputs import ClassInputs, ClassOptions, keep_inputs, read_inputs
+from grader.usecases.class_reports import ReportRun, refuse_report_folder, write_reports
+from grader.usecases.terminal import Terminal, Warn
+from grader.usecases.writing import save
 
-_MAX_LINES = 10
-_UNREADABLE = "SELECT count(*) FROM grade WHERE verdict = 'unreadable' AND NOT is_gone AND source = ?"
+_MAX_LINES, _MAX_NAMED = 10, 5
+_PRIVATE = 0o600
 
 
 @dataclass(frozen=True, slots=True)
 class ClassRequest:
-    """A class to grade, and the files to write besides the gradebook. `timeout` is in seconds, `max_size` in bytes.
+    """A class to grade, and how. `timeout` is in seconds; without `reports`, the reports are in the gradebook."""
 
-    `output_format` is that of the summary. Without a `rubric` it is that of the last run into the gradebook.
-    `ignore_file` are robots that the course handed out.
-    """
-
-    path: Path
-    gradebook: Path
-    rubric: str | None
-    jobs: int | None
-    timeout: float
-    roster: Path | None
-    layout: str
-    assignment: str
-    due: str | None
-    force: bool
-    cluster: str | None
-    add: bool
-    max_size: int
-    answers: Path | None
-    part: tuple[str, ...]
-    ignore_file: tuple[Path, ...]
-    reports: Path | None
-    report_format: tuple[Format, ...]
-    csv: Path | None
-    verbose: bool
-    output_format: OutputFormat
-
-    @property
-    def root(self) -> Path:
-        """The absolute path of the class."""
-        return self.path.resolve()
+    options: ClassOptions = field(default_factory=ClassOptions)
+    jobs: int | None = None
+    timeout: float = 60.0
+    force: bool = False
+    cluster: str | None = None
+    reports: Path | None = None
+    report_format: tuple[Format, ...] = ()
+    answers: Path | None = None
+    verbose: bool = False
+    output_format: OutputFormat = OutputFormat.TERMINAL
 
 
 def grade_class(request: ClassRequest, terminal: Terminal) -> str:
-    """Grade a class and return its summary. Raises InputError and RubricError."""
-    warn = terminal.warn
+    """Grade a class and return its table. Raises InputError and RubricError."""
     gc.enable()  # unlike other commands, this one may run for long
     if not isfinite(request.timeout):
         raise InputError(f"--timeout takes a number of seconds, not {request.timeout}")
-    rubric = rubric_of(request.rubric, request.gradebook, request.answers, warn)
-    for name in request.part:
-        rubric.part(name)
-    deadline = deadline_of(request.due, request.gradebook, warn)
-    warn_of_due(request.due, rubric, warn)
-    handed_out = tuple(handed_out_hashes(request.ignore_file, rubric))
-    roster = roster_of(request.roster, request.gradebook, warn)
-    _refuse_targets(request)
-    intake = read_class(request.path, roster, request.layout, request.assignment, rubric.id, rubric.folders)
-    _warn_of_intake(intake, warn)
-    if request.roster is not None and not request.add:
-        check_roster(intake)
-    settings = RunSettings(
-        root=str(request.root),
-        layout=intake.layout,
-        force=request.force,
-        roster=roster,
-        deadline=deadline.isoformat() if deadline is not None else "",
-        add=request.add,
-        max_size=request.max_size,
-        parts=request.part,
-        handed_out=handed_out,
-    )
-    with Gradebook(request.gradebook, create=True) as book:
-        warn_of_parts(book, request.part, rubric, warn)
-        with one_total(terminal, len(intake)) if request.reports else nullcontext(terminal) as one:
-            with _executor(request) as (executor, workers), one.show_class("grading") as show:
-                batch = Batch(book, rubric, settings, executor, workers, show)
-                done = _run(batch, intake, warn)
-            _warn_lines(batch.notes, warn)
-            errored = f" ({done.errored} errored)" if done.errored else ""
-            ((unread,),) = book.rows(_UNREADABLE, str(request.root))
-            unread = f" ({unread} could not be graded)" if unread and done.unchanged else ""
-            warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged{unread}")
-            with_fixes = _search_hints(request, book, one)
-            _write_files(request, book, deadline, one)
-        summary = SummaryRequest(request.output_format, with_fixes, request.verbose)
-        return class_summary(Grades(book, deadline), summary, terminal.screen(), done)
-
-
-def _write_files(request: ClassRequest, book: Gradebook, deadline: datetime | None, terminal: Terminal) -> None:
-    """Write the students' reports and the grades."""
+    inputs = read_inputs(request.options, terminal.warn)
+    warn_of_due(request.options.due, inputs, terminal.warn)
+    folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
     if request.reports is not None:
-        from grader.usecases.class_reports import REPORT_SECONDS, ReportRun, write_reports  # late: few runs write them
+        refuse_report_folder(request.reports, request.report_format, inputs.roots)
+    intake = read_class(inputs.roots, inputs.roster, settings.layout, settings.assignment, rubric.id, rubric.folders)
+    _warn_of_intake(intake, terminal.warn)
+    names.make_gradebook(folder)
+    with names.batch_lock(folder):
+        results = Results(folder / names.RESULTS)
+        _check_same_class(folder, results, intake)
+        inputs = keep_inputs(inputs, request.options, terminal.warn)
+        table, done = _grade(request, inputs, results, intake, terminal)
+    if request.report_format:
+        run = ReportRun(folder, request.reports or folder / names.REPORTS, request.report_format, request.answers)
+        write_reports(run, terminal, request.jobs, request.timeout)
+    if request.output_format is OutputFormat.JSON:
+        from grader.report.class_json import render_class_json
 
-        run = ReportRun(request.gradebook, request.reports, request.report_format, deadline)
-        workers = Processes(request.jobs or processors(), REPORT_SECONDS)
-        with workers, terminal.show_class("writing reports") as show:
-            write_reports(workers, run, terminal.warn, show)
-    if request.csv is not None:
-        from grader.usecases.grade_files import grades_csv
-
-        save(request.csv, grades_csv(Grades(book, deadline)), (request.root,))
+        return render_class_json(Class(folder), done)
+    return draw(table.print, terminal.screen())
 
 
-def _search_hints(request: ClassRequest, book: Gradebook, terminal: Terminal) -> bool:
-    """Search the hints of reports and of the class; return whether all were searched that statistics need."""
-    if request.force:
-        remove_hints(book)
-    options = HintOptions(request.jobs, request.timeout)
-    is_json, reports = request.output_format is OutputFormat.JSON, request.reports is not None
-    statistics = is_json or (reports and Format.HTML in request.report_format)
-    search_class_hints(book, options, terminal, reports=reports, statistics=statistics)
-    return is_json
+def _grade(
+    request: ClassRequest, inputs: ClassInputs, results: Results, intake: Intake, terminal: Terminal
+) -> tuple[ClassTable, Progress]:
+    """Grade what has no current result, append the run, and write the grades of the class."""
+    folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
+    roots = tuple(map(str, inputs.roots))
+    arguments = dict(settings.arguments)
+    shared = ClassContext(roots, rubric.data, str(rubric.path.resolve()), settings.max_size, settings.parts, arguments)
+    context = digest_of(
+        rubric.sha256, _reference(folder), settings.parts, sorted(arguments.items()), settings.max_size, __version__
+    )
+    writer = ResultsWriter(folder / names.RESULTS, results.end)
+    with _executor(request, inputs) as (executor, workers), terminal.show_class("grading") as show:
+        batch = Batch(results, writer, shared, context, executor, workers, show)
+        try:
+            done = batch.grade(intake.submissions, len(intake.submissions), force=request.force)
+        except BaseException:
+            graded = f"{batch.progress.done} of {len(intake.submissions)} have a result, which is kept"
+            terminal.warn(f"stopped: {graded}; rerun the same command to resume")
+            raise
+    errored = f" ({done.errored} errored)" if done.errored else ""
+    terminal.warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged")
+    time = datetime.now(UTC).isoformat(timespec="milliseconds")
+    present = dict.fromkeys(one.student.key for one in intake.submissions)
+    run = Run(results.next_run, time, __version__, rubric.sha256, context, present)
+    book, table = Class(folder, run=run), ClassTable(rubric, verbose=request.verbose)
+    totals: dict[str, str | None] = {}
+
+    def passing() -> Iterator[StudentGrade]:
+        for grade in book:
+            table.add(grade)
+            if grade.student.key in present:
+                totals[grade.student.key] = format_points(grade.total) if grade.published is not None else None
+            yield grade
+
+    save(folder / names.GRADES, write_table(*grade_table(book, passing())), inputs.roots, _PRIVATE)
+    writer.append(run._replace(totals=totals).line)
+    writer.close()
+    return table, done
+
+
+def write_grades(book: Class) -> None:
+    """Write the grades of a class into its gradebook. Raises InputError."""
+    save(book.folder / names.GRADES, write_table(*grade_table(book, book)), book.settings.roots(book.folder), _PRIVATE)
+
+
+def warn_of_due(due: str | None, inputs: ClassInputs, warn: Warn) -> None:
+    """Say that `--due` changes no grade if the rubric has no late penalty."""
+    if due and inputs.rubric.late is None:
+        warn(f"--due has no effect on grades, because the rubric {inputs.rubric.id} has no [late]: only the days late are shown")
+
+
+def _reference(folder: Path) -> str:
+    """Return the hash of the rubric's files in a gradebook, the reference among them."""
+    files = sorted(path for path in (folder / names.RUBRIC).rglob("*") if path.is_file())
+    return sha256_of(repr([(path.relative_to(folder).as_posix(), path.read_bytes()) for path in files]).encode())
+
+
+def _check_same_class(folder: Path, results: Results, intake: Intake) -> None:
+    """Raise InputError if most of the students who submitted in the last run are missing, or the roster fits nobody."""
+    recorded = results.runs[-1].totals if results.runs else {}
+    here = {one.student.key for one in intake.submissions}
+    missing = sorted(recorded.keys() - here)
+    if 2 * len(missing) > len(recorded):
+        raise InputError(
+            f"{printable_path(folder)} is the gradebook of another class, or a section is missing: "
+            f"{counted(len(missing), 'student')} of {len(recorded)} have no submission now "
+            f"({printable(enumerated(missing, _MAX_NAMED))}); name the paths of all sections, or another folder with --gradebook"
+        )
 
 
 @contextmanager
-def _executor(request: ClassRequest) -> Iterator[tuple[Executor, int]]:
+def _executor(request: ClassRequest, inputs: ClassInputs) -> Iterator[tuple[Executor, int]]:
     """Open what runs the tasks; yield it with the number of tasks at a time."""
     if request.cluster is None:
         with Processes(workers := request.jobs or processors(), request.timeout) as local:
@@ -149,56 +159,17 @@ def _executor(request: ClassRequest) -> Iterator[tuple[Executor, int]]:
         return
     from grader.classroom.run.cluster import Cluster
 
-    with Cluster(request.cluster, request.timeout, request.root) as remote:
+    with Cluster(request.cluster, request.timeout, inputs.roots) as remote:
         yield remote, remote.workers
-
-
-def _run(batch: Batch, intake: Intake, warn: Warn) -> Progress:
-    """Grade new and changed submissions; after an interruption, report which results are kept."""
-    try:
-        return batch.grade(intake)
-    except BaseException:
-        if batch.has_begun:
-            graded = f"{batch.progress.done} of {len(intake)} have a result, which is kept"
-            warn(f"stopped: {graded}; rerun the same command to resume")
-        raise
 
 
 def _warn_of_intake(intake: Intake, warn: Warn) -> None:
     """Say how many submissions there are, which are unmatched, and which files are ignored."""
-    warn(f"{counted(len(intake), 'submission')}, layout {intake.layout}")
-    unmatched = [f"unmatched: {key} is not on the roster" for key in intake.unmatched]
-    for lines in (intake.notes, unmatched, [f"ignored: {line}" for line in intake.ignored]):
+    warn(f"{counted(len(intake.submissions), 'submission')}, layout {intake.layout}")
+    for lines in (intake.notes, intake.unmatched, [f"ignored: {line}" for line in intake.ignored]):
         _warn_lines(lines, warn)
 
 
 def _warn_lines(lines: Sequence[str], warn: Warn) -> None:
-    for line in first_lines(lines, _MAX_LINES):
+    for line in first_lines(list(lines), _MAX_LINES):
         warn(printable(line))
-
-
-def _refuse_targets(request: ClassRequest) -> None:
-    """Raise InputError for files that cannot be written in the end, or would be submissions in the next run."""
-    reports, csv, root = request.reports, request.csv, request.root
-    for path in filter(None, (request.gradebook, csv)):
-        refuse_symlinks(path, (root,))
-    if reports is not None:
-        from grader.usecases.class_reports import refuse_report_folder
-
-        refuse_report_folder(reports, request.report_format, (root,))
-    if csv is not None and not csv.resolve().parent.is_dir():
-        raise missing_folder(csv)
-    if csv is not None:
-        refuse_gradebook(csv, request.gradebook)
-        _refuse_inputs(csv, request)
-
-
-def _refuse_inputs(csv: Path, request: ClassRequest) -> None:
-    """Raise InputError if the grades would replace a file that the command reads, or be in the class folder."""
-    roster = [request.roster] if request.roster is not None else []
-    refuse_inputs("--csv", csv, [*roster, *files_of(request.rubric or "", request.answers), *request.ignore_file])
-    if request.root in (csv.resolve(), *csv.resolve().parents):
-        raise InputError(
-            f"cannot write {printable_path(csv)}: the next run would take it for a submission; "
-            "choose a file outside of the class"
-        )

@@ -1,0 +1,89 @@
+"""A gradebook is a folder of plain files: what it holds, how it is recognised, who may write it."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import IO
+
+from grader.classroom.settings import CLASS_FILE
+from grader.errors import InputError
+from grader.text import printable_path, shell_quoted
+
+RESULTS, ROSTER, RUBRIC, MARKS, GRADES, REPORTS, PAGE = (
+    *("results.jsonl", "roster.csv", "rubric", "marks", "grades.csv", "reports", "index.html"),
+)
+_LOCK = ".lock"
+_SQLITE = b"SQLite format 3\0"
+
+
+def default_folder(rubric_id: str) -> Path:
+    """Return the gradebook of a lab in the current folder."""
+    return Path(f"{rubric_id}-grades")
+
+
+def is_gradebook(folder: Path) -> bool:
+    """Return whether a folder is a gradebook."""
+    return (folder / CLASS_FILE).is_file()
+
+
+def check_gradebook(folder: Path) -> None:
+    """Raise InputError if a path is no gradebook."""
+    shown = printable_path(folder)
+    if folder.is_file():
+        with suppress(OSError), folder.open("rb") as file:
+            if file.read(len(_SQLITE)) == _SQLITE:
+                raise InputError(
+                    f"{shown} is a gradebook of an earlier version: grade the class again with `grader batch`, into a folder"
+                )
+        raise InputError(f"{shown} is a file: a gradebook is a folder")
+    if not folder.is_dir():
+        raise InputError(f"there is no gradebook {shown}: `grader batch PATH --gradebook {shell_quoted(folder)}` makes it")
+    if not is_gradebook(folder):
+        raise InputError(f"{shown} is no gradebook: it has no {CLASS_FILE}")
+
+
+def check_free(folder: Path) -> None:
+    """Raise InputError unless a path is a gradebook, an empty folder, or absent."""
+    if folder.is_dir() and not is_gradebook(folder) and any(folder.iterdir()):
+        raise InputError(f"{printable_path(folder)} is no gradebook and not empty: name another folder")
+    if folder.exists() and not folder.is_dir():
+        check_gradebook(folder)
+
+
+def make_gradebook(folder: Path) -> None:
+    """Make the folders of a gradebook, unless they exist; only its owner can read them. Raises InputError."""
+    check_free(folder)
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        (folder / MARKS).mkdir(mode=0o700, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot make the gradebook {printable_path(folder)}: {error.strerror}") from None
+
+
+@contextmanager
+def batch_lock(folder: Path) -> Iterator[None]:
+    """Hold the lock of a run over a class; raise InputError while another run holds it. It ends with the process."""
+    try:
+        file = os.fdopen(os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT, 0o600), "r+b")
+    except OSError as error:
+        raise InputError(f"cannot write to the gradebook {printable_path(folder)}: {error.strerror}") from None
+    with file:
+        if not _try_lock(file):
+            raise InputError(f"another `grader batch` writes to {printable_path(folder)}: wait until it has ended")
+        yield
+
+
+def _try_lock(file: IO[bytes]) -> bool:
+    try:
+        if os.name == "nt":
+            import msvcrt
+
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined,unused-ignore]
+        else:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return False
+    return True

@@ -1,0 +1,196 @@
+"""What was graded: `results.jsonl` of a gradebook, one line a graded submission and one line a run.
+
+A line of a submission comes before that of its run, and the newest of a student counts. The file can be computed again from the
+submissions: without it only the comparison of runs and some seconds are lost. A last line that was not written to its end is
+ignored, and cut before the next one is appended.
+"""
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from json.decoder import scanstring  # type: ignore[attr-defined,unused-ignore]
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+from grader.checks.outcome import Outcome
+from grader.errors import InputError
+from grader.files.reading import sha256_of
+from grader.grading.graded_submission import GradedSubmission
+from grader.grading.report import Report, Result, without_gifts
+from grader.grading.rubric import Rubric
+from grader.text import cut, printable_path
+
+Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
+Entry = tuple[float | None, str, str, str]  # points, status, the mistake in words, the criterion that carries it
+_START = '{"student":"'
+_RUN = b'{"run":'
+_MAX_CAUSE = 200  # characters
+_DIGITS = 16  # of a hash
+
+
+class Graded(NamedTuple):
+    """The result of one submission: where it is, how it went, and what each criterion has.
+
+    `root` is the position of its path in the settings of the class, `paths` are below that. `person` is what the names of the files
+    say of the student. `context` is the hash of all that a result depends on besides the submission. `work` are hashes of the robot and
+    the package in several forms, for equal work. Without a `digest` the submission could not be read at all.
+    """
+
+    student: str
+    run: int
+    verdict: Verdict
+    digest: str = ""
+    context: str = ""
+    reason: str = ""
+    root: int = 0
+    paths: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
+    is_late: bool = False
+    submitted: str = ""
+    person: Mapping[str, str] = {}
+    parts: tuple[str, ...] = ()
+    results: Mapping[str, Entry] = {}
+    work: Mapping[str, Any] = {}
+
+    @property
+    def line(self) -> bytes:
+        """The line of the file, without what is empty."""
+        values = {name: value for name, value in zip(self._fields, self, strict=True) if value or name in ("student", "run")}
+        return f"{json.dumps(values, separators=(',', ':'))}\n".encode()
+
+    def report(self, rubric: Rubric) -> Report:
+        """Return the points, under the rubric that it was graded by: outcomes without places, values and hints."""
+        unread = self.reason if self.verdict == "unreadable" else ""
+        submission = GradedSubmission(self.student, path=self.paths[0] if self.paths else None, unread=unread)
+        rows = ((row, self.results.get(row.id)) for row in rubric.criteria)
+        results = (Result(row, Outcome(entry[1], entry[2]), carried=entry[3]) for row, entry in rows if entry is not None)  # type: ignore[arg-type]
+        return Report(submission, rubric, self.parts, without_gifts(results, submission))
+
+
+class Run(NamedTuple):
+    """A finished run: its number, the time in ISO 8601, and the total of each student who submitted, None while it is open.
+
+    `rubric` is its hash, `context` that of all that results depend on besides the submissions.
+    """
+
+    run: int
+    time: str
+    version: str
+    rubric: str
+    context: str
+    totals: Mapping[str, str | None]
+
+    @property
+    def line(self) -> bytes:
+        """The line of the file."""
+        return f"{json.dumps(self._asdict(), separators=(',', ':'))}\n".encode()
+
+
+def entries_of(report: Report) -> dict[str, Entry]:
+    """Return what a line keeps of each criterion of a report."""
+    return {one.criterion.id: _entry(one) for one in report.results}
+
+
+def _entry(result: Result) -> Entry:
+    outcome = result.outcome
+    is_open = outcome.status in ("pending", "errored") and not result.is_adjusted
+    words = outcome.mistake or (outcome.message if outcome.status in ("failed", "errored") else "")
+    points = int(result.points) if result.points == int(result.points) else float(result.points)
+    return None if is_open else points, outcome.status, cut(words, _MAX_CAUSE), result.carried
+
+
+def digest_of(*parts: object) -> str:
+    """Return the hash of some values: it begins with a letter, so that no spreadsheet takes it for a number."""
+    return f"d{sha256_of(repr(parts).encode())[:_DIGITS]}"
+
+
+class Results:
+    """The results in a file: the newest line of each student, up to a run, and the runs."""
+
+    def __init__(self, file: Path, until: int | None = None) -> None:
+        self._file = file
+        self.end = 0  # where the last whole line ends
+        self.runs: list[Run] = []
+        self._places: dict[str, int] = {}  # a hundred thousand students fit into memory, but not all of their results
+        for place, line in self._lines():
+            if line.startswith(_RUN):
+                self.runs.append(Run(**json.loads(line)))
+                if self.runs[-1].run == until:
+                    break
+            elif line.startswith(_START.encode()):
+                text = line.decode()
+                self._places[scanstring(text, len(_START), True)[0]] = place
+            self.end = place + len(line)
+
+    def _lines(self) -> Iterator[tuple[int, bytes]]:
+        """Yield the whole lines and where they begin."""
+        if not self._file.exists():
+            return
+        place = 0
+        try:
+            with self._file.open("rb") as file:
+                for line in file:
+                    if not line.endswith(b"\n"):
+                        return
+                    yield place, line
+                    place += len(line)
+        except OSError as error:
+            raise InputError(f"cannot read {printable_path(self._file)}: {error.strerror}") from None
+
+    @property
+    def next_run(self) -> int:
+        """The number of the next run."""
+        return self.runs[-1].run + 1 if self.runs else 1
+
+    @property
+    def students(self) -> list[str]:
+        """The keys of the students with a result, sorted."""
+        return sorted(self._places)
+
+    def all(self) -> Iterator[Graded]:
+        """Yield the newest result of each student, in the order of the keys."""
+        if self._places:
+            with self._file.open("rb") as file:
+                for key in self.students:
+                    file.seek(self._places[key])
+                    yield graded_from(file.readline())
+
+    def of(self, key: str) -> Graded | None:
+        """Return the newest result of a student."""
+        if key not in self._places:
+            return None
+        with self._file.open("rb") as file:
+            file.seek(self._places[key])
+            return graded_from(file.readline())
+
+
+def graded_from(line: bytes) -> Graded:
+    """Return the result in a line."""
+    values = {key: tuple(value) if isinstance(value, list) else value for key, value in json.loads(line).items()}
+    return Graded(**values)
+
+
+class ResultsWriter:
+    """Appends lines to a file of results, behind its last whole line. Raises InputError if it cannot be written."""
+
+    def __init__(self, file: Path, end: int) -> None:
+        self._shown = printable_path(file)
+        try:
+            self._handle = os.open(file, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o600)
+            os.ftruncate(self._handle, end)
+        except OSError as error:
+            raise InputError(f"cannot write {self._shown}: {error.strerror}") from None
+
+    def append(self, *lines: bytes) -> None:
+        """Append lines in one write."""
+        data = b"".join(lines)
+        try:
+            if os.write(self._handle, data) != len(data):
+                raise InputError(f"cannot write {self._shown}: the disk is full")
+        except OSError as error:
+            raise InputError(f"cannot write {self._shown}: {error.strerror}") from None
+
+    def close(self) -> None:
+        """Write to the disk what the system still holds."""
+        os.fsync(self._handle)
+        os.close(self._handle)

@@ -1,0 +1,91 @@
+"""What a later run needs to grade a class again: the file `class.toml` of a gradebook."""
+
+import json
+import os
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
+from typing import Any
+
+from grader.errors import InputError
+from grader.files.reading import URDF_LIMIT, read_capped
+from grader.names import did_you_mean
+from grader.text import printable, printable_path
+
+CLASS_FILE = "class.toml"
+_MAX_SIZE = 1024 * 1024
+_HEAD = "# What `grader batch` needs to grade this class again. An option of the command replaces what is here.\n"
+_ARGUMENTS = "arguments"
+
+
+@dataclass(frozen=True, slots=True)
+class ClassSettings:
+    """The inputs and settings of a class. Paths are relative to the gradebook; `due` is ISO 8601, empty for none.
+
+    `max_size` is in bytes. `rubric` is the copy of the rubric. The hashes are those of the copies as they were made, empty
+    without one; another hash of the file means that somebody edited the copy. `handed_out` are hashes of work that the course
+    handed out, which is no equal work.
+    """
+
+    submissions: tuple[str, ...] = ()
+    layout: str = "auto"
+    assignment: str = ""
+    due: str = ""
+    parts: tuple[str, ...] = ()
+    max_size: int = URDF_LIMIT
+    rubric: str = ""
+    rubric_hash: str = ""
+    roster_hash: str = ""
+    handed_out: tuple[str, ...] = ()
+    arguments: Mapping[str, str] = field(default_factory=dict)
+
+    def roots(self, folder: Path) -> tuple[Path, ...]:
+        """Return the paths of the submissions."""
+        return tuple(folder / path for path in self.submissions)
+
+    def with_roots(self, folder: Path, paths: tuple[Path, ...]) -> "ClassSettings":
+        """Return the settings with other submissions, relative to the gradebook where that is possible."""
+        return replace(self, submissions=tuple(relative(path, folder) for path in paths))
+
+
+def relative(path: Path, folder: Path) -> str:
+    """Return a path as seen from a folder, with forward slashes; absolute on another drive."""
+    try:
+        return os.path.relpath(path.resolve(), folder.resolve()).replace(os.sep, "/")
+    except ValueError:
+        return str(path.resolve())
+
+
+def read_settings(folder: Path) -> ClassSettings:
+    """Return the settings in a gradebook. Raises InputError with the first mistake in the file."""
+    file = folder / CLASS_FILE
+    shown = printable_path(file)
+    try:
+        data = tomllib.loads(read_capped(file, _MAX_SIZE, advice="").decode())
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise InputError(f"{shown} is not TOML: {printable(str(error))}") from None
+    types = {one.name: type(getattr(ClassSettings(), one.name)) for one in fields(ClassSettings)}
+    for key, value in data.items():
+        if key not in types:
+            raise InputError(f"{shown} has an unknown key {printable(key)!r}{did_you_mean(key, types)}")
+        wanted = list if types[key] is tuple else types[key]
+        parts = value if isinstance(value, list) else value.values() if isinstance(value, dict) else ()
+        if type(value) is not wanted or not all(isinstance(part, str) for part in parts):
+            names = {list: "a list of texts", dict: "a table of texts", int: "a number", str: "a text"}
+            raise InputError(f"{shown}: {key} is {names[wanted]}")
+    given: dict[str, Any] = {key: tuple(value) if isinstance(value, list) else value for key, value in data.items()}
+    return ClassSettings(**given)
+
+
+def settings_text(settings: ClassSettings) -> str:
+    """Return the settings as TOML; `read_settings` returns the same."""
+    values = {one.name: getattr(settings, one.name) for one in fields(settings) if one.name != _ARGUMENTS}
+    lines = [f"{key} = {_toml(value)}\n" for key, value in values.items()]
+    table = [f"{_toml(key)} = {_toml(value)}\n" for key, value in sorted(settings.arguments.items())]
+    return "".join((_HEAD, *lines, *([f"\n[{_ARGUMENTS}]\n", *table] if table else ())))
+
+
+def _toml(value: object) -> str:
+    """Return a value in TOML, whose texts and lists of texts are those of JSON but for the character DEL."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
