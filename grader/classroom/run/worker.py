@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from grader.checks.outcome import Outcome, Status
 from grader.classroom.gradebook.result import GradingResult, GradingVerdict
 from grader.classroom.intake.fingerprint import fingerprint
-from grader.classroom.intake.opening import open_class_submission, unreadable_digest
+from grader.classroom.opening import open_class_submission, unreadable_digest
 from grader.classroom.run.pool import NO_MEMORY
 from grader.errors import InputError, MachineError
 from grader.files.names import ARCHIVES
