@@ -34,6 +34,7 @@ INNER = {
         ("students", "listing", "opening"),
         ("matching", "tables"),
         ("typed_names", "roster"),
+        ("people",),
         ("layouts",),
         ("submissions",),
         ("intake", "lms"),
