@@ -30,10 +30,9 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_sta
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.classroom.intake.fingerprint import is_zip
-from grader.classroom.intake.opening import open_class_submission
 from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, RosterEntry
+from grader.classroom.opening import is_zip, open_class_submission
 from grader.classroom.run.batch import Batch, RunSettings
 from grader.classroom.students import Student
 from grader.errors import InputError

@@ -13,7 +13,7 @@ from unittest.mock import patch
 import pytest
 
 from grader.classroom.gradebook import marks
-from grader.classroom.intake.opening import open_class_submission
+from grader.classroom.opening import open_class_submission
 from grader.classroom.run import pool, worker
 from grader.classroom.run.pool import Processes, WorkerError
 from tests.classroom.class_runs import is_sound, rows

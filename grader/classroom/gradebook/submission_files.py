@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from grader.classroom.intake.fingerprint import fingerprint
-from grader.classroom.intake.opening import OpenedSubmission, open_class_submission
+from grader.classroom.opening import OpenedSubmission, open_class_submission
 from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.rubric import Rubric

@@ -5,8 +5,8 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from grader.classroom.intake.layouts.layout import IgnoredFiles
-from grader.classroom.intake.listing import ClassListing
 from grader.classroom.intake.names import ENDINGS, ending_of, without_copy
+from grader.classroom.listing import ClassListing
 from grader.text import printable_path
 
 _ATTEMPT = re.compile(r"(?:attempt|submission|try|versuch|abgabe)[ _-]?([0-9]{1,6})", re.IGNORECASE)

@@ -13,8 +13,8 @@ from typing import NamedTuple
 from grader.classroom.intake.layouts import canvas, moodle, nbgrader, teams
 from grader.classroom.intake.layouts.folders import FolderSubmissions
 from grader.classroom.intake.layouts.layout import ClassFolder, IgnoredFiles, Submissions
-from grader.classroom.intake.listing import Children, ClassListing, FolderListing, ZipListing
 from grader.classroom.intake.names import ending_of
+from grader.classroom.listing import Children, ClassListing, FolderListing, ZipListing
 from grader.errors import InputError
 from grader.files.names import ROBOT_ENDINGS
 from grader.files.opening import archive_kind

@@ -3,18 +3,12 @@
 import os
 import stat
 from collections.abc import Iterator
-from functools import lru_cache
 from hashlib import sha256
-from pathlib import Path
+
+from grader.classroom.opening import is_zip
 
 _MAX_ENTRIES = 100_000
 _CLOCK_RESOLUTION = 50_000_000  # nanoseconds in which a file system may give two changes the same time
-
-
-@lru_cache(maxsize=4)
-def is_zip(root: str) -> bool:
-    """Return whether a class is one zip."""
-    return not Path(root).is_dir()
 
 
 def fingerprint(root: str, paths: tuple[str, ...], now: int) -> str:
@@ -60,11 +54,3 @@ def _walk(top: str) -> Iterator[tuple[str, os.stat_result]]:
 
 def _stamp(status: os.stat_result) -> str:
     return f"{status.st_ino} {status.st_size} {status.st_mtime_ns} {status.st_ctime_ns}"
-
-
-def file_stamp(path: str) -> str:
-    """Return what the file system says about one file; empty if it cannot be read."""
-    try:
-        return _stamp(os.stat(path))  # noqa: PTH116
-    except OSError:
-        return ""

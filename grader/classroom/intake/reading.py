@@ -7,9 +7,9 @@ from pathlib import Path
 from grader.classroom.intake.detection import LAYOUTS, Download, find_download, inner_class, layout_of, listing_of
 from grader.classroom.intake.intake import Intake, assign
 from grader.classroom.intake.layouts.layout import ClassFolder, IgnoredFiles
-from grader.classroom.intake.listing import FolderListing
 from grader.classroom.intake.names import ending_of, is_course_folder, stems_of
 from grader.classroom.intake.roster import Roster
+from grader.classroom.listing import FolderListing
 from grader.errors import InputError
 from grader.text import counted, printable_path, shell_quoted
 

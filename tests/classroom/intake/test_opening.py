@@ -14,8 +14,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.gradebook.submission_files import SubmissionFiles, SubmissionSources
-from grader.classroom.intake.fingerprint import fingerprint, is_zip
-from grader.classroom.intake.opening import open_class_submission
+from grader.classroom.intake.fingerprint import fingerprint
+from grader.classroom.opening import is_zip, open_class_submission
 from grader.errors import InputError
 from grader.files import reading
 from grader.files.folder import read_folder

@@ -15,8 +15,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from grader.classroom.intake.layouts.layout import ClassFolder, IgnoredFiles, Submissions
-from grader.classroom.intake.listing import Children
 from grader.classroom.intake.names import ending_of
+from grader.classroom.listing import Children
 from grader.classroom.matching import word_characters
 from grader.classroom.students import ClassSubmission, Student
 

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from hashlib import sha256
 
-from grader.classroom.intake.listing import Children, ClassListing
 from grader.classroom.intake.roster import Roster
+from grader.classroom.listing import Children, ClassListing
 from grader.classroom.students import ClassSubmission, Student
 from grader.text import printable_path
 

@@ -12,8 +12,8 @@ import re
 from collections import defaultdict
 
 from grader.classroom.intake.layouts.layout import ClassFolder, Submissions
-from grader.classroom.intake.listing import Children, ClassListing
 from grader.classroom.intake.names import ending_of
+from grader.classroom.listing import Children, ClassListing
 from grader.classroom.students import ClassSubmission, Student
 
 # Jane Doe_123_assignsubmission_file, ..._file_, ..._file_robot.urdf; Team A_assignsubmission_onlinetext

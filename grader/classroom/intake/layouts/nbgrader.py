@@ -8,8 +8,8 @@ from collections.abc import Iterable
 from itertools import starmap
 
 from grader.classroom.intake.layouts.layout import ClassFolder, Submissions
-from grader.classroom.intake.listing import ClassListing
 from grader.classroom.intake.names import utc_time
+from grader.classroom.listing import ClassListing
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from grader.names import folded

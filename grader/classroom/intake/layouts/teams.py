@@ -11,8 +11,8 @@ from dataclasses import replace
 
 from grader.classroom.intake.layouts.folders import FolderSubmissions
 from grader.classroom.intake.layouts.layout import ClassFolder, Submissions
-from grader.classroom.intake.listing import Children, ClassListing
 from grader.classroom.intake.names import ending_of, stems_of
+from grader.classroom.listing import Children, ClassListing
 from grader.classroom.students import ClassSubmission
 from grader.files.names import PACKAGE_FILES
 from grader.submission.labs import Belonging, LabFolders, lab_words

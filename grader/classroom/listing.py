@@ -54,6 +54,11 @@ class FolderListing:
                 raise refused from None
         return found
 
+    def is_gradebook(self, folder: str) -> bool:
+        """Return whether a folder is a gradebook."""
+        top = Path(self._top, folder)
+        return (top / "class.toml").is_file() and ((top / "results.jsonl").is_file() or (top / "marks").is_dir())
+
     def first(self, folder: str) -> str | None:
         """Return one name in a folder; None if it is empty or cannot be opened."""
         try:
@@ -131,6 +136,11 @@ class ZipListing:
             [name for name, kind in names if kind == "file"],
             [(name, kind) for name, kind in names if kind not in ("folder", "file")],
         )
+
+    def is_gradebook(self, folder: str) -> bool:
+        """Return whether a folder is a gradebook."""
+        names = self._folders.get(folder, {})
+        return names.get("class.toml") == "file" and not {"results.jsonl", "marks"}.isdisjoint(names)
 
     def first(self, folder: str) -> str | None:
         """Return one name in a folder."""

@@ -6,7 +6,6 @@ from hashlib import sha256
 from pathlib import Path, PurePosixPath
 from typing import IO, TYPE_CHECKING, NamedTuple
 
-from grader.classroom.intake.fingerprint import file_stamp, is_zip
 from grader.documents.evidence_files import EVIDENCE
 from grader.errors import InputError, MachineError
 from grader.files.class_zip import ClassZip
@@ -57,6 +56,21 @@ class OpenedSubmission(NamedTuple):
             Opening(self.max_size, no_documents=no_documents),
             shown=self.shown,
         )
+
+
+@lru_cache(maxsize=4)
+def is_zip(root: str) -> bool:
+    """Return whether a class is one zip."""
+    return not Path(root).is_dir()
+
+
+def file_stamp(path: str) -> str:
+    """Return what the file system says about one file; empty if it cannot be read."""
+    try:
+        status = os.stat(path)  # noqa: PTH116
+    except OSError:
+        return ""
+    return f"{status.st_ino} {status.st_size} {status.st_mtime_ns} {status.st_ctime_ns}"
 
 
 def open_class_submission(
