@@ -19,12 +19,11 @@ from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.answers import load_with_answers
-from grader.grading.criterion import TOTAL, Criterion
+from grader.grading.criterion import DEADLINE, TOTAL, Criterion
 from grader.grading.report import ManualComment, ManualMark, Report, Result
 from grader.grading.rubric import load_rubric
 from grader.text import counted_points, printable_path
 
-DEADLINE = "deadline"
 _NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
 
 
@@ -191,7 +190,8 @@ class Class:
         return found._replace(**{name: value for name, value in person.items() if not getattr(found, name)})
 
     def _grade(self, key: str, graded: Graded | None) -> StudentGrade:
-        student, final = self.student(key, graded), self.marks.counting.get((key, TOTAL))
+        whole = (key, TOTAL)
+        student, final = self.student(key, graded), self.marks.counting.get(whole) or self.marks.comments.get(whole)
         if graded is None:
             return StudentGrade(student, None, None, final=final)
         report, older = self.with_marks(graded.report(self.rubric), graded)
@@ -205,7 +205,7 @@ class Class:
             days_late=0.0 if student.is_late is False and student.days_late is None else student.days_late,
         )
         own = self.marks.counting.get((key, DEADLINE))
-        late = lateness(self.rubric, times.extended(own.comment if own is not None else ""), report.score, self.due)
+        late = lateness(self.rubric, times.extended(own.deadline if own is not None else ""), report.score, self.due)
         is_gone = key not in self.run.totals
         is_outdated = self.is_outdated or graded.context != self.run.context
         grade = StudentGrade(student, graded, report, late, final, older, is_gone, is_outdated)
@@ -216,14 +216,16 @@ class Class:
         results = {one.criterion.id: one for one in report.results}
         older: list[str] = []
         for row in self.rubric.criteria:
-            mark = self.marks.counting.get((graded.student, row.id))
-            if mark is None or row.adjustment is not None:
+            key = graded.student, row.id
+            mark, comment = self.marks.counting.get(key), self.marks.comments.get(key)
+            if comment is not None and row.id in results:
+                results[row.id] = results[row.id]._replace(comment=ManualComment(comment.comment, comment.by))
+            if mark is None or mark.points is None or row.adjustment is not None:
                 continue
             result = results.get(row.id) or Result(row, _NOT_SUBMITTED)
-            if mark.points is None:
-                results[row.id] = result._replace(comment=ManualComment(mark.comment, mark.by)) if row.id in results else result
-                continue
-            results[row.id] = result._replace(manual_mark=ManualMark(mark.points, mark.by, mark.comment))
+            results[row.id] = result._replace(
+                manual_mark=ManualMark(mark.points, mark.by, mark.comment), hint=None, comment=None
+            )
             older += [row.id] if _is_older(mark, graded) else []
         ordered = tuple(results[row.id] for row in self.rubric.criteria if row.id in results)
         return report._replace(results=ordered), tuple(older)

@@ -71,7 +71,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
         table, done = _grade(request, inputs, results, intake, terminal)
     if request.report_format:
         run = ReportRun(folder, request.reports or folder / names.REPORTS, request.report_format, request.answers)
-        write_reports(run, terminal, request.jobs, request.timeout)
+        write_reports(run, terminal, request.jobs)
     if request.output_format is OutputFormat.JSON:
         from grader.report.class_json import render_class_json
 
