@@ -25,9 +25,9 @@ from grader.usecases.writing import write_stdout
 
 # In the order of the help, with the module of each: it holds a function, or a group of commands, of this name.
 COMMANDS = {
-    "grade": "grade", "inspect": "inspect", "batch": "batch", "mark": "review", "extend": "review", "review": "review",
+    "grade": "grade", "inspect": "inspect", "batch": "batch", "mark": "review", "review": "review",
     "export": "export", "diff": "gradebook", "stats": "gradebook", "bundle": "rubric", "explain": "explain",
-    "schema": "explain", "gradebook": "gradebook", "rubric": "rubric",
+    "schema": "explain", "rubric": "rubric",
 }  # fmt: skip
 _LIMITED = ("grade", "inspect")  # the commands that read one submission
 _COMPLETION = ("--show-completion", "--install-completion")
@@ -58,7 +58,7 @@ def _root(
 
       grader rubric show lab6
 
-      grader batch submissions.zip --gradebook lab6.db
+      grader batch submissions.zip 
     """
 
 

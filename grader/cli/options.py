@@ -94,7 +94,7 @@ PartOption = Annotated[
 RubricOption = Annotated[
     str, typer.Option(metavar="ID|FILE", help="The rubric: an id or a .toml file.", autocompletion=rubric_ids)
 ]
-GradebookOption = Annotated[Path, typer.Option("--gradebook", metavar="FILE", help="The gradebook, a SQLite file.")]
+GradebookOption = Annotated[Path, typer.Option("--gradebook", metavar="FOLDER", help="The gradebook, a folder.")]
 MaxSizeOption = Annotated[int, typer.Option(metavar="BYTES", min=1, help="Maximum size of a URDF.")]
 AnswersOption = Annotated[
     Path | None, typer.Option("--answers", metavar="FILE", help="The .toml file with the model answers.")

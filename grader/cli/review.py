@@ -13,86 +13,52 @@ from grader.errors import InputError
 from grader.usecases.writing import write_stdout
 
 
+_CRITERION = "The id of the criterion; total: the whole submission; deadline: the student's own."
+_POINTS = "The points; with total also excused; with deadline a time; - withdraws a mark."
+
+
 def mark(
     gradebook: GradebookOption,
     student: Annotated[str, typer.Argument(metavar="STUDENT", help="The id, login, email address or name.")] = "",
-    criterion: Annotated[
-        str,
-        typer.Argument(metavar="CRITERION|total", help="The id of the criterion, or total: the whole submission."),
-    ] = "",
-    points: Annotated[
-        str | None, typer.Argument(metavar="[POINTS]", help="The points, or - to withdraw a mark.")
-    ] = None,
-    comment: Annotated[
-        str, typer.Option(metavar="TEXT", help="For the student; #2 repeats comment 2 of --list-comments.")
-    ] = "",
-    excused: Annotated[bool, typer.Option("--excused", help="With total: the student needs no grade.")] = False,
-    undo: Annotated[bool, typer.Option("--undo", help="Restore the mark before the newest one.")] = False,
-    second: Annotated[
-        bool, typer.Option("--second", help="Record a second opinion, which changes no grade; needs --by.")
-    ] = False,
-    list_comments: Annotated[bool, typer.Option("--list-comments", help="List the comments on the criterion.")] = False,
+    criterion: Annotated[str, typer.Argument(metavar="CRITERION|total|deadline", help=_CRITERION)] = "",
+    points: Annotated[str, typer.Argument(metavar="[POINTS|TIME|excused|-]", help=_POINTS)] = "",
+    comment: Annotated[str, typer.Option(metavar="TEXT", help="For the student.")] = "",
     missing: Annotated[bool, typer.Option("--missing", help="All who submitted nothing, not STUDENT.")] = False,
     file: Annotated[Path | None, typer.Option("--import", metavar="CSV", help="The marks of many students.")] = None,
     by: ByOption = "",
 ) -> str:
-    """Give a manual mark for a criterion or the whole submission.
+    """Give a mark for a criterion or the whole submission, or another deadline.
 
     Use it for criteria that need manual grading, or to override a check. `total` gives a final mark, which is the whole
-    grade, also without a submission. A comment without POINTS changes no points. Later runs keep the mark. A later mark
-    replaces it; the gradebook keeps both.
+    grade, also without a submission; `excused` in place of its points means that the student needs no grade. A comment without POINTS
+    changes no points. The mark is appended to the file of --by in the folder marks/ of the gradebook: people may edit these files, and add
+    files of their own. The latest mark counts, and `-` withdraws it.
 
     Examples:
 
-      grader mark alice answer-floating-link 3.5 --gradebook lab6.db
+      grader mark alice answer-floating-link 3.5 --gradebook lab6-grades
 
-      grader mark alice lidar-frame 6 --gradebook lab6.db --comment "fixed it"
+      grader mark alice lidar-frame 6 --gradebook lab6-grades --comment "fixed it" --by Kim
 
-      grader mark alice lidar-frame - --gradebook lab6.db
+      grader mark alice lidar-frame - --gradebook lab6-grades
 
-      grader mark alice lidar-frame --undo --gradebook lab6.db
+      grader mark carol total excused --gradebook lab6-grades --comment "ill"
 
-      grader mark carol total --excused --gradebook lab6.db --comment "ill"
+      grader mark alice deadline 2026-11-25 --gradebook lab6-grades
 
-      grader mark alice lidar-frame 3 --gradebook lab6.db --second --by Lee
+      grader mark --missing total 0 --gradebook lab6-grades
 
-      grader mark --missing total 0 --gradebook lab6.db
-
-      grader mark --import marks.csv --gradebook lab6.db
+      grader mark --import marks.csv --gradebook lab6-grades
     """
-    from grader.usecases.class_marks import import_marks, mark_missing
-    from grader.usecases.manual_marks import MarkRequest, give_mark
+    from grader.usecases.manual_marks import MarkRequest, give_mark, import_marks, mark_missing
 
-    if missing:  # in place of the student
-        student, criterion, points = "", student, points or criterion or None
-    request = MarkRequest(student, criterion, points, comment, by, excused, undo, second, list_comments, missing)
     if file is not None:
-        if request != MarkRequest("", "", by=by):
+        if student or criterion or points or comment or missing:
             raise InputError("--import takes no argument and no other option but --by")
         return import_marks(gradebook, file, by)
-    return mark_missing(gradebook, request) if missing else give_mark(gradebook, request, warn)
-
-
-def extend(
-    student: Annotated[str, typer.Argument(metavar="STUDENT", help="The id, login, email address or name.")],
-    time: Annotated[str, typer.Argument(metavar="TIME", help="The new deadline, as 2026-11-25; - withdraws it.")],
-    gradebook: GradebookOption,
-    by: ByOption = "",
-) -> str:
-    """Give a student another deadline.
-
-    It counts instead of `due` and `extension` in the roster, in later runs too, until it is withdrawn. A date alone is
-    the end of that day.
-
-    Examples:
-
-      grader extend alice 2026-11-25 --gradebook lab6.db
-
-      grader extend alice - --gradebook lab6.db
-    """
-    from grader.usecases.class_marks import extend_deadline
-
-    return extend_deadline(gradebook, student, time, by, warn)
+    if missing:  # in place of the student
+        return mark_missing(gradebook, MarkRequest("", student, criterion, comment, by))
+    return give_mark(gradebook, MarkRequest(student, criterion, points, comment, by), warn)
 
 
 def review(

@@ -1,177 +1,146 @@
-"""The summary of a class on a terminal: grades, criteria, common mistakes, who needs attention."""
+"""The statistics of a class on a terminal: grades, criteria, mistakes, sections, equal work, who needs a person."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterator
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from grader.classroom.gradebook.agreement import Agreement
-from grader.classroom.gradebook.attention import Attention
-from grader.classroom.gradebook.criterion_statistics import ChoiceCount, CriterionStatistics
-from grader.classroom.gradebook.hints import CommonFix
-from grader.classroom.gradebook.identical import IdenticalWork
-from grader.classroom.gradebook.statistics import ClassStatistics, CommonFailure
-from grader.classroom.gradebook.summary import ClassSummary
-from grader.report import class_words as words
+from grader.classroom.equal_work import EqualWork
+from grader.classroom.grades import Class
+from grader.classroom.statistics import Attention, ClassStatistics, CriterionFigures, Summary
 from grader.report.console import wrapped
-from grader.text import counted, format_points, people_text, printable
+from grader.text import counted, format_points, named, people_text, printable
 
 _BAR_WIDTH = 40
-_INDENT = 8
-_STYLES = {"-": "red", "+": "green"}
+_MAX_MISTAKES, _MAX_GROUPS, _MAX_NAMED = 10, 20, 12
+EQUAL_NOTE = (
+    "The same robot may differ in names, order, comments and the spelling of numbers. This is no verdict: students who"
+    " follow the handout and make the same mistake have the same robot or files."
+)
+SHARE_NOTE = "Share: the mean share of the points that students earned."
 
 
-def render_class(summary: ClassSummary, console: Console, *, verbose: bool = False) -> None:
-    """Print the summary of a class. Text of submissions is never interpreted as markup or control codes.
-
-    Only with `verbose`, all students who need attention are named.
-    """
-    statistics = summary.statistics
-    wrapped(console, Text(printable(summary.rubric.title), style="bold"), 0)
-    heads = words.counts_line(statistics), words.final_line(statistics), words.earlier_line(statistics)
-    for line in filter(None, heads):
+def render_class(book: Class, found: ClassStatistics, console: Console, *, verbose: bool = False) -> None:
+    """Print the statistics. Text of submissions is never interpreted as markup or control codes."""
+    wrapped(console, Text(printable(found.rubric.title), style="bold"), 0)
+    for line in (counts_line(found), *grade_lines(found)):
         wrapped(console, Text(line), 0)
-    if statistics.graded:
-        _print_marks(statistics, console)
-        _print_criteria(statistics.criteria, words.adjusted_lines(summary.rubric), console)
-        _print_failures(statistics.failures[: words.MAX_LISTED], console)
-    _print_fixes(summary.fixes[: words.MAX_LISTED], console)
-    _print_choices(summary.choices, console)
-    _print_agreement(summary.agreement, summary.names, console)
-    _print_identical(summary.identical, summary.names, console)
-    _print_attention(summary.attention, summary.names, console, verbose=verbose)
-    for line in filter(None, (*words.evidence_lines(summary), words.late_line(summary))):
-        console.print()
-        wrapped(console, Text(line), 0)
-
-
-def _print_marks(statistics: ClassStatistics, console: Console) -> None:
-    console.print()
-    for line in words.mark_lines(statistics):
-        wrapped(console, Text(line), 0)
-    most = max(statistics.bins)
-    for tenth, count in enumerate(statistics.bins if most else ()):
-        bar = "#" * -(-count * min(_BAR_WIDTH, console.width - 30) // most)
-        console.print(Text(f"  {words.span(statistics, tenth):>14} {count:>6}  {bar}"), no_wrap=True, crop=False)
-
-
-def _print_failures(failures: Sequence[CommonFailure], console: Console) -> None:
-    if failures:
-        _print_heading("Common mistakes", console)
-    for failure in failures:
-        head = Text(f"{failure.count:>6}  ", style="bold")
-        wrapped(console, Text(printable(f"{failure.criterion.id}: {failure.message}")), 8, head)
-
-
-def _print_fixes(fixes: Sequence[CommonFix], console: Console) -> None:
-    """Print edits with the number of students who need them."""
-    if fixes:
-        _print_heading("Edits that would fix the most", console, words.FIXES_NOTE)
-    for fix in fixes:
-        who = Text(f"{counted(fix.count, 'student')}: ", style="bold")
-        wrapped(console, who + Text(printable(fix.action)), 4, Text("  "))
-        for sign, line in words.edit_lines(fix.example):
-            style = _STYLES.get(sign, "dim")
-            head = Text(f"{' ' * _INDENT}{sign} ", style=style)
-            wrapped(console, Text(printable(line), style=style), _INDENT + 2, head)
-        wrapped(console, Text(words.gain(fix), style="dim"), _INDENT)
-
-
-def _print_choices(choices: Sequence[ChoiceCount], console: Console) -> None:
-    used = [choice for choice in choices if choice.students]
-    if used:
-        _print_heading("Usual deductions", console)
-    for criterion, text, points, count in used:
-        line = f"{criterion.id}: {text} ({format_points(points)})"
-        wrapped(console, Text(printable(line)), 8, Text(f"{count:>6}  ", style="bold"))
-
-
-def _print_agreement(agreement: Agreement, names: Mapping[str, str], console: Console) -> None:
-    if not agreement.items:
-        return
-    _print_heading("Agreement of two graders", console)
-    mean = f"mean difference {agreement.mean_difference_percent:.1f} % of the maximum"
-    lines = [f"{counted(agreement.items, 'item')} marked twice, {agreement.same} with the same points, {mean}"]
-    for item in agreement.largest:
-        first, second, most = map(format_points, (item.first, item.second, item.max_points))
-        lines.append(f"{names[item.key]}, {item.criterion}: {first} and {second} of {most} points")
-    for line in lines:
+    most = max(map(len, found.tenths))
+    for tenth, keys in enumerate(found.tenths if most else ()):
+        bar = "#" * -(-len(keys) * min(_BAR_WIDTH, console.width - 30) // most)
+        console.print(Text(f"  {span(found, tenth):>14} {len(keys):>6}  {bar}"), no_wrap=True, crop=False)
+    if found.all.students:
+        _print_criteria(found.criteria, console)
+    if found.mistakes:
+        _heading("Common mistakes", console)
+    for mistake in found.mistakes[:_MAX_MISTAKES]:
+        head = Text(f"{len(mistake.students):>6}  ", style="bold")
+        wrapped(console, Text(printable(f"{mistake.criterion.id}: {mistake.message}")), 8, head)
+    for line in (*section_lines(found),):
         wrapped(console, Text(printable(line)), 4, Text("  "))
+    if found.equal:
+        _heading("Equal work", console)
+        wrapped(console, Text(EQUAL_NOTE, style="dim"), 2)
+    for work in found.equal[:_MAX_GROUPS]:
+        wrapped(console, Text(printable(equal_line(work, book))), 4, Text("  "))
+    if found.attention:
+        _heading("Needs a person", console)
+    for group in found.attention:
+        wrapped(console, Text(printable(attention_line(group, book, verbose=verbose))), 4, Text("  "))
 
 
-def _print_identical(identical: Sequence[IdenticalWork], names: Mapping[str, str], console: Console) -> None:
-    if identical:
-        _print_heading("Identical work", console, words.IDENTICAL_NOTE)
-    for work in identical[: words.MAX_GROUPS]:
-        wrapped(console, Text(printable(words.identical_line(work, names))), 4, Text("  "))
-    _print_rest(len(identical) - words.MAX_GROUPS, console)
+def counts_line(found: ClassStatistics) -> str:
+    """Return how many students were graded, and how many were not."""
+    words = {"graded": "graded", "unreadable": "could not be graded", "errored": "errored", "excused": "excused"}
+    words["missing"] = "without a submission"
+    counts = [f"{found.statuses[status]} {text}" for status, text in words.items() if status in found.statuses]
+    return ", ".join([*counts, *([f"{found.late} late"] if found.late else [])]) or "no students"
 
 
-def _print_attention(attention: Attention, names: Mapping[str, str], console: Console, *, verbose: bool) -> None:
-    """Print each reason with its students: names side by side, or one line each if there are details."""
-    is_cut = False
-    if attention.total:
-        _print_heading("Needs attention", console)
-    for group in attention.groups:
-        has_details = any(item.detail for item in group.items)
-        most = len(group.items) if verbose else words.MAX_DETAILS if has_details else words.MAX_NAMED
-        head, rest = Text(f"{group.reason} ({len(group.items)})", style="bold"), len(group.items) - most
-        is_cut = is_cut or rest > 0
-        if has_details:
-            wrapped(console, head, 4, Text("  "))
-            for item in group.items[:most]:
-                line = f"{names[item.key]}: {item.detail}" if item.detail else names[item.key]
-                wrapped(console, Text(printable(line)), 6, Text("    "))
-            _print_rest(rest, console)
-        else:
-            who = people_text([names[item.key] for item in group.items], most)
-            wrapped(console, head + Text(printable(f": {who}"), "not bold"), 4, Text("  "))
-    if is_cut:
-        wrapped(console, Text(words.ATTENTION_NOTE, style="dim"), 2)
+def grade_lines(found: ClassStatistics) -> Iterator[str]:
+    """Yield the grades in one line, and how many are not final."""
+    if found.all.students:
+        most = format_points(sum_of(found))
+        lowest, highest = found.all.lowest, found.all.highest
+        assert lowest is not None and highest is not None
+        yield (
+            f"Grades of {most}: mean {figure(found.all.mean)}, median {figure(found.all.median)}, "
+            f"lowest {format_points(lowest)}, highest {format_points(highest)}"
+        )
+    if found.open:
+        yield f"{counted(found.open, 'grade')} still {'needs' if found.open == 1 else 'need'} manual grading"
 
 
-def _print_heading(title: str, console: Console, note: str = "") -> None:
+def sum_of(found: ClassStatistics):  # type: ignore[no-untyped-def]
+    """Return the maximum of the class."""
+    return sum(row.criterion.maximum for row in found.criteria)
+
+
+def figure(value) -> str:  # type: ignore[no-untyped-def]
+    """Return a mean to one decimal, rounded down so that no 99.96 is shown as 100."""
+    return "" if value is None else f"{int(value * 10) / 10:.1f}"
+
+
+def section_lines(found: ClassStatistics) -> Iterator[str]:
+    """Yield the mean and median of each section."""
+    for name, one in found.sections.items():
+        yield f"Section {name or '(none)'}: {_summary(one)}"
+
+
+def _summary(one: Summary) -> str:
+    return f"mean {figure(one.mean)}, median {figure(one.median)} ({counted(one.students, 'student')})"
+
+
+def span(found: ClassStatistics, tenth: int) -> str:
+    """Return the grades of a tenth of the maximum: "10 to 20"."""
+    step = sum_of(found) / len(found.tenths)
+    return f"{format_points(step * tenth)} to {format_points(step * (tenth + 1))}"
+
+
+def percent(share: float) -> str:
+    """Return a share in percent, not rounded up to 100 % or down to 0 %."""
+    return f"{share:.0%}" if share in (0, 1) else f"{min(99, max(1, round(100 * share)))}%"
+
+
+def what_is_same(work: EqualWork, book: Class) -> str:
+    """Return what is equal for all of the students, and who of them has the same file."""
+    if work.students in work.same_file:
+        return "the same file"
+    files = (people_text([_name(key, book) for key in keys], _MAX_NAMED) for keys in work.same_file)
+    return "; ".join([work.equal, *(f"the same file: {who}" for who in files)])
+
+
+def equal_line(work: EqualWork, book: Class) -> str:
+    """Return the students of one group of equal work."""
+    return f"{people_text([_name(key, book) for key in work.students], _MAX_NAMED)}: {what_is_same(work, book)}"
+
+
+def attention_line(group: Attention, book: Class, *, verbose: bool) -> str:
+    """Return the students who need a person for one reason."""
+    who = [f"{_name(key, book)} ({detail})" if detail else _name(key, book) for key, detail in group.students]
+    return f"{str(group.reason)[0].upper()}{group.reason[1:]} ({len(who)}): {people_text(who, len(who) if verbose else _MAX_NAMED)}"
+
+
+def _name(key: str, book: Class) -> str:
+    return named(key, book.student(key, book.results.of(key)).name)
+
+
+def _heading(title: str, console: Console) -> None:
     console.print()
     console.print(Text(title, style="bold"))
-    if note:
-        wrapped(console, Text(note, style="dim"), 2)
 
 
-def _print_rest(number: int, console: Console) -> None:
-    if number > 0:
-        wrapped(console, Text(f"... and {number} more", style="dim"), 2)
-
-
-def _print_criteria(criteria: Iterable[CriterionStatistics], adjusted: Sequence[str], console: Console) -> None:
+def _print_criteria(rows: tuple[CriterionFigures, ...], console: Console) -> None:
     console.print()
-    asked = [row for row in criteria if row.of]
-    has_marks, has_carried = any(row.manual_marks for row in asked), any(row.carried for row in asked)
-    more = [*(["not\ndeducted"] if has_carried else []), *(["manual\nmarks"] if has_marks else [])]
-    # With both, ids of 26 letters fit on 80 columns.
-    table = Table(box=None, pad_edge=False, padding=(0, 0, 0, 1) if len(more) > 1 else (0, 1), header_style="bold")
+    columns = [name for name in ("carried", "marked", "pending", "errored") if any(getattr(row, name) for row in rows)]
+    table = Table(box=None, pad_edge=False, padding=(0, 1), header_style="bold")
     table.add_column("criterion", no_wrap=True)
-    for name in ("points", "passed", *more, "of", "share", "discrimination"):
-        table.add_column(name, justify="right", no_wrap=True)
-    for row in asked:
-        table.add_row(
-            words.criterion_name(row.criterion),
-            format_points(row.criterion.points),
-            str(row.passed),
-            *([str(row.carried)] if has_carried else []),
-            *([str(row.manual_marks)] if has_marks else []),
-            str(row.of),
-            words.percent(row.share) if row.share is not None else "",
-            _discrimination_text(row.discrimination),
-        )
+    for name in ("points", "passed", "failed", *columns, "share"):
+        table.add_column("not deducted" if name == "carried" else name, justify="right", no_wrap=True)
+    for row in rows:
+        name = printable(f"{row.criterion.id} (bonus)" if row.criterion.bonus else row.criterion.id)
+        counts = (str(getattr(row, column)) for column in ("passed", "failed", *columns))
+        table.add_row(name, format_points(row.criterion.points), *counts, percent(row.share) if row.share is not None else "")
     console.print(table)
-    note = f"{words.CRITERIA_NOTE} {words.NOT_DEDUCTED_NOTE}" if has_carried else words.CRITERIA_NOTE
-    wrapped(console, Text(note, style="dim"), 0)
-    for line in adjusted:
-        wrapped(console, Text(line), 0)
-
-
-def _discrimination_text(discrimination: float | None) -> Text:
-    if discrimination is None:
-        return Text("")
-    return Text(f"{discrimination:.2f}", style="yellow" if words.is_low(discrimination) else "")
+    wrapped(console, Text(SHARE_NOTE, style="dim"), 0)

@@ -1,124 +1,130 @@
-"""Give, withdraw or undo a manual mark by command."""
+"""Give and withdraw marks by command: of one student, of all who submitted nothing, and of a CSV file."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
-from typing import NamedTuple
 
-from grader.classroom.gradebook import marks
-from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.manual_queue import COMMENT_NUMBER, numbered_comments
-from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.classroom.students import Student
-from grader.classroom.typed_names import criterion_of, read_points
+from grader.classroom import folder as names
+from grader.classroom.grades import Class, StudentGrade
+from grader.classroom.mark_files import WITHDRAWN, mark_file
+from grader.classroom.mark_import import MarkImport
+from grader.classroom.marks import Key, Mark, append_marks, mark_in, maxima
+from grader.classroom.roster import Student
+from grader.classroom.tables import SIZE_LIMIT
+from grader.classroom.typed_names import criterion_of, find_typed
 from grader.errors import InputError
-from grader.grading.criterion import TOTAL, Criterion
-from grader.report.review import mark_text
-from grader.text import counted_points, format_points, named, people_text, printable
+from grader.files.reading import read_capped
+from grader.grading.criterion import DEADLINE, TOTAL
+from grader.text import by_name, counted_points, format_points, named, people_text, printable, printable_path
+from grader.usecases.grade_class import write_grades
 from grader.usecases.terminal import Warn
 
-_NOT_COUNTED = "{} is corrected after grading, by [adjust] in the rubric: its manual marks do not count"
+_NOT_COUNTED = "{} is corrected after grading, by [adjust] in the rubric: its marks do not count"
 _MAX_NAMED = 10
-# The students whose newest submission has the same files in the same class.
-_SAME_SUBMISSION = """
-SELECT id, key, name FROM grade WHERE id <> ? AND result IS NOT NULL AND (source, json_extract(files, '$[0]')) =
-    (SELECT source, json_extract(files, '$[0]') FROM grade WHERE id = ?) ORDER BY key
-"""
 
 
-class MarkRequest(NamedTuple):
-    """What `grader mark` records for a criterion or the whole submission. `points` is None without POINTS."""
+@dataclass(frozen=True, slots=True)
+class MarkRequest:
+    """What `grader mark` records: `points` is what a person typed, empty for a comment alone."""
 
-    submission: str
+    student: str
     criterion: str
-    points: str | None = None
+    points: str = ""
     comment: str = ""
     by: str = ""
-    excused: bool = False
-    undo: bool = False
-    second: bool = False
-    list_comments: bool = False
-    missing: bool = False
-
-    @property
-    def is_total(self) -> bool:
-        """Return whether it is about the whole submission."""
-        return self.criterion == TOTAL
-
-    @property
-    def is_points(self) -> bool:
-        """Return whether it gives points, and does not withdraw them."""
-        return self.points is not None and self.points.strip() != marks.TAKE_BACK
 
     def check(self) -> None:
-        """Raise InputError if the options contradict each other, or say nothing."""
-        has_points = self.points is not None
-        has_entry = bool(has_points or self.comment or self.excused or self.second)
-        rules = (
-            (self.list_comments and (has_entry or self.undo), "--list-comments records nothing: use it alone"),
-            (not (self.submission or self.missing) or not self.criterion, "name a STUDENT and a CRITERION"),
-            (self.missing and not (self.is_total and self.is_points), f"write it as --missing {TOTAL} POINTS"),
-            (self.undo and has_entry, "--undo takes no POINTS and no other option but --by"),
-            (self.excused and has_points, "--excused has no POINTS"),
-            (self.excused and self.second, "--second cannot be used with --excused"),
-            (self.excused and not self.is_total, f"--excused is for the whole submission: use `{TOTAL}` as CRITERION"),
-            (self.second and self.is_total, "--second is for one criterion, not for the whole submission"),
-            (self.second and not has_points, "--second needs POINTS"),
-            (self.second and not self.by, "--second needs --by, your name"),
-            (not (has_entry or self.undo or self.list_comments), "give POINTS, --comment, --excused or --undo"),
-        )
-        for is_broken, message in rules:
-            if is_broken:
-                raise InputError(message)
+        """Raise InputError if the request says nothing."""
+        if not self.student or not self.criterion:
+            raise InputError("name a STUDENT and a CRITERION")
+        if not (self.points or self.comment):
+            raise InputError("give POINTS or --comment")
 
 
 def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
-    """Record a manual mark and return what counts for the student now; or list comments. Raises InputError."""
+    """Append a mark to the file of its grader, and return what counts for the student now. Raises InputError."""
     request.check()
-    with Gradebook(gradebook) as book:
-        grades = Grades(book)
-        grade = grades.find(request.submission)
-        criterion, most = marked_criterion(grades, grade, request)
-        if request.list_comments:
-            comments = numbered_comments(book, request.criterion).items()
-            lines = (printable(f"#{number} {' '.join(comment.split())}") for number, comment in comments)
-            return "".join(f"{line}\n" for line in lines) or "no comments yet\n"
-        with marks.writing(book):  # what cannot be reported is not saved
-            before = _record(book, grade, request, most, warn)
-            now = grades.find(grade.student.key)
-            whole = sum((row.maximum for row in grades.criteria), Decimal(0))
-            is_alone = request.second or request.is_total
-            others = [] if is_alone else list(_unmarked_members(book, now, request.criterion))
-    _report_replaced(before, criterion, request, warn)
-    if others:
+    book = Class(gradebook)
+    advice = f"; {printable_path(gradebook / names.GRADES)} lists all students"
+    student = find_typed([book.student(key, book.results.of(key)) for key in book.keys], request.student, advice)
+    key, adjusted = (student.key, request.criterion), _adjusted(book, request)
+    before = book.marks.counting.get(key) or book.marks.comments.get(key)
+    append_marks(_file(book, request.by), [_mark(book, key, request)])
+    now = Class(gradebook)
+    write_grades(now)
+    _warn_of_replaced(before, request, warn)
+    if adjusted:
+        warn(_NOT_COUNTED.format(request.criterion))
+    if request.criterion not in (TOTAL, DEADLINE) and (others := [*_unmarked_members(now, key)]):
         warn(f"the same submission counts for {people_text(others, _MAX_NAMED)}: mark them as well")
-    text = _grade_text(now, whole)
-    if request.second:
-        text = f"second opinion on {request.criterion}; the grade stays the same"
-    elif request.criterion == marks.EXTENSION:
-        deadline = f"deadline {request.comment}" if request.comment else "no deadline of their own"
-        text = "; ".join(filter(None, (deadline, now.late.reason, text)))
-    return printable(f"{key_and_name(now.student)}: {text}") + "\n"
+    text = grade_text(now, now.grade(student.key))
+    if request.criterion == DEADLINE:
+        own = "no deadline of their own" if request.points == WITHDRAWN else f"deadline {request.points}"
+        text = "; ".join(filter(None, (own, now.grade(student.key).late.reason, text)))
+    return f"{printable(f'{key_and_name(student)}: {text}')}\n"
 
 
-def marked_criterion(grades: Grades, grade: StudentGrade, request: MarkRequest) -> tuple[Criterion | None, Decimal]:
-    """Return the criterion to mark, None for the whole submission, and the most points. Raises InputError."""
-    if request.criterion in (TOTAL, marks.EXTENSION):
-        return None, sum((row.points for row in grades.criteria), Decimal(0))
-    criterion = criterion_of(grades.rubric(grade.rubric) if grade.rubric else grades.newest_rubric(), request.criterion)
-    if request.is_points and criterion.adjustment is not None and not criterion.points:
+def mark_missing(gradebook: Path, request: MarkRequest) -> str:
+    """Give all who submitted nothing, and have no final mark, one; return how many. Raises InputError."""
+    if request.criterion != TOTAL or not request.points or request.points == WITHDRAWN:
+        raise InputError(f"write it as --missing {TOTAL} POINTS")
+    book = Class(gradebook)
+    missing = [one.student.key for one in book if one.graded is None and not one.has_final]
+    append_marks(_file(book, request.by), [_mark(book, (key, TOTAL), request) for key in missing])
+    write_grades(Class(gradebook))
+    return f"{len(missing)} of {len(book.keys)} submitted nothing, and have {format_points(Decimal(request.points))} points now\n"
+
+
+def import_marks(gradebook: Path, file: Path, by: str) -> str:
+    """Append the marks in a CSV file; return how many. Raises InputError, and records none, if a row is wrong."""
+    book = Class(gradebook)
+    digests = {one.student: one.digest for one in book.results.all()}
+    students = [book.student(key, book.results.of(key)) for key in book.keys]
+    from grader.classroom.review_items import answers_of
+
+    reader = MarkImport(students, book.rubric, book.marks, digests, answers_of(book))
+    found = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file), by)
+    append_marks(_file(book, by), found.marks)
+    write_grades(Class(gradebook))
+    return f"{printable_path(file)}: {len(found.marks)} recorded, {found.same} the same as before\n"
+
+
+def _file(book: Class, by: str) -> Path:
+    return mark_file(book.folder / names.MARKS, by)
+
+
+def _mark(book: Class, key: Key, request: MarkRequest) -> Mark:
+    """Return the mark of a request, given for the submission as it is now. Raises InputError."""
+    graded = book.results.of(key[0])
+    if key[1] not in (TOTAL, DEADLINE):
+        criterion_of(book.rubric, key[1])
+        if graded is None:
+            raise InputError(f"{key[0]} has submitted nothing that could be marked: `{TOTAL}` is a final mark")
+    digest = graded.digest if graded is not None and key[1] != DEADLINE else ""
+    values = {"time": "", "by": request.by, "points": request.points, "comment": request.comment, "submission": digest, "": ""}
+    [mark] = mark_in(values, key, maxima(book.rubric)[key[1]], "")
+    return mark._replace(time=book.marks.next_time(key))
+
+
+def _adjusted(book: Class, request: MarkRequest) -> bool:
+    """Return whether the rubric adjusts the criterion; raise InputError where it has no points left."""
+    if request.criterion in (TOTAL, DEADLINE):
+        return False
+    criterion = criterion_of(book.rubric, request.criterion)
+    if criterion.adjustment is not None and not criterion.points and request.points not in ("", WITHDRAWN):
         raise InputError(_NOT_COUNTED.format(criterion.id))
-    return criterion, criterion.points
+    return criterion.adjustment is not None
 
 
-def _unmarked_members(book: Gradebook, grade: StudentGrade, criterion: str) -> Iterator[str]:
-    """Yield the other members of a team whose newest mark of a criterion is not the same."""
-    mark = marks.newest_mark(book, grade.id, criterion)
-    for student, key, name in list(book.rows(_SAME_SUBMISSION, grade.id, grade.id)):
-        other = marks.newest_mark(book, student, criterion)
-        if mark is not None and (marks.WITHDRAWN if other is None else other.entry) != mark.entry:
-            yield printable(named(key, name))
+def _unmarked_members(book: Class, key: Key) -> Iterator[str]:
+    """Yield the other students of the same submission whose mark of a criterion is not the same."""
+    own, mark = book.results.of(key[0]), book.marks.counting.get(key)
+    for other in book.results.all() if own is not None else ():
+        if other.student != key[0] and own is not None and (other.root, other.paths) == (own.root, own.paths):
+            theirs = book.marks.counting.get((other.student, key[1]))
+            if (theirs.value if theirs else "") != (mark.value if mark else ""):
+                yield printable(named(other.student, book.student(other.student, other).name))
 
 
 def key_and_name(student: Student) -> str:
@@ -126,70 +132,26 @@ def key_and_name(student: Student) -> str:
     return student.key if student.name in ("", student.key) else f"{student.key}, {student.name}"
 
 
-def _record(book: Gradebook, grade: StudentGrade, request: MarkRequest, most: Decimal, warn: Warn) -> marks.Mark | None:
-    """Write what is requested, and return the mark that was the newest before."""
-    if request.undo:
-        return marks.undo_mark(book, grade, request.criterion, request.by)
-    first = marks.newest_mark(book, grade.id, request.criterion) if request.second else None
-    if first is not None and first.points is not None and first.by == request.by:
-        mark = f"the mark of {request.criterion} is by {request.by}"
-        raise InputError(f"{mark}: a second opinion must be given by another person")
-    comment = _comment(book, request, warn)
-    entry = entry_of(request, most)
-    return marks.add_mark(book, grade, request.criterion, entry._replace(comment=comment), request.by).before
+def _warn_of_replaced(before: Mark | None, request: MarkRequest, warn: Warn) -> None:
+    if before is not None:
+        what = "comment" if before.kind == "comment" else "mark"
+        words = f"{before.value}{by_name(before.by)}" + (f": {' '.join(before.comment.split())}" if before.comment else "")
+        warn(printable(f"this replaces the {what} of {request.criterion} in {before.place}: {words.strip(': ')}"))
+    elif request.points == WITHDRAWN:
+        warn(f"there was no mark of {request.criterion} to withdraw")
 
 
-def entry_of(request: MarkRequest, most: Decimal) -> marks.Entry:
-    """Return the entry of a request, without its comment. Raises InputError for points out of range."""
-    match request:
-        case MarkRequest(excused=True):
-            return marks.Entry("excused")
-        case MarkRequest(points=None):
-            return marks.Entry("comment")
-        case MarkRequest(is_points=False):
-            return marks.WITHDRAWN_SECOND if request.second else marks.WITHDRAWN
-    points = read_points(request.points or "", request.criterion, most)
-    return marks.Entry("second" if request.second else "points", points)
-
-
-def _comment(book: Gradebook, request: MarkRequest, warn: Warn) -> str:
-    """Return the comment; `#2` is an earlier one, which is repeated on standard error."""
-    number = COMMENT_NUMBER.fullmatch(request.comment.strip())
-    if number is None:
-        return request.comment
-    comment = numbered_comments(book, request.criterion).get(int(number[1]))
-    if comment is None:
-        raise InputError(
-            f"{request.criterion} has no comment {number[0]}: "
-            f"`grader mark STUDENT {request.criterion} --list-comments` lists the earlier comments"
-        )
-    warn(printable(f"comment {number[0]}: {' '.join(comment.split())}"))
-    return comment
-
-
-def _report_replaced(before: marks.Mark | None, criterion: Criterion | None, request: MarkRequest, warn: Warn) -> None:
-    name = request.criterion
-    is_withdrawn = before is None or before.entry.kind == "withdrawn" or before.entry == marks.WITHDRAWN_SECOND
-    if before is not None and not is_withdrawn:
-        what = "second opinion" if request.second else "comment" if before.entry.kind == "comment" else "mark"
-        is_mark = name != marks.EXTENSION
-        newest = f"newest {what} of {name}: {mark_text(before)}" if is_mark else f"deadline {before.comment}"
-        warn(f"this {'undoes' if request.undo else 'replaces'} the {newest}")
-    elif request.points is not None and not request.is_points:
-        warn(f"there was no {name if name == marks.EXTENSION else f'mark of {name}'} to withdraw")
-    if criterion is not None and criterion.adjustment is not None:
-        warn(_NOT_COUNTED.format(name))
-
-
-def _grade_text(grade: StudentGrade, whole: Decimal) -> str:
+def grade_text(book: Class, grade: StudentGrade) -> str:
     """Return what counts: an excuse, a final mark, or the points of the criteria."""
-    of_criteria = f"{format_points(grade.score)} of {format_points(grade.out_of)} points"
+    report = grade.report
+    criteria = f"{format_points(report.score)} of {format_points(report.max_score)} points" if report is not None else ""
     if grade.is_excused:
         return "excused"
-    if grade.final is not None:
-        not_counted = f"; the criteria give {of_criteria}" if grade.result is not None else ""
-        return f"final mark {format_points(grade.final)} of {format_points(whole)} points{not_counted}"
-    if grade.result is None:
+    if grade.final_points is not None:
+        whole = sum((row.maximum for row in book.criteria), Decimal(0))
+        more = f"; the criteria give {criteria}" if criteria else ""
+        return f"final mark {format_points(grade.final_points)} of {format_points(whole)} points{more}"
+    if report is None or grade.total is None:
         return "no submission"
     late = f"; {format_points(grade.total)} after the late penalty" if grade.late.points else ""
-    return of_criteria + late + (f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else "")
+    return criteria + late + (f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else "")

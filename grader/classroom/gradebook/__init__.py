@@ -1,1 +1,0 @@
-"""The gradebook: its tables, the current grades, manual marks, late penalties and statistics."""

@@ -1,1 +1,0 @@
-"""A review: one person grades the items that need manual grading."""

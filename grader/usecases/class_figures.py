@@ -1,0 +1,46 @@
+"""The statistics of a class, and what changed in its grades."""
+
+from functools import partial
+from pathlib import Path
+
+from grader.classroom.changes import changes, snapshot
+from grader.classroom.grades import Class
+from grader.classroom.results import Results
+from grader.classroom import folder as names
+from grader.classroom.statistics import statistics
+from grader.errors import InputError
+from grader.report.formats import OutputFormat
+from grader.report.screen import Screen, draw
+from grader.usecases.terminal import Terminal
+
+_MAX_BOOKS = 2
+
+
+def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *, verbose: bool) -> str:
+    """Return the statistics of a class. Raises InputError."""
+    book = Class(gradebook)
+    if kind is OutputFormat.JSON:
+        from grader.report.class_json import render_class_json
+
+        return render_class_json(book)
+    from grader.report.class_summary import render_class
+
+    return draw(partial(render_class, book, statistics(book, book), verbose=verbose), terminal.screen())
+
+
+def compare(books: tuple[Path, ...], before: int | None, after: int | None, kind: OutputFormat, screen: Screen) -> str:
+    """Return what changed between two runs of a gradebook, or two gradebooks. Raises InputError."""
+    from grader.report.changes import render_changes, render_changes_json
+
+    if not 1 <= len(books) <= _MAX_BOOKS:
+        raise InputError("name one gradebook, or two")
+    names.check_gradebook(books[0])
+    newest = len(Results(books[0] / names.RESULTS).runs)
+    if len(books) == 1 and before is None and (after or newest) < _MAX_BOOKS:
+        raise InputError(f"{books[0]} has one run: grade the class again, and compare then")
+    earlier = before if before is not None or len(books) > 1 else (after or newest) - 1
+    old, new = snapshot(books[0], earlier), snapshot(books[-1], after)
+    found, runs = changes(old, new), (old.run, new.run)
+    if kind is OutputFormat.JSON:
+        return render_changes_json(found, runs)
+    return draw(partial(render_changes, found, runs), screen)
