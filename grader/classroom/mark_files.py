@@ -4,7 +4,6 @@ A file keeps its delimiter, decimal sign, encoding, line ends, order of columns 
 the operating system on the file itself, and held only while rows are appended.
 """
 
-import errno
 import os
 import re
 import sys
@@ -26,7 +25,7 @@ SURPLUS = ""  # in place of a title: the cells that have none
 WITHDRAWN = "-"  # in place of points: no formula
 _FLAGS = os.O_RDWR | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
 _WINDOWS_LOCK_AT = 1 << 30  # beyond the end of the file: others cannot read what is locked
-_SAFE = re.compile(r"(?!con|prn|aux|nul|com|lpt)[a-z0-9_]{1,40}")  # no device of Windows
+_SAFE = re.compile(r"(?!(?:con|prn|aux|nul|com\d|lpt\d)$)[a-z0-9_]{1,40}")  # no device of Windows
 
 
 def read_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], Rows]:
@@ -87,11 +86,15 @@ def append_rows(path: Path, rows: Sequence[Mapping[str, str]]) -> None:
             lock(file.fileno())
             if not os.path.samestat(os.fstat(file.fileno()), path.stat()):
                 raise InputError(f"another program replaces {shown}: try again")
-            before, data = file.tell(), _encoded(read_capped(path, SIZE_LIMIT, shown=shown, advice=""), rows, shown)
-            if file.write(data) < len(data):
+            before = os.fstat(file.fileno()).st_size
+            data = _encoded(read_capped(path, SIZE_LIMIT, shown=shown, advice=""), rows, shown)
+            try:
+                while data:  # once, unless the disk is full
+                    data = data[file.write(data) :]
+                os.fsync(file.fileno())
+            except BaseException:
                 file.truncate(before)
-                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-            os.fsync(file.fileno())
+                raise
     except OSError as error:
         raise InputError(f"cannot write {shown}: {error.strerror}") from None
 
@@ -114,10 +117,10 @@ def _encoded(data: bytes, rows: Sequence[Mapping[str, str]], shown: str) -> byte
     table, titles, old = whole_rows(data, shown)
     if missing := [name for name in COLUMNS if titles and name not in titles]:
         raise InputError(f"{shown} has no column {enumerated(missing)}: add it to the first line")
-    end = table.rows[0].end if table.rows else "\n"
-    text = "" if not table.rows or table.rows[-1].end else end
-    text += "" if titles else ",".join(COLUMNS) + end
-    points = " ".join(row["points"] for _, row in old)
+    end = (table.rows[0].end if table.rows else "") or "\n"
+    text = end if table.rows and not table.rows[-1].end else ""
+    text += "" if titles else table.delimiter.join(COLUMNS) + end
+    points = " ".join(row.get("points", "") for _, row in old)
     has_comma = bool(re.search(r"\d,\d", points) or (table.delimiter == ";" and not re.search(r"\d\.\d", points)))
     for row in rows:
         texts = {**row, "points": row["points"].replace(".", ",") if has_comma else row["points"]}
@@ -136,8 +139,8 @@ def mark_file(folder: Path, by: str) -> Path:
     name = unicodedata.normalize("NFC", by.strip().lower())
     if not _SAFE.fullmatch(name):
         digest = sha256_of(name.encode("utf-8", "surrogateescape"))[:16]
-        name = f"{re.sub('[^a-z0-9_]+', '-', name)[:40]}-{digest}"
-    return folder / f"{name.lstrip('-')}.csv"
+        name = f"{re.sub('[^a-z0-9_]+', '-', name).strip('-')[:40] or '_'}-{digest}"
+    return folder / f"{name}.csv"
 
 
 def is_open_in_libreoffice(path: Path) -> bool:

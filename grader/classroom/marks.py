@@ -83,7 +83,7 @@ def utc_text(time: datetime) -> str:
 
 def append_marks(path: Path, marks: Iterable[Mark]) -> None:
     """Append marks to a grader's file; raises InputError as `append_rows` does."""
-    append_rows(path, [mark._asdict() | {"points": mark.value} for mark in marks])
+    append_rows(path, [{**{name: getattr(mark, name) for name in COLUMNS}, "points": mark.value} for mark in marks])
 
 
 def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
@@ -119,7 +119,8 @@ def _rows(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, dict[str, st
         except InputError as error:
             mistakes.append(str(error))
         else:
-            yield from ((f"{shown}:{line}", {**dict.fromkeys(COLUMNS, ""), **values}) for line, values in rows)
+            found = ((line, {**dict.fromkeys(COLUMNS, ""), **values}) for line, values in rows)
+            yield from ((f"{shown}:{line}", values) for line, values in found if any(map(values.get, COLUMNS)))
 
 
 def _files(folder: Path) -> list[Path]:
@@ -163,7 +164,9 @@ def _time(text: str) -> str:
 
 
 def known(noun: str, cell: str, names: Mapping[str, Any]) -> str:
-    """Return the student or criterion in a cell; raises NotCountedError, InputError if a spreadsheet changed the cell."""
+    """Return the student or criterion in a cell; raises NotCountedError, or InputError for a changed cell."""
+    if not cell:
+        raise InputError(f"the row names no {noun}")
     if cell not in names and (changed := as_number(cell, tuple(names))):
         meant = enumerated([*map(repr, changed)], 10, "or")
         raise InputError(f"{noun} {cell!r} may be {meant}, changed by a spreadsheet: correct it")
