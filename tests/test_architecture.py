@@ -32,7 +32,7 @@ LAYERS = (
 INNER = {
     "classroom": (
         ("students",),
-        ("matching", "tables"),
+        ("lateness", "matching", "tables"),
         ("typed_names",),
         ("intake", "lms"),
         ("gradebook",),

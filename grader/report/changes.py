@@ -10,7 +10,7 @@ from rich.text import Text
 
 from grader.classroom.gradebook.changes import Change, PointsChange
 from grader.classroom.gradebook.gradebook import Run
-from grader.classroom.gradebook.lateness import time_text
+from grader.classroom.lateness import time_text
 from grader.grading.criterion import Adjustment
 from grader.grading.rubric_changes import RubricChange
 from grader.report.console import wrapped

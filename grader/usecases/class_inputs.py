@@ -6,11 +6,11 @@ from pathlib import Path
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.lateness import read_time, time_text
 from grader.classroom.gradebook.marks import EXTENSION
 from grader.classroom.gradebook.run_writer import save_answers
 from grader.classroom.intake.roster import Roster, roster_from_json
 from grader.classroom.intake.roster_file import read_roster
+from grader.classroom.lateness import read_time, time_text
 from grader.classroom.run.worker import work_hashes
 from grader.errors import InputError
 from grader.grading.answers import load_with_answers, read_answers

@@ -9,8 +9,8 @@ from pathlib import Path
 from grader.classroom.gradebook import marks
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.lateness import read_time
 from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.classroom.lateness import read_time
 from grader.classroom.tables import SIZE_LIMIT, rows_with_lines
 from grader.errors import InputError
 from grader.files.reading import read_capped

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.lateness import read_time
 from grader.classroom.gradebook.sections import Grouping, compare_sections
 from grader.classroom.gradebook.summary import summary_of
+from grader.classroom.lateness import read_time
 from grader.report.formats import OutputFormat
 from grader.report.screen import Screen, draw
 from grader.usecases.class_hints import HintOptions, search_class_hints

@@ -9,12 +9,12 @@ from typing import Any
 
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
 from grader.classroom.gradebook.marks import EXTENSION
 from grader.classroom.gradebook.result import criterion_points, points_from_units, storable
 from grader.classroom.gradebook.stored import STUDENT_COLUMNS
 from grader.classroom.gradebook.student_grade import DoubtfulMarks, StudentGrade
 from grader.classroom.gradebook.submission_files import SubmissionFiles, SubmissionSources
+from grader.classroom.lateness import Lateness, SubmissionTimes, lateness, read_time
 from grader.classroom.students import Student
 from grader.classroom.typed_names import find_typed
 from grader.errors import InputError

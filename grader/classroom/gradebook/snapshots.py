@@ -6,9 +6,9 @@ from functools import cache
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook, Run
-from grader.classroom.gradebook.lateness import SubmissionTimes, lateness, read_time
 from grader.classroom.gradebook.marks import EXTENSION
 from grader.classroom.gradebook.result import criterion_points, points_from_units
+from grader.classroom.lateness import SubmissionTimes, lateness, read_time
 from grader.errors import InputError
 from grader.grading.criterion import TOTAL
 from grader.grading.rubric import Rubric

@@ -6,8 +6,8 @@ from decimal import Decimal
 from enum import StrEnum
 from typing import NamedTuple
 
-from grader.classroom.gradebook.lateness import Lateness
 from grader.classroom.gradebook.submission_files import SubmissionFiles
+from grader.classroom.lateness import Lateness
 from grader.classroom.students import Student
 from grader.text import counted, counted_points
 
