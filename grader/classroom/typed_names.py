@@ -6,71 +6,84 @@ between several students: a manual mark must not go to the wrong one.
 
 import re
 import unicodedata
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
-from decimal import Decimal, InvalidOperation
+from collections.abc import Iterable, Sequence
+from decimal import Context, Decimal
 from functools import lru_cache
+from typing import Any, TypeVar
 
-from grader.classroom.matching import LMS_IDS, Clue, People, claims_of, clues_of, plain_name
-from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 from grader.names import did_you_mean
 from grader.text import format_points, printable
 
-_FINEST = Decimal("0.0001")  # points, as the gradebook stores them
-_TYPED = (*LMS_IDS, Clue.ANY_CASE, Clue.LOCAL_PART, Clue.NAME)
+S = TypeVar("S")  # a Student
+
+_FINEST = Decimal("0.0001")  # points, as in rubrics
 _MAX_LISTED = 10
 _MAX_SUGGESTED_FROM = 5_000  # students whose names are compared with a misspelt one
-_WORD = re.compile(r"[^\s\-]+")  # of a name: Ash-Birch is two
+_NUMBER = re.compile(r"\s*[+-]?[0-9]{1,40}(?:[.,][0-9]{0,20})?(?:[eE][+-]?[0-9]{1,3})?\s*")
+_WORD = re.compile(r"[^\s\-_,]+")  # of a name: Ash-Birch is two
+_IGNORED = str.maketrans("", "", "&<>\"`|':\\/\u200e\u200f")  # an LMS removes them from names; marks of direction
 _LETTERS = str.maketrans({"ø": "o", "ł": "l", "đ": "d", "ð": "d", "þ": "th", "æ": "ae", "œ": "oe", "ı": "i"})
 _UMLAUTS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ø": "oe", "å": "aa"})
 
 
-def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
+class AboveMaximumError(InputError):
+    """More points than the maximum."""
+
+
+def find_typed(students: Sequence[S], name: str, advice: str) -> S:
     """Return the only student whom a typed name may mean.
 
     Raises InputError: if several students match, it lists them; else similar names; else it ends with `advice`.
     """
-    people = _people(tuple(students))
-    found = [students[index] for index in _find_people(people, name)]
+    known = _clues(tuple(students))
+    word, wanted = same_case(name), _words(name)
+    found: list[S] = [one for one, ids, words in known if word in ids or (wanted and wanted <= words)]
     if len(found) == 1:
         return found[0]
     if found:
-        raise InputError(f"{name!r} is ambiguous: it may be {_students_text(found)}; use one of these ids")
-    guess = ""
-    # Names that differ in accents: Muller and Mueller are similar to Müller.
-    if similar := [students[index] for index in sorted(_with_words(people, name, without_accents))]:
-        guess = f"; did you mean {'' if len(similar) == 1 else 'one of '}{_students_text(similar)}?"
-    some = students[:_MAX_SUGGESTED_FROM]
-    guess = guess or did_you_mean(name, {word for one in some for word in (one.key, one.login, one.name)})
-    raise InputError(f"there is no student {name!r} in the gradebook{guess or advice}")
+        raise InputError(f"{name!r} is ambiguous: it may be {_listed(found)}; use one of these ids")
+    changed = {*as_number(name, (one.key for one, *_ in known))}
+    ways = [without_accents(word) for word in wanted]  # Muller and Mueller are similar to Müller
+    similar = [one for one, _, words in known if one.key in changed or (ways and _has_all(words, ways))]
+    guess = f"; did you mean {'one of ' * (len(similar) > 1)}{_listed(similar)}?" if similar else ""
+    some = {word for one, *_ in known[:_MAX_SUGGESTED_FROM] for word in (one.key, one.login, one.name)}
+    raise InputError(f"there is no student {name!r} in the gradebook{guess or did_you_mean(name, some) or advice}")
 
 
 @lru_cache(maxsize=1)  # a file of marks names many
-def _people(students: tuple[Student, ...]) -> People:
-    return People(clues_of(one if one.name else replace(one, name=one.key)) for one in students)
+def _clues(students: tuple[Any, ...]) -> list[tuple[Any, set[str], set[str]]]:
+    """Return each student with the ids, and the words of the name."""
+
+    def ids(one: Any) -> set[str]:
+        local_part = one.email.partition("@")[0]
+        found = (one.key, one.login, one.sis, one.canvas, one.moodle, one.email, local_part)
+        return {same_case(word) for word in (*found, *getattr(one, "aliases", ())) if word}
+
+    return [(one, ids(one), _words(one.name or one.key)) for one in students]
 
 
-def _find_people(people: People, name: str) -> list[int]:
-    """Return the positions of all people whom a typed name may mean, in any case."""
-    claims = {**claims_of(Student(name, name)), Clue.CANVAS: (name,), Clue.MOODLE: (name,)}
-    matches = (people.find({kind: claims.get(kind, ())}, (kind,)) for kind in _TYPED)
-    found = {index for match in matches for index in match.people}
-    return sorted(found | _with_words(people, name, lambda word: (word,)))
+def _has_all(words: Iterable[str], wanted: Iterable[Sequence[str]]) -> bool:
+    known = {way for word in words for way in without_accents(word)}
+    return not any(map(known.isdisjoint, wanted))
 
 
-def _with_words(people: People, name: str, spellings: Callable[[str], Iterable[str]]) -> set[int]:
-    """Return the positions of people whose name has all words of a name, in one of the spellings of both."""
-    wanted = [set(spellings(word)) for word in _WORD.findall(plain_name(name))]
-    found = set()
-    for index, clues in enumerate(people.clues) if wanted else ():
-        for plain in clues.get(Clue.NAME, ()):
-            words = {word for part in _WORD.findall(plain) for word in spellings(part)}
-            if not any(map(words.isdisjoint, wanted)):
-                found.add(index)
-    return found
+def _listed(students: Sequence[Any]) -> str:
+    """Return the ids and names of students, at most _MAX_LISTED."""
+    shown = [f"{one.key!r} ({printable(one.name)})" if one.name else repr(one.key) for one in students[:_MAX_LISTED]]
+    more = len(students) - len(shown)
+    return ", ".join(shown) + (f" and {more} more" if more else "")
+
+
+def same_case(word: str) -> str:
+    """Normalise an id or a word: compatible characters, case, spaces and the encoding of accents."""
+    return " ".join(unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", word).casefold()).split())
+
+
+def _words(name: str) -> set[str]:
+    return {*_WORD.findall(same_case(name).translate(_IGNORED))}
 
 
 def without_accents(word: str) -> tuple[str, ...]:
@@ -83,25 +96,29 @@ def without_accents(word: str) -> tuple[str, ...]:
     )
 
 
-def _students_text(students: Sequence[Student]) -> str:
-    """Return the ids and names of students, at most _MAX_LISTED."""
-    shown = [f"{one.key!r} ({printable(one.name)})" if one.name else repr(one.key) for one in students]
-    more = len(shown) - _MAX_LISTED
-    return f"{', '.join(shown[:_MAX_LISTED])}{f' and {more} more' if more > 0 else ''}"
+def as_number(cell: str, names: Iterable[str]) -> list[str]:
+    """Return the names that a spreadsheet may have changed into a number: 0012 into 12, 123456 into 1.2E+05."""
+    if (number := number_in(cell)) is None:
+        return []
+    rounded = Context(prec=len(number.as_tuple().digits))
+    others = ((name, number_in(name)) for name in names if name != cell)
+    return [name for name, value in others if value is not None and rounded.plus(value) == number]
+
+
+def number_in(text: str) -> Decimal | None:
+    """Return the number in a text, with a decimal point or comma, or None."""
+    return Decimal(text.replace(",", ".")) if _NUMBER.fullmatch(text) else None
 
 
 def read_points(text: str, name: str, most: Decimal) -> Decimal:
     """Return the points in a text, from 0 to `most`; raises InputError, which names what they are for and the range."""
-    text = text.strip()
-    try:
-        points = Decimal("NaN" if "_" in text else text.replace(",", "."))
-    except InvalidOperation:
-        points = Decimal("NaN")
-    if points.is_finite() and not 0 <= points <= most:
-        raise InputError(f"{name} is worth 0 to {format_points(most)} points, not {text}")
-    if not points.is_finite() or points != points.quantize(_FINEST):
+    points, text = number_in(text), text.strip()
+    if points is not None and not 0 <= points <= most:
+        kind = AboveMaximumError if points > most else InputError
+        raise kind(f"{name} is worth 0 to {format_points(most)} points, not {text}")
+    if points is None or points % _FINEST:
         raise InputError(f"points are a number from 0 to {format_points(most)}, with at most 4 decimals, not {text!r}")
-    return points
+    return abs(points)  # -0 is 0
 
 
 def criterion_of(rubric: Rubric, name: str) -> Criterion:
