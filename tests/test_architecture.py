@@ -33,7 +33,9 @@ INNER = {
     "classroom": (
         ("students",),
         ("lateness", "matching", "tables"),
-        ("typed_names",),
+        ("typed_names", "mark_files"),
+        ("marks",),
+        ("mark_import",),
         ("intake", "lms"),
         ("gradebook",),
         ("run", "review"),

@@ -104,11 +104,17 @@ def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Tabl
 
 def rows_with_lines(data: bytes, shown: str) -> Iterator[tuple[int, list[str]]]:
     """Yield the line where each row of a person's file begins, unless it is empty, and its cells, spaces normalised."""
+    for line, row in numbered_rows(read_table(data, shown, is_from_person=True)):
+        yield line, [" ".join(_AS_TEXT.sub(r"\1", cell.value.strip()).split()) for cell in row.cells]
+
+
+def numbered_rows(table: Table) -> Iterator[tuple[int, TableRow]]:
+    """Yield the line where each row begins, and the row, unless it is empty or says what the separator is to Excel."""
     line = 1
-    for row in read_table(data, shown, is_from_person=True).rows:
-        cells = [" ".join(_AS_TEXT.sub(r"\1", cell.value.strip()).split()) for cell in row.cells]
-        if any(cells) and cells != ["sep=", ""]:  # by which Excel recognises the separator
-            yield line, cells
+    for row in table.rows:
+        cells = [cell.value.strip() for cell in row.cells]
+        if any(cells) and cells != ["sep=", ""]:
+            yield line, row
         line += 1 + sum(len(cell.raw.splitlines()) - 1 for cell in row.cells if cell.raw)
 
 
@@ -152,6 +158,8 @@ _TRIGGERS = "=+\\-@\uff1d\uff0b\uff0d\uff20\ufe66\ufe62\ufe63\ufe6b"  # the last
 _AT_START = re.compile(rf"\s*[{_TRIGGERS}]|[\t\r\n]")
 FORMULA_BEHIND_SEMICOLON = re.compile(rf"(?<=;)\s*+[{_TRIGGERS}\s]*+")
 _INSIDE = re.compile(rf"([;\t\r\n]\s*+)(?=[{_TRIGGERS}])")
+_FORMULA = re.compile(rf"(\A\s*+|[;\t\r\n]\s*+)('*+[{_TRIGGERS}])")
+_PROTECTED = re.compile(rf"(\A\s*+|[;\t\r\n]\s*+)'('*+[{_TRIGGERS}])")
 
 # Control characters but tab and line ends, C1 controls, bidirectional embeddings and isolates, surrogates.
 _ESCAPED = re.compile("[\\0-\\x08\\v\\f\\x0e-\\x1f\\x7f-\\x9f\\u202a-\\u202e\\u2066-\\u2069\\ud800-\\udfff]")
@@ -177,6 +185,16 @@ def neutral(text: str) -> str:
     """Return text that no spreadsheet takes for a formula: an apostrophe precedes what would start one."""
     safe = _INSIDE.sub(r"\1'", spelt_out(text))
     return f"'{safe}" if _AT_START.match(safe) else safe
+
+
+def protected(text: str) -> str:
+    """Return text that no spreadsheet takes for a formula, and that `unprotected` returns unchanged."""
+    return _FORMULA.sub(r"\1'\2", spelt_out(text))
+
+
+def unprotected(text: str) -> str:
+    """Return text without what keeps a spreadsheet from running it, or from reading it as a number."""
+    return _PROTECTED.sub(r"\1\2", _AS_TEXT.sub(r"\1", text))
 
 
 def spelt_out(text: str) -> str:

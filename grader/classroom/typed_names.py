@@ -21,16 +21,15 @@ S = TypeVar("S")  # a Student
 
 _FINEST = Decimal("0.0001")  # points, as in rubrics
 _MAX_LISTED = 10
-_MAX_SUGGESTED_FROM = 5_000  # students whose names are compared with a misspelt one
-_NUMBER = re.compile(r"\s*[+-]?[0-9]{1,40}(?:[.,][0-9]{0,20})?(?:[eE][+-]?[0-9]{1,3})?\s*")
+_NUMBER = re.compile(r"\s*[+-]?(?=[.,]?[0-9])[0-9]{0,40}(?:[.,][0-9]{0,40})?(?:[eE][+-]?[0-9]{1,9})?\s*")
 _WORD = re.compile(r"[^\s\-_,]+")  # of a name: Ash-Birch is two
 _IGNORED = str.maketrans("", "", "&<>\"`|':\\/\u200e\u200f")  # an LMS removes them from names; marks of direction
 _LETTERS = str.maketrans({"ø": "o", "ł": "l", "đ": "d", "ð": "d", "þ": "th", "æ": "ae", "œ": "oe", "ı": "i"})
 _UMLAUTS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ø": "oe", "å": "aa"})
 
 
-class AboveMaximumError(InputError):
-    """More points than the maximum."""
+class NotCountedError(InputError):
+    """A mark for no student or criterion of the class, or above the maximum."""
 
 
 def find_typed(students: Sequence[S], name: str, advice: str) -> S:
@@ -45,11 +44,11 @@ def find_typed(students: Sequence[S], name: str, advice: str) -> S:
         return found[0]
     if found:
         raise InputError(f"{name!r} is ambiguous: it may be {_listed(found)}; use one of these ids")
-    changed = {*as_number(name, (one.key for one, *_ in known))}
+    changed = as_number(name, tuple(one.key for one, *_ in known))
     ways = [without_accents(word) for word in wanted]  # Muller and Mueller are similar to Müller
     similar = [one for one, _, words in known if one.key in changed or (ways and _has_all(words, ways))]
     guess = f"; did you mean {'one of ' * (len(similar) > 1)}{_listed(similar)}?" if similar else ""
-    some = {word for one, *_ in known[:_MAX_SUGGESTED_FROM] for word in (one.key, one.login, one.name)}
+    some = {word for one, *_ in known for word in (one.key, one.login, one.name)}
     raise InputError(f"there is no student {name!r} in the gradebook{guess or did_you_mean(name, some) or advice}")
 
 
@@ -96,13 +95,14 @@ def without_accents(word: str) -> tuple[str, ...]:
     )
 
 
-def as_number(cell: str, names: Iterable[str]) -> list[str]:
+@lru_cache(maxsize=4096)
+def as_number(cell: str, names: tuple[str, ...]) -> tuple[str, ...]:
     """Return the names that a spreadsheet may have changed into a number: 0012 into 12, 123456 into 1.2E+05."""
     if (number := number_in(cell)) is None:
-        return []
-    rounded = Context(prec=len(number.as_tuple().digits))
+        return ()
+    rounded = Context(prec=len(number.as_tuple().digits), traps=[])
     others = ((name, number_in(name)) for name in names if name != cell)
-    return [name for name, value in others if value is not None and rounded.plus(value) == number]
+    return tuple(name for name, value in others if value is not None and rounded.plus(value) == number)
 
 
 def number_in(text: str) -> Decimal | None:
@@ -114,9 +114,9 @@ def read_points(text: str, name: str, most: Decimal) -> Decimal:
     """Return the points in a text, from 0 to `most`; raises InputError, which names what they are for and the range."""
     points, text = number_in(text), text.strip()
     if points is not None and not 0 <= points <= most:
-        kind = AboveMaximumError if points > most else InputError
+        kind = NotCountedError if points > most else InputError
         raise kind(f"{name} is worth 0 to {format_points(most)} points, not {text}")
-    if points is None or points % _FINEST:
+    if points is None or points != points.quantize(_FINEST):
         raise InputError(f"points are a number from 0 to {format_points(most)}, with at most 4 decimals, not {text!r}")
     return abs(points)  # -0 is 0
 

@@ -9,6 +9,7 @@ from grader.checks.check import Check
 from grader.text import counted_points, format_points
 
 TOTAL = "total"  # in place of a criterion's id, in manual marks: the whole submission
+DEADLINE = "deadline"  # likewise: a deadline of the student
 
 
 class Carried(NamedTuple):

@@ -10,7 +10,7 @@ from grader.checks.registry import check_names, find_check
 from grader.checks.toml_types import WrongValue
 from grader.errors import InputError
 from grader.grading import keys
-from grader.grading.criterion import TOTAL
+from grader.grading.criterion import DEADLINE, TOTAL
 from grader.grading.toml_file import TomlPath
 from grader.grading.toml_rows import KeyTable, TomlRow, TomlRowReader, shorten_value
 from grader.robot.selectors import is_selector, texts_in
@@ -73,8 +73,8 @@ class Validation:
             tables = [((), given)] if isinstance(given, dict) else [((i,), table) for i, table in enumerate(given)]
             found = [self._bind_carried((*where, "carried", *i), row, table, positions) for i, table in tables]
             self.carried.append([*filter(None, found)])
-            if row.get("id") == TOTAL:
-                self._complain((*where, "id"), f"the id {TOTAL!r} is reserved for final marks: choose another one")
+            if use := {TOTAL: "final marks", DEADLINE: "deadlines"}.get(row.get("id", "")):
+                self._complain((*where, "id"), f"the id {row['id']!r} is reserved for {use}: choose another one")
 
     def _rows(self, key: str, table: KeyTable, defaults: Mapping[str, Any] | None = None) -> list[TomlRow]:
         rows = enumerate(self.rubric.get(key, ()))

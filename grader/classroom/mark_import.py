@@ -1,0 +1,123 @@
+"""Marks of many students in one CSV file: rows of a file of marks, a review sheet, or the grades as they were exported.
+
+A row of a sheet names an answer: it is a mark of all students with that answer. An export becomes marks where a person
+changed a cell: the column `exported` has what the cells were, and `submission` the digest of what was graded.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from grader.classroom.mark_files import COLUMNS, read_rows
+from grader.classroom.marks import Key, Mark, Marks, known, mark_in, maxima
+from grader.classroom.typed_names import as_number, criterion_of, find_typed, number_in
+from grader.errors import InputError
+from grader.grading.criterion import DEADLINE, TOTAL
+from grader.grading.rubric import Rubric
+from grader.text import by_name, enumerated, first_lines, printable
+
+SHEET_COLUMNS = ("criterion", "answer", "points", "comment", "text", "students")
+_MAX_MISTAKES = 20
+
+
+class Imported(NamedTuple):
+    """The marks to append, how many more are the same as before, and how many rows have marks."""
+
+    marks: list[Mark]
+    same: int
+    rows: int
+
+
+class MarkImport(NamedTuple):
+    """What the rows of a file refer to.
+
+    `digests` are those of the submissions by the key of the student, `answers` the keys of the students with each
+    answer, by criterion and the answer's key.
+    """
+
+    students: Sequence[Any]
+    rubric: Rubric
+    marks: Marks
+    digests: Mapping[str, str]
+    answers: Mapping[tuple[str, str], Sequence[str]] = {}
+
+    def read(self, data: bytes, shown: str, by: str) -> Imported:
+        """Return the marks in a CSV file; raises InputError with a line for each wrong row."""
+        _, titles, rows = read_rows(data, shown)
+        has_marks = "criterion" in titles and {"student", "answer"} & {*titles} and {"points", "comment"} & {*titles}
+        if not (has_marks or {"id", "exported"} <= {*titles}):
+            raise InputError(f"the first line of {shown} must name the columns {enumerated(COLUMNS[2:6])}")
+        found, mistakes, used = dict[Key, Mark](), list[str](), 0
+        for line, values in rows:
+            place, marks = f"{shown}:{line}", list[Mark]()
+            try:
+                marks += self._marks({**dict.fromkeys(COLUMNS, ""), **values}, by, place)
+            except InputError as error:
+                mistakes.append(f"{place}: {error}")
+            for mark in marks:
+                first = found.setdefault((mark.student, mark.criterion), mark)
+                if first is not mark:
+                    mistakes.append(f"{place}: {mark.student} has {mark.criterion} in {first.place} as well")
+            used += bool(marks)
+        if mistakes:
+            raise InputError("\n".join(map(printable, first_lines(mistakes, _MAX_MISTAKES))))
+        new = [mark for mark in found.values() if mark.time]
+        return Imported(new, len(found) - len(new), used)
+
+    def _marks(self, row: Mapping[str, str], by: str, place: str) -> Iterator[Mark]:
+        """Yield the marks in a row; those that are the same as before have no time."""
+        most = maxima(self.rubric)
+        for key, points, comment in self._entries(row):
+            student, criterion = key
+            is_final = criterion in (TOTAL, DEADLINE)
+            if not is_final and student not in self.digests:
+                raise InputError(f"{student} has submitted nothing that could be marked: `{TOTAL}` is a final mark")
+            digest = row["submission"] or self.digests.get(student, "")
+            cells = {**row, "points": points, "comment": comment, "submission": digest, "time": ""}
+            limit = most[criterion if is_final else criterion_of(self.rubric, criterion).id]
+            nothing = Mark("", "", *key, kind="withdrawn")
+            before = self.marks.counting.get(key) or self.marks.comments.get(key, nothing)
+            for mark in mark_in(cells, key, limit, place):
+                is_same = (before.value, before.comment) == (mark.value or before.value, mark.comment)
+                yield mark._replace(by=mark.by or by, time="" if is_same else self.marks.next_time(key))
+
+    def _entries(self, row: Mapping[str, str]) -> Iterator[tuple[Key, str, str]]:
+        """Yield the student and criterion of each mark in a row, the points as text, and the comment."""
+        if "exported" in row:
+            yield from self._changed(row)
+        elif row["points"] or row["comment"]:
+            for student in self._students(row):
+                yield (student, row["criterion"]), row["points"], row["comment"]
+
+    def _students(self, row: Mapping[str, str]) -> Sequence[str]:
+        if "answer" in row:
+            answer = row["criterion"], row["answer"]
+            if answer not in self.answers:
+                raise InputError(f"no student has this answer to {row['criterion']} now: write the sheet again")
+            return self.answers[answer]
+        cell, keys = row["student"], {one.key: one for one in self.students}
+        if cell in keys or as_number(cell, tuple(keys)):
+            return [known("student", cell, keys)]
+        return [find_typed(self.students, cell, "; `grades.csv` lists all students").key]
+
+    def _changed(self, row: Mapping[str, str]) -> Iterator[tuple[Key, str, str]]:
+        """Yield the cells of an export that a person changed; a comment stays."""
+        student = known("student", row["id"], {one.key: one for one in self.students})
+        for word in row["exported"].split():
+            criterion, _, old = word.rpartition("=")
+            new, now = row.get(criterion, old), self.marks.counting.get((student, criterion))
+            if _are_equal(new, old):
+                continue
+            if not new:
+                raise InputError(f"{criterion} was {old} and is empty: write `-` to withdraw a mark")
+            if now is not None and not (_are_equal(now.value, old) or _are_equal(now.value, new)):
+                raise InputError(f"{criterion} was {old} when it was exported, and is {now.value}{by_name(now.by)} now")
+            yield (student, criterion), new, now.comment if now is not None else ""
+
+
+def exported_cell(values: Mapping[str, str]) -> str:
+    """Return the cell of the column `exported`: the values of criteria, as they are in their columns."""
+    return " ".join(f"{criterion}={value}" for criterion, value in values.items())
+
+
+def _are_equal(text: str, other: str) -> bool:
+    return text == other or (number_in(text) is not None and number_in(text) == number_in(other))

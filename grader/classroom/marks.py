@@ -1,0 +1,201 @@
+"""The marks of people: the rows of the CSV files in a folder, and which of them counts for a student and criterion.
+
+The latest time counts, of equal times in one file the later row. A row without a time is newer than all with one.
+Different rows that have no order are refused; equal rows are one. A comment without points changes only the comment.
+"""
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from datetime import UTC, datetime, timedelta
+from decimal import Decimal
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+from grader.classroom.lateness import read_time
+from grader.classroom.mark_files import COLUMNS, SURPLUS, WITHDRAWN, append_rows, whole_rows
+from grader.classroom.tables import SIZE_LIMIT
+from grader.classroom.typed_names import NotCountedError, as_number, read_points
+from grader.errors import InputError
+from grader.files.reading import read_capped, read_error
+from grader.grading.criterion import DEADLINE, TOTAL
+from grader.grading.keys import MAX_POINTS
+from grader.grading.rubric import Rubric
+from grader.text import enumerated, first_lines, format_points, printable, printable_path, quoted
+
+EXCUSED = "excused"  # in place of points, for TOTAL
+_DIGEST = re.compile(r"d[0-9a-f]+")
+_MAX_MISTAKES = 20
+
+Kind = Literal["points", "excused", "withdrawn", "deadline", "comment"]
+Key = tuple[str, str]  # a student and a criterion
+
+
+class Mark(NamedTuple):
+    """A row: what a grader gave for a criterion or for TOTAL, or a student's DEADLINE.
+
+    `time` is in UTC, or empty; `submission` is the digest of what was marked, or empty; `place` is the file and line.
+    """
+
+    time: str
+    by: str
+    student: str
+    criterion: str
+    points: Decimal | None = None
+    comment: str = ""
+    submission: str = ""
+    kind: Kind = "points"
+    place: str = ""
+    deadline: str = ""
+
+    @property
+    def value(self) -> str:
+        """The text in the column of points."""
+        points = "" if self.points is None else format_points(self.points)
+        return {"excused": EXCUSED, "withdrawn": WITHDRAWN}.get(self.kind, self.deadline or points)
+
+
+class Marks(NamedTuple):
+    """The marks of a class: those that count, the newest row where none counts, the newest rows of any kind.
+
+    `ignored` says which rows do not count, and why.
+    """
+
+    counting: dict[Key, Mark]
+    comments: dict[Key, Mark]
+    newest: dict[Key, Mark]
+    ignored: list[str]
+
+    def next_time(self, key: Key) -> str:
+        """Return the time for a new mark: now, or later, so that it counts. Raises InputError if none would."""
+        before = self.newest.get(key)
+        if before is not None and not before.time:
+            raise InputError(f"{before.place} has no time, so it counts before every new mark: change that row")
+        after = [datetime.fromisoformat(before.time) + timedelta(milliseconds=1)] if before is not None else []
+        return utc_text(max(datetime.now(UTC), *after))
+
+
+def utc_text(time: datetime) -> str:
+    """Return a time that no spreadsheet changes, and that sorts as text."""
+    return time.astimezone(UTC).isoformat(timespec="milliseconds")
+
+
+def append_marks(path: Path, marks: Iterable[Mark]) -> None:
+    """Append marks to a grader's file; raises InputError as `append_rows` does."""
+    append_rows(path, [{**{name: getattr(mark, name) for name in COLUMNS}, "points": mark.value} for mark in marks])
+
+
+def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
+    """Return the marks in the files of a folder; raises InputError with a line for each row that cannot be read."""
+    most, keys = maxima(rubric), dict.fromkeys(students)
+    rows: dict[Key, list[Mark]] = defaultdict(list)
+    marks, mistakes = Marks({}, {}, {}, []), list[str]()
+    for place, values in _rows(folder, mistakes):
+        try:
+            key = known("student", values["student"], keys), known("criterion", values["criterion"], most)
+            rows[key] += mark_in(values, key, most[key[1]], place)
+        except NotCountedError as error:
+            marks.ignored.append(printable(f"{place}: {error}"))
+        except InputError as error:
+            mistakes.append(f"{place}: {error}")
+    for key, found in rows.items():
+        try:
+            _count(marks, key, found)
+        except InputError as error:
+            mistakes.append(str(error))
+    if mistakes:
+        raise InputError("\n".join(map(printable, first_lines(mistakes, _MAX_MISTAKES))))
+    return marks
+
+
+def _rows(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, dict[str, str]]]:
+    """Yield the place and the cells of each row of the files in a folder; files that cannot be read are mistakes."""
+    for path in _files(folder.absolute()):
+        shown = printable_path(Path(folder.name, path.name))
+        try:
+            data = read_capped(path, SIZE_LIMIT, shown=shown, top=str(path.parent), advice="")
+            rows = whole_rows(data, shown)[2]
+        except InputError as error:
+            mistakes.append(str(error))
+        else:
+            found = ((line, {**dict.fromkeys(COLUMNS, ""), **values}) for line, values in rows)
+            yield from ((f"{shown}:{line}", values) for line, values in found if any(map(values.get, COLUMNS)))
+
+
+def _files(folder: Path) -> list[Path]:
+    try:
+        return sorted(path for path in folder.iterdir() if path.suffix.lower() == ".csv" and path.name[0] != ".")
+    except FileNotFoundError:
+        return []
+    except OSError as error:
+        raise read_error(error, printable_path(folder)) from None
+
+
+def maxima(rubric: Rubric) -> dict[str, Decimal]:
+    """Return the most points for each criterion and TOTAL; marks of an adjusted criterion never count: any is valid."""
+    most = {row.id: row.points if row.adjustment is None else Decimal(MAX_POINTS) for row in rubric.criteria}
+    return {**most, TOTAL: sum((row.points for row in rubric.criteria), Decimal(0)), DEADLINE: Decimal(0)}
+
+
+def mark_in(values: Mapping[str, str], key: Key, most: Decimal, place: str) -> list[Mark]:
+    """Return the mark in a row, none without points and comment; raises InputError, or NotCountedError."""
+    text, submission = values["points"], values["submission"]
+    if values[SURPLUS]:
+        raise InputError(f"{quoted(values[SURPLUS])} is in no column: a cell that contains a delimiter needs quotes")
+    if submission and not _DIGEST.fullmatch(submission):
+        raise InputError(f"{quoted(submission)} is not the digest of a submission")
+    mark = Mark(_time(values["time"]), values["by"], *key, None, values["comment"], submission, "comment", place)
+    if not text:
+        return [mark] if mark.comment else []
+    if text == WITHDRAWN or (text.casefold() == EXCUSED and key[1] == TOTAL):
+        return [mark._replace(kind="withdrawn" if text == WITHDRAWN else "excused")]
+    if key[1] == DEADLINE:
+        read_time(text)
+        return [mark._replace(kind="deadline", deadline=text)]
+    return [mark._replace(kind="points", points=read_points(text, key[1], most))]
+
+
+def _time(text: str) -> str:
+    with suppress(ValueError, OverflowError):
+        if not text or (time := datetime.fromisoformat(text)).tzinfo is not None:
+            return utc_text(time) if text else ""
+    raise InputError(f"{quoted(text)} is not a time: write it as 2026-11-23T14:05:09.123+00:00, or leave it empty")
+
+
+def known(noun: str, cell: str, names: Mapping[str, Any]) -> str:
+    """Return the student or criterion in a cell; raises NotCountedError, or InputError for a changed cell."""
+    if not cell:
+        raise InputError(f"the row names no {noun}")
+    if cell not in names and (changed := as_number(cell, tuple(names))):
+        meant = enumerated([*map(repr, changed)], 10, "or")
+        raise InputError(f"{noun} {cell!r} may be {meant}, changed by a spreadsheet: correct it")
+    if cell not in names:
+        raise NotCountedError(f"there is no {noun} {quoted(cell)}")
+    return cell
+
+
+def _count(marks: Marks, key: Key, rows: Sequence[Mark]) -> None:
+    """Add the rows of a student's criterion to the marks."""
+    if not rows:
+        return
+    newest = marks.newest[key] = _newest(rows)
+    entries = [mark for mark in rows if mark.kind != "comment"]
+    counting = _newest(entries) if entries else newest
+    if counting.kind in ("comment", "withdrawn"):
+        marks.comments.update({key: newest} if newest.kind == "comment" else {})
+    else:
+        marks.counting[key] = counting._replace(comment=newest.comment)
+
+
+def _newest(rows: Sequence[Mark]) -> Mark:
+    """Return the newest of some rows; raises InputError if two that differ are."""
+    time = max((not mark.time, mark.time) for mark in rows)[1]
+    tied = [mark for mark in rows if mark.time == time]
+    by_file = {mark.place.rpartition(":")[0] if time else mark.place: mark for mark in tied}
+    first, *others = {mark._replace(place=""): mark for mark in by_file.values()}.values()
+    if others:
+        what = f"two marks of {first.criterion} for {first.student}"
+        when = f"at the same time, {time}" if time else "without a time"
+        raise InputError(f"{first.place} and {others[0].place}: {what} {when}: remove one of them")
+    return first
