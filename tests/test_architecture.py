@@ -31,12 +31,11 @@ LAYERS = (
 # The layers inside a package that is large enough to have its own.
 INNER = {
     "classroom": (
-        ("students", "listing", "opening"),
-        ("matching", "tables"),
-        ("typed_names", "roster"),
-        ("people",),
-        ("layouts",),
-        ("submissions",),
+        ("students",),
+        ("lateness", "matching", "tables"),
+        ("typed_names", "mark_files"),
+        ("marks",),
+        ("mark_import",),
         ("intake", "lms"),
         ("gradebook",),
         ("run", "review"),

@@ -7,9 +7,9 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.checks.manual import MANUAL_CHECKS, answered
-from grader.classroom.gradebook.lateness import time_text
 from grader.classroom.gradebook.manual_queue import QueuedMember, QueuedResult
 from grader.classroom.gradebook.marks import Mark
+from grader.classroom.lateness import time_text
 from grader.grading.criterion import Criterion
 from grader.grading.pictures import evidence_files
 from grader.report.console import wrapped

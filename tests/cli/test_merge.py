@@ -16,9 +16,9 @@ import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.lateness import time_text
 from grader.classroom.gradebook.marks import Entry, Mark, insert_mark, newest_second
 from grader.classroom.gradebook.run_writer import save_student
+from grader.classroom.lateness import time_text
 from grader.classroom.students import Student
 from tests.classroom.gradebooks import graded_as, grader, lab, record_run, refusal
 

@@ -7,7 +7,7 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.gradebook.lateness import SubmissionTimes, lateness, read_time
+from grader.classroom.lateness import SubmissionTimes, lateness, read_time
 from grader.grading.rubric import Rubric
 from tests.classroom.gradebooks import lab
 
