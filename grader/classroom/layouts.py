@@ -149,27 +149,25 @@ def _canvas(folder: ClassFolder) -> Iterator[ClassSubmission]:
     """Yield one submission for each user id; a file whose name can be read in several ways is certainly nobody's."""
     readings = {name: list(_in_canvas(name)) for name in folder.children.folders + folder.children.files}
     first = min((_upload(one[0]) for one in readings.values() if len(one) == 1 and _upload(one[0])), default=0)
-    by_owner: dict[str, list[re.Match[str]]] = defaultdict(list)
-    unclear: list[str] = []
+    by_owner: dict[tuple[str, ...], list[re.Match[str]]] = defaultdict(list)
     for name, found in readings.items():
         possible = [one for one in found if not 0 < _upload(one) * _MAX_GROWTH < first] or found
+        users = [one["login"] or one["canvas"] for one in possible]
         for last in possible[-1:]:
-            user = last["canvas"] if len(possible) == 1 else f"{name[: last.start()]}_{last['canvas']}"
-            by_owner[last["login"] or user].append(last)
-        unclear += [printable_path(name)] if len(possible) > 1 else []
+            by_owner[(*users, name[: last.start()]) if len(users) > 1 else (users[0],)].append(last)
     folder.ignore((name for name, found in readings.items() if not found), "is not named like a submission in Canvas")
-    if unclear:
-        names = enumerated(unclear, _MAX_NAMED)
-        folder.notes.append(f"{names}: the name contains several numbers, of which each may be the id of a user")
-    for owner, files in by_owner.items():
-        canvas = owner if owner.isdecimal() else ""
-        users = sorted({file.string[: file.start()] for file in files})
+    for (user, *others), files in by_owner.items():
+        names = sorted({file.string[: file.start()] for file in files})
         kept = _last_versions(folder, files)
+        canvas = user if user.isdecimal() and not others else ""
+        key = user if files[0]["login"] else f"{names[0]}_{files[0]['canvas']}"
         yield ClassSubmission(
-            Student(f"{users[0]}_{owner}" if canvas else owner, users[0] if len(users) == 1 else "", canvas=canvas),
+            Student(
+                key, names[0] if len(names) == 1 else "", canvas=canvas, aliases=(user, *others[:-1]) if others else ()
+            ),
             0,
             tuple(folder.start + file.string for file in kept),
-            tuple(_own_name(file) for file in kept),
+            tuple(map(_own_name, kept)),
             any(file["late"] or file.string.startswith("LATE_anon_") for file in kept),
         )
 
@@ -253,7 +251,7 @@ def _files_below(listing: ClassListing, top: str, most: int) -> list[str]:
         folders += [f"{here}/{name}" for name in sorted(children.folders)]
         if len(found) + len(folders) > most:
             break
-    return found
+    return sorted(found)
 
 
 def _folders(folder: ClassFolder) -> Iterator[ClassSubmission]:
@@ -420,9 +418,14 @@ def _teams(folder: ClassFolder) -> Iterator[ClassSubmission]:
     rest = [name for name in folder.children.folders if name not in labs.values()]
     without = [name for name in rest if not folder.people.knows(name) and not _has_work(folder, name, lab_names)]
     folder.ignore(without, "has no folder of a lab and no robot")
-    yield from _folders(
-        replace(folder, children=folder.children._replace(folders=[name for name in rest if name not in without]))
-    )
+    if "" in labs.values():  # the repository of one team
+        folder.ignore(
+            (name for name in [*rest, *folder.children.files] if name not in without),
+            "is outside the folder of the lab",
+        )
+    else:
+        kept = [name for name in rest if name not in without]
+        yield from _folders(replace(folder, children=folder.children._replace(folders=kept)))
     for lab, team in labs.items():
         inner = folder.listing.children(lab)
         parts = [name for name in inner.folders if is_part(name, words) and not folder.people.knows(name, team)]
@@ -445,18 +448,30 @@ def _has_work(folder: ClassFolder, team: str, labs: LabFolders) -> bool:
 
 
 def _team_labs(folder: ClassFolder) -> dict[str, str]:
-    """Return the lab folders with students' folders, each with its team; without a team that of one repository."""
-    names = LabFolders(folder.labs)
-    own = [name for name in folder.children.folders if folder.is_explicit and names.is_lab(name)]
-    if labs := {folder.start + lab: "" for lab in own if _holds_students(folder, folder.start + lab, "")}:
-        return labs
-    return {
-        f"{folder.start}{team}/{lab}": team
-        for team in sorted(folder.children.folders)
-        if folder.is_explicit or not folder.people.knows_student(team)
-        for lab in folder.listing.children(folder.start + team, 1000).folders
-        if names.is_lab(lab) and _holds_students(folder, f"{folder.start}{team}/{lab}", team)
-    }
+    """Return the lab folders with students' folders, each with its team; without a team those of one repository."""
+    if folder.is_explicit and (own := _labs_below(folder, "")):
+        return dict.fromkeys(own, "")
+    teams = [
+        team for team in sorted(folder.children.folders) if folder.is_explicit or not folder.people.knows_student(team)
+    ]
+    return {lab: team for team in teams for lab in _labs_below(folder, team)}
+
+
+def _labs_below(folder: ClassFolder, team: str) -> list[str]:
+    """Return a team's folders of the lab that hold students', but not the only one's if the robot is elsewhere."""
+    top, names = folder.start + team, LabFolders(folder.labs)
+    labs = [
+        f"{top}/{name}".lstrip("/")
+        for name in folder.listing.children(top.rstrip("/"), 1000).folders
+        if names.is_lab(name)
+    ]
+    labs = [lab for lab in labs if _holds_students(folder, lab, team)]
+    is_alone = team and [len(folder.listing.children(lab).folders) for lab in labs] == [1]
+    return [] if is_alone and not _has_robot(folder.listing, labs[0]) and _has_robot(folder.listing, top) else labs
+
+
+def _has_robot(listing: ClassListing, top: str) -> bool:
+    return any(_ROBOT.search(path.lower()) for path in _files_below(listing, top, _MAX_ENTRIES))
 
 
 def _holds_students(folder: ClassFolder, lab: str, team: str) -> bool:

@@ -4,6 +4,7 @@ import os
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
@@ -32,6 +33,16 @@ from grader.text import enumerated, first_lines, printable, printable_path, shel
 __all__ = ["ClassSubmission", "Intake", "read_class"]
 LAYOUTS = ("auto", "folders", "canvas", "moodle", "teams", "nbgrader")
 _MAX_LINES = 200
+_MAX_CHECKED = 20  # entries of a class folder
+# Words in the names of folders with what a course hands out: Lab6 resources, Handout (old); no other may be in them.
+_COURSE = frozenset(
+    "resource resources handout handouts solution solutions template templates starter skeleton material materials"
+    " example examples instructions reference references rubric rubrics grading demo slides".split()
+)
+_OTHER = frozenset(
+    "lab labs course class code file files folder for of the and to from old new sample model student students project"
+    " assignment exercise task week ws workspace".split()
+)
 _MAX_NAMED = 10
 _ANONYMOUS = (
     "this is an anonymous download: its submissions (anon_...) match no student. "
@@ -183,7 +194,36 @@ def _layout(path: Path, folder: ClassFolder, layout: str) -> str:
             f"{shown} is one submission and not a class: it contains a package.xml "
             f"(grade it with `grader grade {shell_quoted(path)}`)"
         )
+    if layout == "auto" and chosen == "folders":
+        _refuse_downloads(path, folder)
     return chosen
+
+
+def _refuse_downloads(path: Path, folder: ClassFolder) -> None:
+    """Say which entries of a small class folder are downloads of a whole class; raises InputError if there are no others."""
+    names = [
+        name
+        for name in [*folder.children.folders, *filter(is_submission, folder.children.files)]
+        if not _is_of_course(name)
+    ]
+    found: dict[str, str] = {}
+    for name in sorted(names) if len(names) <= _MAX_CHECKED and path.is_dir() else ():
+        with suppress(InputError, OSError, ValueError):
+            listing = listing_of(path / name)
+            inner = inner_class(
+                replace(folder, listing=listing, children=listing.children(""), start="", name=name, ignored=[])
+            )
+            if (
+                is_download(inner)
+                and not folder.people.knows(name)
+                and len(submissions_in(inner, layout_of(inner))) > 1
+            ):
+                found[name] = (
+                    f"{printable_path(path / name)} is a download of a whole class: grade it with `grader batch {shell_quoted(path / name)}`"
+                )
+    if found and len(found) == len(names):
+        raise InputError(f"{next(iter(found.values()))}; if it is the submission of one student, add --layout folders")
+    folder.notes.extend(f"{line}; here it is graded as the submission of one student" for line in found.values())
 
 
 class _Assignment:
@@ -198,6 +238,7 @@ class _Assignment:
         self._contested: set[int] = set()
         self._unmatched: list[str] = []
         self.notes: list[str] = []
+        self.ignored: list[str] = []
         self._is_anonymous = False
 
     def assign(self, found: Sequence[ClassSubmission]) -> None:
@@ -214,7 +255,7 @@ class _Assignment:
             match = Match(()) if self._is_anonymous else self._people.match(one.student)
             if match.is_group:
                 groups[match.students].append(one)
-            elif len(match.students) == 1:
+            elif len(match.students) == 1 and not one.student.aliases:
                 claims[match.students[0]].append((match.rank, one))
             else:
                 others.append((match.students, one))
@@ -266,6 +307,13 @@ class _Assignment:
         return " ".join(printable_path(f"{self._names[root]}/{path}".lstrip("/")).split())
 
     def _visit(self, one: ClassSubmission, reason: str) -> None:
+        """Add a submission of nobody on the roster, unless it is the course's own."""
+        if _is_of_course(one.paths[0]):
+            place = self._shown(one.root, one.paths[0])
+            if self._has_roster:
+                self.ignored.append(f"{place} is of the course, not of a student")
+                return
+            self.notes.append(f"{place} may be a template of the course: graded like a student's")
         self._visitors.append(one)
         self._list(one, reason, one.student.key)
 
@@ -345,6 +393,12 @@ class _Assignment:
         submissions.sort(key=lambda one: one.student.key)
         students.sort(key=lambda one: one.key)
         return tuple(submissions), () if self._is_anonymous else tuple(absent), tuple(students), tuple(self._unmatched)
+
+
+def _is_of_course(path: str) -> bool:
+    """Return whether a name has a word of the course's own folders, and no word that could be a student's."""
+    words = {*re.findall(r"[^\W\d_]+", path.rpartition("/")[2].partition(".")[0].casefold())}
+    return bool(words & _COURSE) and words <= _COURSE | _OTHER
 
 
 def _path_key(path: str) -> str:
