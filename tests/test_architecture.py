@@ -36,6 +36,8 @@ INNER = {
         ("typed_names", "roster"),
         ("people",),
         ("layouts",),
+        ("course_layouts",),
+        ("detection",),
         ("submissions",),
         ("intake", "lms"),
         ("gradebook",),

@@ -25,7 +25,7 @@ class Attempts(NamedTuple):
 
 def attempts_in(listing: ClassListing, folder: str) -> Attempts | None:
     """Return the attempts in a folder that contains nothing else; of two with the same number a folder is later."""
-    first = listing.first(folder)
+    first = first_of(listing, folder)
     if first is None or _number(first) is None:  # a shortcut for nearly all folders
         return None
     children = listing.children(folder, _MAX_ATTEMPTS)
@@ -40,6 +40,12 @@ def attempts_in(listing: ClassListing, folder: str) -> Attempts | None:
         return None
     *earlier, last = sorted(found)
     return Attempts(last[2], last[0], tuple(path for *_, path in earlier))
+
+
+def first_of(listing: ClassListing, folder: str) -> str | None:
+    """Return one name in a folder; None if it is empty or cannot be opened."""
+    children = listing.children(folder)
+    return next(iter((*children.folders, *children.files, *(name for name, _ in children.refused))), None)
 
 
 def home_of(path: str) -> str:

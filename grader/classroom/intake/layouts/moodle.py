@@ -11,6 +11,7 @@ the folder, and it has to get the same points.
 import re
 from collections import defaultdict
 
+from grader.classroom.intake.attempts import first_of
 from grader.classroom.intake.layouts.layout import ClassFolder, Submissions
 from grader.classroom.intake.names import ending_of
 from grader.classroom.listing import Children, ClassListing
@@ -58,9 +59,9 @@ def _submission(
     listing, start = folder.listing, folder.start
     files = sorted(files, key=lambda file: (file["plugin"] != "file", file.string))
     if len(files) > 1:  # ignore empty folders
-        files = [file for file in files if file.string not in folders or listing.first(start + file.string)] or files[
-            :1
-        ]
+        files = [
+            file for file in files if file.string not in folders or first_of(listing, start + file.string)
+        ] or files[:1]
     first = files[0]
     path, name, participant = start + first.string, first["name"], first["id"] or ""
     key = f"{name}_{participant}" if participant else name

@@ -66,10 +66,9 @@ def find_submissions(folder: ClassFolder) -> Submissions:
         ignored.add(start + file, "is not a student's folder")
     ignored.add_all(start, children.refused)
     paths = {student: f"{start}{student}/{name}" for student in found[name]}
-    stamps = listing.starts((f"{path}/{_TIMESTAMP}" for path in paths.values()), _MAX_TIMESTAMP)
 
     def submission(key: str, path: str) -> ClassSubmission:
-        time = utc_time(stamps.get(f"{path}/{_TIMESTAMP}", b"").decode("utf-8", "replace"))
+        time = utc_time(listing.start(f"{path}/{_TIMESTAMP}", _MAX_TIMESTAMP).decode("utf-8", "replace"))
         return ClassSubmission(Student(key, login=key), (path,), submitted=time)
 
     return Submissions(
