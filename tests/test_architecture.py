@@ -31,11 +31,14 @@ LAYERS = (
 # The layers inside a package that is large enough to have its own.
 INNER = {
     "classroom": (
-        ("students",),
-        ("lateness", "matching", "tables"),
-        ("typed_names", "mark_files"),
-        ("marks",),
-        ("mark_import",),
+        ("students", "listing", "opening"),
+        ("matching", "tables"),
+        ("typed_names", "roster"),
+        ("people",),
+        ("layouts",),
+        ("course_layouts",),
+        ("detection",),
+        ("submissions",),
         ("intake", "lms"),
         ("gradebook",),
         ("run", "review"),

@@ -10,7 +10,6 @@ from grader.classroom.roster import Student, plain
 
 CERTAIN = 1  # the rank of an id as it is spelt; an LMS's own has 0
 _MAX_WORDS = 8
-Words = tuple[Iterable[str], ...]
 
 
 class Match(NamedTuple):
@@ -32,95 +31,84 @@ class People:
         self._tables: tuple[dict[str, list[int]], ...] = tuple(defaultdict(list) for _ in range(4))
         self._groups: dict[str, list[int]] = defaultdict(list)
         for index, one in enumerate(students):
-            for words, table in zip(_words_of(one), self._tables, strict=True):
+            ids = [one.key, one.login, one.sis, one.email, *one.aliases]
+            names = [plain(one.name), plain(one.email.partition("@")[0]), _surname(one.name), *_in_canvas(one.name)]
+            for words, table in zip((_numbers(one), ids, map(plain, ids), names), self._tables, strict=True):
                 for word in {*words} - {""}:
-                    table[word].append(index)
+                    table[unicodedata.normalize("NFC", word)].append(index)
             if team := one.group or one.section:
-                for name in {plain(team), f"canvas\n{letters(team)}"}:
+                for name in {plain(team), _letters(team)} - {""}:
                     self._groups[name].append(index)
 
     def knows(self, name: str, team: str = "") -> bool:
-        """Return whether a name is that of one student (in a team also the surname), or of a group."""
+        """Return whether a name is that of one student, in a team also the surname, or of a group."""
         return self.knows_student(name, team) or (not team and plain(name) in self._groups)
 
     def knows_student(self, name: str, team: str = "") -> bool:
         """Return whether a name is that of one student."""
-        return len(self._person(Student(name, name, login=name, group=team)).students) == 1
+        return len(self._person(Student(name, login=name, group=team)).students) == 1
 
     def match(self, claim: Student) -> Match:
-        """Return whose a submission is by the ids and names in its own; with a `group`, only of a member of that team.
+        """Return whose a submission is by what its name claims; with a `group`, only of a member of that team.
 
-        A file of Canvas that is named like a group belongs to it only if its id is that of a member, or unknown.
+        A file of Canvas that is named like a group belongs to it only if its id is that of a member, or no member has
+        one. Of `aliases`, ids of Canvas, it is not clear which is the user's.
         """
+        if claim.aliases:
+            users = {index for user in claim.aliases for index in self._tables[0].get(f"canvas {user}", ())}
+            return Match(tuple(sorted(users)), len(self._tables))
         found = self._person(claim)
-        if claim.group:
-            return found
-        group = tuple(
-            self._groups.get(f"canvas\n{letters(claim.name)}" if claim.canvas else plain(claim.name or claim.login), ())
-        )
-        if claim.canvas and found.students and found.rank == 0:
-            is_own_name = letters(claim.name) in _in_canvas(self.students[found.students[0]].name)
-            return found if is_own_name or found.students[0] not in group else Match(group, is_group=True)
-        if claim.canvas and group and (found.students or any(self.students[index].canvas for index in group)):
-            return Match((*found.students, *group), found.rank)
+        name = _letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
+        group = () if claim.group else tuple(self._groups.get(name, ()))
+        if claim.canvas and group:
+            if found.students and found.rank == 0:
+                is_own_name = name in _in_canvas(self.students[found.students[0]].name)
+                return found if is_own_name or found.students[0] not in group else Match(group, is_group=True)
+            if found.students or any(self.students[index].canvas for index in group):
+                return Match((*found.students, *group), found.rank)
         return found if found.students or not group else Match(group, is_group=True)
 
     def _person(self, claim: Student) -> Match:
-        """Return the students with the best of the words in a name, without those whom the LMS knows by another id."""
-        team = self._groups.get(plain(claim.group), ()) if claim.group else range(len(self.students))
-        for rank, words in enumerate(_words_in(claim)):
-            found = {index for word in words if word for index in self._tables[rank].get(word, ()) if index in team}
+        """Return the students with the best of the words in a claim, without those whom the LMS knows by another id."""
+        login, team = plain(claim.login), self._groups.get(plain(claim.group), ()) if claim.group else None
+        names = (
+            [_letters(claim.name)]
+            if claim.canvas
+            else [plain(claim.name), login, _surname(login) if claim.group else ""]
+        )
+        ranked = (_numbers(claim), [unicodedata.normalize("NFC", claim.login)], [login], names)
+        for rank, (words, table) in enumerate(zip(ranked, self._tables, strict=True)):
+            found = {index for word in words for index in table.get(word, ()) if team is None or index in team}
             if found:
                 return Match(tuple(sorted(index for index in found if not self._is_other(index, claim))), rank)
         return Match(())
 
     def _is_other(self, index: int, claim: Student) -> bool:
+        """Return whether the LMS knows a student by another id than that in a claim."""
         one = self.students[index]
-        return any(
-            mine and its and mine != its for mine, its in ((one.canvas, claim.canvas), (one.moodle, claim.moodle))
-        )
-
-
-def _words_of(one: Student) -> Words:
-    """Return what identifies a student on a roster: ids of an LMS, ids, ids in another spelling, names."""
-    ids = {one.key, one.login, one.sis, one.email, *one.aliases} - {""}
-    names = {plain(one.name), plain(one.email.partition("@")[0]), _surname(one.name)}
-    return (
-        _numbers(one),
-        map(_composed, ids),
-        map(plain, ids),
-        names | set(map("canvas\n{}".format, _in_canvas(one.name))),
-    )
-
-
-def _words_in(claim: Student) -> Words:
-    """Return the same of a submission: a login may be any id or a name, a name is only a name."""
-    names = [f"canvas\n{letters(claim.name)}"] if claim.canvas else [plain(claim.name), plain(claim.login)]
-    surname = [_surname(claim.login)] if claim.group else []
-    return _numbers(claim), [_composed(claim.login)], [plain(claim.login)], [*names, *surname]
+        ids = ((one.canvas, claim.canvas), (one.moodle, claim.moodle))
+        return any(own and given and own != given for own, given in ids)
 
 
 def _numbers(one: Student) -> list[str]:
     return [f"{lms} {number}" for lms, number in (("canvas", one.canvas), ("moodle", one.moodle)) if number]
 
 
-def _composed(word: str) -> str:
-    return unicodedata.normalize("NFC", word)
-
-
 def _surname(name: str) -> str:
     last, comma, _ = name.partition(",")
-    words = plain(last if comma else last.rpartition(" ")[2])
-    return f"surname\n{words}" if words else ""
+    word = plain(last if comma else last.rpartition(" ")[2])
+    return f"surname\n{word}" if word else ""
 
 
-def letters(name: str) -> str:
+def _letters(name: str) -> str:
     """Return a name as Canvas writes it into names of files (canvas-lms, content_zipper.rb)."""
-    return re.sub(r"\W", "", re.sub(r"_(\d+)_", r"\1", unicodedata.normalize("NFC", name))).casefold()
+    composed = re.sub(r"_(\d+)_", r"\1", unicodedata.normalize("NFC", name))
+    letters = re.sub(r"\W", "", composed).casefold()
+    return f"canvas\n{letters}" if letters else ""
 
 
-def _in_canvas(name: str) -> set[str]:
+def _in_canvas(name: str) -> Iterable[str]:
     """Return what Canvas may call a student in names of files: sorted by any word of the name, or as the user set."""
     words = name.split()[:_MAX_WORDS]
     orders = [name] if "," in name else [" ".join(words[index:] + words[:index]) for index in range(len(words))]
-    return {letters(order) for order in orders}
+    return map(_letters, orders)

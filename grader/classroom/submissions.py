@@ -1,38 +1,22 @@
 """The submissions of a class, one a student: each belongs to whom an id or a full name says, or is listed."""
 
 import os
-import re
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Sequence
 from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.classroom.layouts import (
-    PATTERNS,
-    ClassFolder,
-    ClassSubmission,
-    is_download,
-    is_submission,
-    layout_of,
-    submissions_in,
-)
-from grader.classroom.listing import Children, ClassListing, FolderListing, ZipListing
+from grader.classroom.detection import LAYOUTS, inner_class, layout_of, submissions_in
+from grader.classroom.layouts import PATTERNS, ClassFolder, ClassSubmission
+from grader.classroom.listing import ClassListing, listing_of
 from grader.classroom.people import CERTAIN, Match, People
 from grader.classroom.roster import Roster, Student, plain
 from grader.errors import InputError
-from grader.files.names import PACKAGE_FILES, ROBOT_ENDINGS
-from grader.files.opening import archive_kind
-from grader.files.reading import not_there, read_start
-from grader.submission.labs import MAX_WRAPPERS
-from grader.submission.students import is_part
-from grader.text import enumerated, first_lines, printable, printable_path, shell_quoted
+from grader.text import enumerated, first_lines, printable_path, shell_quoted
 
 __all__ = ["ClassSubmission", "Intake", "read_class"]
-LAYOUTS = ("auto", "folders", "canvas", "moodle", "teams", "nbgrader")
-_MAX_LINES = 200
-_MAX_NAMED = 10
+_MAX_LINES, _MAX_NAMED = 200, 10
 _ANONYMOUS = (
     "this is an anonymous download: its submissions (anon_...) match no student. "
     "Canvas shows the names when the grades are posted: download again then"
@@ -40,11 +24,11 @@ _ANONYMOUS = (
 
 
 class Intake(NamedTuple):
-    """The submissions of a class, and its students, both in the order of their keys.
+    """The submissions of a class and its students, both in the order of their keys.
 
-    A student without a submission is `absent`; one with several possible submissions is not, and none of these is
-    graded. `unmatched` says of which submissions it is not certain whose they are, and how the roster assigns them;
-    `notes` says what was chosen, `ignored` what in the folders is no submission.
+    Students without a submission are `absent`, but not those with several possible ones, of which none is graded.
+    `unmatched` says which submissions are certainly nobody's on the roster, and which row of it assigns them; `notes`
+    says what was chosen, `ignored` what in the folders is no submission.
     """
 
     layout: str
@@ -69,282 +53,209 @@ def read_class(
     `assignment` is the one to grade in nbgrader; `rubric_id` is the name of the lab in names of folders, and `folders`
     are the names of its own (default: its id).
     """
-    if layout not in LAYOUTS:
-        raise InputError(f"there is no layout {layout!r}; the layouts are: {', '.join(LAYOUTS)}")
-    people = People(roster.students if roster is not None else ())
-    notes, ignored, listings = list(roster.notes if roster is not None else ()), list[str](), list[ClassListing]()
+    if layout not in ("auto", *LAYOUTS):
+        raise InputError(f"there is no layout {layout!r}; the layouts are: auto, {', '.join(LAYOUTS)}")
+    labs = folders or tuple(filter(None, [rubric_id]))
+    students, notes = roster if roster is not None else Roster(())
+    owners = _Owners(
+        People(students), [(listing_of(path), path.resolve().name) for path in paths], has_roster=roster is not None
+    )
+    owners.notes.extend(notes)
     found: list[ClassSubmission] = []
     layouts: dict[str, None] = {}
-    for root, path in enumerate(paths):
-        listings.append(listing := listing_of(path))
+    for root, (path, (listing, name)) in enumerate(zip(paths, owners.roots, strict=True)):
         top = ClassFolder(
-            listing, listing.children(""), "", path.resolve().name, rubric_id, folders or tuple(filter(None, [rubric_id])),
-            assignment, people, layout != "auto", ignored, notes,
+            listing, listing.children(""), "", name, owners.people, rubric_id, labs, assignment, layout != "auto",
+            owners.ignored, owners.notes,
         )  # fmt: skip
-        folder = inner_class(_without_gradebooks(top))
-        own = _layout(path, folder, layout)
-        submissions = submissions_in(folder, own)
+        folder = inner_class(top)
+        chosen = layout_of(folder) if layout == "auto" else layout
+        _refuse(path, folder, chosen)
+        submissions = submissions_in(folder, chosen)
         if not submissions:
-            example = "".join(f": {line}" for line in sorted(ignored)[:1])
+            example = "".join(f": {line}" for line in sorted(owners.ignored)[:1])
             advice = f" (without --layout {layout} the layout is detected)" if layout != "auto" else ""
             raise InputError(f"there is no submission in {printable_path(path)}{example}{advice}")
-        layouts[own] = None
         found += (one._replace(root=root) for one in submissions)
-    names = [path.resolve().name if len(paths) > 1 else "" for path in paths]
-    assigned = _Assignment(people, listings, names, has_roster=roster is not None)
-    assigned.assign(found)
-    return Intake(
-        " and ".join(layouts),
-        *assigned.result(),
-        (*notes, *assigned.notes),
-        tuple(first_lines(sorted(ignored), _MAX_LINES)),
-    )
+        layouts[chosen] = None
+    owners.find(found)
+    return owners.intake(" and ".join(layouts))
 
 
-def listing_of(path: Path) -> ClassListing:
-    """Return the listing of a class folder or zip; raises InputError if it is neither."""
-    shown = printable_path(path)
-    try:
-        if path.is_dir():
-            return FolderListing(path)
-        exists = os.path.lexists(path)
-    except (OSError, ValueError) as error:
-        raise InputError(f"cannot read {shown}: {error}") from None
-    if not exists:
-        raise not_there(path)
-    if archive_kind(read_start(path, 512)) != "zip":
-        raise InputError(
-            f"{shown} is neither a folder nor a zip: name the folder that holds the class's submissions"
-            " (`grader grade` grades a single one)"
-        )
-    return ZipListing(path)
-
-
-def _without_gradebooks(folder: ClassFolder) -> ClassFolder:
-    """Return a folder without the gradebooks in it, which are no submissions."""
-    books = [name for name in folder.children.folders if folder.listing.is_gradebook(name)]
-    folder.ignore(books, "is a gradebook")
-    kept = [name for name in folder.children.folders if name not in books] if books else folder.children.folders
-    return replace(folder, children=folder.children._replace(folders=kept))
-
-
-def inner_class(folder: ClassFolder) -> ClassFolder:
-    """Return the folder that contains the submissions.
-
-    A download may be in folders that contain nothing else. In a zip, it can be any folder that contains all files,
-    unless it is itself a submission.
-    """
-    around, inner = [folder], _only_folder(folder)
-    while inner is not None and len(around) <= MAX_WRAPPERS and not is_download(inner):
-        around.append(inner)
-        inner = _only_folder(inner)
-    if inner is not None and is_download(inner):
-        for outer in around:
-            outer.ignore(outer.children.files, "is beside the folder of the download")
-        return inner
-    only = _only_folder(folder) if isinstance(folder.listing, ZipListing) and not folder.children.files else None
-    return folder if only is None or _is_one_submission(only.children) else only
-
-
-def _only_folder(folder: ClassFolder) -> ClassFolder | None:
-    """Return the only folder in a folder without other submissions; None if there is none, or it is a student's."""
-    folders, files, _ = folder.children
-    if len(folders) != 1 or folders[0] == "submitted" or any(map(is_submission, files)):
-        return None
-    if layout_of(folder) != "folders" or folder.people.knows_student(folders[0]):
-        return None
-    start = f"{folder.start}{folders[0]}"
-    return replace(folder, children=folder.listing.children(start), start=f"{start}/", name=folders[0])
-
-
-def _is_one_submission(children: Children) -> bool:
-    several = children.folders + list(filter(is_submission, children.files))
-    is_package = not PACKAGE_FILES.isdisjoint(children.files) or any(map(is_part, children.folders))
-    return (
-        is_package
-        or not several
-        or several == [name for name in children.files if name.lower().endswith(ROBOT_ENDINGS)][:1]
-    )
-
-
-def _layout(path: Path, folder: ClassFolder, layout: str) -> str:
-    """Return the layout of a class folder. Raises InputError if it does not fit the folder, or what the user named."""
+def _refuse(path: Path, folder: ClassFolder, layout: str) -> None:
+    """Raise InputError for a folder that is empty or no class, or does not fit what the user has named."""
     shown = printable_path(path)
     if not any(folder.children):
         raise InputError(f"{shown} is empty: name the folder that holds the class's submissions")
-    chosen = layout_of(folder) if layout == "auto" else layout
-    if folder.assignment and chosen != "nbgrader":
+    if folder.assignment and layout != "nbgrader":
         raise InputError(
-            f"--assignment is only for the layout nbgrader, and {shown} has the layout {chosen}: remove it, or add"
+            f"--assignment is only for the layout nbgrader, and {shown} has the layout {layout}: remove it, or add"
             " --layout nbgrader"
         )
-    if layout == "auto" and chosen == "folders" and "package.xml" in folder.children.files:
+    if layout == "folders" and not folder.is_explicit and "package.xml" in folder.children.files:
         raise InputError(
             f"{shown} is one submission and not a class: it contains a package.xml "
             f"(grade it with `grader grade {shell_quoted(path)}`)"
         )
-    return chosen
 
 
-class _Assignment:
-    """Whose each submission is: of students by their index on the roster, of others, or of nobody for certain."""
+class _Owners:
+    """Whose each submission is: a student's, by the index on the roster, a visitor's, or nobody's for certain."""
 
-    def __init__(
-        self, people: People, listings: Sequence[ClassListing], names: Sequence[str], *, has_roster: bool
-    ) -> None:
-        self._people, self._listings, self._names, self._has_roster = people, listings, names, has_roster
-        self._owned: dict[int, ClassSubmission] = {}
-        self._visitors: list[ClassSubmission] = []
-        self._contested: set[int] = set()
-        self._unmatched: list[str] = []
+    def __init__(self, people: People, roots: Sequence[tuple[ClassListing, str]], *, has_roster: bool) -> None:
+        self.people, self.roots, self._has_roster = people, roots, has_roster
         self.notes: list[str] = []
+        self.ignored: list[str] = []
+        self._owned: dict[int, ClassSubmission] = {}
+        self._unclear: set[int] = set()
+        self._visitors: list[ClassSubmission] = []
+        self._unmatched: list[str] = []
         self._is_anonymous = False
 
-    def assign(self, found: Sequence[ClassSubmission]) -> None:
+    def find(self, found: Sequence[ClassSubmission]) -> None:
         """Assign all submissions: what a person has assigned decides, then ids and names, then groups."""
         self._is_anonymous = all(one.student.key.startswith("anon_") for one in found)
-        if self._is_anonymous:
-            self.notes.append(_ANONYMOUS)
         claims: dict[int, list[tuple[int, ClassSubmission]]] = defaultdict(list)
         groups: dict[tuple[int, ...], list[ClassSubmission]] = defaultdict(list)
         others: list[tuple[tuple[int, ...], ClassSubmission]] = []
-        taken = self._assign_by_hand(found)
-        rest = (one for one in found if one not in taken)
-        for one in sorted(rest, key=lambda one: (one.student.key, one.root, one.paths)):
-            match = Match(()) if self._is_anonymous else self._people.match(one.student)
+        taken = self._assigned(found)
+        for one in sorted(found, key=lambda one: (one.student.key, one.root, one.paths)):
+            match = Match(()) if self._is_anonymous else self.people.match(one.student)
+            if one in taken:
+                continue
             if match.is_group:
                 groups[match.students].append(one)
-            elif len(match.students) == 1:
+            elif len(match.students) == 1 and not one.student.aliases:
                 claims[match.students[0]].append((match.rank, one))
             else:
                 others.append((match.students, one))
         for index, claimed in claims.items():
-            self._decide(index, sorted(claimed, key=lambda pair: pair[0]))
+            self._decide(index, sorted(claimed, key=lambda claim: claim[0]))
         for members, named in groups.items():
             self._share(members, named)
-        for indices, one in others:
-            keys = [self._people.students[index].key for index in indices]
-            may = f"may belong to {enumerated(keys, _MAX_NAMED, 'or')}" if keys else "matches no student on the roster"
-            self._visit(one, may)
-            self._contested.update(indices)
+        for students, one in others:
+            keys = [self.people.students[index].key for index in students]
+            self._visit(one, f"may belong to {enumerated(keys, _MAX_NAMED, 'or')}" if keys else "is not on the roster")
+            self._unclear.update(students)
 
-    def _assign_by_hand(self, found: Sequence[ClassSubmission]) -> list[ClassSubmission]:
+    def _assigned(self, found: Iterable[ClassSubmission]) -> set[ClassSubmission]:
         """Give students what the roster's column `submission` names, and return these submissions."""
-        wanted = {index: one.submission for index, one in enumerate(self._people.students) if one.submission}
-        places: dict[str, ClassSubmission] = {}
-        for one in found if wanted else ():
-            places |= {self._shown(one.root, path): one for path in one.paths}
-        taken: list[ClassSubmission] = []
-        for index, text in wanted.items():
-            place = " ".join(text.split())
-            if named := places.get(place) or next(self._below(place), None):
-                self._owned[index] = named
-                taken.append(named)
+        wanted = [(index, one) for index, one in enumerate(self.people.students) if one.submission]
+        places = {self._shown(one, path): one for one in found for path in one.paths} if wanted else {}
+        for index, student in wanted:
+            place = " ".join(student.submission.split())
+            if one := places.get(place) or self._submission_at(place):
+                self._owned[index] = one
             else:
-                self._contested.add(index)
-                key = self._people.students[index].key
-                self.notes.append(
-                    f"{key} has the submission {printable_path(place)} on the roster, which does not exist"
-                )
-        return taken
+                self._unclear.add(index)
+                self.notes.append(f"{student.key} has the submission {place!r} on the roster, which does not exist")
+        return set(self._owned.values())
 
-    def _below(self, place: str) -> Iterator[ClassSubmission]:
-        """Yield what is at a place in the class folders that is no submission by itself."""
-        for root, (listing, name) in enumerate(zip(self._listings, self._names, strict=True)):
+    def _submission_at(self, place: str) -> ClassSubmission | None:
+        """Return what is at a place in a class folder, and no submission by itself; None if there is nothing."""
+        for root, (listing, name) in enumerate(self.roots):
             path = ""
-            for part in place.removeprefix(f"{name}/" if name else "").split("/"):
+            for part in place.removeprefix(f"{name}/" if len(self.roots) > 1 else "").split("/"):
                 inner = listing.children(path)
                 same = [one for one in inner.folders + inner.files if " ".join(printable_path(one).split()) == part]
-                path = f"{path}/{same[0]}".lstrip("/") if len(same) == 1 else ""
-                if not path:
-                    break
-            if path:
-                yield ClassSubmission(Student(""), root, (path,))
+                path = f"{path}/{same[0]}".lstrip("/") if len(same) == 1 else "\0"
+            if "\0" not in path:
+                return ClassSubmission(Student(""), root, (path,))
+        return None
 
-    def _shown(self, root: int, path: str) -> str:
+    def _shown(self, one: ClassSubmission, path: str = "") -> str:
         """Return a path as a person can write it on the roster, of several class folders with the name of its own."""
-        return " ".join(printable_path(f"{self._names[root]}/{path}".lstrip("/")).split())
+        top = f"{self.roots[one.root][1]}/" if len(self.roots) > 1 else ""
+        return " ".join(printable_path(top + (path or one.paths[0])).split())
 
     def _visit(self, one: ClassSubmission, reason: str) -> None:
         self._visitors.append(one)
         self._list(one, reason, one.student.key)
 
     def _list(self, one: ClassSubmission, reason: str, key: str) -> None:
-        if self._has_roster and not self._is_anonymous:
-            place = self._shown(one.root, one.paths[0])
-            cell = '"' + place.replace('"', '""') + '"' if re.search('[,;"]', place) else place
-            advice = f"the roster assigns it with `{printable(key)},{cell}` in the columns id,submission"
-            self._unmatched.append(f"{place} {reason}: {advice}")
+        """List a submission with the row of the roster that assigns it."""
+        row = [
+            f'"{cell.replace(chr(34), 2 * chr(34))}"' if set(cell) & set(',;"') else cell
+            for cell in (printable_path(key), self._shown(one))
+        ]
+        self._unmatched.append(f"{self._shown(one)} {reason}: a row `{','.join(row)}` below `id,submission` assigns it")
 
-    def _decide(self, index: int, several: Sequence[tuple[int, ClassSubmission]]) -> None:
+    def _decide(self, index: int, claims: Sequence[tuple[int, ClassSubmission]]) -> None:
         """Give a student the submission with the only best id; if there is none, none of them is graded."""
-        key = self._people.students[index].key
-        (rank, first), *others = several
-        is_assigned = index in self._owned or index in self._contested
-        if not is_assigned and (not others or (rank <= CERTAIN and others[0][0] > rank)):
+        key = self.people.students[index].key
+        (rank, first), *others = claims
+        if index in self._owned or index in self._unclear:
+            others = list(claims)
+        elif not others or (rank <= CERTAIN and others[0][0] > rank):
             self._owned[index] = first
-        elif not is_assigned:
-            self._contested.add(index)
-            names = enumerated([self._shown(one.root, one.paths[0]) for _, one in several], _MAX_NAMED)
-            for _, one in several:
-                self._list(one, f"may belong to {key}, of {names} none is graded", key)
+        else:
+            self._reject([one for _, one in claims], f"may belong to {key}", key)
+            self._unclear.add(index)
             return
-        for _, one in several[0 if is_assigned else 1 :]:
+        for _, one in others:
             self._visit(one, f"may belong to {key}, who has another submission")
 
-    def _share(self, members: Iterable[int], several: Sequence[ClassSubmission]) -> None:
-        """Let the only submission of a group count for each member without another one; that of a section for nobody."""
-        without = [index for index in members if index not in self._owned and index not in self._contested]
-        alone = [one for one in several if not self._holds_students(one)]
-        names = enumerated([self._shown(one.root, one.paths[0]) for one in alone], _MAX_NAMED)
+    def _reject(self, several: Sequence[ClassSubmission], reason: str, key: str) -> None:
+        names = enumerated([self._shown(one) for one in several], _MAX_NAMED)
         for one in several:
+            self._list(one, f"{reason}, and of {names} none is graded", key)
+
+    def _share(self, members: Iterable[int], named: Sequence[ClassSubmission]) -> None:
+        """Let the only submission of a group count for each member without another; that of a section for nobody."""
+        without = [index for index in members if index not in self._owned and index not in self._unclear]
+        alone = [one for one in named if not self._holds_students(one)]
+        for one in named:
             if one not in alone:
                 self._visit(one, "is named like a group, but contains submissions of several students")
             elif not without:
                 self._visit(one, "is named like a group whose members all have other submissions")
-            elif len(alone) > 1:
-                self._list(one, f"is named like a group, of {names} none is graded", one.student.key)
-                self._contested.update(without)
-            else:
-                self._owned |= dict.fromkeys(without, one)
+        if without and len(alone) > 1:
+            self._reject(alone, "is named like a group", alone[0].student.key)
+            self._unclear.update(without)
+        elif alone:
+            self._owned |= dict.fromkeys(without, alone[0]._replace(student=Student("")))  # the ids are one member's
 
     def _holds_students(self, one: ClassSubmission) -> bool:
         """Return whether two students or more have submissions in a folder: it is a section, not a team's work."""
-        inner = self._listings[one.root].children(one.paths[0], 1000)
-        names = [f"{name}/" for name in inner.folders] + inner.files
-        found = filter(None, map(PATTERNS["folders"].fullmatch, names))
-        return sum(self._people.knows_student(name["login"]) for name in found) > 1
+        inner = self.roots[one.root][0].children(one.paths[0], 1000)
+        names = filter(
+            None, map(PATTERNS["folders"].fullmatch, [*(f"{name}/" for name in inner.folders), *inner.files])
+        )
+        return sum(self.people.knows_student(name["login"]) for name in names) > 1
 
-    def result(self) -> tuple[tuple[ClassSubmission, ...], tuple[Student, ...], tuple[Student, ...], tuple[str, ...]]:
-        """Return the submissions, the absent students, all students, and what is unmatched."""
-        students = list(self._people.students)
+    def intake(self, layout: str) -> Intake:
+        """Return what was found, with the data of the roster, and the LMS's name and ids where it has none."""
+        students = list(self.people.students)
         submissions: list[ClassSubmission] = []
         for index, one in self._owned.items():
             own, given = students[index], one.student
-            students[index] = own = own._replace(
-                name=own.name or ("" if given.canvas else given.name),
-                canvas=own.canvas or given.canvas,
-                moodle=own.moodle or given.moodle,
-            )
+            name = own.name or ("" if given.canvas else given.name)
+            own = own._replace(name=name, canvas=own.canvas or given.canvas, moodle=own.moodle or given.moodle)
             is_late = one.is_late if own.is_late is None else own.is_late
             submissions.append(one._replace(student=own, is_late=is_late, submitted=own.submitted or one.submitted))
-        absent = [
-            one for index, one in enumerate(students) if index not in self._owned and index not in self._contested
-        ]
-        taken = {plain(one.key) for one in students}
+            students[index] = own
+        unclear = range(len(students)) if self._is_anonymous else self._unclear
+        absent = [one for index, one in enumerate(students) if index not in self._owned and index not in unclear]
         counts = Counter(one.student.key for one in self._visitors)
+        taken = {plain(one.key) for one in students}
         for one in self._visitors:
-            key = one.student.key
+            key, name = one.student.key, "" if one.student.canvas else one.student.name
             if counts[key] > 1 or not key.isprintable() or plain(key) in taken:
-                key = _path_key(f"{self._names[one.root]}/{one.paths[0]}".lstrip("/"))
-            name = "" if one.student.canvas else one.student.name
-            submissions.append(
-                one._replace(student=one.student._replace(key=key, name=name, is_on_roster=not self._has_roster))
-            )
-        students += [one.student for one in submissions[len(self._owned) :]]
-        submissions.sort(key=lambda one: one.student.key)
-        students.sort(key=lambda one: one.key)
-        return tuple(submissions), () if self._is_anonymous else tuple(absent), tuple(students), tuple(self._unmatched)
+                key = _path_key(f"{self.roots[one.root][1]}/{one.paths[0]}" if len(self.roots) > 1 else one.paths[0])
+            visitor = one.student._replace(key=key, name=name, aliases=(), is_on_roster=not self._has_roster)
+            submissions.append(one._replace(student=visitor))
+            students.append(visitor)
+        if self._is_anonymous:
+            self.notes.append(_ANONYMOUS)
+        return Intake(
+            layout,
+            tuple(sorted(submissions, key=lambda one: one.student.key)),
+            tuple(absent),
+            tuple(sorted(students, key=lambda one: one.key)),
+            tuple(self._unmatched if self._has_roster and not self._is_anonymous else ()),
+            tuple(self.notes),
+            tuple(first_lines(sorted(self.ignored), _MAX_LINES)),
+        )
 
 
 def _path_key(path: str) -> str:

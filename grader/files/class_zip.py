@@ -26,27 +26,34 @@ _CHUNK = 1024 * 1024
 
 
 class ClassZip:
-    """An open zip of many submissions; paths are those of its members, with forward slashes. Raises InputError."""
+    """An open zip of many submissions; paths are those of its `members`, with forward slashes. Raises InputError.
+
+    `outside` are the members that lead out of it, and cannot be read.
+    """
 
     def __init__(self, path: Path) -> None:
         self._shown = printable_path(path)
-        self._members: dict[str, ArchiveMember] = {}
+        self.members: dict[str, ArchiveMember] = {}
+        self.outside: list[str] = []
         try:
             file = path.open("rb")
             weakref.finalize(self, file.close)
             for member in zip_members(file):
-                self._members[safe_path(member.path) or ""] = member
-                if len(self._members) > _MAX_MEMBERS:
+                if name := safe_path(member.path):
+                    self.members[name] = member
+                elif name is None:
+                    self.outside.append(printable_path(member.path[:100]))
+                if len(self.members) + len(self.outside) > _MAX_MEMBERS:
                     raise FileError(self._shown, f"contains more than {_MAX_MEMBERS} files")
         except ARCHIVE_ERRORS as error:
             raise FileError(self._shown, f"cannot be read as an archive: {error_text(error, self._shown)}") from None
-        self._names = sorted(self._members)
+        self._names = sorted(self.members)
 
     def folder(self, path: str) -> Tree:
         """Return the files below a folder."""
         start = f"{path}/"
         first, end = bisect_left(self._names, start), bisect_left(self._names, f"{path}0")  # 0 comes after /
-        below = {name.removeprefix(start): self._members[name] for name in self._names[first:end]}
+        below = {name.removeprefix(start): self.members[name] for name in self._names[first:end]}
         return self._tree(below, path.rpartition("/")[2])
 
     def files(self, named: dict[str, str], name: str) -> Tree:
@@ -55,7 +62,7 @@ class ClassZip:
 
     def is_folder(self, path: str) -> bool:
         """Return whether a path is that of a folder, or missing."""
-        member = self._members.get(path)
+        member = self.members.get(path)
         return member is None or member.kind == "folder"
 
     def read(self, path: str, limit: int) -> bytes:
@@ -92,7 +99,7 @@ class ClassZip:
         return None
 
     def _member(self, path: str) -> ArchiveMember:
-        member = self._members.get(path)
+        member = self.members.get(path)
         if member is None:
             raise FileError(path, f"is not in {self._shown}")
         return member

@@ -40,7 +40,7 @@ def test_a_zip_is_listed_in_place(tmp_path: Path) -> None:
 
 def test_a_zip_of_too_many_members_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The number of members is bounded."""
-    monkeypatch.setattr("grader.classroom.listing.MAX_MEMBERS", 3)
+    monkeypatch.setattr("grader.files.class_zip._MAX_MEMBERS", 3)
     assert len(read_class(pack(tmp_path / "a.zip", ["a.zip", "b.zip", "c.zip"]))) == 3
     with pytest.raises(InputError, match="contains more than 3 files"):
         read_class(pack(tmp_path / "b.zip", ["a.zip", "b.zip", "c.zip", "d.zip"]))
