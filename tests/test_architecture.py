@@ -33,7 +33,7 @@ INNER = {
     "classroom": (
         ("students",),
         ("matching", "tables"),
-        ("typed_names",),
+        ("typed_names", "roster"),
         ("intake", "lms"),
         ("gradebook",),
         ("run", "review"),
