@@ -31,14 +31,9 @@ LAYERS = (
 # The layers inside a package that is large enough to have its own.
 INNER = {
     "classroom": (
-        ("students", "listing", "opening"),
+        ("students",),
         ("matching", "tables"),
         ("typed_names", "roster"),
-        ("people",),
-        ("layouts",),
-        ("course_layouts",),
-        ("detection",),
-        ("submissions",),
         ("intake", "lms"),
         ("gradebook",),
         ("run", "review"),

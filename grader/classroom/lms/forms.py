@@ -1,0 +1,103 @@
+"""The grade files of learning management systems as a table: what is where in each, and what its import does.
+
+Canvas (lib/gradebook_importer.rb, gradebook_exporter.rb) does not translate headers, imports empty cells as well, and
+writes a name that begins with = as ="...". Moodle (mod/assign/feedback/offline, mod/assign/gradingtable.php) has the
+site's language and a fixed order; it skips a grade that is empty, locked or above the maximum, and imports every
+comment; a suspended student's name is in a span. Blackboard: "Work offline with grade data", help.blackboard.com.
+Brightspace has # before ids: "Importing grades", community.d2l.com, 3538. Neither says what an empty cell does.
+"""
+
+import html
+import re
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+_GUARD = re.compile(r'="(.*)"', re.DOTALL)
+_TAG = re.compile(r"<[^>]*+>")
+
+
+class Form(NamedTuple):
+    """A grade file of an LMS: `columns` are the headers of each role in lower case, one of each in `needed` exists.
+
+    `grade` matches the header of an assignment, with the groups `title`, and perhaps `number` and `maximum`; else the
+    maximum is in the row that begins with `points_row`, or in the column after the grade. A grade in `no_grade` stays.
+    `above` is what to do about points above the maximum, where these are refused or reduced, `overwriting` about
+    earlier grades.
+    """
+
+    lms: str
+    columns: Mapping[str, str]
+    needed: tuple[str, ...]
+    grade: re.Pattern[str]
+    clean: Callable[[str], str] = str.strip
+    points_row: str = ""
+    is_maximum_next: bool = False
+    excuse: str = ""
+    no_grade: Mapping[str, str] = {}
+    above: str = ""
+    reduces_above: bool = False
+    overwriting: str = ""
+    test_student: str = "(?!)"
+
+
+CANVAS = Form(
+    "Canvas",
+    {
+        "canvas": "id", "sis": "sis user id", "login": "sis login id", "name": "student", "last": "lastname",
+        "first": "firstname", "section": "section", "integration": "integration id", "account": "root account",
+    },
+    ("name | last", "canvas", "section"),
+    re.compile(r"(?P<title>.*)\s\((?P<number>[0-9]+)\)", re.DOTALL),
+    clean=lambda text: _GUARD.sub(r"\1", text),
+    points_row="Points Possible",
+    excuse="EX",
+    no_grade={"ex": "is excused in Canvas", "n/a": "is not assigned this assignment in Canvas"},
+    test_student="student, test|test student",
+)  # fmt: skip
+MOODLE = Form(
+    "Moodle",
+    {  # as the language packs have them (assign.php, assignfeedback_comments.php), as far as they were looked up
+        "moodle": "identifier (Participant 123) | identifier | id | identifiant | identificador | identificativo"
+        " | identificatie",
+        "sis": "id number | id-nummer",
+        "login": "username",
+        "status": "status | statut | stato | estado",
+        "maximum": "maximum grade | bestwertung | note maximale | calificación máxima | valutazione massima"
+        " | nota máxima | maximaal cijfer",
+        "locked": "grade can be changed | bewertung kann geändert werden | la note peut être modifiée"
+        " | la calificación puede ser cambiada | la calificación puede cambiarse"
+        " | la valutazione può essere cambiata | a nota pode ser alterada. | nota pode ser alterada",
+        "comment": "feedback comments | feedback als kommentar | feedback par commentaires"
+        " | comentarios de retroalimentación | commenti | comentários de feedback | feedback",
+    },
+    ("moodle",),
+    re.compile("(?P<title>.*)", re.DOTALL),
+    clean=lambda text: " ".join(html.unescape(_TAG.sub(" ", text)).split()),
+    is_maximum_next=True,
+    above="raise the maximum there, or give a final mark",
+    overwriting='tick "Allow updating records that have been modified more recently", or Moodle skips earlier grades',
+)
+BLACKBOARD = Form(
+    "Blackboard",
+    {
+        "login": "username", "sis": "student id", "email": "email", "last": "last name", "first": "first name",
+        "course": "child course id", "access": "last access", "availability": "availability",
+    },
+    ("login | sis",),
+    # Not a total, which cannot be filled: Total [Total Pts: up to 100 Score] |123457
+    re.compile(r"(?P<title>.*?) \[Total Pts: (?P<maximum>[0-9.,]+)(?: [^\]]*)?\](?: \|(?P<number>[0-9]+))?", re.DOTALL),
+    test_student=r".*_previewuser\d*",
+)  # fmt: skip
+BRIGHTSPACE = Form(
+    "Brightspace",
+    {
+        "login": "username", "sis": "orgdefinedid", "email": "email", "last": "last name", "first": "first name",
+        "end": "end-of-line indicator",
+    },
+    ("login | sis",),
+    re.compile(r"(?P<title>.*?) Points Grade(?: <Numeric MaxPoints:(?P<maximum>[0-9.,]+)[^>]*>)?", re.DOTALL),
+    clean=lambda text: text.removeprefix("#"),
+    above='tick "Can Exceed" for the grade item',
+    reduces_above=True,
+)  # fmt: skip
+FORMS = {form.lms.lower(): form for form in (CANVAS, MOODLE, BLACKBOARD, BRIGHTSPACE)}
