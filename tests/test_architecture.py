@@ -31,9 +31,14 @@ LAYERS = (
 # The layers inside a package that is large enough to have its own.
 INNER = {
     "classroom": (
-        ("students",),
+        ("students", "listing", "opening"),
         ("matching", "tables"),
         ("typed_names", "roster"),
+        ("people",),
+        ("layouts",),
+        ("course_layouts",),
+        ("detection",),
+        ("submissions",),
         ("intake", "lms"),
         ("gradebook",),
         ("run", "review"),

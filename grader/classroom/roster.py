@@ -1,38 +1,246 @@
-"""The students of a class, and the normalised form in which names and ids are compared."""
+"""The students of a class, from a CSV file of a person or an LMS whose columns are known by their titles."""
 
+import re
 import unicodedata
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from datetime import datetime
+from typing import NamedTuple
+
+from grader.classroom.tables import rows_with_lines
+from grader.errors import InputError
+from grader.names import folded
+from grader.text import counted, first_lines, printable_path
+
+_TITLES = {
+    "id": "id userid key",
+    "sis": "sis sisid sisuserid studentid studentnumber studentno idnumber matriculationnumber matrikelnummer"
+    " idnummer númerodeid",
+    "login": "login loginid username user sisloginid netid account",
+    "github": "github githubusername githublogin githubuser githubid githubaccount",
+    "name": "name fullname student studentname sortablename vollständigername nomcomplet nombrecompleto nomecompleto"
+    " volledigenaam",
+    "first": "first firstname firstnames givenname givennames forename vorname nombre",
+    "last": "last lastname surname familyname nachname apellidos",
+    "email": "email emailaddress mail sisemail emailadresse direccióndecorreo correoelectrónico",
+    "canvas": "canvas canvasid canvasuserid",
+    "moodle": "moodle moodleid participantid participant",
+    "identifier": "identifier identifiant identificador identificativo identificatie",
+    "group": "group groupname team teamname gruppe",
+    "section": "section class tutorial",
+    "due": "due duedate dueat deadline dueuntil extendeduntil extensionuntil",
+    "extension": "extension extensiondays extradays",
+    "submitted": "submitted submittedat submissiontime",
+    "late": "late islate dayslate latedays",
+    "status": "status",
+    "submission": "submission",
+}
+_FIELD_OF = {title: field for field, titles in _TITLES.items() for title in titles.split()}
+_WHO = frozenset({"id", "sis", "login", "github", "email", "name", "last", "canvas", "moodle", "identifier"})
+_UNIQUE = {"key": "id", "canvas": "canvas id", "moodle": "moodle id", "sis": "sis id", "login": "login",
+           "email": "email address"}  # fmt: skip
+_TEST_STUDENT = ("student, test", "test student")  # whom Canvas makes for "View as Student"
+_MAX_MISTAKES = 20
+# Characters that count as spaces; Moodle removes the others from the names of files (moodlelib.php, PARAM_FILE).
+_ALIKE = str.maketrans("_-", "  ", "&<>\"`|':\\/")
+_NUMBERED = re.compile(r"(?:[^\W\d_]{4,}\D*)?([0-9]+)")  # Participant 123, in any language
+_PARTICIPANT = re.compile(r"(?i:participant|teilnehmer(?:/?in)?)\s*[0-9]+")
+_DAYS = re.compile(r"([0-9]{1,4}(?:[.,][0-9]{1,4})?)\s*(?:days?)?")
+_YES = re.compile("(?i:yes|y|true|late|x|ja)")
+# The form of a cell, and what is written in it.
+_FORMS = {
+    "canvas": (re.compile("[0-9]+"), "the canvas id, which must be a number"),
+    "moodle": (_NUMBERED, "the participant id, which must be a number (put other ids in a column `id`)"),
+    "email": (re.compile(r"[^@\s]+@[^@\s]+"), "the email address, which needs an @"),
+    "late": (
+        re.compile(rf"{_YES.pattern}|(?i:no|n|false|on time|-|nein)|{_DAYS.pattern}"),
+        "late: write yes, no, or a number of days from 0",
+    ),
+    "group": (
+        re.compile(r"(?!(?i:none|n/a|null|nil|no group)\Z).*\w.*"),
+        "the group: leave the cell empty for a student without a group",
+    ),
+    "submission": (re.compile(r"(?!/|(?:.*/)?\.\.(?:/|\Z)).+"), "the submission: write a path below the class folder"),
+}
+_TIMES = {
+    "due": "2026-09-01 or 2026-09-01T23:59",
+    "extension": "a number of days from 0, or a date",
+    "submitted": "2026-09-01T10:00",
+}
+# moodle, mod/assign/gradingtable.php, col_status: parts with ` - ` between them, one of them `1 day 2 hours late`, from
+# the deadline that Moodle knows. Other parts with a number have a colon: overdue by, extension granted until.
+_UNITS = {"year": 365.0, "day": 1.0, "hour": 1 / 24, "min": 1 / 1440, "sec": 1 / 86400}
+_UNIT = rf"([0-9]{{1,6}}) ({'|'.join(_UNITS)})s?"
 
 
-@dataclass(frozen=True, slots=True)
-class Student:
-    """A student: `key` is unique in the class, other fields are empty where they are not known.
-
-    `sis` is the university's id, `canvas` Canvas' user id, `moodle` Moodle's participant id. `is_on_roster` is False
-    for a student who is known by the name of the submission alone.
-    """
+class Student(NamedTuple):
+    """A student of a class, whose `key` is unique in it; what is not known of the others is empty or None."""
 
     key: str
     name: str = ""
     email: str = ""
     login: str = ""
-    sis: str = ""
-    canvas: str = ""
-    moodle: str = ""
-    aliases: tuple[str, ...] = ()
+    sis: str = ""  # the id at the university
+    canvas: str = ""  # the user id in Canvas
+    moodle: str = ""  # the participant id in Moodle
+    aliases: tuple[str, ...] = ()  # further logins, such as that of GitHub
     group: str = ""
     section: str = ""
-    due: str = ""
+    due: str = ""  # ISO 8601, as `submitted`
     submitted: str = ""
     extension_days: float = 0.0
     is_late: bool | None = None
     days_late: float | None = None
-    submission: str = ""
-    is_on_roster: bool = True
+    submission: str = ""  # the path that a person has assigned, relative to its class folder
+    is_on_roster: bool = True  # False beside a roster that lacks the student
+
+
+class Roster(NamedTuple):
+    """The students of a class in the order of the file, and what was not understood in it."""
+
+    students: tuple[Student, ...]
+    notes: tuple[str, ...] = ()
 
 
 def plain(word: str) -> str:
-    """Return an id, name or group without case, `_`, `-` and ways to encode a letter; "Doe, Jane" is Jane Doe."""
-    text = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", word).casefold())
-    last, comma, first = text.replace("_", " ").replace("-", " ").partition(",")
-    return " ".join(f"{first} {last}".split() if comma else last.split())
+    """Return an id, name or group without differences of case, spaces, `_` and `-`: `Doe, Jane` is Jane Doe."""
+    if not word.isascii():
+        word = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", word).casefold())
+    last, comma, first = word.casefold().translate(_ALIKE).partition(",")
+    return " ".join((f"{first} {last}" if comma else last).split())
+
+
+def read_roster(data: bytes, shown: str) -> Roster:
+    """Return the roster in a CSV file, called `shown` in messages; raises InputError with a line for each mistake.
+
+    A student's key is the id, else the university's id, login, address, name, or LMS id.
+    """
+    rows = rows_with_lines(data, shown)
+    _, header = next(rows, (1, []))
+    fields = [_FIELD_OF.get(folded(title), "") for title in header]
+    if header and _WHO.isdisjoint(fields):
+        named = ", ".join(filter(None, header))[:200]
+        raise InputError(f"{shown} has no column for an id, login, name or email in its first line, only: {named}")
+    mistakes: list[tuple[int, str]] = []
+    read = list(_by_field(rows, fields, mistakes))
+    has_columns = {"student", "id"} <= set(map(folded, header)) and not {"sis", "login"}.isdisjoint(fields)
+    if has_columns and any(row["id"].isdecimal() for _, row in read):  # Canvas: rows of points above the students
+        read = [(line, row) for line, row in read if row["id"] and row["name"].casefold() not in _TEST_STUDENT]
+        for _, row in read:
+            row["canvas"] = row["canvas"] or row["id"]
+    students: list[tuple[int, Student]] = []
+    unclear: list[str] = []
+    for line, row in read:
+        mistakes += ((line, text) for text in _normalise(row))
+        if (student := _student(row)) is None:
+            mistakes.append((line, "has no id, login, name or email address: add one of them"))
+            continue
+        students.append((line, student))
+        if student.is_late and student.days_late is None and not row["late"] and _days_of(row["status"]) is None:
+            unclear.append(f"line {line} of {shown}: the status {row['status']!r}")
+    lines = [f"line {line} of {shown} {text}" for line, text in sorted(mistakes, key=lambda mistake: mistake[0])]
+    lines += _duplicates(students, shown)
+    if lines or not students:
+        raise InputError("\n".join(first_lines(lines or [f"{shown} has no students"], _MAX_MISTAKES)))
+    more = f" ({len(unclear)} lines)" if len(unclear) > 1 else ""
+    advice = "counts as late: add a column `late` with `no` or a number of days"
+    notes = (f"{unclear[0]} does not say clearly how late the submission is{more}, and {advice}",) if unclear else ()
+    return Roster(tuple(student for _, student in students), notes)
+
+
+def _by_field(
+    rows: Iterable[tuple[int, list[str]]], fields: Sequence[str], mistakes: list[tuple[int, str]]
+) -> Iterator[tuple[int, dict[str, str]]]:
+    """Yield the line of each row, and its first cell of each field that is not empty."""
+    for line, cells in rows:
+        if len(cells) < len(fields) or any(cells[len(fields) :]):
+            mistakes.append((line, f"has {counted(len(cells), 'cell')}, but the first line has {len(fields)}"))
+            continue
+        filled = {field: cell for field, cell in reversed([*zip(fields, cells, strict=False)]) if cell}
+        yield line, dict.fromkeys(_TITLES, "") | filled
+
+
+def _normalise(row: dict[str, str]) -> Iterator[str]:
+    """Move ids to their own fields, write times as ISO 8601, empty the cells that are wrong, and yield why they are.
+
+    The identifier of a worksheet is Moodle's, that of GitHub Classroom is the course's own.
+    """
+    if _PARTICIPANT.fullmatch(row["id"]):
+        row["moodle"], row["id"] = row["moodle"] or row["id"], ""
+    is_of_moodle = _NUMBERED.fullmatch(row["identifier"]) and not row["github"]
+    field = "moodle" if is_of_moodle else "id"
+    row[field] = row[field] or row["identifier"]
+    for field, (pattern, meant) in _FORMS.items():
+        if row[field] and not pattern.fullmatch(row[field]):
+            yield f"has {row[field]!r} for {meant}"
+            row[field] = ""
+    for field, form in _TIMES.items():
+        text, time = row[field], iso_time(row[field])
+        if text and not time and (field != "extension" or not _DAYS.fullmatch(text)):
+            why = ", which does not exist" if re.match(r"\d{4}-\d\d?-\d\d?(?!\d)", text) else ""
+            yield f"has {text!r} for {field}{why}: write {form}"
+            text = ""
+        row[field] = time or text
+    if row["due"] and iso_time(row["extension"]):
+        yield f"has both {row['due']!r} for due and {row['extension']!r} for extension: write one date"
+
+
+def _student(row: dict[str, str]) -> Student | None:
+    """Return the student in a row with values as they should be; None if it identifies none."""
+    own, canvas, moodle = row["id"], row["canvas"], re.sub(r"\D", "", row["moodle"])
+    login, sis = row["login"] or row["github"], row["sis"] or ("" if row["id"] == canvas else row["id"])
+    name = row["name"] or f"{row['first']} {row['last']}".strip()
+    if not (key := own or row["sis"] or login or row["email"] or name or canvas or moodle):
+        return None
+    extension = _DAYS.fullmatch(row["extension"])
+    days = _number(extension[1]) if extension else 0.0
+    due = row["due"] or ("" if extension else row["extension"])
+    late = _DAYS.fullmatch(row["late"])
+    days_late = _number(late[1]) if late else None
+    is_late = days_late > 0 if days_late is not None else bool(_YES.fullmatch(row["late"])) if row["late"] else None
+    if moodle and not (row["late"] or row["submitted"]) and (status := _days_of(row["status"])) != 0:
+        is_late = status is None or bool(due) or status > days  # Moodle knows neither this extension nor the deadline
+        days_late = None if status is None or due else max(0.0, status - days)
+    aliases = (row["github"],) if row["github"] not in ("", login) else ()
+    return Student(
+        printable_path(key), name, row["email"], login, sis, canvas, moodle, aliases, row["group"], row["section"], due,
+        row["submitted"], days, is_late, days_late, row["submission"].strip("/"),
+    )  # fmt: skip
+
+
+def _number(text: str) -> float:
+    return float(text.replace(",", "."))
+
+
+def _days_of(status: str) -> float | None:
+    """Return by how many days Moodle's Status says that a submission was late; None if that is not clear."""
+    for part in map(str.strip, status.casefold().split(" - ")):
+        if re.fullmatch(rf"{_UNIT}(?: {_UNIT})? late", part):
+            return sum(int(number) * _UNITS[unit] for number, unit in re.findall(_UNIT, part))
+        if re.search(r"\d|\blate\b", part) and ":" not in part:
+            return None
+    return 0.0
+
+
+def _duplicates(students: Sequence[tuple[int, Student]], shown: str) -> list[str]:
+    """Return a message for each student with an id or address that another student has."""
+    found: dict[int, str] = {}
+    for field, title in _UNIQUE.items():
+        first: dict[str, int] = {}
+        for line, student in students:
+            value: str = getattr(student, field)
+            same = first.setdefault(value if field == "key" else value.casefold(), line)
+            if value and same != line:
+                found.setdefault(line, f"{shown} has the {title} {value} twice, in lines {same} and {line}")
+    return [found[line] for line in sorted(found)]
+
+
+def iso_time(text: str) -> str:
+    """Return a date or time as ISO 8601, to the second; empty if it is neither. A time without a zone gets none."""
+    zoned = re.sub(r"\s*(?:UTC|UCT|GMT|Z)\Z", "+00:00", text.strip()) if ":" in text else text
+    try:
+        time = datetime.fromisoformat(re.sub(r"\s+(?=[+-][0-9:]+\Z)", "", zoned))
+    except ValueError:
+        return ""
+    if ":" not in text:
+        return time.date().isoformat() if len(text) == len("2026-09-01") else ""
+    return time.isoformat(timespec="seconds").replace("+00:00", "Z")
