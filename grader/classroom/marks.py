@@ -73,7 +73,7 @@ class Marks(NamedTuple):
         if before is not None and not before.time:
             raise InputError(f"{before.place} has no time, so it counts before every new mark: change that row")
         after = [datetime.fromisoformat(before.time) + timedelta(milliseconds=1)] if before is not None else []
-        return utc_text(max(datetime.now(UTC), *after))
+        return utc_text(max([datetime.now(UTC), *after]))
 
 
 def utc_text(time: datetime) -> str:

@@ -1,6 +1,7 @@
 """The statistics of a class on a terminal: grades, criteria, mistakes, sections, equal work, who needs a person."""
 
 from collections.abc import Iterator
+from decimal import Decimal
 
 from rich.console import Console
 from rich.table import Table
@@ -37,7 +38,7 @@ def render_class(book: Class, found: ClassStatistics, console: Console, *, verbo
     for mistake in found.mistakes[:_MAX_MISTAKES]:
         head = Text(f"{len(mistake.students):>6}  ", style="bold")
         wrapped(console, Text(printable(f"{mistake.criterion.id}: {mistake.message}")), 8, head)
-    for line in (*section_lines(found),):
+    for line in section_lines(found):
         wrapped(console, Text(printable(line)), 4, Text("  "))
     if found.equal:
         _heading("Equal work", console)
@@ -61,7 +62,7 @@ def counts_line(found: ClassStatistics) -> str:
 def grade_lines(found: ClassStatistics) -> Iterator[str]:
     """Yield the grades in one line, and how many are not final."""
     if found.all.students:
-        most = format_points(sum_of(found))
+        most = format_points(maximum_of(found))
         lowest, highest = found.all.lowest, found.all.highest
         assert lowest is not None and highest is not None
         yield (
@@ -72,12 +73,12 @@ def grade_lines(found: ClassStatistics) -> Iterator[str]:
         yield f"{counted(found.open, 'grade')} still {'needs' if found.open == 1 else 'need'} manual grading"
 
 
-def sum_of(found: ClassStatistics):  # type: ignore[no-untyped-def]
+def maximum_of(found: ClassStatistics) -> Decimal:
     """Return the maximum of the class."""
-    return sum(row.criterion.maximum for row in found.criteria)
+    return sum((row.criterion.maximum for row in found.criteria), Decimal(0))
 
 
-def figure(value) -> str:  # type: ignore[no-untyped-def]
+def figure(value: Decimal | None) -> str:
     """Return a mean to one decimal, rounded down so that no 99.96 is shown as 100."""
     return "" if value is None else f"{int(value * 10) / 10:.1f}"
 
@@ -94,7 +95,7 @@ def _summary(one: Summary) -> str:
 
 def span(found: ClassStatistics, tenth: int) -> str:
     """Return the grades of a tenth of the maximum: "10 to 20"."""
-    step = sum_of(found) / len(found.tenths)
+    step = maximum_of(found) / len(found.tenths)
     return f"{format_points(step * tenth)} to {format_points(step * (tenth + 1))}"
 
 

@@ -7,24 +7,17 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.tables import neutral, rows_of_table, write_table
 from grader.errors import InputError
 from grader.usecases.writing import save
 
 INDEX = "index.csv"  # the student of each report
 CLASS_PAGE = "index.html"
-_WITH_REPORT = "SELECT key FROM grade WHERE result IS NOT NULL OR final IS NOT NULL OR is_excused ORDER BY key"
 _UNSAFE = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*\s]+')
 # Device names of Windows, and the name of the class's page, in upper and lower case.
 _RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?|index")
 _DIGEST = re.compile(r"-[0-9a-fA-F]{64}$")
 _MAX_BYTES = 140  # of a name: with a digest, an ending and a temporary name it stays below the 255 of a file system
-
-
-def report_names(book: Gradebook) -> dict[str, str]:
-    """Return the file name without ending of each student who has a result, a final mark or an excuse, by key."""
-    return file_names([str(key) for (key,) in book.rows(_WITH_REPORT)])
 
 
 def file_names(keys: Sequence[str]) -> dict[str, str]:
