@@ -1,0 +1,104 @@
+"""Name the reports of a class as an LMS gives them to its students, and write them into a zip.
+
+Moodle, "Upload multiple feedback files in a zip" (mod/assign/feedback/file/importziplib.php): the folder
+`name_participant_type_plugin_` has the files of one student; before Moodle 4.1 only with the last underscore.
+
+Canvas, "Upload Submissions" (app/models/abstract_assignment.rb, infer_comment_context_from_filename): the first two
+numbers between underscores, or after `anon` the next two words, are the user and an attachment of the newest
+submission; LATE is ignored. The student sees the file under the attachment's name, each member of a group, too.
+"""
+
+import re
+import unicodedata
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterable, Mapping
+from pathlib import PurePosixPath
+
+from grader.classroom.roster import Student
+from grader.files.zip_writing import tar_gz_of, zip_of
+
+Names = tuple[dict[str, str], dict[str, str]]  # by the student's key: the path in the zip, or why there is none
+_MAX_NAME = 60
+# Can be read in one way: doejane_LATE_12345_678_robot.urdf, LATE_anon_7kQzB_678_robot.urdf; a third number cannot.
+_PLAIN = re.compile(r"(?:[^_0-9][^_]*(?:_LATE)?_[0-9]+|(?:LATE_)?anon_[^_]+)_[0-9]+_(?![0-9]+_).+", re.DOTALL)
+_NOT_UTF8 = re.compile(r"[\ud800-\udfff]")  # no name that Canvas has given, and no zip can have it
+_ARCHIVES = (".zip", ".tar.gz", ".tgz")
+
+
+def moodle_names(students: Collection[Student], report: str, numbers: Mapping[str, str] | None = None) -> Names:
+    """Return the paths of files called `report`; the participant numbers are those of a worksheet, or the students'."""
+    why = "matches no row of the worksheet, or several"
+    if numbers is None:
+        numbers = {student.key: student.moodle for student in students}
+        why = "has no participant number: pass the grading worksheet with --into"
+    names, without, counts = dict[str, str](), dict[str, str](), Counter(numbers.values())
+    for student in students:
+        number = numbers.get(student.key, "")
+        if number and counts[number] == 1:
+            names[student.key] = f"{_moodle_folder(student, number)}/{report}"
+        else:
+            without[student.key] = f"another student has participant number {number}, too" if number else why
+    return names, without
+
+
+def canvas_names(submissions: Iterable[tuple[Student, tuple[str, ...]]], report: str) -> Names:
+    """Return the names for students and the paths of their files; a group that has the same files shares one."""
+    groups = defaultdict[tuple[str, ...], list[Student]](list)
+    for student, paths in submissions:
+        groups[paths or ("", student.key)].append(student)
+    names, without = dict[str, str](), dict[str, str]()
+    for paths, members in groups.items():
+        files = [PurePosixPath(path).name for path in paths]
+        users = {member.canvas for member in members} - {""}
+        certain = [file for file in files if _is_certain(file, users)]
+        ending = PurePosixPath(report).suffix
+        fitting = [file for file in certain if PurePosixPath(file).suffix.lower() == ending]
+        fitting = fitting or [file for file in certain if file.lower().endswith(_ARCHIVES)]
+        if fitting:
+            names |= dict.fromkeys((member.key for member in members), min(fitting))
+            continue
+        why = f"Canvas would find another student, or none, by the name {files[0]!r}"
+        if certain:
+            why = f"Canvas would show the report as {certain[0]!r}, which is neither an archive nor a {ending} file"
+        why = why if files[0] else "submitted no file in Canvas"
+        without |= dict.fromkeys((member.key for member in members), why)
+    return names, without
+
+
+def write_feedback(reports: Mapping[str, bytes], names: Mapping[str, str], report: str) -> tuple[bytes, dict[str, str]]:
+    """Return the zip of the reports by key, whose bytes depend on them only, and why a student's is not in it."""
+    contents, without = defaultdict[str, dict[bytes, list[str]]](dict), dict[str, str]()
+    for key, data in reports.items():
+        contents[names[key]].setdefault(data, []).append(key)
+    files = dict[str, bytes]()
+    for name, found in contents.items():
+        if len(found) > 1:
+            why = "the members of the group have different reports, and Canvas gives one to all of them"
+            without |= dict.fromkeys((key for keys in found.values() for key in keys), why)
+        else:
+            files[name] = _packed(name, report, *found)
+    return zip_of(files), without
+
+
+def _moodle_folder(student: Student, number: str) -> str:
+    """Return the folder of a student, with the letters, digits and spaces of the name: an underscore ends it."""
+    name = unicodedata.normalize("NFC", student.name or student.key)
+    words = "".join(letter if letter.isalnum() or letter in "-'" else " " for letter in name).split()
+    return f"{' '.join(words)[:_MAX_NAME].strip() or 'Participant'}_{number}_assignfeedback_file_"
+
+
+def _is_certain(file: str, users: Collection[str]) -> bool:
+    """Return whether Canvas finds one of the users by a file's name; without users, whether it has one reading."""
+    words = [word for word in file.split("_") if word != "LATE"]
+    if not words or words[-1].startswith("link") or file.startswith("._") or _NOT_UTF8.search(file):
+        return False
+    ids = words[1:3] if words[0] == "anon" else [word for word in words if re.fullmatch("[0-9]+", word)][:2]
+    is_found = len(ids) == 2 and ids[1].isdecimal()
+    return is_found and (ids[0] in users or (not users and _PLAIN.fullmatch(file) is not None))
+
+
+def _packed(name: str, report: str, data: bytes) -> bytes:
+    """Return a report, in an archive if its name is that of one."""
+    if not name.lower().endswith(_ARCHIVES):
+        return data
+    return (zip_of if name.lower().endswith(".zip") else tar_gz_of)({report: data})

@@ -1,0 +1,71 @@
+"""The zip of reports: Moodle and Canvas give each to the right student, or it is not in the zip."""
+
+import io
+import tarfile
+import tomllib
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.classroom.lms.feedback_zip import canvas_names, moodle_names, write_feedback
+from grader.classroom.roster import Student
+
+CASES = tomllib.loads(Path(__file__).with_name("canvas_names.toml").read_text(encoding="utf-8"))["case"]
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: str(case["about"]))
+def test_names_for_canvas(case: dict[str, Any]) -> None:
+    """A report gets the name of a submitted file that Canvas recognises and that the report can be opened under."""
+    members = [Student(f"s{user}", canvas=user) for user in case.get("users", [""])]
+    found = canvas_names([(member, tuple(case["files"])) for member in members], case.get("report", "lab-feedback.md"))
+    expected = dict.fromkeys((member.key for member in members), case.get("name", case.get("why")))
+    assert found == ((expected, {}) if "name" in case else ({}, expected))
+
+
+@given(st.text(max_size=90))
+def test_moodle_reads_the_participant_in_any_folder(name: str) -> None:
+    """After the first underscore, with one more behind the plug-in for old versions; it is not hidden and not too long."""
+    names, _ = moodle_names([Student("key", name, moodle="77")], "lab.md")
+    folder, file = names["key"].split("/")
+    assert folder.split("_", 4)[1:] == ["77", "assignfeedback", "file", ""]
+    assert file == "lab.md"
+    assert not set(folder) & set('/\\:*?"<>|&`\n')
+    assert folder.isprintable()
+    assert not folder.startswith((".", "~", " ", "_"))
+    assert len(folder) < 100
+
+
+def test_participants() -> None:
+    """A worksheet's numbers count, else the student's; one of two students, or none at all, is no number."""
+    students = [Student("a", "Ann", moodle="1"), Student("b", moodle="2"), Student("c", moodle="2"), Student("d")]
+    names, without = moodle_names(students, "r.html")
+    assert names == {"a": "Ann_1_assignfeedback_file_/r.html"}
+    assert without["b"] == without["c"] == "another student has participant number 2, too"
+    assert without["d"] == "has no participant number: pass the grading worksheet with --into"
+    names, without = moodle_names(students, "r.html", {"d": "7", "a": "8"})
+    assert names == {"a": "Ann_8_assignfeedback_file_/r.html", "d": "d_7_assignfeedback_file_/r.html"}
+    assert set(without.values()) == {"matches no row of the worksheet, or several"}
+
+
+def test_the_zip_depends_on_the_reports_only() -> None:
+    """A report is in an archive under the name of one; the members of a group with different reports get none."""
+    names = {"a": "a_1_2_lab.zip", "b": "b_3_4_lab.TGZ", "c": "c_5_6_x.md", "d": "d_7_8_x.md", "e": "d_7_8_x.md"}
+    reports = {"a": b"A", "b": b"B", "c": b"C", "d": b"D", "e": b"E"}
+    data, without = write_feedback(reports, names, "lab-feedback.md")
+    assert (data, without) == write_feedback(dict(reversed(reports.items())), names, "lab-feedback.md")
+    assert without == dict.fromkeys(
+        "de", "the members of the group have different reports, and Canvas gives one to all of them"
+    )
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    assert files.keys() == {names["a"], names["b"], names["c"]}
+    assert files[names["c"]] == b"C"
+    with zipfile.ZipFile(io.BytesIO(files[names["a"]])) as inner:
+        assert inner.read("lab-feedback.md") == b"A"
+    with tarfile.open(fileobj=io.BytesIO(files[names["b"]])) as tar:
+        assert tar.getnames() == ["lab-feedback.md"]
+    assert write_feedback({"d": b"D", "e": b"D"}, names, "r.md")[1] == {}
