@@ -1,9 +1,14 @@
 """The grades of a class as a table: one row a student. It is `grades.csv`, and `export csv`, whose cells people may change."""
 
 from collections.abc import Iterable, Iterator
+from decimal import Decimal
 
 from grader.classroom.grades import Class, StudentGrade
+from grader.classroom.mark_import import exported_cell
 from grader.classroom.tables import CellValue
+from grader.grading.criterion import TOTAL
+from grader.grading.report import Result
+from grader.text import format_points
 
 # Columns before those of the criteria. `submission` is the digest of what was graded.
 HEADER = (
@@ -32,10 +37,29 @@ def _row(grade: StudentGrade, criteria: Iterable[str]) -> list[CellValue]:
     if report is not None:
         numbers = [report.score, report.max_score, grade.pending, grade.late.days, grade.late.points]
     digest = grade.graded.digest if grade.graded is not None else None
+    return [*head, *numbers, grade.total, grade.why_open, digest, *points_of(grade, criteria).values()]
+
+
+def points_of(grade: StudentGrade, criteria: Iterable[str]) -> dict[str, Decimal | None]:
+    """Return the points of criteria; None for what is open, excused or not graded."""
+    report = None if grade.is_excused else grade.report
     of = {row.criterion.id: row for row in report.results} if report is not None else {}
-    points = [None if name not in of or of[name].is_open or _failed(of[name].outcome.status, of[name].manual_mark) else of[name].points for name in criteria]
-    return [*head, *numbers, grade.total, grade.why_open, digest, *points]
+    return {name: of[name].points if name in of and not _is_undecided(of[name]) else None for name in criteria}
 
 
-def _failed(status: str, mark: object) -> bool:
-    return status == "errored" and mark is None
+def _is_undecided(result: Result) -> bool:
+    return result.is_open or (result.outcome.status == "errored" and result.manual_mark is None)
+
+
+def export_table(book: Class, grades: Iterable[StudentGrade]) -> tuple[list[str], Iterator[list[CellValue]]]:
+    """Return the same table with a last column, which says what the cells were that `mark --import` takes for marks."""
+    header, _ = grade_table(book, ())
+    criteria = [row.id for row in book.rubric.criteria]
+
+    def rows() -> Iterator[list[CellValue]]:
+        for one in grades:
+            points = points_of(one, criteria) | {TOTAL: one.total}
+            texts = {name: "" if value is None else format_points(value) for name, value in points.items()}
+            yield [*_row(one, criteria), exported_cell(texts)]
+
+    return [*header, "exported"], rows()

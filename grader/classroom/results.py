@@ -16,6 +16,7 @@ from grader.checks.outcome import Outcome
 from grader.errors import InputError
 from grader.files.reading import sha256_of
 from grader.grading.graded_submission import GradedSubmission
+from grader.grading.pictures import content_of, is_empty
 from grader.grading.report import Report, Result, without_gifts
 from grader.grading.rubric import Rubric
 from grader.text import cut, printable_path
@@ -33,7 +34,8 @@ class Graded(NamedTuple):
 
     `root` is the position of its path in the settings of the class, `paths` are below that. `person` is what the names of the files
     say of the student. `context` is the hash of all that a result depends on besides the submission. `work` are hashes of the robot and
-    the package in several forms, for equal work. Without a `digest` the submission could not be read at all.
+    the package in several forms, for equal work; `answers` are the keys of what a person looks at for a criterion: students with the
+    same answer have the same one, and it is empty without an answer. Without a `digest` the submission could not be read at all.
     """
 
     student: str
@@ -51,6 +53,7 @@ class Graded(NamedTuple):
     parts: tuple[str, ...] = ()
     results: Mapping[str, Entry] = {}
     work: Mapping[str, Any] = {}
+    answers: Mapping[str, str] = {}
 
     @property
     def line(self) -> bytes:
@@ -97,6 +100,16 @@ def _entry(result: Result) -> Entry:
     words = outcome.mistake or (outcome.message if outcome.status in ("failed", "errored") else "")
     points = int(result.points) if result.points == int(result.points) else float(result.points)
     return None if is_open else points, outcome.status, cut(words, _MAX_CAUSE), result.carried
+
+
+def answers_of(report: Report, digest: str) -> dict[str, str]:
+    """Return the key of the answer for each criterion that needs manual grading, empty if there is nothing to read.
+
+    It is that of the words, or of the whole submission where more than words is to be looked at.
+    """
+    open_ones = [one for one in report.results if one.outcome.status == "pending"]
+    contents = {one.criterion.id: content_of(one, report) or digest * (not is_empty(one, report)) for one in open_ones}
+    return {name: content and digest_of(content) for name, content in contents.items()}
 
 
 def digest_of(*parts: object) -> str:

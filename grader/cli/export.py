@@ -5,13 +5,13 @@ from typing import Annotated, Literal, get_args
 
 import typer
 
-from grader.cli.options import DueOption, GradebookOption
+from grader.cli.options import GradebookOption
 from grader.cli.terminal import TERMINAL
 from grader.usecases.writing import write_stdout
 
 Target = Literal["csv", "canvas", "moodle", "blackboard", "brightspace", "json", "html"]
 _INTO = "The gradebook or worksheet that the LMS exported."
-_OUTPUT = "The file to write (default: standard output); with html, the folder."
+_OUTPUT = "The file to write (default: standard output); with html, the folder (default: the gradebook)."
 _STRICT = "Write nothing if a row or a student is unmatched, or the LMS would refuse a grade."
 _PENDING = "Also export grades with points that need manual grading."
 _MAXIMUM = "Export points unchanged, even if the LMS has another maximum."
@@ -26,7 +26,6 @@ def export(
     into: Annotated[Path | None, typer.Option(metavar="LMS-FILE", help=_INTO)] = None,
     output: Annotated[Path | None, typer.Option(metavar="FILE|DIR", help=_OUTPUT)] = None,
     strict: Annotated[bool, typer.Option("--strict", help=_STRICT)] = False,
-    due: DueOption = None,
     column: Annotated[str, typer.Option(metavar="TITLE", help="The grade's column, if it is ambiguous.")] = "",
     feedback_column: Annotated[str, typer.Option(metavar="TITLE", help="The feedback's column in Moodle.")] = "",
     pending_as_zero: Annotated[bool, typer.Option("--pending-as-zero", help=_PENDING)] = False,
@@ -35,8 +34,8 @@ def export(
     excel: Annotated[bool, typer.Option("--excel", help=_EXCEL)] = False,
     feedback: Annotated[Path | None, typer.Option(metavar="ZIP", help=_FEEDBACK)] = None,
     feedback_format: Annotated[
-        Literal["markdown", "html"], typer.Option(metavar="markdown|html", help="The format of these reports.")
-    ] = "markdown",
+        Literal["html", "markdown"], typer.Option(metavar="html|markdown", help="The format of these reports.")
+    ] = "html",
 ) -> int:
     """Export the grades for a spreadsheet, an LMS or a browser.
 
@@ -50,15 +49,15 @@ def export(
 
     Examples:
 
-      grader export csv --gradebook lab6.db --excel --output grades.csv
+      grader export csv --gradebook lab6-grades --excel --output grades.csv
 
-      grader export canvas --gradebook lab6.db --into canvas.csv > upload.csv
+      grader export canvas --gradebook lab6-grades --into canvas.csv > upload.csv
 
-      grader export canvas --gradebook lab6.db --feedback feedback.zip
+      grader export canvas --gradebook lab6-grades --feedback feedback.zip
 
-      grader export moodle --gradebook lab6.db --feedback feedback.zip
+      grader export moodle --gradebook lab6-grades --feedback feedback.zip
 
-      grader export html --gradebook lab6.db --output pages
+      grader export html --gradebook lab6-grades --output pages
 
     Recipes:
 

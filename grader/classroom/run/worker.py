@@ -9,7 +9,7 @@ from typing import NamedTuple
 from grader.checks.outcome import Outcome, Status
 from grader.classroom.equal_work import forms_of, hashes_of
 from grader.classroom.opening import open_class_submission, unreadable_digest
-from grader.classroom.results import Graded, digest_of, entries_of
+from grader.classroom.results import Graded, answers_of, digest_of, entries_of
 from grader.classroom.run.pool import NO_MEMORY
 from grader.errors import InputError, MachineError
 from grader.files.names import ARCHIVES
@@ -90,7 +90,8 @@ def _grade_one(context: ClassContext, task: Task) -> Graded:
         reason = str(error) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
         reason = NO_MEMORY if isinstance(error, MemoryError) else reason
         return undecided(context, result._replace(verdict="errored", reason=reason))
-    result = result._replace(parts=report.parts, results=entries_of(report))
+    found = entries_of(report), answers_of(report, result.digest)
+    result = result._replace(parts=report.parts, results=found[0], answers=found[1])
     if fault := report.fault:
         return result._replace(verdict="errored", reason=fault)
     is_handed_out = bool(report.submission.another_robot)  # by the course, so that it is no equal work
