@@ -6,6 +6,7 @@ from functools import lru_cache, partial
 from pathlib import Path
 
 from grader.checks.outcome import Outcome
+from grader.classroom import folder as names
 from grader.classroom.grades import Class, StudentGrade
 from grader.classroom.reopening import reopened
 from grader.classroom.run.pool import Processes, WorkerError, processors
@@ -150,7 +151,10 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -
     if Format.HTML in run.formats:
         from grader.usecases.class_page import write_class_page
 
-        write_class_page(book, run.folder, {key: name for key, name in files.items() if key not in lost})
+        is_inside = run.folder == run.gradebook / names.REPORTS
+        prefix = f"{names.REPORTS}/" * is_inside
+        pages = {key: f"{prefix}{name}" for key, name in files.items() if key not in lost}
+        write_class_page(book, run.gradebook if is_inside else run.folder, pages)
     shown = printable_path(run.folder)
     terminal.warn(f"{counted(len(files) - len(lost), 'report')} written to {shown}")
     for key, why in lost.items():
