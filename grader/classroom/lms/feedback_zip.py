@@ -9,7 +9,6 @@ submission; LATE is ignored. The student sees the file under the attachment's na
 """
 
 import re
-import unicodedata
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import PurePosixPath
@@ -82,8 +81,8 @@ def write_feedback(reports: Mapping[str, bytes], names: Mapping[str, str], repor
 
 def _moodle_folder(student: Student, number: str) -> str:
     """Return the folder of a student, with the letters, digits and spaces of the name: an underscore ends it."""
-    name = unicodedata.normalize("NFC", student.name or student.key)
-    words = "".join(letter if letter.isalnum() or letter in "-'" else " " for letter in name).split()
+    letters = (letter if letter.isalnum() or letter in "-'" else " " for letter in student.name or student.key)
+    words = "".join(letters).split()
     return f"{' '.join(words)[:_MAX_NAME].strip() or 'Participant'}_{number}_assignfeedback_file_"
 
 
