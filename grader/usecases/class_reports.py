@@ -35,12 +35,16 @@ _MOVED = "The submission has moved or changed since it was graded, so this repor
 
 @dataclass(frozen=True, slots=True)
 class ReportRun:
-    """The reports to write of a gradebook into a folder; `answers` is the file of the model answers."""
+    """The reports to write of a gradebook into a folder; `answers` is the file of the model answers.
+
+    `time` is that of the newest run: workers read the gradebook once for it.
+    """
 
     gradebook: Path
     folder: Path
     formats: tuple[Format, ...]
     answers: Path | None = None
+    time: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +157,7 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -
     keys = [one.student.key for one in book if one.graded is not None or one.has_final]
     files = file_names(keys)
     earlier = update_index(run.folder, files)
-    lost = _render_all(run, files, terminal, jobs)
+    lost = _render_all(replace(run, time=book.run.time), files, terminal, jobs)
     if Format.HTML in run.formats:
         from grader.usecases.class_page import write_class_page
 
