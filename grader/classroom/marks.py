@@ -69,11 +69,12 @@ class Marks(NamedTuple):
 
     def next_time(self, key: Key) -> str:
         """Return the time for a new mark: now, or later, so that it counts. Raises InputError if none would."""
-        before = self.newest.get(key)
-        if before is not None and not before.time:
+        before, now = self.newest.get(key), datetime.now(UTC)
+        if before is None:
+            return utc_text(now)
+        if not before.time:
             raise InputError(f"{before.place} has no time, so it counts before every new mark: change that row")
-        after = [datetime.fromisoformat(before.time) + timedelta(milliseconds=1)] if before is not None else []
-        return utc_text(max(datetime.now(UTC), *after))
+        return utc_text(max(now, datetime.fromisoformat(before.time) + timedelta(milliseconds=1)))
 
 
 def utc_text(time: datetime) -> str:
@@ -158,7 +159,7 @@ def mark_in(values: Mapping[str, str], key: Key, most: Decimal, place: str) -> l
 
 def _time(text: str) -> str:
     with suppress(ValueError, OverflowError):
-        if not text or (time := datetime.fromisoformat(text)).tzinfo is not None:
+        if not text or ((time := datetime.fromisoformat(text)).tzinfo is not None and time.year < datetime.max.year):
             return utc_text(time) if text else ""
     raise InputError(f"{quoted(text)} is not a time: write it as 2026-11-23T14:05:09.123+00:00, or leave it empty")
 
