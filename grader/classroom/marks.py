@@ -8,7 +8,7 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from datetime import UTC, datetime, timedelta
+from datetime import MAXYEAR, UTC, datetime, timedelta
 from decimal import Decimal
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -159,7 +159,7 @@ def mark_in(values: Mapping[str, str], key: Key, most: Decimal, place: str) -> l
 
 def _time(text: str) -> str:
     with suppress(ValueError, OverflowError):
-        if not text or ((time := datetime.fromisoformat(text)).tzinfo is not None and time.year < datetime.max.year):
+        if not text or ((time := datetime.fromisoformat(text)).tzinfo is not None and time.year < MAXYEAR):
             return utc_text(time) if text else ""
     raise InputError(f"{quoted(text)} is not a time: write it as 2026-11-23T14:05:09.123+00:00, or leave it empty")
 
@@ -191,6 +191,8 @@ def _count(marks: Marks, key: Key, rows: Sequence[Mark]) -> None:
 
 def _newest(rows: Sequence[Mark]) -> Mark:
     """Return the newest of some rows; raises InputError if two that differ are."""
+    if len(rows) == 1:
+        return rows[0]
     time = max((not mark.time, mark.time) for mark in rows)[1]
     tied = [mark for mark in rows if mark.time == time]
     by_file = {mark.place.rpartition(":")[0] if time else mark.place: mark for mark in tied}

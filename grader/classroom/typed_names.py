@@ -95,14 +95,17 @@ def without_accents(word: str) -> tuple[str, ...]:
     )
 
 
-@lru_cache(maxsize=4096)
-def as_number(cell: str, names: tuple[str, ...]) -> tuple[str, ...]:
+def as_number(cell: str, names: tuple[str, ...]) -> list[str]:
     """Return the names that a spreadsheet may have changed into a number: 0012 into 12, 123456 into 1.2E+05."""
     if (number := number_in(cell)) is None:
-        return ()
+        return []
     rounded = Context(prec=len(number.as_tuple().digits), traps=[])
-    others = ((name, number_in(name)) for name in names if name != cell)
-    return tuple(name for name, value in others if value is not None and rounded.plus(value) == number)
+    return [name for name, value in _numbers(names) if name != cell and rounded.plus(value) == number]
+
+
+@lru_cache(maxsize=2)
+def _numbers(names: tuple[str, ...]) -> list[tuple[str, Decimal]]:
+    return [(name, number) for name in names if (number := number_in(name)) is not None]
 
 
 def number_in(text: str) -> Decimal | None:

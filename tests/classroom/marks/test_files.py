@@ -11,13 +11,14 @@ from contextlib import suppress
 from decimal import Decimal
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import get_args
 
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from grader.classroom.mark_files import COLUMNS, is_open_in_libreoffice, mark_file
-from grader.classroom.marks import Mark, append_marks
+from grader.classroom.marks import Kind, Mark, append_marks
 from grader.classroom.tables import protected, unprotected
 from grader.errors import InputError
 from grader.grading.criterion import DEADLINE, TOTAL
@@ -44,7 +45,7 @@ def mark(draw: st.DrawFn) -> Mark:
     """Draw a mark of any kind."""
     who, given = (
         draw(st.sampled_from(STUDENTS)),
-        draw(st.sampled_from(("points", "withdrawn", "comment", "excused", "deadline"))),
+        draw(st.sampled_from(get_args(Kind))),
     )
     criterion = {"excused": TOTAL, "deadline": DEADLINE}.get(given, "essay")
     blank = Mark(draw(TIMES), draw(TEXT), who, criterion, None, draw(TEXT), draw(st.sampled_from(("", "d0a1"))), given)
@@ -120,7 +121,7 @@ def test_copying_a_file_merges(files: list[list[Mark]], is_reversed: bool) -> No
     times = [one.time for marks in files for one in marks]
     assume(len({*times}) == len(times))
     with TemporaryDirectory() as top:
-        parts = {}
+        parts: dict[tuple[str, str], Mark] = {}
         for number, marks in enumerate(files):
             appended(Path(top) / str(number), None, marks)
             parts |= {key: max(parts.get(key, one), one) for key, one in rows_in(Path(top) / str(number)).items()}
@@ -170,7 +171,7 @@ def test_a_file_that_a_spreadsheet_saved(path: Path, tmp_path: Path) -> None:
 WRITER = """
 from decimal import Decimal
 from pathlib import Path
-from grader.classroom.marks import Mark, append_marks
+from grader.classroom.marks import Kind, Mark, append_marks
 for number in range(20):
     time = f"2026-11-23T14:05:{number:02}.000+00:00"
     append_marks(Path(FOLDER) / "lee.csv", [Mark(time, WHO, WHO, "essay", Decimal(number) / 8, "x" * 5000)])
