@@ -13,9 +13,8 @@ from grader.classroom.typed_names import as_number, criterion_of, find_typed, nu
 from grader.errors import InputError
 from grader.grading.criterion import DEADLINE, TOTAL
 from grader.grading.rubric import Rubric
-from grader.text import by_name, enumerated, first_lines, printable
+from grader.text import by_name, enumerated, first_lines, printable, quoted
 
-SHEET_COLUMNS = ("criterion", "answer", "points", "comment", "text", "students")
 _MAX_MISTAKES = 20
 
 
@@ -101,6 +100,8 @@ class MarkImport(NamedTuple):
 
     def _changed(self, row: Mapping[str, str]) -> Iterator[tuple[Key, str, str]]:
         """Yield the cells of an export that a person changed; a comment stays."""
+        if "=" not in row["exported"]:
+            raise InputError(f"{quoted(row['exported'])} in the column `exported` is not what was exported")
         student = known("student", row["id"], {one.key: one for one in self.students})
         for word in row["exported"].split():
             criterion, _, old = word.rpartition("=")

@@ -18,7 +18,7 @@ from grader.classroom.mark_files import COLUMNS, SURPLUS, WITHDRAWN, append_rows
 from grader.classroom.tables import SIZE_LIMIT
 from grader.classroom.typed_names import NotCountedError, as_number, read_points
 from grader.errors import InputError
-from grader.files.reading import read_capped, read_error
+from grader.files.reading import read_capped
 from grader.grading.criterion import DEADLINE, TOTAL
 from grader.grading.keys import MAX_POINTS
 from grader.grading.rubric import Rubric
@@ -67,6 +67,15 @@ class Marks(NamedTuple):
     newest: dict[Key, Mark]
     ignored: list[str]
 
+    def add(self, key: Key, rows: Sequence[Mark]) -> None:
+        """Add all rows of a student's criterion, in the order of files; raises InputError if they have no order."""
+        newest = self.newest[key] = _newest(rows)
+        counting = _newest([mark for mark in rows if mark.kind != "comment"] or rows)
+        if counting.kind not in ("comment", "withdrawn"):
+            self.counting[key] = counting._replace(comment=newest.comment)
+        elif newest.kind == "comment":
+            self.comments[key] = newest
+
     def next_time(self, key: Key) -> str:
         """Return the time for a new mark: now, or later, so that it counts. Raises InputError if none would."""
         before, now = self.newest.get(key), datetime.now(UTC)
@@ -92,17 +101,18 @@ def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
     most, keys = maxima(rubric), dict.fromkeys(students)
     rows: dict[Key, list[Mark]] = defaultdict(list)
     marks, mistakes = Marks({}, {}, {}, []), list[str]()
-    for place, values in _rows(folder, mistakes):
+    for place, cells in _rows(folder, mistakes):
         try:
-            key = known("student", values["student"], keys), known("criterion", values["criterion"], most)
-            rows[key] += mark_in(values, key, most[key[1]], place)
+            key = known("student", cells["student"], keys), known("criterion", cells["criterion"], most)
+            for mark in mark_in(cells, key, most[key[1]], place):
+                rows[key].append(mark)
         except NotCountedError as error:
             marks.ignored.append(printable(f"{place}: {error}"))
         except InputError as error:
             mistakes.append(f"{place}: {error}")
     for key, found in rows.items():
         try:
-            _count(marks, key, found)
+            marks.add(key, found)
         except InputError as error:
             mistakes.append(str(error))
     if mistakes:
@@ -112,25 +122,16 @@ def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
 
 def _rows(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, dict[str, str]]]:
     """Yield the place and the cells of each row of the files in a folder; files that cannot be read are mistakes."""
-    for path in _files(folder.absolute()):
+    for path in sorted(folder.absolute().iterdir()) if folder.exists() else ():
         shown = printable_path(Path(folder.name, path.name))
-        try:
-            data = read_capped(path, SIZE_LIMIT, shown=shown, top=str(path.parent), advice="")
-            rows = whole_rows(data, shown)[2]
-        except InputError as error:
-            mistakes.append(str(error))
-        else:
-            found = ((line, {**dict.fromkeys(COLUMNS, ""), **values}) for line, values in rows)
-            yield from ((f"{shown}:{line}", values) for line, values in found if any(map(values.get, COLUMNS)))
-
-
-def _files(folder: Path) -> list[Path]:
-    try:
-        return sorted(path for path in folder.iterdir() if path.suffix.lower() == ".csv" and path.name[0] != ".")
-    except FileNotFoundError:
-        return []
-    except OSError as error:
-        raise read_error(error, printable_path(folder)) from None
+        if path.suffix.lower() == ".csv" and not path.name.startswith("."):
+            try:
+                data = read_capped(path, SIZE_LIMIT, shown=shown, top=str(path.parent), advice="")
+                rows = [(line, {**dict.fromkeys(COLUMNS, ""), **cells}) for line, cells in whole_rows(data, shown)[2]]
+            except InputError as error:
+                mistakes.append(str(error))
+            else:
+                yield from ((f"{shown}:{line}", cells) for line, cells in rows if any(map(cells.get, COLUMNS)))
 
 
 def maxima(rubric: Rubric) -> dict[str, Decimal]:
@@ -139,14 +140,14 @@ def maxima(rubric: Rubric) -> dict[str, Decimal]:
     return {**most, TOTAL: sum((row.points for row in rubric.criteria), Decimal(0)), DEADLINE: Decimal(0)}
 
 
-def mark_in(values: Mapping[str, str], key: Key, most: Decimal, place: str) -> list[Mark]:
+def mark_in(cells: Mapping[str, str], key: Key, most: Decimal, place: str) -> list[Mark]:
     """Return the mark in a row, none without points and comment; raises InputError, or NotCountedError."""
-    text, submission = values["points"], values["submission"]
-    if values[SURPLUS]:
-        raise InputError(f"{quoted(values[SURPLUS])} is in no column: a cell that contains a delimiter needs quotes")
+    text, submission = cells["points"], cells["submission"]
+    if cells[SURPLUS]:
+        raise InputError(f"{quoted(cells[SURPLUS])} is in no column: a cell that contains a delimiter needs quotes")
     if submission and not _DIGEST.fullmatch(submission):
         raise InputError(f"{quoted(submission)} is not the digest of a submission")
-    mark = Mark(_time(values["time"]), values["by"], *key, None, values["comment"], submission, "comment", place)
+    mark = Mark(_time(cells["time"]), cells["by"], *key, None, cells["comment"], submission, "comment", place)
     if not text:
         return [mark] if mark.comment else []
     if text == WITHDRAWN or (text.casefold() == EXCUSED and key[1] == TOTAL):
@@ -174,19 +175,6 @@ def known(noun: str, cell: str, names: Mapping[str, Any]) -> str:
     if cell not in names:
         raise NotCountedError(f"there is no {noun} {quoted(cell)}")
     return cell
-
-
-def _count(marks: Marks, key: Key, rows: Sequence[Mark]) -> None:
-    """Add the rows of a student's criterion to the marks."""
-    if not rows:
-        return
-    newest = marks.newest[key] = _newest(rows)
-    entries = [mark for mark in rows if mark.kind != "comment"]
-    counting = _newest(entries) if entries else newest
-    if counting.kind in ("comment", "withdrawn"):
-        marks.comments.update({key: newest} if newest.kind == "comment" else {})
-    else:
-        marks.counting[key] = counting._replace(comment=newest.comment)
 
 
 def _newest(rows: Sequence[Mark]) -> Mark:

@@ -17,6 +17,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from grader.classroom import mark_files
 from grader.classroom.mark_files import COLUMNS, is_open_in_libreoffice, mark_file
 from grader.classroom.marks import Kind, Mark, append_marks
 from grader.classroom.tables import protected, unprotected
@@ -218,6 +219,20 @@ def test_no_row_is_appended(start: bytes, why: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=re.escape(why)):
         appended(tmp_path / "marks", start, [Mark("", "", "ben", "essay")])
     assert (tmp_path / "marks" / "lee.csv").read_bytes() == start
+
+
+def test_a_file_that_is_replaced_meanwhile(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is written into a file that an editor has replaced since it was opened."""
+
+    def replace(handle: int) -> None:
+        (tmp_path / "new").replace(tmp_path / "marks" / "lee.csv")
+
+    (tmp_path / "new").write_text("of the editor")
+    monkeypatch.setattr(mark_files, "lock", replace)
+    with pytest.raises(InputError, match=r"another program replaces marks/lee\.csv: try again"):
+        appended(tmp_path / "marks", b"", [Mark("", "", "ben", "essay", Decimal(1))])
+    assert (tmp_path / "marks" / "lee.csv").read_text() == "of the editor"
+    assert read(tmp_path / "nothing") == ({}, {}, {}, [])
 
 
 def test_files_are_private_and_symlinks_are_not_followed(tmp_path: Path) -> None:
