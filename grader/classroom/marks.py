@@ -6,23 +6,23 @@ Different rows that have no order are refused; equal rows are one. A comment wit
 
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from datetime import MAXYEAR, UTC, datetime, timedelta
 from decimal import Decimal
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 from grader.classroom.lateness import read_time
 from grader.classroom.mark_files import COLUMNS, SURPLUS, WITHDRAWN, append_rows, whole_rows
 from grader.classroom.tables import SIZE_LIMIT
-from grader.classroom.typed_names import NotCountedError, as_number, read_points
+from grader.classroom.typed_names import NotCountedError, known, read_points
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import DEADLINE, TOTAL
 from grader.grading.keys import MAX_POINTS
 from grader.grading.rubric import Rubric
-from grader.text import enumerated, first_lines, format_points, printable, printable_path, quoted
+from grader.text import first_lines, format_points, printable, printable_path, quoted
 
 EXCUSED = "excused"  # in place of points, for TOTAL
 _DIGEST = re.compile(r"d[0-9a-f]+")
@@ -30,6 +30,7 @@ _MAX_MISTAKES = 20
 
 Kind = Literal["points", "excused", "withdrawn", "deadline", "comment"]
 Key = tuple[str, str]  # a student and a criterion
+Cells = Mapping[str, str]  # of a row, by column
 
 
 class Mark(NamedTuple):
@@ -54,6 +55,9 @@ class Mark(NamedTuple):
         """The text in the column of points."""
         points = "" if self.points is None else format_points(self.points)
         return {"excused": EXCUSED, "withdrawn": WITHDRAWN}.get(self.kind, self.deadline or points)
+
+
+Reader = Callable[[Cells, str], Iterator[Mark]]  # of the marks in the cells of a row, at a place
 
 
 class Marks(NamedTuple):
@@ -99,20 +103,30 @@ def append_marks(path: Path, marks: Iterable[Mark]) -> None:
 def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
     """Return the marks in the files of a folder; raises InputError with a line for each row that cannot be read."""
     most, keys = maxima(rubric), dict.fromkeys(students)
-    rows: dict[Key, list[Mark]] = defaultdict(list)
-    marks, mistakes = Marks({}, {}, {}, []), list[str]()
-    for place, cells in _rows(folder, mistakes):
+
+    def read(cells: Cells, place: str) -> Iterator[Mark]:
+        key = known("student", cells["student"], keys), known("criterion", cells["criterion"], most)
+        return mark_in(cells, key, most[key[1]], place)
+
+    mistakes: list[str] = []
+    return collect(_rows(folder, mistakes), read, mistakes, [])
+
+
+def collect(rows: Iterable[tuple[str, Cells]], read: Reader, mistakes: list[str], ignored: list[str]) -> Marks:
+    """Return the marks in rows, each with its place; raises InputError if there are mistakes."""
+    found: dict[Key, list[Mark]] = defaultdict(list)
+    marks = Marks({}, {}, {}, ignored)
+    for place, cells in rows:
         try:
-            key = known("student", cells["student"], keys), known("criterion", cells["criterion"], most)
-            for mark in mark_in(cells, key, most[key[1]], place):
-                rows[key].append(mark)
+            for mark in read(cells, place):
+                found[mark.student, mark.criterion].append(mark)
         except NotCountedError as error:
-            marks.ignored.append(printable(f"{place}: {error}"))
+            ignored.append(printable(f"{place}: {error}"))
         except InputError as error:
             mistakes.append(f"{place}: {error}")
-    for key, found in rows.items():
+    for key, those in found.items():
         try:
-            marks.add(key, found)
+            marks.add(key, those)
         except InputError as error:
             mistakes.append(str(error))
     if mistakes:
@@ -120,7 +134,7 @@ def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
     return marks
 
 
-def _rows(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, dict[str, str]]]:
+def _rows(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, Cells]]:
     """Yield the place and the cells of each row of the files in a folder; files that cannot be read are mistakes."""
     for path in sorted(folder.absolute().iterdir()) if folder.exists() else ():
         shown = printable_path(Path(folder.name, path.name))
@@ -140,22 +154,23 @@ def maxima(rubric: Rubric) -> dict[str, Decimal]:
     return {**most, TOTAL: sum((row.points for row in rubric.criteria), Decimal(0)), DEADLINE: Decimal(0)}
 
 
-def mark_in(cells: Mapping[str, str], key: Key, most: Decimal, place: str) -> list[Mark]:
-    """Return the mark in a row, none without points and comment; raises InputError, or NotCountedError."""
+def mark_in(cells: Cells, key: Key, most: Decimal, place: str) -> Iterator[Mark]:
+    """Yield the mark in a row, if it has points or a comment; raises InputError, or NotCountedError."""
     text, submission = cells["points"], cells["submission"]
     if cells[SURPLUS]:
         raise InputError(f"{quoted(cells[SURPLUS])} is in no column: a cell that contains a delimiter needs quotes")
     if submission and not _DIGEST.fullmatch(submission):
         raise InputError(f"{quoted(submission)} is not the digest of a submission")
     mark = Mark(_time(cells["time"]), cells["by"], *key, None, cells["comment"], submission, "comment", place)
-    if not text:
-        return [mark] if mark.comment else []
     if text == WITHDRAWN or (text.casefold() == EXCUSED and key[1] == TOTAL):
-        return [mark._replace(kind="withdrawn" if text == WITHDRAWN else "excused")]
-    if key[1] == DEADLINE:
+        yield mark._replace(kind="withdrawn" if text == WITHDRAWN else "excused")
+    elif text and key[1] == DEADLINE:
         read_time(text)
-        return [mark._replace(kind="deadline", deadline=text)]
-    return [mark._replace(kind="points", points=read_points(text, key[1], most))]
+        yield mark._replace(kind="deadline", deadline=text)
+    elif text:
+        yield mark._replace(kind="points", points=read_points(text, key[1], most))
+    elif mark.comment:
+        yield mark
 
 
 def _time(text: str) -> str:
@@ -163,18 +178,6 @@ def _time(text: str) -> str:
         if not text or ((time := datetime.fromisoformat(text)).tzinfo is not None and time.year < MAXYEAR):
             return utc_text(time) if text else ""
     raise InputError(f"{quoted(text)} is not a time: write it as 2026-11-23T14:05:09.123+00:00, or leave it empty")
-
-
-def known(noun: str, cell: str, names: Mapping[str, Any]) -> str:
-    """Return the student or criterion in a cell; raises NotCountedError, or InputError for a changed cell."""
-    if not cell:
-        raise InputError(f"the row names no {noun}")
-    if cell not in names and (changed := as_number(cell, tuple(names))):
-        meant = enumerated([*map(repr, changed)], 10, "or")
-        raise InputError(f"{noun} {cell!r} may be {meant}, changed by a spreadsheet: correct it")
-    if cell not in names:
-        raise NotCountedError(f"there is no {noun} {quoted(cell)}")
-    return cell
 
 
 def _newest(rows: Sequence[Mark]) -> Mark:

@@ -6,7 +6,7 @@ between several students: a manual mark must not go to the wrong one.
 
 import re
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from decimal import Context, Decimal
 from functools import lru_cache
 from typing import Any, TypeVar
@@ -15,7 +15,7 @@ from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 from grader.names import did_you_mean
-from grader.text import format_points, printable
+from grader.text import enumerated, format_points, printable, quoted
 
 S = TypeVar("S")  # a Student
 
@@ -55,13 +55,12 @@ def find_typed(students: Sequence[S], name: str, advice: str) -> S:
 @lru_cache(maxsize=1)  # a file of marks names many
 def _clues(students: tuple[Any, ...]) -> list[tuple[Any, set[str], set[str]]]:
     """Return each student with the ids, and the words of the name."""
-
-    def ids(one: Any) -> set[str]:
-        local_part = one.email.partition("@")[0]
-        found = (one.key, one.login, one.sis, one.canvas, one.moodle, one.email, local_part)
-        return {same_case(word) for word in (*found, *getattr(one, "aliases", ())) if word}
-
-    return [(one, ids(one), _words(one.name or one.key)) for one in students]
+    clues = []
+    for one in students:
+        words = (one.key, one.login, one.sis, one.canvas, one.moodle, one.email, one.email.partition("@")[0])
+        ids = {same_case(word) for word in (*words, *getattr(one, "aliases", ())) if word}
+        clues.append((one, ids, _words(one.name or one.key)))
+    return clues
 
 
 def _has_all(words: Iterable[str], wanted: Iterable[Sequence[str]]) -> bool:
@@ -93,6 +92,18 @@ def without_accents(word: str) -> tuple[str, ...]:
         "".join(letter for letter in unicodedata.normalize("NFKD", text) if not unicodedata.combining(letter))
         for text in written_out
     )
+
+
+def known(noun: str, cell: str, names: Mapping[str, Any]) -> str:
+    """Return the student or criterion in a cell; raises NotCountedError, or InputError for a changed cell."""
+    if not cell:
+        raise InputError(f"the row names no {noun}")
+    if cell not in names and (changed := as_number(cell, tuple(names))):
+        meant = enumerated([*map(repr, changed)], 10, "or")
+        raise InputError(f"{noun} {cell!r} may be {meant}, changed by a spreadsheet: correct it")
+    if cell not in names:
+        raise NotCountedError(f"there is no {noun} {quoted(cell)}")
+    return cell
 
 
 def as_number(cell: str, names: tuple[str, ...]) -> list[str]:

@@ -172,7 +172,7 @@ def test_a_file_that_a_spreadsheet_saved(path: Path, tmp_path: Path) -> None:
 WRITER = """
 from decimal import Decimal
 from pathlib import Path
-from grader.classroom.marks import Kind, Mark, append_marks
+from grader.classroom.marks import Mark, append_marks
 for number in range(20):
     time = f"2026-11-23T14:05:{number:02}.000+00:00"
     append_marks(Path(FOLDER) / "lee.csv", [Mark(time, WHO, WHO, "essay", Decimal(number) / 8, "x" * 5000)])
