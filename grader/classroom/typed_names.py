@@ -37,18 +37,18 @@ def find_typed(students: Sequence[S], name: str, advice: str) -> S:
 
     Raises InputError: if several students match, it lists them; else similar names; else it ends with `advice`.
     """
-    known = _clues(tuple(students))
+    everyone = _clues(tuple(students))
     word, wanted = same_case(name), _words(name)
-    found: list[S] = [one for one, ids, words in known if word in ids or (wanted and wanted <= words)]
+    found: list[S] = [one for one, ids, words in everyone if word in ids or (wanted and wanted <= words)]
     if len(found) == 1:
         return found[0]
     if found:
         raise InputError(f"{name!r} is ambiguous: it may be {_listed(found)}; use one of these ids")
-    changed = as_number(name, tuple(one.key for one, *_ in known))
+    changed = as_number(name, tuple(one.key for one, *_ in everyone))
     ways = [without_accents(word) for word in wanted]  # Muller and Mueller are similar to Müller
-    similar = [one for one, _, words in known if one.key in changed or (ways and _has_all(words, ways))]
+    similar = [one for one, _, words in everyone if one.key in changed or (ways and _has_all(words, ways))]
     guess = f"; did you mean {'one of ' * (len(similar) > 1)}{_listed(similar)}?" if similar else ""
-    some = {word for one, *_ in known for word in (one.key, one.login, one.name)}
+    some = {word for one, *_ in everyone for word in (one.key, one.login, one.name)}
     raise InputError(f"there is no student {name!r} in the gradebook{guess or did_you_mean(name, some) or advice}")
 
 
