@@ -169,6 +169,27 @@ def test_a_file_that_a_spreadsheet_saved(path: Path, tmp_path: Path) -> None:
     assert rows_in(folder) == {**original, ("ben", "picture"): new}
 
 
+HEADER = ",".join(COLUMNS)
+
+
+@pytest.mark.parametrize(
+    ("start", "row"),
+    [
+        ("", f"{HEADER}\n,Lee,ben,essay,0.75,a;b,\n"),
+        (f"{HEADER}\r\n", ",Lee,ben,essay,0.75,a;b,\r\n"),
+        (f"{HEADER}\n,,anna,essay,3,,d12", "\n,Lee,ben,essay,0.75,a;b,\n"),
+        (f'{HEADER}\n,,anna,essay,"0,5",,\n', ',Lee,ben,essay,"0,75",a;b,\n'),
+        (HEADER.replace(",", ";") + "\n", ";Lee;ben;essay;0,75;a;b;\n"),
+        (HEADER.replace(",", ";") + "\n;;anna;essay;0.5;;\n", ";Lee;ben;essay;0.75;a;b;\n"),
+        (f"note,{HEADER}\n", ",,Lee,ben,essay,0.75,a;b,\n"),
+    ],
+)
+def test_a_row_is_in_the_style_of_its_file(start: str, row: str, tmp_path: Path) -> None:
+    """Delimiter, decimal sign, line ends, order of columns; what is missing before it is supplied."""
+    after = appended(tmp_path / "marks", start.encode(), [Mark("", "Lee", "ben", "essay", Decimal("0.75"), "a;b")])
+    assert after.decode().replace('"a;b"', "a;b") == start + row
+
+
 WRITER = """
 from decimal import Decimal
 from pathlib import Path
