@@ -45,7 +45,8 @@ class MarkImport(NamedTuple):
     def _is_same(self, key: Key, mark: Mark) -> bool:
         nothing = Mark("", "", *key, kind="withdrawn")
         before = self.marks.counting.get(key) or self.marks.comments.get(key, nothing)
-        return (before.value, before.comment) == (mark.value or before.value, mark.comment)
+        is_current = mark.kind == "comment" or before.submission in ("", mark.submission)
+        return is_current and (before.value, before.comment) == (mark.value or before.value, mark.comment)
 
     def _marks(self, row: Cells, place: str) -> Iterator[Mark]:
         """Yield the marks in a row, without a time."""

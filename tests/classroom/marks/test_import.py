@@ -22,8 +22,9 @@ CLASS = (Student("anna", "Anna Ek"), Student("ben", "Ben Oh"), Student("0012"), 
 DIGESTS = {"anna": "d0a", "ben": "d0b", "-x": "d0c"}
 ANSWERS = {("essay", "da1"): ("anna", "ben"), ("essay", "dc3"): ("-x",)}
 GIVEN = {
-    "kim.csv": "time,by,student,criterion,points,comment\n"
-    "2026-11-23T14:05:09.123+00:00,Kim,anna,essay,3,good\n2026-11-23T14:05:09.123+00:00,Kim,0012,total,excused,\n",
+    "kim.csv": "time,by,student,criterion,points,comment,submission\n"
+    "2026-11-23T14:05:09.123+00:00,Kim,anna,essay,3,good,d0a\n2026-11-23T14:05:09.123+00:00,Kim,0012,total,excused,,\n"
+    "2026-11-23T14:05:09.123+00:00,Kim,ben,picture,1,,d01\n",
     "own.csv": "student,criterion,points\n-x,total,4\n",
 }
 CRITERIA = tuple(row.id for row in LAB.criteria)
