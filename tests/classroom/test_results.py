@@ -1,0 +1,85 @@
+"""The lines of results: what is written is read, whatever the end of the file; the newest line of a student counts."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from unittest.mock import patch
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.classroom.results import Graded, Results, ResultsWriter, Run
+from tests.examples import examples
+
+TEXT = st.text(st.characters(exclude_categories=("Cs",)), max_size=8)
+ENTRIES = st.dictionaries(TEXT, st.tuples(st.none() | st.sampled_from([0, 1, 2.5]), TEXT, TEXT, TEXT), max_size=2)
+GRADED = st.builds(
+    Graded, TEXT, st.integers(1, 3), st.sampled_from(["graded", "unreadable", "errored"]), TEXT, TEXT, TEXT,
+    paths=st.lists(TEXT, max_size=2).map(tuple), is_late=st.booleans(), results=ENTRIES,
+    person=st.dictionaries(st.sampled_from(["name", "canvas"]), TEXT),
+)  # fmt: skip
+pytestmark = pytest.mark.usefixtures("unsynced")
+RUN = Run(1, "2026-11-23T15:00:00.000+00:00", "1.0.0", "rubric", "context", {"ann": "3", "ben": None})
+
+
+@pytest.fixture(scope="module")
+def unsynced() -> Iterator[None]:
+    """Leave it to the system when it writes to the disk."""
+    with patch("os.fsync", bool):
+        yield
+
+
+def plain(one: Graded) -> Graded:
+    """Return a result with lists in place of tuples, as JSON has them."""
+    return one._replace(results={name: tuple(entry) for name, entry in one.results.items()})
+
+
+@given(st.lists(GRADED, max_size=6))
+@examples(30)
+def test_the_newest_line_of_each_student_is_read(tmp_path_factory: pytest.TempPathFactory, lines: list[Graded]) -> None:
+    """Results are read as they were written, in the order of the keys."""
+    file = tmp_path_factory.mktemp("results") / "results.jsonl"
+    writer = ResultsWriter(file, 0)
+    writer.append(*(one.line for one in lines))
+    writer.close()
+    newest = {one.student: one for one in lines}
+    found = Results(file)
+    assert list(map(plain, found.all())) == [newest[key] for key in sorted(newest)]
+    assert all(found.of(key) is not None for key in newest)
+    assert found.of("\x00nobody") is None
+
+
+def test_a_torn_last_line_is_ignored_and_cut(tmp_path: Path) -> None:
+    """Of every prefix of the file the whole lines count, and the next line is written behind them."""
+    lines = [Graded("ann", 1, "graded", "d1").line, Graded("ben", 1, "graded", "d2").line, RUN.line]
+    whole = b"".join(lines)
+    ends = [sum(map(len, lines[:number])) for number in range(len(lines) + 1)]
+    file = tmp_path / "results.jsonl"
+    for end in range(len(whole) + 1):
+        file.write_bytes(whole[:end])
+        found = Results(file)
+        kept = max(number for number, place in enumerate(ends) if place <= end)
+        assert found.end == ends[kept]
+        assert (len(found.students), len(found.runs)) == (min(kept, 2), int(kept == 3))
+        writer = ResultsWriter(file, found.end)
+        writer.append(Graded("cid", 1, "graded").line)
+        writer.close()
+        assert Results(file).students == [*["ann", "ben"][: min(kept, 2)], "cid"]
+
+
+def test_an_earlier_run_can_be_read(tmp_path: Path) -> None:
+    """Up to a run, later lines do not count."""
+    file = tmp_path / "results.jsonl"
+    second = RUN._replace(run=2)
+    lines = [Graded("ann", 1, "graded", "d1"), RUN, Graded("ann", 2, "graded", "d2"), second]
+    file.write_bytes(b"".join(one.line for one in lines))  # type: ignore[attr-defined]
+    first, now = Results(file, 1), Results(file)
+    assert [one.digest for one in first.all()] == ["d1"]
+    assert [one.digest for one in now.all()] == ["d2"]
+    assert (first.runs, now.runs, now.next_run) == ([RUN], [RUN, second], 3)
+
+
+def test_a_full_line_is_small() -> None:
+    """A submission with fifty criteria has less than 4 KB."""
+    results = {f"right-wheel-forward-{number}": (2.5, "passed", "", "") for number in range(50)}
+    assert len(Graded("student-12345", 1, "graded", results=results).line) < 4096

@@ -1,0 +1,77 @@
+"""`class.toml`: what is written is read; a mistake in it is one line; only an empty folder becomes a gradebook."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.classroom.folder import batch_lock, check_free, check_gradebook, make_gradebook
+from grader.classroom.settings import CLASS_FILE, ClassSettings, read_settings, settings_text
+from grader.errors import InputError
+from tests.examples import examples
+
+TEXT = st.text(st.characters(exclude_categories=("Cs",)), max_size=8)
+TEXTS = st.lists(TEXT, max_size=3).map(tuple)
+SETTINGS = st.builds(
+    ClassSettings, submissions=TEXTS, layout=TEXT, assignment=TEXT, due=TEXT, parts=TEXTS, max_size=st.integers(1, 2**40),
+    rubric=TEXT, rubric_hash=TEXT, roster_hash=TEXT, handed_out=TEXTS, arguments=st.dictionaries(TEXT, TEXT, max_size=2),
+)  # fmt: skip
+
+
+@given(SETTINGS)
+@examples(40)
+def test_what_is_written_is_read(tmp_path_factory: pytest.TempPathFactory, settings: ClassSettings) -> None:
+    """Whatever the texts are."""
+    folder = tmp_path_factory.mktemp("book")
+    (folder / CLASS_FILE).write_text(settings_text(settings), encoding="utf-8")
+    assert read_settings(folder) == settings
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("due = ", "class.toml is not TOML"),
+        ('layuot = "x"', "unknown key 'layuot'; did you mean 'layout'?"),
+        ("due = 2026-11-20", "due is a text"),
+        ('submissions = "x"', "submissions is a list of texts"),
+        ("parts = [1]", "parts is a list of texts"),
+        ("max_size = true", "max_size is a number"),
+        ("arguments = { a = 1 }", "arguments is a table of texts"),
+        (b"\xff", "class.toml is not TOML"),
+    ],
+)
+def test_a_mistake_is_one_line(text: str | bytes, why: str, tmp_path: Path) -> None:
+    """It names the file and what is expected."""
+    (tmp_path / CLASS_FILE).write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(InputError) as raised:
+        read_settings(tmp_path)
+    assert why in str(raised.value)
+    assert "\n" not in str(raised.value)
+
+
+def test_only_an_empty_folder_becomes_a_gradebook(tmp_path: Path) -> None:
+    """Others, files and gradebooks of SQLite are refused; a new one is private."""
+    with pytest.raises(InputError, match="there is no gradebook"):
+        check_gradebook(tmp_path / "book")
+    make_gradebook(tmp_path / "book")
+    assert (tmp_path / "book").stat().st_mode & 0o777 == 0o700
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "notes.txt").touch()
+    with pytest.raises(InputError, match="is no gradebook and not empty"):
+        check_free(tmp_path / "full")
+    (tmp_path / "old.db").write_bytes(b"SQLite format 3\0")
+    with pytest.raises(InputError, match="a gradebook of an earlier version"):
+        check_free(tmp_path / "old.db")
+    (tmp_path / "text").write_text("x")
+    with pytest.raises(InputError, match="a gradebook is a folder"):
+        check_gradebook(tmp_path / "text")
+
+
+def test_one_batch_at_a_time(tmp_path: Path) -> None:
+    """A second one is refused while the first runs, and not after it."""
+    with batch_lock(tmp_path):
+        with pytest.raises(InputError, match="another `grader batch`"), batch_lock(tmp_path):
+            pass
+    with batch_lock(tmp_path):
+        pass
