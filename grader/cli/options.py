@@ -23,7 +23,7 @@ _GROUPS = {
     "Marks": "comment list-comments excused undo second by missing import",
     "File of the LMS": "into strict column feedback-column any-maximum only",
     "Run": "jobs timeout force cluster fail-under watch mutants seed html port",
-    "Output": "format output save fix excel reports report-format csv feedback feedback-format pictures verbose",
+    "Output": "format output save fix sheet excel reports report-format csv feedback feedback-format pictures verbose",
 }
 _GROUP_OF = {f"--{name}": group for group, names in _GROUPS.items() for name in names.split()}
 _OTHER = "Options"
