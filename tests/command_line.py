@@ -2,13 +2,11 @@
 
 import gc
 import os
-import sqlite3
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from contextlib import AbstractContextManager, chdir, contextmanager, nullcontext
-from functools import partial
 from pathlib import Path
 from tempfile import TemporaryFile
 from threading import current_thread, main_thread
@@ -129,15 +127,6 @@ class _Pool:
     join = stop
 
 
-class _Unsynced(sqlite3.Connection):
-    """A connection that leaves it to the system when it writes to the disk, unless failures of the disk are tested."""
-
-    def execute(self, statement: str, *parameters: Any) -> sqlite3.Cursor:
-        """Execute a statement."""
-        is_sync = statement.startswith("PRAGMA synchronous")
-        return super().execute("PRAGMA synchronous = OFF" if is_sync else statement, *parameters)
-
-
 @contextmanager
 def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[IO[bytes], ...]) -> Iterator[None]:
     """Set arguments, variables and standard streams as at the start of a process, and restore them."""
@@ -148,7 +137,6 @@ def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[
         patch("grader.documents.collection.DocumentCollection._run", convert_here),
         patch("grader.classroom.run.pool.ProcessPool", _Pool),
         patch("grader.classroom.run.forks.start_server", bool),
-        patch("sqlite3.connect", partial(sqlite3.connect, factory=sqlite3.Connection if is_preloaded() else _Unsynced)),
         patch("os.fsync", os.fsync if is_preloaded() else bool),
         _redirected(0, files[0]),
         _redirected(1, files[1]),

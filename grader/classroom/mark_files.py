@@ -49,7 +49,7 @@ def _values(titles: Sequence[str], row: TableRow) -> dict[str, str]:
 
 
 def _unix(text: str) -> str:
-    return re.sub(r"\r\n?", "\n", text).strip()
+    return text.replace("\r\n", "\n").replace("\r", "\n").strip()
 
 
 def whole_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], Rows]:

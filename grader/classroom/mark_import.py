@@ -8,23 +8,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from grader.classroom.mark_files import COLUMNS, read_rows
-from grader.classroom.marks import Key, Mark, Marks, known, mark_in, maxima
-from grader.classroom.typed_names import as_number, criterion_of, find_typed, number_in
+from grader.classroom.marks import Cells, Key, Mark, Marks, collect, mark_in, maxima
+from grader.classroom.typed_names import as_number, criterion_of, find_typed, known, number_in
 from grader.errors import InputError
 from grader.grading.criterion import DEADLINE, TOTAL
 from grader.grading.rubric import Rubric
-from grader.text import by_name, enumerated, first_lines, printable
-
-SHEET_COLUMNS = ("criterion", "answer", "points", "comment", "text", "students")
-_MAX_MISTAKES = 20
-
-
-class Imported(NamedTuple):
-    """The marks to append, how many more are the same as before, and how many rows have marks."""
-
-    marks: list[Mark]
-    same: int
-    rows: int
+from grader.text import by_name, enumerated, quoted
 
 
 class MarkImport(NamedTuple):
@@ -40,31 +29,27 @@ class MarkImport(NamedTuple):
     digests: Mapping[str, str]
     answers: Mapping[tuple[str, str], Sequence[str]] = {}
 
-    def read(self, data: bytes, shown: str, by: str) -> Imported:
-        """Return the marks in a CSV file; raises InputError with a line for each wrong row."""
+    def read(self, data: bytes, shown: str, by: str) -> tuple[list[Mark], int]:
+        """Return the new marks in a CSV file, and how many more count already; raises InputError like `read_marks`."""
         _, titles, rows = read_rows(data, shown)
         has_marks = "criterion" in titles and {"student", "answer"} & {*titles} and {"points", "comment"} & {*titles}
         if not (has_marks or {"id", "exported"} <= {*titles}):
             raise InputError(f"the first line of {shown} must name the columns {enumerated(COLUMNS[2:6])}")
-        found, mistakes, used = dict[Key, Mark](), list[str](), 0
-        for line, values in rows:
-            place, marks = f"{shown}:{line}", list[Mark]()
-            try:
-                marks += self._marks({**dict.fromkeys(COLUMNS, ""), **values}, by, place)
-            except InputError as error:
-                mistakes.append(f"{place}: {error}")
-            for mark in marks:
-                first = found.setdefault((mark.student, mark.criterion), mark)
-                if first is not mark:
-                    mistakes.append(f"{place}: {mark.student} has {mark.criterion} in {first.place} as well")
-            used += bool(marks)
-        if mistakes:
-            raise InputError("\n".join(map(printable, first_lines(mistakes, _MAX_MISTAKES))))
-        new = [mark for mark in found.values() if mark.time]
-        return Imported(new, len(found) - len(new), used)
+        cells = ((f"{shown}:{line}", {**dict.fromkeys(COLUMNS, ""), **values}) for line, values in rows)
+        mistakes: list[str] = []
+        found = collect(cells, self._marks, mistakes, mistakes).newest
+        new = {key: mark for key, mark in found.items() if not self._is_same(key, mark)}
+        marks = [mark._replace(by=mark.by or by, time=self.marks.next_time(key)) for key, mark in new.items()]
+        return marks, len(found) - len(new)
 
-    def _marks(self, row: Mapping[str, str], by: str, place: str) -> Iterator[Mark]:
-        """Yield the marks in a row; those that are the same as before have no time."""
+    def _is_same(self, key: Key, mark: Mark) -> bool:
+        nothing = Mark("", "", *key, kind="withdrawn")
+        before = self.marks.counting.get(key) or self.marks.comments.get(key, nothing)
+        is_current = mark.kind == "comment" or before.submission in ("", mark.submission)
+        return is_current and (before.value, before.comment) == (mark.value or before.value, mark.comment)
+
+    def _marks(self, row: Cells, place: str) -> Iterator[Mark]:
+        """Yield the marks in a row, without a time."""
         most = maxima(self.rubric)
         for key, points, comment in self._entries(row):
             student, criterion = key
@@ -73,14 +58,11 @@ class MarkImport(NamedTuple):
                 raise InputError(f"{student} has submitted nothing that could be marked: `{TOTAL}` is a final mark")
             digest = row["submission"] or self.digests.get(student, "")
             cells = {**row, "points": points, "comment": comment, "submission": digest, "time": ""}
-            limit = most[criterion if is_final else criterion_of(self.rubric, criterion).id]
-            nothing = Mark("", "", *key, kind="withdrawn")
-            before = self.marks.counting.get(key) or self.marks.comments.get(key, nothing)
-            for mark in mark_in(cells, key, limit, place):
-                is_same = (before.value, before.comment) == (mark.value or before.value, mark.comment)
-                yield mark._replace(by=mark.by or by, time="" if is_same else self.marks.next_time(key))
+            yield from mark_in(
+                cells, key, most[criterion if is_final else criterion_of(self.rubric, criterion).id], place
+            )
 
-    def _entries(self, row: Mapping[str, str]) -> Iterator[tuple[Key, str, str]]:
+    def _entries(self, row: Cells) -> Iterator[tuple[Key, str, str]]:
         """Yield the student and criterion of each mark in a row, the points as text, and the comment."""
         if "exported" in row:
             yield from self._changed(row)
@@ -88,7 +70,7 @@ class MarkImport(NamedTuple):
             for student in self._students(row):
                 yield (student, row["criterion"]), row["points"], row["comment"]
 
-    def _students(self, row: Mapping[str, str]) -> Sequence[str]:
+    def _students(self, row: Cells) -> Sequence[str]:
         if "answer" in row:
             answer = row["criterion"], row["answer"]
             if answer not in self.answers:
@@ -99,8 +81,10 @@ class MarkImport(NamedTuple):
             return [known("student", cell, keys)]
         return [find_typed(self.students, cell, "; `grades.csv` lists all students").key]
 
-    def _changed(self, row: Mapping[str, str]) -> Iterator[tuple[Key, str, str]]:
+    def _changed(self, row: Cells) -> Iterator[tuple[Key, str, str]]:
         """Yield the cells of an export that a person changed; a comment stays."""
+        if "=" not in row["exported"]:
+            raise InputError(f"{quoted(row['exported'])} in the column `exported` is not what was exported")
         student = known("student", row["id"], {one.key: one for one in self.students})
         for word in row["exported"].split():
             criterion, _, old = word.rpartition("=")
@@ -114,7 +98,7 @@ class MarkImport(NamedTuple):
             yield (student, criterion), new, now.comment if now is not None else ""
 
 
-def exported_cell(values: Mapping[str, str]) -> str:
+def exported_cell(values: Cells) -> str:
     """Return the cell of the column `exported`: the values of criteria, as they are in their columns."""
     return " ".join(f"{criterion}={value}" for criterion, value in values.items())
 

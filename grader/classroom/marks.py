@@ -6,23 +6,23 @@ Different rows that have no order are refused; equal rows are one. A comment wit
 
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from datetime import UTC, datetime, timedelta
+from datetime import MAXYEAR, UTC, datetime, timedelta
 from decimal import Decimal
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 from grader.classroom.lateness import read_time
 from grader.classroom.mark_files import COLUMNS, SURPLUS, WITHDRAWN, append_rows, whole_rows
 from grader.classroom.tables import SIZE_LIMIT
-from grader.classroom.typed_names import NotCountedError, as_number, read_points
+from grader.classroom.typed_names import NotCountedError, known, read_points
 from grader.errors import InputError
-from grader.files.reading import read_capped, read_error
+from grader.files.reading import read_capped
 from grader.grading.criterion import DEADLINE, TOTAL
 from grader.grading.keys import MAX_POINTS
 from grader.grading.rubric import Rubric
-from grader.text import enumerated, first_lines, format_points, printable, printable_path, quoted
+from grader.text import first_lines, format_points, printable, printable_path, quoted
 
 EXCUSED = "excused"  # in place of points, for TOTAL
 _DIGEST = re.compile(r"d[0-9a-f]+")
@@ -30,6 +30,7 @@ _MAX_MISTAKES = 20
 
 Kind = Literal["points", "excused", "withdrawn", "deadline", "comment"]
 Key = tuple[str, str]  # a student and a criterion
+Cells = Mapping[str, str]  # of a row, by column
 
 
 class Mark(NamedTuple):
@@ -56,6 +57,9 @@ class Mark(NamedTuple):
         return {"excused": EXCUSED, "withdrawn": WITHDRAWN}.get(self.kind, self.deadline or points)
 
 
+Reader = Callable[[Cells, str], Iterator[Mark]]  # of the marks in the cells of a row, at a place
+
+
 class Marks(NamedTuple):
     """The marks of a class: those that count, the newest row where none counts, the newest rows of any kind.
 
@@ -67,13 +71,23 @@ class Marks(NamedTuple):
     newest: dict[Key, Mark]
     ignored: list[str]
 
+    def add(self, key: Key, rows: Sequence[Mark]) -> None:
+        """Add all rows of a student's criterion, in the order of files; raises InputError if they have no order."""
+        newest = self.newest[key] = _newest(rows)
+        counting = _newest([mark for mark in rows if mark.kind != "comment"] or rows)
+        if counting.kind not in ("comment", "withdrawn"):
+            self.counting[key] = counting._replace(comment=newest.comment)
+        elif newest.kind == "comment":
+            self.comments[key] = newest
+
     def next_time(self, key: Key) -> str:
         """Return the time for a new mark: now, or later, so that it counts. Raises InputError if none would."""
-        before = self.newest.get(key)
-        if before is not None and not before.time:
+        before, now = self.newest.get(key), datetime.now(UTC)
+        if before is None:
+            return utc_text(now)
+        if not before.time:
             raise InputError(f"{before.place} has no time, so it counts before every new mark: change that row")
-        after = [datetime.fromisoformat(before.time) + timedelta(milliseconds=1)] if before is not None else []
-        return utc_text(max([datetime.now(UTC), *after]))
+        return utc_text(max(now, datetime.fromisoformat(before.time) + timedelta(milliseconds=1)))
 
 
 def utc_text(time: datetime) -> str:
@@ -89,19 +103,30 @@ def append_marks(path: Path, marks: Iterable[Mark]) -> None:
 def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
     """Return the marks in the files of a folder; raises InputError with a line for each row that cannot be read."""
     most, keys = maxima(rubric), dict.fromkeys(students)
-    rows: dict[Key, list[Mark]] = defaultdict(list)
-    marks, mistakes = Marks({}, {}, {}, []), list[str]()
-    for place, values in _rows(folder, mistakes):
+
+    def read(cells: Cells, place: str) -> Iterator[Mark]:
+        key = known("student", cells["student"], keys), known("criterion", cells["criterion"], most)
+        return mark_in(cells, key, most[key[1]], place)
+
+    mistakes: list[str] = []
+    return collect(_rows(folder, mistakes), read, mistakes, [])
+
+
+def collect(rows: Iterable[tuple[str, Cells]], read: Reader, mistakes: list[str], ignored: list[str]) -> Marks:
+    """Return the marks in rows, each with its place; raises InputError if there are mistakes."""
+    found: dict[Key, list[Mark]] = defaultdict(list)
+    marks = Marks({}, {}, {}, ignored)
+    for place, cells in rows:
         try:
-            key = known("student", values["student"], keys), known("criterion", values["criterion"], most)
-            rows[key] += mark_in(values, key, most[key[1]], place)
+            for mark in read(cells, place):
+                found[mark.student, mark.criterion].append(mark)
         except NotCountedError as error:
-            marks.ignored.append(printable(f"{place}: {error}"))
+            ignored.append(printable(f"{place}: {error}"))
         except InputError as error:
             mistakes.append(f"{place}: {error}")
-    for key, found in rows.items():
+    for key, those in found.items():
         try:
-            _count(marks, key, found)
+            marks.add(key, those)
         except InputError as error:
             mistakes.append(str(error))
     if mistakes:
@@ -109,27 +134,18 @@ def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
     return marks
 
 
-def _rows(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, dict[str, str]]]:
+def _rows(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, Cells]]:
     """Yield the place and the cells of each row of the files in a folder; files that cannot be read are mistakes."""
-    for path in _files(folder.absolute()):
+    for path in sorted(folder.absolute().iterdir()) if folder.exists() else ():
         shown = printable_path(Path(folder.name, path.name))
-        try:
-            data = read_capped(path, SIZE_LIMIT, shown=shown, top=str(path.parent), advice="")
-            rows = whole_rows(data, shown)[2]
-        except InputError as error:
-            mistakes.append(str(error))
-        else:
-            found = ((line, {**dict.fromkeys(COLUMNS, ""), **values}) for line, values in rows)
-            yield from ((f"{shown}:{line}", values) for line, values in found if any(map(values.get, COLUMNS)))
-
-
-def _files(folder: Path) -> list[Path]:
-    try:
-        return sorted(path for path in folder.iterdir() if path.suffix.lower() == ".csv" and path.name[0] != ".")
-    except FileNotFoundError:
-        return []
-    except OSError as error:
-        raise read_error(error, printable_path(folder)) from None
+        if path.suffix.lower() == ".csv" and not path.name.startswith("."):
+            try:
+                data = read_capped(path, SIZE_LIMIT, shown=shown, top=str(path.parent), advice="")
+                rows = [(line, {**dict.fromkeys(COLUMNS, ""), **cells}) for line, cells in whole_rows(data, shown)[2]]
+            except InputError as error:
+                mistakes.append(str(error))
+            else:
+                yield from ((f"{shown}:{line}", cells) for line, cells in rows if any(map(cells.get, COLUMNS)))
 
 
 def maxima(rubric: Rubric) -> dict[str, Decimal]:
@@ -138,58 +154,36 @@ def maxima(rubric: Rubric) -> dict[str, Decimal]:
     return {**most, TOTAL: sum((row.points for row in rubric.criteria), Decimal(0)), DEADLINE: Decimal(0)}
 
 
-def mark_in(values: Mapping[str, str], key: Key, most: Decimal, place: str) -> list[Mark]:
-    """Return the mark in a row, none without points and comment; raises InputError, or NotCountedError."""
-    text, submission = values["points"], values["submission"]
-    if values[SURPLUS]:
-        raise InputError(f"{quoted(values[SURPLUS])} is in no column: a cell that contains a delimiter needs quotes")
+def mark_in(cells: Cells, key: Key, most: Decimal, place: str) -> Iterator[Mark]:
+    """Yield the mark in a row, if it has points or a comment; raises InputError, or NotCountedError."""
+    text, submission = cells["points"], cells["submission"]
+    if cells[SURPLUS]:
+        raise InputError(f"{quoted(cells[SURPLUS])} is in no column: a cell that contains a delimiter needs quotes")
     if submission and not _DIGEST.fullmatch(submission):
         raise InputError(f"{quoted(submission)} is not the digest of a submission")
-    mark = Mark(_time(values["time"]), values["by"], *key, None, values["comment"], submission, "comment", place)
-    if not text:
-        return [mark] if mark.comment else []
+    mark = Mark(_time(cells["time"]), cells["by"], *key, None, cells["comment"], submission, "comment", place)
     if text == WITHDRAWN or (text.casefold() == EXCUSED and key[1] == TOTAL):
-        return [mark._replace(kind="withdrawn" if text == WITHDRAWN else "excused")]
-    if key[1] == DEADLINE:
+        yield mark._replace(kind="withdrawn" if text == WITHDRAWN else "excused")
+    elif text and key[1] == DEADLINE:
         read_time(text)
-        return [mark._replace(kind="deadline", deadline=text)]
-    return [mark._replace(kind="points", points=read_points(text, key[1], most))]
+        yield mark._replace(kind="deadline", deadline=text)
+    elif text:
+        yield mark._replace(kind="points", points=read_points(text, key[1], most))
+    elif mark.comment:
+        yield mark
 
 
 def _time(text: str) -> str:
     with suppress(ValueError, OverflowError):
-        if not text or (time := datetime.fromisoformat(text)).tzinfo is not None:
+        if not text or ((time := datetime.fromisoformat(text)).tzinfo is not None and time.year < MAXYEAR):
             return utc_text(time) if text else ""
     raise InputError(f"{quoted(text)} is not a time: write it as 2026-11-23T14:05:09.123+00:00, or leave it empty")
 
 
-def known(noun: str, cell: str, names: Mapping[str, Any]) -> str:
-    """Return the student or criterion in a cell; raises NotCountedError, or InputError for a changed cell."""
-    if not cell:
-        raise InputError(f"the row names no {noun}")
-    if cell not in names and (changed := as_number(cell, tuple(names))):
-        meant = enumerated([*map(repr, changed)], 10, "or")
-        raise InputError(f"{noun} {cell!r} may be {meant}, changed by a spreadsheet: correct it")
-    if cell not in names:
-        raise NotCountedError(f"there is no {noun} {quoted(cell)}")
-    return cell
-
-
-def _count(marks: Marks, key: Key, rows: Sequence[Mark]) -> None:
-    """Add the rows of a student's criterion to the marks."""
-    if not rows:
-        return
-    newest = marks.newest[key] = _newest(rows)
-    entries = [mark for mark in rows if mark.kind != "comment"]
-    counting = _newest(entries) if entries else newest
-    if counting.kind in ("comment", "withdrawn"):
-        marks.comments.update({key: newest} if newest.kind == "comment" else {})
-    else:
-        marks.counting[key] = counting._replace(comment=newest.comment)
-
-
 def _newest(rows: Sequence[Mark]) -> Mark:
     """Return the newest of some rows; raises InputError if two that differ are."""
+    if len(rows) == 1:
+        return rows[0]
     time = max((not mark.time, mark.time) for mark in rows)[1]
     tied = [mark for mark in rows if mark.time == time]
     by_file = {mark.place.rpartition(":")[0] if time else mark.place: mark for mark in tied}

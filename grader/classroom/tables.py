@@ -112,10 +112,9 @@ def numbered_rows(table: Table) -> Iterator[tuple[int, TableRow]]:
     """Yield the line where each row begins, and the row, unless it is empty or says what the separator is to Excel."""
     line = 1
     for row in table.rows:
-        cells = [cell.value.strip() for cell in row.cells]
-        if any(cells) and cells != ["sep=", ""]:
+        if any(cell.raw and cell.value.strip() for cell in row.cells) and row.value(0) != "sep=":
             yield line, row
-        line += 1 + sum(len(cell.raw.splitlines()) - 1 for cell in row.cells if cell.raw)
+        line += 1 + sum(len(cell.raw.splitlines()) - 1 for cell in row.cells if cell.raw[:1] == '"')
 
 
 def _decode(data: bytes, shown: str) -> tuple[bytes, str, str]:
@@ -194,6 +193,8 @@ def protected(text: str) -> str:
 
 def unprotected(text: str) -> str:
     """Return text without what keeps a spreadsheet from running it, or from reading it as a number."""
+    if "'" not in text and text[:1] != "=":
+        return text
     return _PROTECTED.sub(r"\1\2", _AS_TEXT.sub(r"\1", text))
 
 

@@ -6,7 +6,7 @@ between several students: a manual mark must not go to the wrong one.
 
 import re
 import unicodedata
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from decimal import Context, Decimal
 from functools import lru_cache
 from typing import Any, TypeVar
@@ -15,7 +15,7 @@ from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 from grader.names import did_you_mean
-from grader.text import format_points, printable
+from grader.text import enumerated, format_points, printable, quoted
 
 S = TypeVar("S")  # a Student
 
@@ -37,31 +37,30 @@ def find_typed(students: Sequence[S], name: str, advice: str) -> S:
 
     Raises InputError: if several students match, it lists them; else similar names; else it ends with `advice`.
     """
-    known = _clues(tuple(students))
+    everyone = _clues(tuple(students))
     word, wanted = same_case(name), _words(name)
-    found: list[S] = [one for one, ids, words in known if word in ids or (wanted and wanted <= words)]
+    found: list[S] = [one for one, ids, words in everyone if word in ids or (wanted and wanted <= words)]
     if len(found) == 1:
         return found[0]
     if found:
         raise InputError(f"{name!r} is ambiguous: it may be {_listed(found)}; use one of these ids")
-    changed = as_number(name, tuple(one.key for one, *_ in known))
+    changed = as_number(name, tuple(one.key for one, *_ in everyone))
     ways = [without_accents(word) for word in wanted]  # Muller and Mueller are similar to Müller
-    similar = [one for one, _, words in known if one.key in changed or (ways and _has_all(words, ways))]
+    similar = [one for one, _, words in everyone if one.key in changed or (ways and _has_all(words, ways))]
     guess = f"; did you mean {'one of ' * (len(similar) > 1)}{_listed(similar)}?" if similar else ""
-    some = {word for one, *_ in known for word in (one.key, one.login, one.name)}
+    some = {word for one, *_ in everyone for word in (one.key, one.login, one.name)}
     raise InputError(f"there is no student {name!r} in the gradebook{guess or did_you_mean(name, some) or advice}")
 
 
 @lru_cache(maxsize=1)  # a file of marks names many
 def _clues(students: tuple[Any, ...]) -> list[tuple[Any, set[str], set[str]]]:
     """Return each student with the ids, and the words of the name."""
-
-    def ids(one: Any) -> set[str]:
-        local_part = one.email.partition("@")[0]
-        found = (one.key, one.login, one.sis, one.canvas, one.moodle, one.email, local_part)
-        return {same_case(word) for word in (*found, *getattr(one, "aliases", ())) if word}
-
-    return [(one, ids(one), _words(one.name or one.key)) for one in students]
+    clues = []
+    for one in students:
+        words = (one.key, one.login, one.sis, one.canvas, one.moodle, one.email, one.email.partition("@")[0])
+        ids = {same_case(word) for word in (*words, *getattr(one, "aliases", ())) if word}
+        clues.append((one, ids, _words(one.name or one.key)))
+    return clues
 
 
 def _has_all(words: Iterable[str], wanted: Iterable[Sequence[str]]) -> bool:
@@ -95,14 +94,29 @@ def without_accents(word: str) -> tuple[str, ...]:
     )
 
 
-@lru_cache(maxsize=4096)
-def as_number(cell: str, names: tuple[str, ...]) -> tuple[str, ...]:
+def known(noun: str, cell: str, names: Mapping[str, Any]) -> str:
+    """Return the student or criterion in a cell; raises NotCountedError, or InputError for a changed cell."""
+    if not cell:
+        raise InputError(f"the row names no {noun}")
+    if cell not in names and (changed := as_number(cell, tuple(names))):
+        meant = enumerated([*map(repr, changed)], 10, "or")
+        raise InputError(f"{noun} {cell!r} may be {meant}, changed by a spreadsheet: correct it")
+    if cell not in names:
+        raise NotCountedError(f"there is no {noun} {quoted(cell)}")
+    return cell
+
+
+def as_number(cell: str, names: tuple[str, ...]) -> list[str]:
     """Return the names that a spreadsheet may have changed into a number: 0012 into 12, 123456 into 1.2E+05."""
     if (number := number_in(cell)) is None:
-        return ()
+        return []
     rounded = Context(prec=len(number.as_tuple().digits), traps=[])
-    others = ((name, number_in(name)) for name in names if name != cell)
-    return tuple(name for name, value in others if value is not None and rounded.plus(value) == number)
+    return [name for name, value in _numbers(names) if name != cell and rounded.plus(value) == number]
+
+
+@lru_cache(maxsize=2)
+def _numbers(names: tuple[str, ...]) -> list[tuple[str, Decimal]]:
+    return [(name, number) for name in names if (number := number_in(name)) is not None]
 
 
 def number_in(text: str) -> Decimal | None:

@@ -94,7 +94,7 @@ _STUDENT = Record(
             array(TEXT),
             lambda one: [row.criterion.id for row in one.report.results if row.carried] if one.report is not None else [],
         ),
-        "marks": (TOTAL, _count),
+        "manual_marks": (TOTAL, _count),
         "marked_before": (array(TEXT), "older"),
         "paths": (array(TEXT), lambda one: list(one.graded.paths) if one.graded is not None else []),
         "submission": (TEXT, lambda one: one.graded.digest if one.graded is not None else ""),

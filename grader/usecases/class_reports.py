@@ -5,12 +5,15 @@ from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
 
-from grader.checks.outcome import Outcome
+from grader.checks.outcome import Outcome, Status
+from grader.classroom import folder as names
 from grader.classroom.grades import Class, StudentGrade
 from grader.classroom.reopening import reopened
+from grader.classroom.results import Graded
 from grader.classroom.run.pool import Processes, WorkerError, processors
 from grader.classroom.run.progress import Progress
 from grader.classroom.run.queue import Queue
+from grader.classroom.run.worker import undecided_report
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
 from grader.grading.criterion import TOTAL
 from grader.grading.grade import grade as grade_submission
@@ -18,7 +21,6 @@ from grader.grading.graded_submission import Grade, GradedSubmission
 from grader.grading.hints.hinting import hinted
 from grader.grading.report import Report, Result
 from grader.report.formats import Format, render
-from grader.submission.submission import Submission
 from grader.text import by_name, counted, counted_points, enumerated, format_points, printable, printable_path
 from grader.usecases.report_names import CLASS_PAGE, INDEX, file_names, update_index
 from grader.usecases.saves import address
@@ -33,12 +35,16 @@ _MOVED = "The submission has moved or changed since it was graded, so this repor
 
 @dataclass(frozen=True, slots=True)
 class ReportRun:
-    """The reports to write of a gradebook into a folder; `answers` is the file of the model answers."""
+    """The reports to write of a gradebook into a folder; `answers` is the file of the model answers.
+
+    `time` is that of the newest run: workers read the gradebook once for it.
+    """
 
     gradebook: Path
     folder: Path
     formats: tuple[Format, ...]
     answers: Path | None = None
+    time: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,9 +65,7 @@ def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True, feedb
     """
     report = _nothing_submitted(book, grade)
     if grade.graded is not None and grade.report is not None:
-        found = reopened(book, grade.graded)
-        report = grade.report._replace(notes=(_MOVED,)) if found is None else _graded(book, found, has_hints=has_hints)
-        report = book.with_marks(report, grade.graded)[0]
+        report = book.with_marks(_again(book, grade.graded, has_hints=has_hints), grade.graded)[0]
     marked = any(result.manual_mark for result in report.results)
     counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final_points is not None)
     is_changed = grade.has_final or grade.late.points or marked
@@ -69,7 +73,14 @@ def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True, feedb
     return report._replace(notes=notes, grade=counting if is_changed and counting.points is not None or grade.is_excused else None)
 
 
-def _graded(book: Class, submission: Submission, *, has_hints: bool) -> Report:
+def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
+    """Return the report on a submission as it was graded, with its details if it is still there."""
+    if graded.verdict != "graded":
+        status: Status = "errored" if graded.verdict == "errored" else "pending"
+        return undecided_report(book.rubric, graded.student, graded.reason, status, graded.parts)
+    submission = reopened(book, graded)
+    if submission is None:
+        return graded.report(book.rubric)._replace(notes=(_MOVED,))
     report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
     if not has_hints or book.rubric.hints == "none" or not report.has_failures:
         return report
@@ -146,11 +157,14 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -
     keys = [one.student.key for one in book if one.graded is not None or one.has_final]
     files = file_names(keys)
     earlier = update_index(run.folder, files)
-    lost = _render_all(run, files, terminal, jobs)
+    lost = _render_all(replace(run, time=book.run.time), files, terminal, jobs)
     if Format.HTML in run.formats:
         from grader.usecases.class_page import write_class_page
 
-        write_class_page(book, run.folder, {key: name for key, name in files.items() if key not in lost})
+        is_inside = run.folder == run.gradebook / names.REPORTS
+        prefix = f"{names.REPORTS}/" * is_inside
+        pages = {key: f"{prefix}{name}" for key, name in files.items() if key not in lost}
+        write_class_page(book, run.gradebook if is_inside else run.folder, pages)
     shown = printable_path(run.folder)
     terminal.warn(f"{counted(len(files) - len(lost), 'report')} written to {shown}")
     for key, why in lost.items():

@@ -6,6 +6,7 @@ from decimal import Decimal
 from pathlib import Path
 from zipfile import is_zipfile
 
+from grader.classroom import folder as names
 from grader.classroom.grade_table import export_table
 from grader.classroom.grades import Class, StudentGrade
 from grader.classroom.lms.comments import CommentItem, comment_html, comment_items
@@ -62,7 +63,7 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
     book = Class(request.gradebook)
     roots = book.settings.roots(book.folder)
     if request.target == "html":
-        folder = request.output or book.folder
+        folder = request.output or book.folder / names.REPORTS
         if request.output is not None:
             refuse_report_folder(folder, (Format.HTML,), roots)
         write_reports(ReportRun(book.folder, folder, (Format.HTML,)), terminal)

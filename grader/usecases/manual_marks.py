@@ -47,7 +47,9 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
     request.check()
     book = Class(gradebook)
     advice = f"; {printable_path(gradebook / names.GRADES)} lists all students"
-    student = find_typed([book.student(key, book.results.of(key)) for key in book.keys], request.student, advice)
+    students = [book.student(key, book.results.of(key)) for key in book.keys]
+    exact = [one for one in students if one.key == request.student]
+    student = exact[0] if exact else find_typed(students, request.student, advice)
     key, adjusted = (student.key, request.criterion), _adjusted(book, request)
     before = book.marks.counting.get(key) or book.marks.comments.get(key)
     append_marks(_file(book, request.by), [_mark(book, key, request)])

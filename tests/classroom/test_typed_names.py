@@ -1,11 +1,14 @@
 """The student whom a person types: the only one who fits, or a list of those who do."""
 
 import unicodedata
+from decimal import Decimal
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from grader.classroom.students import Student
-from grader.classroom.typed_names import find_typed
+from grader.classroom.typed_names import as_number, find_typed, number_in, read_points
 from grader.errors import InputError
 
 ASH = Student("s1", "Ash, Ann Marie", "ann.ash@example.org", "aash", canvas="101")
@@ -101,3 +104,29 @@ def test_at_most_ten_are_listed(typed: str, start: str) -> None:
         find_typed(many, typed, ADVICE)
     assert f"{start} 's00' (Kim0 Müller), 's01' (Kim1 Müller)" in str(caught.value)
     assert "'s09' (Kim9 Müller) and 3 more" in str(caught.value)
+
+
+@given(st.text() | st.decimals(-1, 5, places=4).map(str))
+def test_any_text_is_points_or_refused(text: str) -> None:
+    """Any text is refused or gives points between 0 and the maximum, with at most 4 decimals."""
+    try:
+        points = read_points(text, "essay", Decimal("4.25"))
+    except InputError:
+        number = number_in(text)
+        assert number is None or not 0 <= number <= Decimal("4.25") or number != round(number, 4)
+        return
+    assert 0 <= points <= Decimal("4.25") and points * 10_000 % 1 == 0 and not points.is_signed()
+
+
+@given(st.integers(0, 10**12), st.integers(0, 3), st.sampled_from(("{}", "{}.0", "{},00", "{:.5E}", "{:.2E}")))
+def test_ids_that_a_spreadsheet_changed(number: int, zeros: int, shown: str) -> None:
+    """A number without its leading zeros, or rounded, may be that id; the id itself, and no other number, is none."""
+    key = "0" * zeros + str(number)
+    cell = shown.format(number)
+    assert as_number(cell, ("zoe", key, str(number * 2 + 7))) == ([] if cell == key else [key])
+
+
+def test_an_id_without_its_zeros_is_suggested() -> None:
+    """It is no match."""
+    with pytest.raises(InputError, match=r"there is no student '12' in the gradebook; did you mean '0012'\?"):
+        find_typed((*CLASS, Student("0012")), "12", ADVICE)

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.command_line import ROOT, Done, run_with_input
-from tests.corpus.outputs import contents, kept, masked
+from tests.corpus.outputs import contents, is_shown, kept, masked
 from tests.corpus.results import results
 from tests.corpus.steps import STEPS, copy, remove
 
@@ -77,6 +77,8 @@ class Case:
             found["stdout"] += heading + masked(self._shown(done), here)
             found["stderr"] += masked(done.stderr.decode(), here)
         written = [path for path, content in contents(here).items() if before.get(path) != content]
+        books = {str(file.parent.relative_to(here)) for file in here.rglob("class.toml")}
+        written = [path for path in written if is_shown(path, books, self.keep)]
         for path in written:
             found[f"files/{path}"] = masked(kept(path, here / path, self.keep), here)
         return {key: text for key, text in found.items() if text or key.startswith("files/")}

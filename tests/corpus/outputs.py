@@ -16,6 +16,12 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
+def is_shown(path: str, books: Iterable[str], patterns: Iterable[str]) -> bool:
+    """Return whether a written file is shown: of a gradebook only those whose content is, and its reports."""
+    inside = next((path.removeprefix(f"{book}/") for book in books if path.startswith(f"{book}/")), "")
+    return not inside or inside.startswith("reports/") or any(Path(path).match(pattern) for pattern in patterns)
+
+
 def kept(name: str, file: Path | zipfile.Path, patterns: Iterable[str]) -> str:
     """Return the content of a file whose name matches a pattern: text, or the members of an archive."""
     if not any(Path(name).match(pattern) for pattern in patterns):

@@ -41,7 +41,6 @@ def _student(row: Mapping[str, Any]) -> str:
         f"final mark {row['final_mark']:g}" if row["final_mark"] is not None else "",
         "excused" if row["is_excused"] else "",
         f"{row['manual_marks']} manual" if row["manual_marks"] else "",
-        f"attempt {row['attempt']} after {' '.join(row['earlier'])}" if row["attempt"] > 1 else "",
     )
     who = f"{row['id']} ({row['name']})" if row["name"] not in ("", row["id"]) else row["id"]
     files = f" <- {', '.join(row['paths'])}" if row["paths"] else ""

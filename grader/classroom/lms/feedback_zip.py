@@ -9,7 +9,6 @@ submission; LATE is ignored. The student sees the file under the attachment's na
 """
 
 import re
-import unicodedata
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import PurePosixPath
@@ -43,25 +42,27 @@ def moodle_names(students: Collection[Student], report: str, numbers: Mapping[st
 
 def canvas_names(submissions: Iterable[tuple[Student, tuple[str, ...]]], report: str) -> Names:
     """Return the names for students and the paths of their files; a group that has the same files shares one."""
-    groups = defaultdict[tuple[str, ...], list[Student]](list)
+    groups = defaultdict[tuple[str, ...], list[str]](list)
+    names, without, users = dict[str, str](), dict[str, str](), defaultdict[tuple[str, ...], set[str]](set)
     for student, paths in submissions:
-        groups[paths or ("", student.key)].append(student)
-    names, without = dict[str, str](), dict[str, str]()
-    for paths, members in groups.items():
+        if paths:
+            groups[paths].append(student.key)
+            users[paths] |= {student.canvas} - {""}
+        else:
+            without[student.key] = "submitted no file in Canvas"
+    ending = PurePosixPath(report).suffix
+    for paths, keys in groups.items():
         files = [PurePosixPath(path).name for path in paths]
-        users = {member.canvas for member in members} - {""}
-        certain = [file for file in files if _is_certain(file, users)]
-        ending = PurePosixPath(report).suffix
+        certain = [file for file in files if _is_certain(file, users[paths])]
         fitting = [file for file in certain if PurePosixPath(file).suffix.lower() == ending]
         fitting = fitting or [file for file in certain if file.lower().endswith(_ARCHIVES)]
         if fitting:
-            names |= dict.fromkeys((member.key for member in members), min(fitting))
-            continue
-        why = f"Canvas would find another student, or none, by the name {files[0]!r}"
-        if certain:
+            names |= dict.fromkeys(keys, min(fitting))
+        elif certain:
             why = f"Canvas would show the report as {certain[0]!r}, which is neither an archive nor a {ending} file"
-        why = why if files[0] else "submitted no file in Canvas"
-        without |= dict.fromkeys((member.key for member in members), why)
+            without |= dict.fromkeys(keys, why)
+        else:
+            without |= dict.fromkeys(keys, f"Canvas would find another student, or none, by the name {files[0]!r}")
     return names, without
 
 
@@ -82,8 +83,8 @@ def write_feedback(reports: Mapping[str, bytes], names: Mapping[str, str], repor
 
 def _moodle_folder(student: Student, number: str) -> str:
     """Return the folder of a student, with the letters, digits and spaces of the name: an underscore ends it."""
-    name = unicodedata.normalize("NFC", student.name or student.key)
-    words = "".join(letter if letter.isalnum() or letter in "-'" else " " for letter in name).split()
+    letters = (letter if letter.isalnum() or letter in "-'" else " " for letter in student.name or student.key)
+    words = "".join(letters).split()
     return f"{' '.join(words)[:_MAX_NAME].strip() or 'Participant'}_{number}_assignfeedback_file_"
 
 

@@ -69,7 +69,7 @@ class _Filling:
     def _why_not(self, row: TableRow, grade: ClassGrade) -> str:
         """Return why a row gets no grade; empty if it gets one."""
         old = row.value(self.file.grade).casefold()
-        cells, titles = len(row.cells), len(self.file.table.titles)
+        cells, titles = len(row.cells), len(self.file.table.rows[0].cells)
         if grade.total is None and not grade.is_excused:
             return grade.why_open or "has no grade"
         if cells != titles:
@@ -110,7 +110,7 @@ def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOpt
         new = filling.row(students[row.number], grade) if grade else None if row.number in students else row
         rows += [new] if new else []
     table = replace(file.table, rows=tuple(rows))
-    if options.only:
+    if options.only and not form.is_maximum_next:
         table = table.with_columns([*{*file.roles.values(), file.grade}])
     lines = [
         f"column {file.header!r}: {filling.filled} filled in, {filling.unchanged} already the same",

@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 _GUARD = re.compile(r'="(.*)"', re.DOTALL)
-_TAG = re.compile(r"<[^>]*+>")
+_TAG = re.compile(r"<[^<>]*+>")
 
 
 class Form(NamedTuple):
@@ -47,7 +47,7 @@ CANVAS = Form(
         "first": "firstname", "section": "section", "integration": "integration id", "account": "root account",
     },
     ("name | last", "canvas", "section"),
-    re.compile(r"(?P<title>.*)\s\((?P<number>[0-9]+)\)", re.DOTALL),
+    re.compile(r"(?P<title>.*\S)\s+\((?P<number>[0-9]+)\)", re.DOTALL),
     clean=lambda text: _GUARD.sub(r"\1", text),
     points_row="Points Possible",
     excuse="EX",
@@ -85,7 +85,7 @@ BLACKBOARD = Form(
     },
     ("login | sis",),
     # Not a total, which cannot be filled: Total [Total Pts: up to 100 Score] |123457
-    re.compile(r"(?P<title>.*?) \[Total Pts: (?P<maximum>[0-9.,]+)(?: [^\]]*)?\](?: \|(?P<number>[0-9]+))?", re.DOTALL),
+    re.compile(r"(?P<title>.*?) \[Total Pts: (?P<maximum>[0-9.,]+)(?: [^][]*)?\](?: \|(?P<number>[0-9]+))?", re.DOTALL),
     test_student=r".*_previewuser\d*",
 )  # fmt: skip
 BRIGHTSPACE = Form(

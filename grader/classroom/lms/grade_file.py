@@ -123,8 +123,8 @@ def _choose(columns: Mapping[int, re.Match[str]], roles: dict[str, int], form: F
     """Return the column that is named, else the one whose title is most like the title or the id of the lab."""
     wanted = options.column.strip()
     if wanted:
-        ids = {at: (found["title"].strip(), found.groupdict().get("number")) for at, found in columns.items()}
-        ranks = {at: [wanted == found[0], wanted in ids[at]] for at, found in columns.items()}
+        parts = {at: found.groupdict() | {"maximum": ""} for at, found in columns.items()}
+        ranks = {at: [wanted == found[0], wanted in parts[at].values()] for at, found in columns.items()}
     elif form.is_maximum_next:
         ranks = {at: [at + 1 == roles.get("maximum")] for at in columns}
     else:
@@ -135,12 +135,7 @@ def _choose(columns: Mapping[int, re.Match[str]], roles: dict[str, int], form: F
         return found[0]
     listed = _list([columns[at][0] for at in found or columns])
     advice = f"choose one with --column: {listed}" if listed else f"create it in {form.lms}, and export again"
-    like = (
-        "before the maximum grade"
-        if form.is_maximum_next
-        else f"with a title like {' or '.join(map(repr, options.names))}"
-    )
-    what = repr(wanted) if wanted else like
+    what = repr(wanted) if wanted else f"for {' or '.join(map(repr, options.names))}"
     raise InputError(f"{options.shown} has {'several columns' if found else 'no column'} {what}; {advice}")
 
 

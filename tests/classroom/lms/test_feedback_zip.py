@@ -26,6 +26,12 @@ def test_names_for_canvas(case: dict[str, Any]) -> None:
     assert found == ((expected, {}) if "name" in case else ({}, expected))
 
 
+def test_a_file_name_that_is_not_utf_8() -> None:
+    """Canvas gave no such name, and a zip cannot have it."""
+    names, without = canvas_names([(Student("bob", canvas="102"), ("class/bob_102_556_ro\udcffbot.md",))], "lab.md")
+    assert (names, [*without]) == ({}, ["bob"])
+
+
 @given(st.text(max_size=90))
 def test_moodle_reads_the_participant_in_any_folder(name: str) -> None:
     """After the first underscore, with one more behind the plug-in for old versions; it is not hidden and not too long."""

@@ -11,13 +11,15 @@ from contextlib import suppress
 from decimal import Decimal
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import get_args
 
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from grader.classroom import mark_files
 from grader.classroom.mark_files import COLUMNS, is_open_in_libreoffice, mark_file
-from grader.classroom.marks import Mark, append_marks
+from grader.classroom.marks import Kind, Mark, append_marks
 from grader.classroom.tables import protected, unprotected
 from grader.errors import InputError
 from grader.grading.criterion import DEADLINE, TOTAL
@@ -44,7 +46,7 @@ def mark(draw: st.DrawFn) -> Mark:
     """Draw a mark of any kind."""
     who, given = (
         draw(st.sampled_from(STUDENTS)),
-        draw(st.sampled_from(("points", "withdrawn", "comment", "excused", "deadline"))),
+        draw(st.sampled_from(get_args(Kind))),
     )
     criterion = {"excused": TOTAL, "deadline": DEADLINE}.get(given, "essay")
     blank = Mark(draw(TIMES), draw(TEXT), who, criterion, None, draw(TEXT), draw(st.sampled_from(("", "d0a1"))), given)
@@ -120,7 +122,7 @@ def test_copying_a_file_merges(files: list[list[Mark]], is_reversed: bool) -> No
     times = [one.time for marks in files for one in marks]
     assume(len({*times}) == len(times))
     with TemporaryDirectory() as top:
-        parts = {}
+        parts: dict[tuple[str, str], Mark] = {}
         for number, marks in enumerate(files):
             appended(Path(top) / str(number), None, marks)
             parts |= {key: max(parts.get(key, one), one) for key, one in rows_in(Path(top) / str(number)).items()}
@@ -165,6 +167,27 @@ def test_a_file_that_a_spreadsheet_saved(path: Path, tmp_path: Path) -> None:
     new = Mark("2026-11-24T00:00:00.000+00:00", "Lee", "ben", "picture", Decimal("0.75"), "é; ü\n'x", "d12")
     appended(folder, None, [new])
     assert rows_in(folder) == {**original, ("ben", "picture"): new}
+
+
+HEADER = ",".join(COLUMNS)
+
+
+@pytest.mark.parametrize(
+    ("start", "row"),
+    [
+        ("", f"{HEADER}\n,Lee,ben,essay,0.75,a;b,\n"),
+        (f"{HEADER}\r\n", ",Lee,ben,essay,0.75,a;b,\r\n"),
+        (f"{HEADER}\n,,anna,essay,3,,d12", "\n,Lee,ben,essay,0.75,a;b,\n"),
+        (f'{HEADER}\n,,anna,essay,"0,5",,\n', ',Lee,ben,essay,"0,75",a;b,\n'),
+        (HEADER.replace(",", ";") + "\n", ";Lee;ben;essay;0,75;a;b;\n"),
+        (HEADER.replace(",", ";") + "\n;;anna;essay;0.5;;\n", ";Lee;ben;essay;0.75;a;b;\n"),
+        (f"note,{HEADER}\n", ",,Lee,ben,essay,0.75,a;b,\n"),
+    ],
+)
+def test_a_row_is_in_the_style_of_its_file(start: str, row: str, tmp_path: Path) -> None:
+    """Delimiter, decimal sign, line ends, order of columns; what is missing before it is supplied."""
+    after = appended(tmp_path / "marks", start.encode(), [Mark("", "Lee", "ben", "essay", Decimal("0.75"), "a;b")])
+    assert after.decode().replace('"a;b"', "a;b") == start + row
 
 
 WRITER = """
@@ -217,6 +240,20 @@ def test_no_row_is_appended(start: bytes, why: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=re.escape(why)):
         appended(tmp_path / "marks", start, [Mark("", "", "ben", "essay")])
     assert (tmp_path / "marks" / "lee.csv").read_bytes() == start
+
+
+def test_a_file_that_is_replaced_meanwhile(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is written into a file that an editor has replaced since it was opened."""
+
+    def replace(handle: int) -> None:
+        (tmp_path / "new").replace(tmp_path / "marks" / "lee.csv")
+
+    (tmp_path / "new").write_text("of the editor")
+    monkeypatch.setattr(mark_files, "lock", replace)
+    with pytest.raises(InputError, match=r"another program replaces marks/lee\.csv: try again"):
+        appended(tmp_path / "marks", b"", [Mark("", "", "ben", "essay", Decimal(1))])
+    assert (tmp_path / "marks" / "lee.csv").read_text() == "of the editor"
+    assert read(tmp_path / "nothing") == ({}, {}, {}, [])
 
 
 def test_files_are_private_and_symlinks_are_not_followed(tmp_path: Path) -> None:

@@ -1,0 +1,82 @@
+"""Marks of many students from one file: rows, review sheets, and exports that a person changed."""
+
+import tomllib
+from collections.abc import Mapping
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.classroom.mark_import import MarkImport, exported_cell
+from grader.classroom.marks import Mark, Marks, append_marks
+from grader.classroom.students import Student
+from grader.classroom.tables import write_table
+from grader.errors import InputError
+from tests.classroom.marks import LAB, folder_of, read, said
+
+CASES = tomllib.loads(Path(__file__).with_name("import.toml").read_text(encoding="utf-8"))["case"]
+CLASS = (Student("anna", "Anna Ek"), Student("ben", "Ben Oh"), Student("0012"), Student("-x"))
+DIGESTS = {"anna": "d0a", "ben": "d0b", "-x": "d0c"}
+ANSWERS = {("essay", "da1"): ("anna", "ben"), ("essay", "dc3"): ("-x",)}
+GIVEN = {
+    "kim.csv": "time,by,student,criterion,points,comment,submission\n"
+    "2026-11-23T14:05:09.123+00:00,Kim,anna,essay,3,good,d0a\n2026-11-23T14:05:09.123+00:00,Kim,0012,total,excused,,\n"
+    "2026-11-23T14:05:09.123+00:00,Kim,ben,picture,1,,d01\n",
+    "own.csv": "student,criterion,points\n-x,total,4\n",
+}
+CRITERIA = tuple(row.id for row in LAB.criteria)
+
+
+def importing(marks: Marks) -> MarkImport:
+    """Return an import into the class."""
+    return MarkImport(CLASS, LAB, marks, DIGESTS, ANSWERS)
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case["about"])
+def test_what_a_file_becomes(case: dict[str, Any], tmp_path: Path) -> None:
+    """As the table says; once the marks are appended, the same file has no new ones."""
+    folder = folder_of(tmp_path, GIVEN)
+    if "error" in case:
+        with pytest.raises(InputError) as caught:
+            importing(read(folder)).read(case["file"].encode(), "marks.csv", "Lee")
+        assert str(caught.value).splitlines() == case["error"].splitlines()
+        return
+    marks, same = importing(read(folder)).read(case["file"].encode(), "marks.csv", "Lee")
+    said_of = [f"{one.student} {one.criterion} {said(one)} {one.submission}" for one in marks]
+    assert (said_of, same) == (case["marks"], case.get("same", 0))
+    append_marks(folder / "lee.csv", marks)
+    assert importing(read(folder)).read(case["file"].encode(), "marks.csv", "Lee") == ([], len(marks) + same)
+
+
+VALUES = st.dictionaries(st.sampled_from(CRITERIA), st.sampled_from(("", "0", "0.25", "0.5")))
+
+
+@given(st.dictionaries(st.sampled_from(("anna", "ben", "-x")), VALUES), st.data())
+def test_only_changed_cells_of_an_export_are_marks(
+    values: Mapping[str, Mapping[str, str]], data: st.DataObject
+) -> None:
+    """None without a change; else the changed ones, whatever a spreadsheet does to decimals."""
+    cells = {(student, name): text for student, row in values.items() for name, text in row.items()}
+    changed = {key: "0.4" for key in cells if data.draw(st.booleans())}
+    rows = []
+    for student, row in values.items():
+        texts = [
+            changed.get((student, name), row.get(name, "")).replace(".", data.draw(st.sampled_from(",.")))
+            for name in CRITERIA
+        ]
+        rows.append([student, *texts, exported_cell({name: row.get(name, "") for name in CRITERIA}), "d0"])
+    text = write_table(["id", *CRITERIA, "exported", "submission"], rows)
+    found, _ = importing(Marks({}, {}, {}, [])).read(text.encode(), "grades.csv", "Lee")
+    assert {(one.student, one.criterion): one.value for one in found} == changed
+
+
+def test_a_new_mark_counts_though_a_clock_was_ahead(tmp_path: Path) -> None:
+    """Its time is later than that of the newest one."""
+    folder = tmp_path / "marks"
+    append_marks(folder / "kim.csv", [Mark("2999-12-31T23:59:59.999+00:00", "Kim", "anna", "essay", Decimal(1))])
+    rows = b"student,criterion,points\nanna,essay,2\n"
+    append_marks(folder / "lee.csv", importing(read(folder)).read(rows, "marks.csv", "Lee")[0])
+    assert said(read(folder).counting["anna", "essay"]) == "2 Lee"
