@@ -19,7 +19,7 @@ from grader.text import enumerated, printable_path
 
 CONFIRMED = "!"  # ends what the page sends to replace marks that it was asked about
 _MAX_COMMENTS, _MAX_NAMED = 9, 5  # of comments one key each
-_GONE = "this criterion is no longer graded for this student"
+_GONE = "this answer has changed, or its students have final marks: go to the next item"
 _CHANGED = "Not saved: this item has changed since it was shown. Look at it again."
 
 
