@@ -74,9 +74,9 @@ class Review(NamedTuple):
 
 
 @contextmanager
-def running(gradebook: Path, criterion: str = "", by: str = "Kim", *, anonymous: bool = False) -> Iterator[Review]:
+def running(gradebook: Path, criterion: str = "", by: str = "Kim", **options: Any) -> Iterator[Review]:
     """Yield a review that runs in another thread."""
-    with serving(gradebook, ReviewScope(ReviewFilter(criterion), by, anonymous)) as (server, _):
+    with serving(gradebook, ReviewScope(ReviewFilter(criterion), by, **options)) as (server, _):
         thread = Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02})
         thread.start()
         try:

@@ -1,7 +1,7 @@
 """What a person decides: the items of a class, each a criterion of the students whose answer is the same."""
 
 from collections import defaultdict
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from grader.classroom.grades import Class
@@ -83,7 +83,7 @@ class ReviewFilter(NamedTuple):
         )
 
 
-def review_items(book: Class, *, is_anonymous: bool = False) -> list[ReviewItem]:
+def review_items(book: Class, results: Iterable[Graded], *, is_anonymous: bool = False) -> list[ReviewItem]:
     """Return what needs manual grading, and what else has a mark: in the rubric's order, each criterion by student.
 
     Those without an answer are the last item of a criterion. Unreadable submissions are omitted: they need a fix, not
@@ -94,7 +94,7 @@ def review_items(book: Class, *, is_anonymous: bool = False) -> list[ReviewItem]
     counting, marked = book.marks.counting, defaultdict[str, list[str]](list)
     for key, criterion in counting:
         marked[key].append(criterion)
-    for one, answers in _answers(book):
+    for one, answers in _answers(book, results):
         if TOTAL in marked[one.student]:
             continue
         student, number = book.student(one.student, one), numbers.get(one.student)
@@ -111,10 +111,10 @@ def review_items(book: Class, *, is_anonymous: bool = False) -> list[ReviewItem]
     return sorted(items, key=lambda item: (item.criterion.position, not item.answer, item.first.order))
 
 
-def _answers(book: Class) -> Iterator[tuple[Graded, Mapping[str, str]]]:
+def _answers(book: Class, results: Iterable[Graded]) -> Iterator[tuple[Graded, Mapping[str, str]]]:
     """Yield what can be marked, and the key of each answer; several students of one submission have the same keys."""
     of_files: dict[tuple[int, tuple[str, ...]], Mapping[str, str]] = {}
-    for one in book.results.all():
+    for one in results:
         if one.verdict != "unreadable" and one.student in book.run.totals:
             yield one, of_files.setdefault((one.root, one.paths), one.answers)
 
@@ -122,7 +122,7 @@ def _answers(book: Class) -> Iterator[tuple[Graded, Mapping[str, str]]]:
 def answers_of(book: Class) -> Mapping[tuple[str, str], Sequence[str]]:
     """Return the students with each answer, by criterion and the key of the answer."""
     found: defaultdict[tuple[str, str], list[str]] = defaultdict(list)
-    for one, answers in _answers(book):
+    for one, answers in _answers(book, book.results.all()):
         for criterion, key in answers.items():
             found[criterion, key].append(one.student)
     return found

@@ -1,13 +1,14 @@
 """A review: one person goes through the items of a class. Each mark is saved immediately."""
 
 from collections import Counter, defaultdict
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
 from grader.classroom import folder as names
 from grader.classroom.grades import Class
 from grader.classroom.mark_files import is_open_in_libreoffice, mark_file
-from grader.classroom.marks import Key, Mark, append_marks, mark_in
+from grader.classroom.marks import Key, Mark, append_marks, mark_in, read_marks
 from grader.classroom.opening import file_stamp
 from grader.classroom.review_items import Member, ReviewFilter, ReviewItem, review_items
 from grader.classroom.roster import plain
@@ -48,7 +49,7 @@ class ReviewSession:
         self._kept = set[Key]()  # marked since the filter was chosen: these stay in the list
         self._comments = defaultdict[str, list[str]](list)  # of each criterion, in the order of their keys
         self._places: dict[tuple[str, str], None] = {}  # a criterion and an answer
-        self._stamps: object = None
+        self._read: tuple[object, object] = None, None  # the stamps of the files
         self.refresh()
         rubric = load_with_answers(str(folder / self.book.settings.rubric), scope.answers)
         self.models = {row.id: row for row in rubric.criteria}
@@ -67,17 +68,21 @@ class ReviewSession:
 
     def refresh(self) -> None:
         """Read the gradebook again if it has changed. Raises InputError."""
-        inputs = [self.folder / name for name in (names.RESULTS, CLASS_FILE, names.ROSTER)]
-        found = (*inputs, *(self.folder / names.RUBRIC).rglob("*.toml"), *(self.folder / names.MARKS).glob("*"))
-        stamps = [(str(path), file_stamp(str(path))) for path in found]
-        if stamps == self._stamps:
+        files = [self.folder / name for name in (names.RESULTS, CLASS_FILE, names.ROSTER)]
+        inputs = _stamps((*files, *(self.folder / names.RUBRIC).rglob("*.toml")))
+        marks = _stamps((self.folder / names.MARKS).glob("*"))
+        if (inputs, marks) == self._read:
             return
-        self.book = Class(self.folder)
-        items = review_items(self.book, is_anonymous=self.scope.anonymous)
+        if inputs != self._read[0]:
+            self.book = Class(self.folder)
+            self._results = [one._replace(work={}) for one in self.book.results.all()]
+        else:
+            self.book.marks = read_marks(self.folder / names.MARKS, self.book.keys, self.book.rubric)
+        items = review_items(self.book, self._results, is_anonymous=self.scope.anonymous)
         self.items = {(item.criterion.id, item.answer): item for item in items}
         self._places |= dict.fromkeys(self.items)
         self.places = tuple(self._places)
-        self._stamps = stamps
+        self._read = inputs, marks
 
     @property
     def left(self) -> int:
@@ -199,6 +204,10 @@ class ReviewSession:
             shown = printable_path(self.file)
             found.append(f"{shown} is open in LibreOffice: close it, because saving it there would remove new marks")
         return found
+
+
+def _stamps(files: Iterable[Path]) -> list[tuple[str, str]]:
+    return [(str(path), file_stamp(str(path))) for path in files]
 
 
 def _is_same(one: Member, new: Mark) -> bool:
