@@ -10,17 +10,17 @@ from grader.grading.criterion import TOTAL
 from grader.grading.report import Result
 from grader.text import format_points
 
-# Columns before those of the criteria. `submission` is the digest of what was graded.
+# Columns before those of the criteria; the last one, `submission`, is the digest of what was graded.
 HEADER = (
     *("id", "name", "email", "section", "status", "score", "max_score", "pending"),
-    *("late_days", "late_points", "total", "not_final_because", "submission"),
+    *("late_days", "late_points", "total", "not_final_because"),
 )
 
 
 def grade_table(book: Class, grades: Iterable[StudentGrade]) -> tuple[list[str], Iterator[list[CellValue]]]:
     """Return the header, and the rows of grades; what is not decided is empty."""
     criteria = [row.id for row in book.rubric.criteria]
-    return [*HEADER, *criteria], (_row(one, criteria) for one in grades)
+    return [*HEADER, *criteria, "submission"], (_row(one, criteria) for one in grades)
 
 
 def status_of(grade: StudentGrade) -> str:
@@ -37,7 +37,7 @@ def _row(grade: StudentGrade, criteria: Iterable[str]) -> list[CellValue]:
     if report is not None:
         numbers = [report.score, report.max_score, grade.pending, grade.late.days, grade.late.points]
     digest = grade.graded.digest if grade.graded is not None else None
-    return [*head, *numbers, grade.total, grade.why_open, digest, *points_of(grade, criteria).values()]
+    return [*head, *numbers, grade.total, grade.why_open, *points_of(grade, criteria).values(), digest]
 
 
 def points_of(grade: StudentGrade, criteria: Iterable[str]) -> dict[str, Decimal | None]:
@@ -60,6 +60,7 @@ def export_table(book: Class, grades: Iterable[StudentGrade]) -> tuple[list[str]
         for one in grades:
             points = points_of(one, criteria) | {TOTAL: one.total}
             texts = {name: "" if value is None else format_points(value) for name, value in points.items()}
-            yield [*_row(one, criteria), exported_cell(texts)]
+            *cells, digest = _row(one, criteria)
+            yield [*cells, exported_cell(texts), digest]
 
-    return [*header, "exported"], rows()
+    return [*header[:-1], "exported", "submission"], rows()

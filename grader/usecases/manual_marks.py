@@ -1,8 +1,10 @@
 """Give and withdraw marks by command: of one student, of all who submitted nothing, and of a CSV file."""
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
+from getpass import getuser
 from pathlib import Path
 
 from grader.classroom import folder as names
@@ -86,13 +88,16 @@ def import_marks(gradebook: Path, file: Path, by: str) -> str:
     from grader.classroom.review_items import answers_of
 
     reader = MarkImport(students, book.rubric, book.marks, digests, answers_of(book))
-    found = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file), by)
-    append_marks(_file(book, by), found.marks)
+    new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file), by)
+    append_marks(_file(book, by), new)
     write_grades(Class(gradebook))
-    return f"{printable_path(file)}: {len(found.marks)} recorded, {found.same} the same as before\n"
+    return f"{printable_path(file)}: {len(new)} recorded, {same} the same as before\n"
 
 
 def _file(book: Class, by: str) -> Path:
+    """Return the file of a grader, without a name that of the account: the files of two gradebooks can be merged."""
+    with suppress(OSError, KeyError):  # of an account without a name
+        by = by or getuser()
     return mark_file(book.folder / names.MARKS, by)
 
 
