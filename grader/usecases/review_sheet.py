@@ -3,7 +3,6 @@
 import os
 from pathlib import Path
 
-from grader.classroom.mark_import import SHEET_COLUMNS
 from grader.classroom.review_items import ReviewItem
 from grader.classroom.tables import write_table
 from grader.errors import InputError
@@ -14,6 +13,7 @@ from grader.usecases.review_pictures import open_item
 from grader.usecases.review_session import ReviewScope, ReviewSession
 from grader.usecases.writing import save
 
+SHEET_COLUMNS = ("criterion", "answer", "points", "comment", "text", "students")
 _PRIVATE = 0o600
 _MAX_TEXT = 30_000  # characters; a cell of Excel has at most 32,767
 

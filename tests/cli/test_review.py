@@ -1,7 +1,6 @@
 """grader review: a class by a sheet for a spreadsheet, one section, numbers in place of names, what is refused."""
 
 import csv
-import re
 from collections import Counter
 from pathlib import Path
 
@@ -75,10 +74,21 @@ def test_the_sheet_has_what_there_is_to_read(book: Path) -> None:
     assert first["text"].split("\n")[-2:] == ["The red roots.", f"{answers}, line 1"]
     assert (first["criterion"], first["students"], first["points"]) == ("essay", "u7701; u7703", "")
     assert "'=1+1" in formula["text"]
-    assert [len(re.findall("screen .*png", row["text"])) for row in pictures] == [4, 4, 4]
+    assert [row["text"].count(f"{book.parent}/class/") for row in pictures] == [2, 2, 2]
     assert [row["students"] for row in sheet_of(book, "--section", "lab b", "--criterion", "essay")] == ["u7702"]
     assert grader("mark", "u7702", "essay", "1", "--gradebook", book).returncode == 0
     assert [row["students"] for row in sheet_of(book, "--criterion", "essay")] == ["u7701; u7703"]
+
+
+def test_a_sheet_marks_those_whom_it_names(book: Path) -> None:
+    """Not those with the same answer who are in another section, or marked already; without names all of them."""
+    assert grader("mark", "u7701", "essay", "4", "--gradebook", book, "--by", "Lee").returncode == 0
+    [row] = sheet_of(book, "--section", "Lab A", "--criterion", "essay")
+    file = book.parent / "filled.csv"
+    for students, points in ((row["students"], "4"), ("", "2")):
+        file.write_text(f"criterion,answer,points,students\nessay,{row['answer']},2,{students}\n")
+        assert grader("mark", "--import", file, "--gradebook", book).returncode == 0
+        assert [mark[2] for mark in marks_in(book)] == [points, "2"]
 
 
 def test_a_sheet_is_never_overwritten(book: Path) -> None:
