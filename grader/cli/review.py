@@ -95,7 +95,7 @@ def review(
         raise InputError("--section is empty: name a section, or omit it to review all")
     scope = ReviewScope(ReviewFilter(criterion, section or ""), by, anonymous, answers)
     if sheet is not None:
-        from grader.usecases.review_sheet import write_sheet
+        from grader.usecases.review_pictures import write_sheet
 
         return write_sheet(gradebook, scope, sheet)
     from grader.usecases.review_page import review_in_browser

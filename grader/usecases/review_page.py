@@ -14,9 +14,17 @@ from grader.classroom.grades import Class
 from grader.classroom.review_items import STATES, ReviewFilter, ReviewItem
 from grader.documents.pictures import EmbeddedPicture
 from grader.errors import GraderError
-from grader.report.pages.review import Found, Place, end_page, error_page, has_report, item_page
+from grader.report.pages.review import (
+    Found,
+    Place,
+    end_page,
+    error_page,
+    files_text,
+    has_report,
+    item_page,
+    mark_text,
+)
 from grader.report.pages.student import render_html
-from grader.report.review import files_text, mark_text
 from grader.text import counted, printable_path
 from grader.usecases.class_reports import report_of
 from grader.usecases.grade_class import write_grades
@@ -99,11 +107,10 @@ class ReviewPage:
         session, name = self.session, item.criterion.id
         result, pictures = self._open(session.position).result()
         paths = files_text(item, result, session.root_of(item))
-        grade = session.book.grade(item.first.student.key) if len(item.members) == 1 else None
-        found = Found(result, pictures, paths, grade, session.comments(name))
-        return _html(item_page(item, session.models[name], found, self._place(is_own=session.is_own(item))))
+        found = Found(result, pictures, paths, session.comments(name))
+        return _html(item_page(item, session.models[name], found, self._place()))
 
-    def _place(self, *, is_own: bool = False) -> Place:
+    def _place(self) -> Place:
         session, listed = self.session, self.session.listed
         values = (
             {"": "all questions", **{name: name for name, _ in session.items}},
@@ -114,7 +121,7 @@ class ReviewPage:
         members = (one.student for item in session.items.values() for one in item.members)
         students = sorted({(one.key, one.name) for one in members}) if not session.scope.anonymous else []
         number = bisect(listed, session.position)
-        return Place(number, len(listed), self._address(session.position), is_own, filters, students)
+        return Place(number, len(listed), self._address(session.position), filters, students)
 
     def _report(self, item: ReviewItem) -> Response:
         """Return the student's page, without model answers."""

@@ -1,20 +1,34 @@
-"""Read the submission of an item again: what was found for its criterion, and the pictures that belong to it."""
+"""Read the submission of an item again: what was found for its criterion, its pictures, and a sheet of open items.
 
+A person fills in the sheet, a CSV file, and `grader mark --import` records it.
+"""
+
+import os
 from functools import lru_cache
 from itertools import starmap
+from pathlib import Path
 from typing import NamedTuple
 
 from grader.checks.outcome import Outcome
 from grader.classroom.grades import Class
 from grader.classroom.reopening import reopened
 from grader.classroom.review_items import ReviewItem
+from grader.classroom.tables import write_table
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import InputError
 from grader.grading.grade import grade
 from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.report import Report, Result
+from grader.report.details import answer_lines
+from grader.report.pages.review import files_text, message_text, together_text, who
 from grader.submission.submission import Submission
-from grader.text import shell_quoted
+from grader.text import counted, cut, printable, printable_path, shell_quoted
+from grader.usecases.review_session import ReviewScope, ReviewSession
+from grader.usecases.writing import save
+
+SHEET_COLUMNS = ("criterion", "answer", "points", "comment", "text", "students")
+_PRIVATE = 0o600
+_MAX_TEXT = 30_000  # characters; a cell of Excel has at most 32,767
 
 
 class OpenedItem(NamedTuple):
@@ -52,3 +66,34 @@ def _anonymous(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPictur
     if isinstance(found, EmbeddedPicture):
         return found._replace(where=f"picture {number}")
     return NotShown(f"file {number}", found.reason.replace(found.where, f"file {number}"))
+
+
+def write_sheet(gradebook: Path, scope: ReviewScope, file: Path) -> str:
+    """Write the items without a mark into a new file, and return what to do with it. Raises InputError."""
+    session = ReviewSession(gradebook, scope)
+    if os.path.lexists(file):
+        raise InputError(f"{printable_path(file)} exists, perhaps with marks in it: name another file for --sheet")
+    items = [session.item_at(position) for position in session.listed]
+    by_student = sorted(range(len(items)), key=lambda at: items[at].first.order)  # a submission is read once
+    texts = {at: _text(session, items[at]) for at in by_student}
+    rows = ((one.criterion.id, one.answer, "", "", texts[at], _students(one)) for at, one in enumerate(items))
+    save(file, write_table(SHEET_COLUMNS, rows), session.book.settings.roots(gradebook), _PRIVATE)
+    command = f"grader mark --import {shell_quoted(file)} --gradebook {shell_quoted(gradebook)}"
+    return f"{counted(len(items), 'item')} written for {session.left} marks; fill in the points, then: {command}\n"
+
+
+def _students(item: ReviewItem) -> str:
+    return "; ".join(one.student.key if one.number is None else who(one) for one in item.members)
+
+
+def _text(session: ReviewSession, item: ReviewItem) -> str:
+    """Return the answer, else what was found, and the files, which may show more."""
+    if item.is_empty_group:
+        return together_text(item)
+    try:
+        result = open_item(session.book, item).result
+    except InputError as error:
+        return f"Not shown: {error}"
+    lines = [*filter(str.strip, answer_lines(result.outcome))] or [message_text(item, result)]
+    files = files_text(item, result, session.root_of(item))
+    return cut("\n".join(map(printable, [*lines, *files])), _MAX_TEXT)

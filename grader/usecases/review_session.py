@@ -140,11 +140,6 @@ class ReviewSession:
             raise InputError(f"nothing of {name!r} is shown: choose other items above")
         self.position = min(found)[2]
 
-    def is_own(self, item: ReviewItem) -> bool:
-        """Return whether this review has given the first mark of an item."""
-        own = self.own.get((item.first.student.key, item.criterion.id))
-        return own is not None and item.first.mark is not None and item.first.mark.time == own.time
-
     def comments(self, criterion: str) -> list[str]:
         """Return earlier comments on a criterion. A comment keeps its position during the review, which is its key."""
         known, choices = self._comments[criterion], self.models[criterion].choices

@@ -1,26 +1,30 @@
-"""The pages of a review in the browser: one item, the end of the review, an item that cannot be shown."""
+"""The pages of a review in the browser: one item in words and pictures, the end of the review, a message."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from datetime import datetime
 from decimal import Decimal
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from grader import __version__
-from grader.classroom.grades import StudentGrade
-from grader.classroom.review_items import UNMARKED, ReviewItem
+from grader.checks.manual import answered
+from grader.classroom.lateness import time_text
+from grader.classroom.marks import Mark
+from grader.classroom.review_items import UNMARKED, Member, ReviewItem
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.grading.criterion import Criterion
+from grader.grading.pictures import evidence_files
 from grader.grading.report import Result
-from grader.report.details import answer_lines, model_lines
+from grader.report.details import answer_lines, counts_lines, model_lines
 from grader.report.pages.shell import Assets, render_page
-from grader.report.review import marked_text, message_text, together_text, who
-from grader.text import counted, counted_points, format_points, shell_quoted
+from grader.text import counted, counted_points, format_points, named, printable, shell_quoted
 
 _SOURCES = "img-src 'self'; frame-src 'self'; connect-src 'self'"
 _DECIMALS = Decimal("0.0001")
 
 
 class Place(NamedTuple):
-    """The number of an item among those that are shown, from 1, and its address; whether this review has marked it.
+    """The number of an item among those that are shown, from 1, and its address.
 
     `filters` are the lists to filter by: the name of each, its label, its values with their words, and the value that
     is chosen. `students` are the keys and names to find one by.
@@ -29,42 +33,39 @@ class Place(NamedTuple):
     number: int
     total: int
     address: str
-    is_own: bool
     filters: Sequence[tuple[str, str, Mapping[str, str], str]] = ()
     students: Sequence[tuple[str, str]] = ()
 
 
 class Found(NamedTuple):
-    """What the page shows besides the item: the check's result, pictures, paths, the grade so far, earlier comments."""
+    """What the page shows besides an item: the check's result, pictures, paths of files, earlier comments."""
 
     result: Result
     pictures: Sequence[EmbeddedPicture | NotShown] = ()
     paths: Sequence[str] = ()
-    grade: StudentGrade | None = None
     comments: Sequence[str] = ()
 
 
 def item_page(item: ReviewItem, criterion: Criterion, found: Found, place: Place) -> str:
     """Return the page of an item. `criterion` has the model answer; pictures are at ADDRESS/picture/1 and so on."""
-    mark, result, count = item.first.mark, found.result, len(item.members)
-    together = f"{count} students" if count > 1 else who(item.first)
+    mark, members = item.first.mark, [who(one) for one in item.members]
+    is_alone = len(members) == 1
+    together = members[0] if is_alone else f"{len(members)} students"
     values = {
         "title": f"{place.number} of {place.total}: {together}, {criterion.title}",
         "place": place,
         "who": together,
-        "first": who(item.first),
+        "first": members[0],
         "together": together_text(item),
-        "members": [who(one) for one in item.members] if count > 1 else [],
+        "members": [] if is_alone else members,
         "criterion": criterion,
-        "points": counted_points(criterion.points),
         "maximum": format_points(criterion.points),
-        "score": _grade(found.grade) if found.grade is not None else "",
-        "message": message_text(item, result),
-        "answer": answer_lines(result.outcome),
+        "message": message_text(item, found.result),
+        "answer": answer_lines(found.result.outcome),
         "model": model_lines(criterion),
         "places": found.paths,
         "pictures": [*_pictures(found.pictures, place.address)],
-        "not_shown": [(one.where, one.reason) for one in found.pictures if isinstance(one, NotShown)],
+        "not_shown": [one for one in found.pictures if isinstance(one, NotShown)],
         "report": f"{place.address}/report" if has_report(item) else "",
         "marked": marked_text(item),
         "buttons": _buttons(criterion),
@@ -74,7 +75,7 @@ def item_page(item: ReviewItem, criterion: Criterion, found: Found, place: Place
     data = {
         "shown": item.view,
         "item": item.stamp,
-        "points": format_points(mark.points) if mark is not None and mark.points is not None else "",
+        "points": mark.value if mark is not None else "",
         "comment": mark.comment if mark is not None else "",
         "comments": [*found.comments],
         "choices": [[text, float(points)] for text, points in criterion.choices.items()],
@@ -86,14 +87,6 @@ def item_page(item: ReviewItem, criterion: Criterion, found: Found, place: Place
 def has_report(item: ReviewItem) -> bool:
     """Return whether the student's page may be shown: it has the name."""
     return item.first.number is None and not item.is_empty_group
-
-
-def _grade(grade: StudentGrade) -> str:
-    """Return the points that a student has so far, and whether that is after the late penalty."""
-    if grade.total is None or grade.report is None:
-        return ""
-    late = " after the late penalty" if grade.late.points else ""
-    return f"{format_points(grade.total)} of {format_points(grade.report.max_score)} points so far{late}"
 
 
 def end_page(marked: int, left: int, place: Place, gradebook: str) -> str:
@@ -133,3 +126,72 @@ def _buttons(criterion: Criterion) -> list[tuple[str, str]]:
     half = criterion.points / 2
     named = {Decimal(0): "none", half: "half", criterion.points: "all"}
     return [(format_points(value), name) for value, name in named.items() if value == value.quantize(_DECIMALS)]
+
+
+def who(one: Member) -> str:
+    """Return the name and key of the student, or the number of an anonymous one; printable."""
+    return f"submission {one.number}" if one.number is not None else printable(named(one.student.key, one.student.name))
+
+
+def together_text(item: ReviewItem) -> str:
+    """Return why one mark serves the students of an item."""
+    if not item.answer:
+        return "No answer" if item.criterion.check.function is answered else "No evidence"
+    is_team = len({(one.graded.root, one.graded.paths) for one in item.members}) == 1
+    return "The same files" if is_team else "The same answer"
+
+
+def message_text(item: ReviewItem, result: Result) -> str:
+    """Return what was found; without the names of files, which students choose, if the student is anonymous."""
+    outcome, files = result.outcome, evidence_files(result)
+    if item.is_empty_group:
+        return ""
+    if item.first.number is None or outcome.status != "pending":
+        return printable(outcome.message if item.first.number is None else f"the check: {outcome.status}")
+    found = counted(len(files), "file") if files else "an answer" if isinstance(outcome.measured, str) else "nothing"
+    question = item.criterion.arguments.get("question", "")
+    return printable(f"{question} {outcome.problem or f'{found} to grade'}".strip())
+
+
+def marked_text(item: ReviewItem) -> str:
+    """Return the mark or comment that counts, and what is special about it; empty without one."""
+    mark = item.first.mark
+    if mark is None:
+        return ""
+    notes = ["partial points"] if mark.points is not None and 0 < mark.points < item.criterion.points else []
+    notes += ["before the submission changed"] if item.first.state == "older" else []
+    return f"{mark_text(mark)} ({', '.join(notes)})" if notes else mark_text(mark)
+
+
+def mark_text(mark: Mark) -> str:
+    """Return a mark in one printable line: points, name, time, comment."""
+    points = counted_points(mark.points) if mark.points is not None else mark.kind
+    time = f"at {time_text(datetime.fromisoformat(mark.time))}" if mark.time else f"in {mark.place}"
+    words = f"{points} by {mark.by or 'an unnamed person'} {time}"
+    comment = " ".join(mark.comment.split())
+    return printable(f"{words}: {comment}" if comment else words)
+
+
+def files_text(item: ReviewItem, result: Result, root: Path) -> list[str]:
+    """Return the files that a criterion is about, else the submission, printable; nothing of an anonymous student.
+
+    `root` is the class folder that the submission is in.
+    """
+    location = result.outcome.location
+    if item.first.number is not None or item.is_empty_group:
+        return []
+    found = [_where(item, path, root) for path in evidence_files(result)]
+    if location is not None:
+        line = f", line {location.line}" if counts_lines(location) else ""
+        found.append(f"{_where(item, location.path, root)}{line}")
+    return [printable(place) for place in found or [", ".join(str(root / path) for path in item.first.graded.paths)]]
+
+
+def _where(item: ReviewItem, path: str, root: Path) -> str:
+    """Return where a file of the submission is on this machine."""
+    paths, names = item.first.graded.paths, item.first.graded.names
+    if len(paths) == 1 and paths[0].rpartition("/")[2] != path:  # not a single document
+        return str(root / paths[0] / path)
+    files = dict(zip(names or [name.rpartition("/")[2] for name in paths], paths, strict=True))
+    file = next((name for name in files if path == name or path.startswith(f"{name}/")), path)
+    return str(root / (files.get(file, file) + path.removeprefix(file)))
