@@ -29,11 +29,6 @@ class Member(NamedTuple):
             return UNMARKED
         return "marked" if self.mark.submission in ("", self.graded.digest) else "older"
 
-    @property
-    def order(self) -> tuple[int, str]:
-        """What students are sorted by: it says nothing about the name of an anonymous one."""
-        return self.number or 0, self.student.key
-
 
 class ReviewItem(NamedTuple):
     """A criterion of the students whose answers are equal: one mark serves all.
@@ -83,6 +78,11 @@ class ReviewFilter(NamedTuple):
         )
 
 
+def order(one: Member) -> tuple[int, str]:
+    """Return what students are sorted by: it says nothing about the name of an anonymous one."""
+    return one.number or 0, one.student.key
+
+
 def review_items(book: Class, results: Iterable[Graded], *, is_anonymous: bool = False) -> list[ReviewItem]:
     """Return what needs manual grading, and what else has a mark: in the rubric's order, each criterion by student.
 
@@ -104,11 +104,11 @@ def review_items(book: Class, results: Iterable[Graded], *, is_anonymous: bool =
             groups[name, answer].append(Member(student, one, mark, number))
     rows = {row.id: row for row in book.rubric.criteria if row.adjustment is None}
     items = [
-        ReviewItem(rows[name], answer, tuple(sorted(members, key=lambda one: one.order)))
+        ReviewItem(rows[name], answer, tuple(sorted(members, key=order)))
         for (name, answer), members in groups.items()
         if name in rows
     ]
-    return sorted(items, key=lambda item: (item.criterion.position, not item.answer, item.first.order))
+    return sorted(items, key=lambda item: (item.criterion.position, not item.answer, order(item.first)))
 
 
 def _answers(book: Class, results: Iterable[Graded]) -> Iterator[tuple[Graded, Mapping[str, str]]]:

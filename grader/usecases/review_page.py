@@ -1,12 +1,14 @@
 """Grade what needs manual grading on a page in the browser, item by item, which a server on this machine serves."""
 
 import json
+import re
 from bisect import bisect
 from collections.abc import Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from functools import lru_cache
 from http import HTTPStatus
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +17,10 @@ from grader.classroom.review_items import STATES, ReviewFilter, ReviewItem
 from grader.documents.pictures import EmbeddedPicture
 from grader.errors import GraderError
 from grader.report.pages.review import (
-    Found,
+    OpenedItem,
     Place,
     end_page,
     error_page,
-    files_text,
     has_report,
     item_page,
     mark_text,
@@ -29,7 +30,7 @@ from grader.text import counted, printable_path
 from grader.usecases.class_reports import report_of
 from grader.usecases.grade_class import write_grades
 from grader.usecases.local_server import SANDBOX, LocalServer, Request, Response
-from grader.usecases.review_pictures import OpenedItem, open_item
+from grader.usecases.review_pictures import open_item
 from grader.usecases.review_session import CONFIRMED, EVERYTHING, ReviewScope, ReviewSession
 from grader.usecases.terminal import Terminal
 
@@ -39,13 +40,6 @@ _PAGE_POLICY = "frame-ancestors 'none'"  # the page itself contains the rest
 _REPORT_POLICY = "sandbox allow-scripts; frame-ancestors 'self'"
 _PDF_POLICY = "default-src 'none'; frame-ancestors 'self'"
 _NO_PAGE = Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
-# What the page sends besides `do`, with the type of each value.
-_ACTIONS: Mapping[str, Mapping[str, type]] = {
-    "mark": {"points": str, "comment": str, "shown": str, "item": str},
-    "filter": {"criterion": str, "section": str, "state": str},
-    "find": {"student": str},
-    **{name: {} for name in ("next", "back", "again")},
-}
 
 
 class ReviewPage:
@@ -93,22 +87,26 @@ class ReviewPage:
                 return _html(end_page(given, session.left, self._place(), printable_path(session.folder)))
             case (number, *rest) if (position := self._position(number)) is not None:
                 session.position = position
-                item = session.item_at(position)
-                match rest:
-                    case []:
-                        return self._item(item)
-                    case ["picture", which]:
-                        return self._picture(which)
-                    case ["report"] if has_report(item):
-                        return self._report(item)
+                return self._of_item(session.item_at(position), rest)
         return _NO_PAGE
 
-    def _item(self, item: ReviewItem) -> Response:
-        session, name = self.session, item.criterion.id
-        result, pictures = self._open(session.position).result()
-        paths = files_text(item, result, session.root_of(item))
-        found = Found(result, pictures, paths, session.comments(name))
-        return _html(item_page(item, session.models[name], found, self._place()))
+    def _of_item(self, item: ReviewItem, rest: list[str]) -> Response:
+        """Return the page of the current item, one of its pictures, or the student's page without model answers."""
+        session, book, opened = self.session, self.session.book, self._open(self.session.position)
+        match rest:
+            case []:
+                name = item.criterion.id
+                page = item_page(item, opened.result(), session.models[name], session.comments(name), self._place())
+                return _html(page)
+            case ["picture", which]:
+                found = dict(zip(map(str, count(1)), opened.result().pictures, strict=False)).get(which)
+                if isinstance(found, EmbeddedPicture):
+                    return Response(found.data, found.kind.media_type, policy=SANDBOX if found.height else _PDF_POLICY)
+            case ["report"] if has_report(item):
+                grade = book.grade(item.first.student.key)
+                page = self._reader.submit(lambda: render_html(report_of(book, grade))).result()
+                return _html(page, policy=_REPORT_POLICY)
+        return _NO_PAGE
 
     def _place(self) -> Place:
         session, listed = self.session, self.session.listed
@@ -123,49 +121,35 @@ class ReviewPage:
         number = bisect(listed, session.position)
         return Place(number, len(listed), self._address(session.position), filters, students)
 
-    def _report(self, item: ReviewItem) -> Response:
-        """Return the student's page, without model answers."""
-        book = self.session.book
-        page = self._reader.submit(lambda: render_html(report_of(book, book.grade(item.first.student.key)))).result()
-        return Response(page.encode("utf-8", "backslashreplace"), _HTML, policy=_REPORT_POLICY)
-
-    def _picture(self, which: str) -> Response:
-        pictures = dict(enumerate(self._open(self.session.position).result().pictures, 1))
-        found = pictures.get(int(which) if _is_number(which) else 0)
-        if not isinstance(found, EmbeddedPicture):
-            return _NO_PAGE
-        return Response(found.data, found.kind.media_type, policy=SANDBOX if found.height else _PDF_POLICY)
-
     def _act(self, request: Request) -> Response:
         """Execute an action of the page."""
-        session, sent = self.session, _action(request.body or b"")
-        position = self._position(request.path[0]) if len(request.path) == 1 else None
-        if request.path == ("end",):
-            position = len(session.places)
-        if sent is None or position is None:
-            return _json({"error": "this request is not from the page"}, HTTPStatus.BAD_REQUEST)
-        session.position = position
-        match sent["do"]:
-            case "mark":
-                return self._mark(sent)
-            case "find":
-                session.find(sent["student"].strip())
-            case "filter":
-                session.show_only(ReviewFilter(*(sent[name] for name in ReviewFilter._fields)))
-            case "again":
+        session, position = self.session, self._position(request.path[0]) if len(request.path) == 1 else None
+        position = len(session.places) if request.path == ("end",) else position
+        session.position = session.position if position is None else position
+        match _read(request.body or b"") if position is not None else None:
+            case {"do": "mark", "points": str(points), "comment": str(comment), "item": str(item), "shown": str(shown)}:
+                return self._mark(points, comment.strip(), item, shown)
+            case {"do": "filter", "criterion": str(criterion), "section": str(section), "state": str(state)} if (
+                state in STATES
+            ):
+                session.show_only(ReviewFilter(criterion, section, state))
+            case {"do": "find", "student": str(student)}:
+                session.find(student.strip())
+            case {"do": "again"}:
                 session.show_only(session.filter)
-            case "back":
+            case {"do": "back"}:
                 session.back()
-            case "next":
+            case {"do": "next"}:
                 session.position = session.following(session.position)
+            case _:
+                return _json({"error": "this request is not from the page"}, HTTPStatus.BAD_REQUEST)
         return _json({"go": self._address(session.position)})
 
-    def _mark(self, sent: Mapping[str, str]) -> Response:
+    def _mark(self, points: str, comment: str, item: str, shown: str) -> Response:
         """Save a mark, or return those of others that it would replace."""
         session = self.session
         self._open(session.position).result()  # what has moved or changed cannot be marked
-        replaced = session.mark(sent["points"], sent["comment"].strip(), sent["item"], sent["shown"])
-        if replaced:
+        if replaced := session.mark(points, comment, item, shown):
             more = f" (and {counted(len(replaced) - 1, 'more mark')})" if len(replaced) > 1 else ""
             view = session.item_at(session.position).view
             return _json({"newer": mark_text(replaced[0]) + more, "shown": view + CONFIRMED})
@@ -176,31 +160,22 @@ class ReviewPage:
         return str(position + 1) if position < len(self.session.places) else "end"
 
     def _position(self, number: str) -> int | None:
-        inside = _is_number(number) and 1 <= int(number) <= len(self.session.places)
-        return int(number) - 1 if inside else None
+        is_item = re.fullmatch("[1-9][0-9]{0,7}", number) and int(number) <= len(self.session.places)
+        return int(number) - 1 if is_item else None
 
 
-def _action(body: bytes) -> dict[str, Any] | None:
-    """Return the action that the page has sent, or None if it is malformed."""
+def _read(body: bytes) -> Any:
     try:
-        sent = json.loads(body)
+        return json.loads(body)
     except (ValueError, RecursionError):
         return None
-    wanted = _ACTIONS.get(str(sent.get("do"))) if isinstance(sent, dict) else None
-    if wanted is None or not all(type(sent.get(name)) is kind for name, kind in wanted.items()):
-        return None
-    return sent if "state" not in wanted or sent["state"] in STATES else None
 
 
-def _is_number(text: str) -> bool:
-    return text.isascii() and text.isdigit() and len(text) < 9
+def _html(page: str, status: HTTPStatus = HTTPStatus.OK, policy: str = _PAGE_POLICY) -> Response:
+    return Response(page.encode("utf-8", "backslashreplace"), _HTML, status, policy=policy)
 
 
-def _html(page: str, status: HTTPStatus = HTTPStatus.OK) -> Response:
-    return Response(page.encode("utf-8", "backslashreplace"), _HTML, status, policy=_PAGE_POLICY)
-
-
-def _json(answer: Mapping[str, Any], status: HTTPStatus = HTTPStatus.OK) -> Response:
+def _json(answer: Mapping[str, str], status: HTTPStatus = HTTPStatus.OK) -> Response:
     return Response(json.dumps(answer).encode(), _JSON, status)
 
 

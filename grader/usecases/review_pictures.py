@@ -7,12 +7,11 @@ import os
 from functools import lru_cache
 from itertools import starmap
 from pathlib import Path
-from typing import NamedTuple
 
 from grader.checks.outcome import Outcome
 from grader.classroom.grades import Class
 from grader.classroom.reopening import reopened
-from grader.classroom.review_items import ReviewItem
+from grader.classroom.review_items import ReviewItem, order
 from grader.classroom.tables import write_table
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import InputError
@@ -20,7 +19,7 @@ from grader.grading.grade import grade
 from grader.grading.pictures import may_have_pictures, pictures_of
 from grader.grading.report import Report, Result
 from grader.report.details import answer_lines
-from grader.report.pages.review import files_text, message_text, together_text, who
+from grader.report.pages.review import NO_ANSWER, OpenedItem, files_text, message_text, who
 from grader.submission.submission import Submission
 from grader.text import counted, cut, printable, printable_path, shell_quoted
 from grader.usecases.review_session import ReviewScope, ReviewSession
@@ -29,13 +28,6 @@ from grader.usecases.writing import save
 SHEET_COLUMNS = ("criterion", "answer", "points", "comment", "text", "students")
 _PRIVATE = 0o600
 _MAX_TEXT = 30_000  # characters; a cell of Excel has at most 32,767
-
-
-class OpenedItem(NamedTuple):
-    """The result as the check finds it, and the pictures, with files that are not shown."""
-
-    result: Result
-    pictures: tuple[EmbeddedPicture | NotShown, ...] = ()
 
 
 @lru_cache(maxsize=1)
@@ -58,7 +50,10 @@ def open_item(book: Class, item: ReviewItem) -> OpenedItem:
     if result is None:
         raise InputError("this criterion is no longer graded for this student")
     found = pictures_of(result, submission) if may_have_pictures(result) else ()
-    return OpenedItem(result, found if item.first.number is None else tuple(starmap(_anonymous, enumerate(found, 1))))
+    if item.first.number is not None:
+        return OpenedItem(result, [*starmap(_anonymous, enumerate(found, 1))])
+    root = book.settings.roots(book.folder)[item.first.graded.root].resolve()
+    return OpenedItem(result, found, files_text(item, result, root))
 
 
 def _anonymous(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPicture | NotShown:
@@ -74,8 +69,8 @@ def write_sheet(gradebook: Path, scope: ReviewScope, file: Path) -> str:
     if os.path.lexists(file):
         raise InputError(f"{printable_path(file)} exists, perhaps with marks in it: name another file for --sheet")
     items = [session.item_at(position) for position in session.listed]
-    by_student = sorted(range(len(items)), key=lambda at: items[at].first.order)  # a submission is read once
-    texts = {at: _text(session, items[at]) for at in by_student}
+    by_student = sorted(range(len(items)), key=lambda at: order(items[at].first))  # a submission is read once
+    texts = {at: _text(session.book, items[at]) for at in by_student}
     rows = ((one.criterion.id, one.answer, "", "", texts[at], _students(one)) for at, one in enumerate(items))
     save(file, write_table(SHEET_COLUMNS, rows), session.book.settings.roots(gradebook), _PRIVATE)
     command = f"grader mark --import {shell_quoted(file)} --gradebook {shell_quoted(gradebook)}"
@@ -86,14 +81,13 @@ def _students(item: ReviewItem) -> str:
     return "; ".join(one.student.key if one.number is None else who(one) for one in item.members)
 
 
-def _text(session: ReviewSession, item: ReviewItem) -> str:
+def _text(book: Class, item: ReviewItem) -> str:
     """Return the answer, else what was found, and the files, which may show more."""
     if item.is_empty_group:
-        return together_text(item)
+        return NO_ANSWER
     try:
-        result = open_item(session.book, item).result
+        opened = open_item(book, item)
     except InputError as error:
         return f"Not shown: {error}"
-    lines = [*filter(str.strip, answer_lines(result.outcome))] or [message_text(item, result)]
-    files = files_text(item, result, session.root_of(item))
-    return cut("\n".join(map(printable, [*lines, *files])), _MAX_TEXT)
+    lines = [*filter(str.strip, answer_lines(opened.result.outcome))] or [message_text(item, opened.result)]
+    return cut("\n".join(map(printable, [*lines, *opened.paths])), _MAX_TEXT)

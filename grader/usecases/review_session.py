@@ -104,20 +104,13 @@ class ReviewSession:
         of_section = self.filter._replace(state="", criterion="").members(item)
         return item._replace(members=self.filter.members(item, self._kept) or of_section or item.members)
 
-    def root_of(self, item: ReviewItem) -> Path:
-        """Return the class folder that the submission of an item is in."""
-        return self.book.settings.roots(self.folder)[item.first.graded.root].resolve()
-
     def following(self, position: int) -> int:
         """Return the position of the next item that is shown, beyond the last one at the end."""
         return next((at for at in self.listed if at > position), len(self.places))
 
     def back(self) -> None:
-        """Go to the previous item that is shown; raise InputError if there is none."""
-        before = [at for at in self.listed if at < self.position]
-        if not before:
-            raise InputError("this is the first item")
-        self.position = before[-1]
+        """Go to the previous item that is shown, if there is one."""
+        self.position = max((at for at in self.listed if at < self.position), default=self.position)
 
     def show_only(self, wanted: ReviewFilter) -> None:
         """Show the items that a filter lets through, from the first one. Raises InputError."""
@@ -133,12 +126,12 @@ class ReviewSession:
             keys = [key for key, one in members.items() if str(one.number) == name]
         else:
             keys = [find_typed([one.student for one in members.values()], name, "").key]
-        here = self.places[self.position][0] if self.position < len(self.places) else ""
-        shown = ((at, *self.places[at], {one.student.key for one in self.item_at(at).members}) for at in self.listed)
-        found = [(name != here, not answer, at) for at, name, answer, theirs in shown if not theirs.isdisjoint(keys)]
-        if not found:
+        here = self.places[min(self.position, len(self.places) - 1)][0]
+        shown = ((at, self.item_at(at)) for at in self.listed)
+        theirs = [(at, item) for at, item in shown if {*keys} & {one.student.key for one in item.members}]
+        if not theirs:
             raise InputError(f"nothing of {name!r} is shown: choose other items above")
-        self.position = min(found)[2]
+        self.position = min((item.criterion.id != here, not item.answer, at) for at, item in theirs)[2]
 
     def comments(self, criterion: str) -> list[str]:
         """Return earlier comments on a criterion. A comment keeps its position during the review, which is its key."""

@@ -70,8 +70,8 @@ def test_a_class_is_marked_by_a_sheet(tmp_path: Path) -> None:
 def test_the_sheet_has_what_there_is_to_read(book: Path) -> None:
     """The answer and its file, pictures, and who has it; no cell is a formula, and marked items are missing."""
     first, formula, *pictures = sheet_of(book)
-    answers = book.parent / "class" / "u7701" / "answers Zebulon Ash.md"
-    assert first["text"].split("\n")[-2:] == ["The red roots.", f"{answers}, line 1"]
+    where = f"answers Zebulon Ash.md, line 1 in {book.parent}/class/u7701"
+    assert first["text"].split("\n")[-2:] == ["The red roots.", where]
     assert (first["criterion"], first["students"], first["points"]) == ("essay", "u7701; u7703", "")
     assert "'=1+1" in formula["text"]
     assert [row["text"].count(f"{book.parent}/class/") for row in pictures] == [2, 2, 2]

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from grader import __version__
-from grader.checks.manual import answered
 from grader.classroom.lateness import time_text
 from grader.classroom.marks import Mark
 from grader.classroom.review_items import UNMARKED, Member, ReviewItem
@@ -20,6 +19,7 @@ from grader.report.pages.shell import Assets, render_page
 from grader.text import counted, counted_points, format_points, named, printable, shell_quoted
 
 _SOURCES = "img-src 'self'; frame-src 'self'; connect-src 'self'"
+NO_ANSWER = "No answer"
 _DECIMALS = Decimal("0.0001")
 
 
@@ -33,21 +33,23 @@ class Place(NamedTuple):
     number: int
     total: int
     address: str
-    filters: Sequence[tuple[str, str, Mapping[str, str], str]] = ()
-    students: Sequence[tuple[str, str]] = ()
+    filters: Sequence[tuple[str, str, Mapping[str, str], str]]
+    students: Sequence[tuple[str, str]]
 
 
-class Found(NamedTuple):
-    """What the page shows besides an item: the check's result, pictures, paths of files, earlier comments."""
+class OpenedItem(NamedTuple):
+    """The result as the check finds it, the pictures, with files that are not shown, and the paths of the files."""
 
     result: Result
     pictures: Sequence[EmbeddedPicture | NotShown] = ()
     paths: Sequence[str] = ()
-    comments: Sequence[str] = ()
 
 
-def item_page(item: ReviewItem, criterion: Criterion, found: Found, place: Place) -> str:
-    """Return the page of an item. `criterion` has the model answer; pictures are at ADDRESS/picture/1 and so on."""
+def item_page(item: ReviewItem, opened: OpenedItem, criterion: Criterion, comments: Sequence[str], place: Place) -> str:
+    """Return the page of an item with earlier comments. `criterion` has the model answer.
+
+    The addresses of the pictures are ADDRESS/picture/1 and so on.
+    """
     mark, members = item.first.mark, [who(one) for one in item.members]
     is_alone = len(members) == 1
     together = members[0] if is_alone else f"{len(members)} students"
@@ -56,28 +58,28 @@ def item_page(item: ReviewItem, criterion: Criterion, found: Found, place: Place
         "place": place,
         "who": together,
         "first": members[0],
-        "together": together_text(item),
+        "together": "The same answer" if item.answer else NO_ANSWER,
         "members": [] if is_alone else members,
         "criterion": criterion,
         "maximum": format_points(criterion.points),
-        "message": message_text(item, found.result),
-        "answer": answer_lines(found.result.outcome),
+        "message": message_text(item, opened.result),
+        "answer": answer_lines(opened.result.outcome),
         "model": model_lines(criterion),
-        "places": found.paths,
-        "pictures": [*_pictures(found.pictures, place.address)],
-        "not_shown": [one for one in found.pictures if isinstance(one, NotShown)],
+        "places": opened.paths,
+        "pictures": [*_pictures(opened.pictures, place.address)],
+        "not_shown": [one for one in opened.pictures if isinstance(one, NotShown)],
         "report": f"{place.address}/report" if has_report(item) else "",
         "marked": marked_text(item),
         "buttons": _buttons(criterion),
         "choices": [f"{text} ({format_points(points)})" for text, points in criterion.choices.items()],
-        "comments": [" ".join(comment.split()) for comment in found.comments],
+        "comments": [" ".join(comment.split()) for comment in comments],
     }
     data = {
         "shown": item.view,
         "item": item.stamp,
         "points": mark.value if mark is not None else "",
         "comment": mark.comment if mark is not None else "",
-        "comments": [*found.comments],
+        "comments": [*comments],
         "choices": [[text, float(points)] for text, points in criterion.choices.items()],
         "maximum": float(criterion.points),
     }
@@ -133,34 +135,18 @@ def who(one: Member) -> str:
     return f"submission {one.number}" if one.number is not None else printable(named(one.student.key, one.student.name))
 
 
-def together_text(item: ReviewItem) -> str:
-    """Return why one mark serves the students of an item."""
-    if not item.answer:
-        return "No answer" if item.criterion.check.function is answered else "No evidence"
-    is_team = len({(one.graded.root, one.graded.paths) for one in item.members}) == 1
-    return "The same files" if is_team else "The same answer"
-
-
 def message_text(item: ReviewItem, result: Result) -> str:
-    """Return what was found; without the names of files, which students choose, if the student is anonymous."""
-    outcome, files = result.outcome, evidence_files(result)
-    if item.is_empty_group:
-        return ""
-    if item.first.number is None or outcome.status != "pending":
-        return printable(outcome.message if item.first.number is None else f"the check: {outcome.status}")
-    found = counted(len(files), "file") if files else "an answer" if isinstance(outcome.measured, str) else "nothing"
-    question = item.criterion.arguments.get("question", "")
-    return printable(f"{question} {outcome.problem or f'{found} to grade'}".strip())
+    """Return what was found; of an anonymous student the question alone, because students choose the names of files."""
+    if item.is_empty_group or item.first.number is None:
+        return printable(result.outcome.message)
+    question = str(item.criterion.arguments.get("question", ""))
+    return printable(question if result.outcome.status == "pending" else f"the check: {result.outcome.status}")
 
 
 def marked_text(item: ReviewItem) -> str:
-    """Return the mark or comment that counts, and what is special about it; empty without one."""
-    mark = item.first.mark
-    if mark is None:
-        return ""
-    notes = ["partial points"] if mark.points is not None and 0 < mark.points < item.criterion.points else []
-    notes += ["before the submission changed"] if item.first.state == "older" else []
-    return f"{mark_text(mark)} ({', '.join(notes)})" if notes else mark_text(mark)
+    """Return the mark or comment that counts, and whether it is for an earlier submission; empty without one."""
+    older = ", before the submission changed" if item.first.state == "older" else ""
+    return f"{mark_text(item.first.mark)}{older}" if item.first.mark is not None else ""
 
 
 def mark_text(mark: Mark) -> str:
@@ -173,25 +159,9 @@ def mark_text(mark: Mark) -> str:
 
 
 def files_text(item: ReviewItem, result: Result, root: Path) -> list[str]:
-    """Return the files that a criterion is about, else the submission, printable; nothing of an anonymous student.
-
-    `root` is the class folder that the submission is in.
-    """
-    location = result.outcome.location
-    if item.first.number is not None or item.is_empty_group:
-        return []
-    found = [_where(item, path, root) for path in evidence_files(result)]
+    """Return the files that a criterion is about, and the submission in the class folder `root`, printable."""
+    location, found = result.outcome.location, [*evidence_files(result)]
     if location is not None:
-        line = f", line {location.line}" if counts_lines(location) else ""
-        found.append(f"{_where(item, location.path, root)}{line}")
-    return [printable(place) for place in found or [", ".join(str(root / path) for path in item.first.graded.paths)]]
-
-
-def _where(item: ReviewItem, path: str, root: Path) -> str:
-    """Return where a file of the submission is on this machine."""
-    paths, names = item.first.graded.paths, item.first.graded.names
-    if len(paths) == 1 and paths[0].rpartition("/")[2] != path:  # not a single document
-        return str(root / paths[0] / path)
-    files = dict(zip(names or [name.rpartition("/")[2] for name in paths], paths, strict=True))
-    file = next((name for name in files if path == name or path.startswith(f"{name}/")), path)
-    return str(root / (files.get(file, file) + path.removeprefix(file)))
+        found.append(f"{location.path}, line {location.line}" if counts_lines(location) else location.path)
+    submitted = ", ".join(str(root / path) for path in item.first.graded.paths)
+    return [printable(f"{place} in {submitted}") for place in found] or [printable(submitted)]
