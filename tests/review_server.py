@@ -13,7 +13,7 @@ from grader.classroom.grades import Class
 from grader.classroom.review_items import ReviewFilter
 from grader.usecases.local_server import HOST
 from grader.usecases.review_page import serving
-from grader.usecases.review_session import ReviewScope
+from grader.usecases.review_session import ReviewSession
 
 _TIMEOUT = 60.0  # seconds, of a machine that is busy
 
@@ -76,7 +76,7 @@ class Review(NamedTuple):
 @contextmanager
 def running(gradebook: Path, criterion: str = "", by: str = "Kim", **options: Any) -> Iterator[Review]:
     """Yield a review that runs in another thread."""
-    with serving(gradebook, ReviewScope(ReviewFilter(criterion), by, **options)) as (server, _):
+    with serving(ReviewSession(gradebook, ReviewFilter(criterion), by, **options)) as server:
         thread = Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02})
         thread.start()
         try:

@@ -89,15 +89,11 @@ def review(
       grader review --gradebook lab6-grades --sheet sheet.csv
     """
     from grader.classroom.review_items import ReviewFilter
-    from grader.usecases.review_session import ReviewScope
+    from grader.usecases.review_page import review_in_browser
+    from grader.usecases.review_pictures import write_sheet
+    from grader.usecases.review_session import ReviewSession
 
     if section is not None and not section.strip():
         raise InputError("--section is empty: name a section, or omit it to review all")
-    scope = ReviewScope(ReviewFilter(criterion, section or ""), by, anonymous, answers)
-    if sheet is not None:
-        from grader.usecases.review_pictures import write_sheet
-
-        return write_sheet(gradebook, scope, sheet)
-    from grader.usecases.review_page import review_in_browser
-
-    return review_in_browser(gradebook, scope, port, TERMINAL)
+    session = ReviewSession(gradebook, ReviewFilter(criterion, section or ""), by, answers, is_anonymous=anonymous)
+    return write_sheet(session, sheet) if sheet is not None else review_in_browser(session, port, TERMINAL)

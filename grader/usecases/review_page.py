@@ -9,29 +9,20 @@ from contextlib import contextmanager, suppress
 from functools import lru_cache
 from http import HTTPStatus
 from itertools import count
-from pathlib import Path
 from typing import Any
 
 from grader.classroom.grades import Class
 from grader.classroom.review_items import STATES, ReviewFilter, ReviewItem
 from grader.documents.pictures import EmbeddedPicture
 from grader.errors import GraderError
-from grader.report.pages.review import (
-    OpenedItem,
-    Place,
-    end_page,
-    error_page,
-    has_report,
-    item_page,
-    mark_text,
-)
+from grader.report.pages import review as pages
 from grader.report.pages.student import render_html
 from grader.text import counted, printable_path
 from grader.usecases.class_reports import report_of
 from grader.usecases.grade_class import write_grades
 from grader.usecases.local_server import SANDBOX, LocalServer, Request, Response
 from grader.usecases.review_pictures import open_item
-from grader.usecases.review_session import CONFIRMED, EVERYTHING, ReviewScope, ReviewSession
+from grader.usecases.review_session import CONFIRMED, ReviewSession
 from grader.usecases.terminal import Terminal
 
 _KEPT = 3  # items whose pictures stay in memory: the one before, the current and the next one
@@ -49,7 +40,7 @@ class ReviewPage:
         self.session = session
 
         @lru_cache(maxsize=_KEPT)
-        def opened(run: int, stamp: str, position: int) -> Future[OpenedItem]:
+        def opened(run: int, stamp: str, position: int) -> Future[pages.OpenedItem]:
             del run, stamp  # another submission
             return reader.submit(open_item, session.book, session.item_at(position))
 
@@ -66,16 +57,19 @@ class ReviewPage:
                 return _json({"error": str(error)})
             position = self._position(request.path[0])
             following = session.following(position) if position is not None else len(session.places)
-            return _html(error_page(str(error), self._address(following)), HTTPStatus.SERVICE_UNAVAILABLE)
+            return _html(pages.error_page(str(error), self._address(following)), HTTPStatus.SERVICE_UNAVAILABLE)
 
     def prepare(self) -> None:
         """Begin to read the submission of the next item, while the person looks at this one."""
         with suppress(GraderError):  # the page of that item shows the error
             self._open(self.session.following(self.session.position))
 
-    def _open(self, position: int) -> "Future[OpenedItem]":
+    def _open(self, position: int) -> "Future[pages.OpenedItem]":
         """Return what is shown of an item. Another thread reads it, so that marks are not delayed."""
-        return self._opened(self.session.book.run.run, self.session.item_at(position).stamp, position)
+        shown = self.session.book.run.run, self.session.item_at(position).stamp, position
+        if (found := self._opened(*shown)).done() and found.exception() is not None:
+            self._opened.cache_clear()  # try again
+        return self._opened(*shown)
 
     def _page(self, path: tuple[str, ...]) -> Response:
         session = self.session
@@ -84,7 +78,7 @@ class ReviewPage:
                 return Response(b"", status=HTTPStatus.FOUND, location=self._address(session.position))
             case ("end",):
                 given = sum(mark.points is not None for mark in session.own.values())
-                return _html(end_page(given, session.left, self._place(), printable_path(session.folder)))
+                return _html(pages.end_page(given, session.left, self._place(), printable_path(session.folder)))
             case (number, *rest) if (position := self._position(number)) is not None:
                 session.position = position
                 return self._of_item(session.item_at(position), rest)
@@ -95,20 +89,20 @@ class ReviewPage:
         session, book, opened = self.session, self.session.book, self._open(self.session.position)
         match rest:
             case []:
-                name = item.criterion.id
-                page = item_page(item, opened.result(), session.models[name], session.comments(name), self._place())
-                return _html(page)
+                criterion = session.models.get(item.criterion.id, item.criterion)
+                comments = session.comments(criterion)
+                return _html(pages.item_page(item, opened.result(), criterion, comments, self._place()))
             case ["picture", which]:
                 found = dict(zip(map(str, count(1)), opened.result().pictures, strict=False)).get(which)
                 if isinstance(found, EmbeddedPicture):
                     return Response(found.data, found.kind.media_type, policy=SANDBOX if found.height else _PDF_POLICY)
-            case ["report"] if has_report(item):
+            case ["report"] if pages.has_report(item):
                 grade = book.grade(item.first.student.key)
                 page = self._reader.submit(lambda: render_html(report_of(book, grade))).result()
                 return _html(page, policy=_REPORT_POLICY)
         return _NO_PAGE
 
-    def _place(self) -> Place:
+    def _place(self) -> pages.Place:
         session, listed = self.session, self.session.listed
         values = (
             {"": "all questions", **{name: name for name, _ in session.items}},
@@ -117,9 +111,9 @@ class ReviewPage:
         )
         filters = [*zip(ReviewFilter._fields, ("Question", "Section", "Items"), values, session.filter, strict=True)]
         members = (one.student for item in session.items.values() for one in item.members)
-        students = sorted({(one.key, one.name) for one in members}) if not session.scope.anonymous else []
+        students = sorted({(one.key, one.name) for one in members}) if not session.is_anonymous else []
         number = bisect(listed, session.position)
-        return Place(number, len(listed), self._address(session.position), filters, students)
+        return pages.Place(number, len(listed), self._address(session.position), filters, students)
 
     def _act(self, request: Request) -> Response:
         """Execute an action of the page."""
@@ -152,7 +146,7 @@ class ReviewPage:
         if replaced := session.mark(points, comment, item, shown):
             more = f" (and {counted(len(replaced) - 1, 'more mark')})" if len(replaced) > 1 else ""
             view = session.item_at(session.position).view
-            return _json({"newer": mark_text(replaced[0]) + more, "shown": view + CONFIRMED})
+            return _json({"newer": pages.mark_text(replaced[0]) + more, "shown": view + CONFIRMED})
         session.position = session.following(session.position)
         return _json({"go": self._address(session.position)})
 
@@ -179,29 +173,26 @@ def _json(answer: Mapping[str, str], status: HTTPStatus = HTTPStatus.OK) -> Resp
     return Response(json.dumps(answer).encode(), _JSON, status)
 
 
-def review_in_browser(gradebook: Path, scope: ReviewScope, port: int, terminal: Terminal) -> str:
+def review_in_browser(session: ReviewSession, port: int, terminal: Terminal) -> str:
     """Serve the review page until Ctrl-C, write the grades, and return a summary. Raises InputError."""
-    with serving(gradebook, scope, port) as (server, session):
-        if not session.places:
-            return "nothing needs manual grading\n"
+    if not session.places:
+        return "nothing needs manual grading\n"
+    with serving(session, port) as server:
         for warning in session.warnings:
             terminal.warn(warning)
         with suppress(KeyboardInterrupt):
             terminal.print(f"{server.url}\n")
             terminal.warn("open this address in a browser on this machine; Ctrl-C ends the review, all marks are kept")
             server.serve_forever()
-        summary = server.worker.submit(lambda: f"{len(session.own)} marked, {session.left} left\n").result()
-    write_grades(Class(gradebook))
-    return summary
+    write_grades(Class(session.folder))
+    return f"{len(session.own)} marked, {session.left} left\n"
 
 
 @contextmanager
-def serving(
-    gradebook: Path, scope: ReviewScope = EVERYTHING, port: int = 0
-) -> Iterator[tuple[LocalServer, ReviewSession]]:
+def serving(session: ReviewSession, port: int = 0) -> Iterator[LocalServer]:
     """Yield a server for a review. One thread reads and writes the gradebook; another one reads submissions."""
     with ThreadPoolExecutor(1) as worker, ThreadPoolExecutor(1) as reader:
-        page = ReviewPage(ReviewSession(gradebook, scope), reader)
+        page = ReviewPage(session, reader)
 
         def followed(request: Request) -> Response:
             """Answer a request, and then read the submission of the item after the one that is shown."""
@@ -211,4 +202,4 @@ def serving(
             return response
 
         with LocalServer(followed, worker, port) as server:
-            yield server, page.session
+            yield server

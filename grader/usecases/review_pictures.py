@@ -22,7 +22,7 @@ from grader.report.details import answer_lines
 from grader.report.pages.review import NO_ANSWER, OpenedItem, files_text, message_text, who
 from grader.submission.submission import Submission
 from grader.text import counted, cut, printable, printable_path, shell_quoted
-from grader.usecases.review_session import ReviewScope, ReviewSession
+from grader.usecases.review_session import ReviewSession
 from grader.usecases.writing import save
 
 SHEET_COLUMNS = ("criterion", "answer", "points", "comment", "text", "students")
@@ -63,17 +63,16 @@ def _anonymous(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPictur
     return NotShown(f"file {number}", found.reason.replace(found.where, f"file {number}"))
 
 
-def write_sheet(gradebook: Path, scope: ReviewScope, file: Path) -> str:
-    """Write the items without a mark into a new file, and return what to do with it. Raises InputError."""
-    session = ReviewSession(gradebook, scope)
+def write_sheet(session: ReviewSession, file: Path) -> str:
+    """Write the items that are shown into a new file, and return what to do with it. Raises InputError."""
     if os.path.lexists(file):
         raise InputError(f"{printable_path(file)} exists, perhaps with marks in it: name another file for --sheet")
     items = [session.item_at(position) for position in session.listed]
     by_student = sorted(range(len(items)), key=lambda at: order(items[at].first))  # a submission is read once
     texts = {at: _text(session.book, items[at]) for at in by_student}
     rows = ((one.criterion.id, one.answer, "", "", texts[at], _students(one)) for at, one in enumerate(items))
-    save(file, write_table(SHEET_COLUMNS, rows), session.book.settings.roots(gradebook), _PRIVATE)
-    command = f"grader mark --import {shell_quoted(file)} --gradebook {shell_quoted(gradebook)}"
+    save(file, write_table(SHEET_COLUMNS, rows), session.book.settings.roots(session.folder), _PRIVATE)
+    command = f"grader mark --import {shell_quoted(file)} --gradebook {shell_quoted(session.folder)}"
     return f"{counted(len(items), 'item')} written for {session.left} marks; fill in the points, then: {command}\n"
 
 

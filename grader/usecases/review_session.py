@@ -3,7 +3,6 @@
 from collections import Counter, defaultdict
 from collections.abc import Iterable
 from pathlib import Path
-from typing import NamedTuple
 
 from grader.classroom import folder as names
 from grader.classroom.grades import Class
@@ -16,6 +15,7 @@ from grader.classroom.settings import CLASS_FILE
 from grader.classroom.typed_names import criterion_of, find_typed
 from grader.errors import InputError
 from grader.grading.answers import load_with_answers
+from grader.grading.criterion import Criterion
 from grader.text import enumerated, printable_path
 
 CONFIRMED = "!"  # ends what the page sends to replace marks that it was asked about
@@ -24,47 +24,36 @@ _GONE = "this answer has changed, or its students have final marks: go to the ne
 _CHANGED = "Not saved: this item has changed since it was shown. Look at it again."
 
 
-class ReviewScope(NamedTuple):
-    """The options of a review: what it shows first, the name that reports show, and the file of model answers."""
-
-    shown: ReviewFilter = ReviewFilter()
-    by: str = ""
-    anonymous: bool = False
-    answers: Path | None = None
-
-
-EVERYTHING = ReviewScope()
-
-
 class ReviewSession:
     """The items of a review, which keep their positions, and the place among them.
 
-    `own` are the newest marks that it has given. `models` are the criteria with their model answers.
+    `by` is the name that reports show, `answers` the file of the model answers. `own` are the newest marks that the
+    review has given, `models` the criteria with their model answers.
     """
 
-    def __init__(self, folder: Path, scope: ReviewScope = EVERYTHING) -> None:
-        self.folder, self.scope, self.filter = folder, scope, scope.shown
-        self.file = mark_file(folder / names.MARKS, scope.by)
+    def __init__(
+        self,
+        folder: Path,
+        shown: ReviewFilter = ReviewFilter(),  # noqa: B008  it never changes
+        by: str = "",
+        answers: Path | None = None,
+        *,
+        is_anonymous: bool = False,
+    ) -> None:
+        self.folder, self.by, self.is_anonymous = folder, by, is_anonymous
+        self.file = mark_file(folder / names.MARKS, by)
         self.own = dict[Key, Mark]()
         self._kept = set[Key]()  # marked since the filter was chosen: these stay in the list
         self._comments = defaultdict[str, list[str]](list)  # of each criterion, in the order of their keys
         self._places: dict[tuple[str, str], None] = {}  # a criterion and an answer
         self._read: tuple[object, object] = None, None  # the stamps of the files
         self.refresh()
-        rubric = load_with_answers(str(folder / self.book.settings.rubric), scope.answers)
+        rubric = load_with_answers(str(folder / self.book.settings.rubric), answers)
         self.models = {row.id: row for row in rubric.criteria}
+        self._lacks_answers = bool(rubric.answers) and answers is None
         students = self.book.roster.students if self.book.roster is not None else ()
         self.sections = {plain(one.section): one.section for one in students if one.section}
-        self._check(scope.shown)
-        self.position = self.following(-1)
-
-    def _check(self, wanted: ReviewFilter) -> None:
-        """Raise InputError for a criterion or section that does not exist."""
-        if wanted.criterion:
-            criterion_of(self.book.rubric, wanted.criterion)
-        if wanted.section and plain(wanted.section) not in self.sections:
-            known = enumerated([*map(repr, sorted(self.sections.values()))], _MAX_NAMED)
-            raise InputError(f"no student has the section {wanted.section!r} in the roster; it has {known or 'none'}")
+        self.show_only(shown)
 
     def refresh(self) -> None:
         """Read the gradebook again if it has changed. Raises InputError."""
@@ -78,7 +67,7 @@ class ReviewSession:
             self._results = [one._replace(work={}) for one in self.book.results.all()]
         else:
             self.book.marks = read_marks(self.folder / names.MARKS, self.book.keys, self.book.rubric)
-        items = review_items(self.book, self._results, is_anonymous=self.scope.anonymous)
+        items = review_items(self.book, self._results, is_anonymous=self.is_anonymous)
         self.items = {(item.criterion.id, item.answer): item for item in items}
         self._places |= dict.fromkeys(self.items)
         self.places = tuple(self._places)
@@ -114,7 +103,11 @@ class ReviewSession:
 
     def show_only(self, wanted: ReviewFilter) -> None:
         """Show the items that a filter lets through, from the first one. Raises InputError."""
-        self._check(wanted)
+        if wanted.criterion:
+            criterion_of(self.book.rubric, wanted.criterion)
+        if wanted.section and plain(wanted.section) not in self.sections:
+            known = enumerated([*map(repr, sorted(self.sections.values()))], _MAX_NAMED)
+            raise InputError(f"no student has the section {wanted.section!r} in the roster; it has {known or 'none'}")
         self.filter = wanted
         self._kept.clear()
         self.position = self.following(-1)
@@ -122,7 +115,7 @@ class ReviewSession:
     def find(self, name: str) -> None:
         """Go to an item of a student: of the current criterion if possible, one with an answer. Raises InputError."""
         members = {one.student.key: one for item in self.items.values() for one in item.members}
-        if self.scope.anonymous:
+        if self.is_anonymous:
             keys = [key for key, one in members.items() if str(one.number) == name]
         else:
             keys = [find_typed([one.student for one in members.values()], name, "").key]
@@ -133,10 +126,10 @@ class ReviewSession:
             raise InputError(f"nothing of {name!r} is shown: choose other items above")
         self.position = min((item.criterion.id != here, not item.answer, at) for at, item in theirs)[2]
 
-    def comments(self, criterion: str) -> list[str]:
+    def comments(self, criterion: Criterion) -> list[str]:
         """Return earlier comments on a criterion. A comment keeps its position during the review, which is its key."""
-        known, choices = self._comments[criterion], self.models[criterion].choices
-        given = Counter(mark.comment for (_, name), mark in self.book.marks.newest.items() if name == criterion)
+        known, choices = self._comments[criterion.id], criterion.choices
+        given = Counter(mark.comment for (_, name), mark in self.book.marks.newest.items() if name == criterion.id)
         new = [text for text, _ in given.most_common() if text and text not in known and text not in choices]
         known += new[: _MAX_COMMENTS - len(known)]
         return known
@@ -154,7 +147,7 @@ class ReviewSession:
         pairs = [(one, self._new_mark(one, item, points, comment)) for one in item.members]
         changed = [(one.mark, new) for one, new in pairs if not _is_same(one, new)]
         replaced = [mark for mark, _ in changed if mark is not None and mark.points is not None]
-        is_asked = shown != item.view or any(mark.by != self.scope.by for mark in replaced)
+        is_asked = shown != item.view or any(mark.by != self.by for mark in replaced)
         if replaced and is_asked and shown != item.view + CONFIRMED:
             return replaced
         append_marks(self.file, [new for _, new in changed])
@@ -167,7 +160,7 @@ class ReviewSession:
         if not points.strip():
             raise InputError("points are missing")
         key, digest = (one.student.key, item.criterion.id), one.graded.digest
-        cells = {"time": "", "by": self.scope.by, "points": points.strip(), "comment": comment, "submission": digest}
+        cells = {"time": "", "by": self.by, "points": points.strip(), "comment": comment, "submission": digest}
         [mark] = mark_in({**cells, "": ""}, key, item.criterion.points, "")
         return mark._replace(time=self.book.marks.next_time(key))
 
@@ -177,7 +170,7 @@ class ReviewSession:
         lost = [key for key, mark in self.own.items() if key not in newest or "" < newest[key].time < mark.time]
         found = [self.own.pop(key) for key in lost]
         if found:
-            rows = [f"{one.criterion} {one.value}" + f" of {one.student}" * (not self.scope.anonymous) for one in found]
+            rows = [f"{one.criterion} {one.value}" + f" of {one.student}" * (not self.is_anonymous) for one in found]
             shown = printable_path(Path(names.MARKS, self.file.name))
             why = f"rows of this review are no longer in {shown}, which another program has replaced"
             raise InputError(f"Not saved: {why}: {enumerated(rows, _MAX_NAMED)}. Save again to go on without them.")
@@ -186,7 +179,7 @@ class ReviewSession:
     def warnings(self) -> list[str]:
         """What to say at the start: no model answers are shown; LibreOffice has the file of marks open."""
         found = []
-        if self.book.rubric.answers and self.scope.answers is None:
+        if self._lacks_answers:
             found.append("no model answers are shown: name their file with --answers")
         if is_open_in_libreoffice(self.file):
             shown = printable_path(self.file)

@@ -10,7 +10,7 @@ import pytest
 from grader.classroom.grades import Class
 from grader.classroom.review_items import ReviewFilter, answers_of, review_items
 from grader.errors import InputError
-from grader.usecases.review_session import ReviewScope, ReviewSession
+from grader.usecases.review_session import ReviewSession
 from tests.checks.submissions import jpeg
 from tests.classroom.gradebooks import PNG, batch, grader, lab_text, urdf, write_submission
 from tests.documents.files import docx, pdf
@@ -46,7 +46,7 @@ def book(graded: Path, tmp_path: Path) -> Path:
 @pytest.fixture
 def session(book: Path) -> ReviewSession:
     """Return a review of the whole class."""
-    return ReviewSession(book, ReviewScope(by="Kim"))
+    return ReviewSession(book, by="Kim")
 
 
 def items(session: ReviewSession) -> list[str]:
@@ -93,7 +93,9 @@ def test_one_mark_is_a_row_for_each_student(session: ReviewSession, book: Path) 
     give(session, 0, "1")
     digests = {one.student: one.digest for one in Class(book).results.all()}
     marks = Class(book).marks.counting
-    assert {key: marks[key, "essay"].submission for key in ("ash", "cedar")} == {key: digests[key] for key in ("ash", "cedar")}
+    assert {key: marks[key, "essay"].submission for key in ("ash", "cedar")} == {
+        key: digests[key] for key in ("ash", "cedar")
+    }
     assert digests["ash"] != digests["cedar"]
 
 
@@ -117,7 +119,7 @@ def test_a_mark_of_somebody_else_marks_nobody(session: ReviewSession, book: Path
 
 def test_sections(session: ReviewSession, book: Path) -> None:
     """In any spelling; only their students are shown, marked and counted. An unknown one is refused with the known ones."""
-    of_b = ReviewSession(book, ReviewScope(ReviewFilter("essay", "lab_b")))
+    of_b = ReviewSession(book, ReviewFilter("essay", "lab_b"))
     assert items(of_b) == ["essay: birch", "essay: holly", "essay: dogwood fir"]
     assert of_b.left == 4
     give(of_b, of_b.listed[1], "1")
@@ -141,7 +143,9 @@ def test_who_has_no_items(book: Path) -> None:
     assert found == {"box: birch", "essay: birch", "essay: cedar", "essay: gum holly", "essay: dogwood fir"}
 
 
-@pytest.mark.parametrize(("name", "found"), [("elm", "essay: elm"), ("Fir", "essay: dogwood fir"), ("holly", "essay: gum holly")])
+@pytest.mark.parametrize(
+    ("name", "found"), [("elm", "essay: elm"), ("Fir", "essay: dogwood fir"), ("holly", "essay: gum holly")]
+)
 def test_a_student_is_found(name: str, found: str, session: ReviewSession) -> None:
     """By key or name: the item of the current criterion if there is one."""
     session.find(name)
@@ -150,8 +154,8 @@ def test_a_student_is_found(name: str, found: str, session: ReviewSession) -> No
 
 def test_who_is_not_found(session: ReviewSession, book: Path) -> None:
     """An unknown name, a student of another section, and a name in an anonymous review, which has numbers."""
-    of_b = ReviewSession(book, ReviewScope(ReviewFilter("", "Lab B")))
-    hidden = ReviewSession(book, ReviewScope(anonymous=True))
+    of_b = ReviewSession(book, ReviewFilter("", "Lab B"))
+    hidden = ReviewSession(book, is_anonymous=True)
     for one, name, why in (
         (session, "nobody", "there is no student 'nobody'"), (of_b, "ash", "nothing of 'ash' is shown"),
         (hidden, "ash", "nothing of 'ash' is shown"),

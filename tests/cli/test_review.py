@@ -102,7 +102,7 @@ def test_a_sheet_is_never_overwritten(book: Path) -> None:
 
 def test_an_anonymous_review(book: Path) -> None:
     """No name, key, path or file name: not in pages, captions, addresses and messages, and not in a sheet."""
-    with running(book, by="Kim", anonymous=True) as served:
+    with running(book, by="Kim", is_anonymous=True) as served:
         pages = [served.get(f"{number}").text for number in range(1, 6)]
         assert "(1 x 1 pixels)" in "".join(pages) and "(320 x 240 pixels)" in "".join(pages)
         assert "The red roots." in "".join(pages)
@@ -113,7 +113,12 @@ def test_an_anonymous_review(book: Path) -> None:
         end = served.get("end").text
     assert "newer" in newer and "no longer in marks/kim.csv" in lost["error"]
     assert "submission 1" in pages[0] + pages[1]
-    words = [*NAMES, *(word for name in NAMES.values() for word in name.split()), str(book.parent / "class"), "screen 2"]
+    words = [
+        *NAMES,
+        *(word for name in NAMES.values() for word in name.split()),
+        str(book.parent / "class"),
+        "screen 2",
+    ]
     for text in (*pages, str(sent), str(newer), str(lost), end, str(sheet_of(book, "--anonymous"))):
         assert [word for word in words if word in text] == []
 

@@ -103,6 +103,7 @@ def test_marking_again_changes_a_mark_and_a_hyphen_withdraws_it(review: Review, 
 
 def test_a_mark_of_another_person_is_replaced_only_if_asked(book: Path) -> None:
     """Whether the page has shown it or not; the answer has the mark, and is the same for a later one."""
+
     def mark(points: str, by: str) -> None:
         done = grader("mark", "anna", "essay", points, "--gradebook", book, "--by", by, "--comment", "no")
         assert done.returncode == 0
@@ -127,7 +128,8 @@ def test_a_mark_of_another_person_is_replaced_only_if_asked(book: Path) -> None:
 
 def test_rows_that_have_gone_are_named_before_the_next_save(review: Review, book: Path) -> None:
     """Another program has put back the file as it was; the mark can then be given again."""
-    before = review.mark("1", "1") and (book / "marks" / "kim.csv").read_bytes()
+    review.mark("1", "1")
+    before = (book / "marks" / "kim.csv").read_bytes()
     assert review.mark("2", "2") == {"go": "3"}
     (book / "marks" / "kim.csv").write_bytes(before)
     error = review.mark("4", "1")["error"]
@@ -140,12 +142,14 @@ def test_rows_that_have_gone_are_named_before_the_next_save(review: Review, book
 
 def test_states(review: Review, book: Path) -> None:
     """Of marked items, of those that were marked before the submission changed, and of all."""
-    shown = {}
+    shown: dict[str, list[tuple[str, str]]] = {}
     review.mark("1", "3")
-    (book / "marks" / "lee.csv").write_text("student,criterion,points,comment,submission\nemil,essay,1,wrong,d0\nemil,box,1,,\n")
+    (book / "marks" / "lee.csv").write_text(
+        "student,criterion,points,comment,submission\nemil,essay,1,wrong,d0\nemil,box,1,,\n"
+    )
     for state in ("unmarked", "marked", "older", ""):
         address = review.post("end", {"do": "filter", "criterion": "", "section": "", "state": state}).json["go"]
-        shown[state] = list[str]()
+        shown[state] = []
         while address != "end":
             page = review.get(address).text
             shown[state] += re.findall(r"<h1>(.*)</h1>\n<p class=\"what\">About (\w+)", page)
@@ -345,7 +349,7 @@ def test_an_error_of_the_gradebook_is_a_message(review: Review, book: Path, monk
     (book / "marks" / "lee.csv").unlink()
     assert review.mark("1", "3") == {"go": "2"}
     with monkeypatch.context() as patched:
-        patched.setattr("grader.usecases.review_page.item_page", broken_page)
+        patched.setattr("grader.report.pages.review.item_page", broken_page)
         found = review.get("2")
         assert (found.status, "disk I/O error" in found.text, 'href="3"' in found.text) == (503, True, True)
         assert 'href="end"' in review.get(str(ITEMS)).text
@@ -354,7 +358,7 @@ def test_an_error_of_the_gradebook_is_a_message(review: Review, book: Path, monk
 def test_a_fault_of_the_grader_is_one_line(review: Review, monkeypatch: pytest.MonkeyPatch) -> None:
     """Without a traceback, and the review goes on."""
     with monkeypatch.context() as patched:
-        patched.setattr("grader.usecases.review_page.item_page", lambda *_: 1 / 0)
+        patched.setattr("grader.report.pages.review.item_page", lambda *_: 1 / 0)
         found = review.get("1")
     assert (found.status, found.headers["content-type"]) == (500, "text/plain; charset=utf-8")
     assert found.text == "the grader failed on this request: ZeroDivisionError: division by zero\n"
@@ -416,7 +420,18 @@ def test_it_listens_on_this_machine_only(review: Review) -> None:
 def test_the_command(book: Path) -> None:
     """It prints the address, marks, and ends with Ctrl-C: it writes the grades and says what is left."""
     (book / "marks" / ".~lock.kim.csv#").touch()
-    command = [sys.executable, "-m", "grader", "review", "--gradebook", str(book), "--criterion", "picture", "--by", "Kim"]
+    command = [
+        sys.executable,
+        "-m",
+        "grader",
+        "review",
+        "--gradebook",
+        str(book),
+        "--criterion",
+        "picture",
+        "--by",
+        "Kim",
+    ]
     with subprocess.Popen(
         command, cwd=ROOT, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as process:  # fmt: skip
@@ -430,7 +445,9 @@ def test_the_command(book: Path) -> None:
         out, err = process.communicate(timeout=HANG_TIMEOUT)
     assert (process.returncode, out) == (0, "1 marked, 2 left\n")
     assert f"grader: {book}/marks/kim.csv is open in LibreOffice: close it" in err
-    assert err.endswith("grader: open this address in a browser on this machine; Ctrl-C ends the review, all marks are kept\n")
+    assert err.endswith(
+        "grader: open this address in a browser on this machine; Ctrl-C ends the review, all marks are kept\n"
+    )
     assert marks_in(book) == [("anna", "picture", "0.5", "")]
     assert "0.5" in (book / "grades.csv").read_text().splitlines()[1].split(",")
 
@@ -450,7 +467,7 @@ def test_the_report_of_a_student(review: Review, book: Path) -> None:
     )
     assert "<h1>A small lab</h1>" in found.text and "Because of the roots." not in found.text
     assert 'data-src="1/report"' in review.get("1").text
-    with running(book, anonymous=True) as anonymous:
+    with running(book, is_anonymous=True) as anonymous:
         assert anonymous.get("1/report").status == 404
         assert "/report" not in anonymous.get("1").text.partition("<script>")[0]
 
