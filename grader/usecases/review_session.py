@@ -42,7 +42,7 @@ class ReviewSession:
     ) -> None:
         self.folder, self.by, self.is_anonymous = folder, by, is_anonymous
         self.file = mark_file(folder / names.MARKS, by)
-        self.own = dict[Key, Mark]()
+        self.own, self.position = dict[Key, Mark](), 0
         self._kept = set[Key]()  # marked since the filter was chosen: these stay in the list
         self._comments = defaultdict[str, list[str]](list)  # of each criterion, in the order of their keys
         self._places: dict[tuple[str, str], None] = {}  # a criterion and an answer
@@ -108,7 +108,7 @@ class ReviewSession:
         if wanted.section and plain(wanted.section) not in self.sections:
             known = enumerated([*map(repr, sorted(self.sections.values()))], _MAX_NAMED)
             raise InputError(f"no student has the section {wanted.section!r} in the roster; it has {known or 'none'}")
-        self.filter = wanted
+        self.filter = wanted._replace(section=self.sections.get(plain(wanted.section), ""))
         self._kept.clear()
         self.position = self.following(-1)
 
