@@ -82,9 +82,7 @@ def review(
 
       grader review --gradebook lab6-grades --by Kim
 
-      grader review --gradebook lab6-grades --criterion answer-floating-link --answers answers.toml
-
-      grader review --gradebook lab6-grades --section A --anonymous
+      grader review --gradebook lab6-grades --section A --anonymous --answers answers.toml
 
       grader review --gradebook lab6-grades --sheet sheet.csv
     """

@@ -135,7 +135,7 @@ class ReviewSession:
         return known
 
     def mark(self, points: str, comment: str, stamp: str, shown: str) -> list[Mark]:
-        """Append a mark for each student of the current item who does not have it; `-` as points withdraws marks.
+        """Append a mark for each student of the current item; `-` as points withdraws marks.
 
         `stamp` and `shown` say which item and marks the person saw. Returns the marks that it would replace and that
         were not shown, or are another person's; nothing is saved then, unless `shown` confirms it. Raises InputError.
@@ -144,15 +144,15 @@ class ReviewSession:
         self._check_rows()
         if stamp != item.stamp:
             raise InputError(_CHANGED)
-        pairs = [(one, self._new_mark(one, item, points, comment)) for one in item.members]
-        changed = [(one.mark, new) for one, new in pairs if not _is_same(one, new)]
-        replaced = [mark for mark, _ in changed if mark is not None and mark.points is not None]
+        new = [self._new_mark(one, item, points, comment) for one in item.members]
+        replaced = [one.mark for one in item.members if one.mark is not None and one.mark.points is not None]
         is_asked = shown != item.view or any(mark.by != self.by for mark in replaced)
         if replaced and is_asked and shown != item.view + CONFIRMED:
             return replaced
-        append_marks(self.file, [new for _, new in changed])
-        self.own |= {(new.student, new.criterion): new for _, new in changed}
-        self._kept |= {(new.student, new.criterion) for _, new in pairs}
+        append_marks(self.file, new)
+        given = {(mark.student, mark.criterion): mark for mark in new}
+        self.own |= given
+        self._kept |= given.keys()
         self.refresh()
         return []
 
@@ -178,22 +178,11 @@ class ReviewSession:
     @property
     def warnings(self) -> list[str]:
         """What to say at the start: no model answers are shown; LibreOffice has the file of marks open."""
-        found = []
-        if self._lacks_answers:
-            found.append("no model answers are shown: name their file with --answers")
-        if is_open_in_libreoffice(self.file):
-            shown = printable_path(self.file)
-            found.append(f"{shown} is open in LibreOffice: close it, because saving it there would remove new marks")
-        return found
+        shown = printable_path(self.file)
+        loss = f"{shown} is open in LibreOffice: close it, because saving it there would remove new marks"
+        answers = "no model answers are shown: name their file with --answers"
+        return [answers] * self._lacks_answers + [loss] * is_open_in_libreoffice(self.file)
 
 
 def _stamps(files: Iterable[Path]) -> list[tuple[str, str]]:
     return [(str(path), file_stamp(str(path))) for path in files]
-
-
-def _is_same(one: Member, new: Mark) -> bool:
-    """Return whether a student has a mark already, for the submission as it is now; or none that could be withdrawn."""
-    before = one.mark
-    if before is None or before.points is None:
-        return new.kind == "withdrawn"
-    return one.state == "marked" and (before.points, before.comment) == (new.points, new.comment)
