@@ -82,7 +82,9 @@ def review(
 
       grader review --gradebook lab6-grades --by Kim
 
-      grader review --gradebook lab6-grades --section A --anonymous --answers answers.toml
+      grader review --gradebook lab6-grades --answers answers.toml
+
+      grader review --gradebook lab6-grades --section A --anonymous
 
       grader review --gradebook lab6-grades --sheet sheet.csv
     """
