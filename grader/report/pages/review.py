@@ -1,6 +1,6 @@
 """The pages of a review in the browser: one item in words and pictures, the end of the review, a message."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from datetime import datetime
 from decimal import Decimal
 from pathlib import Path
@@ -51,7 +51,7 @@ def item_page(item: ReviewItem, opened: OpenedItem, criterion: Criterion, commen
     The addresses of the pictures are ADDRESS/picture/1 and so on.
     """
     mark, members = item.first.mark, [who(one) for one in item.members]
-    is_alone = len(members) == 1
+    is_alone, shown = len(members) == 1, [*enumerate(opened.pictures, 1)]
     together = members[0] if is_alone else f"{len(members)} students"
     values = {
         "title": f"{place.number} of {place.total}: {together}, {criterion.title}",
@@ -66,8 +66,8 @@ def item_page(item: ReviewItem, opened: OpenedItem, criterion: Criterion, commen
         "answer": answer_lines(opened.result.outcome),
         "model": model_lines(criterion),
         "places": opened.paths,
-        "pictures": [*_pictures(opened.pictures, place.address)],
-        "not_shown": [one for one in opened.pictures if isinstance(one, NotShown)],
+        "pictures": [(f"{place.address}/picture/{at}", one) for at, one in shown if isinstance(one, EmbeddedPicture)],
+        "not_shown": [one for _, one in shown if isinstance(one, NotShown)],
         "report": f"{place.address}/report" if has_report(item) else "",
         "marked": marked_text(item),
         "buttons": _buttons(criterion),
@@ -113,14 +113,6 @@ def error_page(message: str, following: str) -> str:
 def _page(template: str, values: dict[str, Any], data: dict[str, Any]) -> str:
     shared = {"version": __version__, **values}
     return render_page(template, shared, data, Assets("review.css", "review.js", sources=_SOURCES))
-
-
-def _pictures(found: Sequence[EmbeddedPicture | NotShown], address: str) -> Iterator[tuple[str, str, int, int]]:
-    """Yield the address of each picture, its words, width and height; a PDF has none."""
-    for index, one in enumerate(found, 1):
-        if isinstance(one, EmbeddedPicture):
-            page = "" if one.height else f"#page={one.page}&navpanes=0"
-            yield f"{address}/picture/{index}{page}", one.words, one.width, one.height
 
 
 def _buttons(criterion: Criterion) -> list[tuple[str, str]]:
