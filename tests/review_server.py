@@ -9,9 +9,11 @@ from pathlib import Path
 from threading import Thread
 from typing import Any, NamedTuple
 
-from grader.classroom.gradebook.manual_queue import ReviewScope
+from grader.classroom.grades import Class
+from grader.classroom.review_items import ReviewFilter
 from grader.usecases.local_server import HOST
 from grader.usecases.review_page import serving
+from grader.usecases.review_session import ReviewSession
 
 _TIMEOUT = 60.0  # seconds, of a machine that is busy
 
@@ -62,22 +64,19 @@ class Review(NamedTuple):
         own = {"Content_Type": "application/json", "Origin": f"http://{HOST}:{self.port}"}
         return self.ask("POST", f"/{self.token}/{path}", own | headers, json.dumps(sent).encode())
 
-    def mark(self, path: str, points: str, comment: str = "", shown: int = 0) -> dict[str, Any]:
+    def mark(self, path: str, points: str, comment: str = "", **sent: str) -> dict[str, Any]:
         """Mark an item as its page does, and return the answer."""
-        sent = {"do": "mark", "points": points, "comment": comment, "shown": shown, "item": self.item(path)}
-        return self.post(path, sent).json
+        return self.post(path, {"do": "mark", "points": points, "comment": comment, **self.seen(path), **sent}).json
 
-    def item(self, path: str) -> str:
-        """Return what the page of an item sends back to say which item it shows; empty for an address without an item."""
-        found = re.search(r'"item":"(\w+)"', self.get(path).text)
-        return found[1] if found is not None else ""
+    def seen(self, path: str) -> dict[str, str]:
+        """Return what the page of an item sends back to say what it shows; nothing for an address without an item."""
+        return dict(re.findall(r'"(item|shown)":"(\w+)"', self.get(path).text)) or {"item": "", "shown": ""}
 
 
 @contextmanager
-def running(gradebook: Path, criterion: str = "", by: str = "Kim", *, anonymous: bool = False) -> Iterator[Review]:
+def running(gradebook: Path, criterion: str = "", by: str = "Kim", **options: Any) -> Iterator[Review]:
     """Yield a review that runs in another thread."""
-    with serving(gradebook, ReviewScope(criterion, by, anonymous=anonymous)) as (server, _):
-        assert server is not None
+    with serving(ReviewSession(gradebook, ReviewFilter(criterion), by, **options)) as server:
         thread = Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02})
         thread.start()
         try:
@@ -85,3 +84,14 @@ def running(gradebook: Path, criterion: str = "", by: str = "Kim", *, anonymous:
         finally:
             server.shutdown()
             thread.join()
+
+
+def marks_in(gradebook: Path) -> list[tuple[str, str, str, str]]:
+    """Return the marks that count: student, criterion, value, comment."""
+    return sorted((*key, mark.value, mark.comment) for key, mark in Class(gradebook).marks.counting.items())
+
+
+def rows_of(gradebook: Path, by: str = "kim") -> list[str]:
+    """Return the points in the rows of a grader's file, in its order."""
+    path = gradebook / "marks" / f"{by}.csv"
+    return [line.split(",")[4] for line in path.read_text().splitlines()[1:]] if path.exists() else []

@@ -28,7 +28,7 @@ ELSEWHERE = {  # beginnings of command lines that are run by another test, or no
     "grader mark namargri000100": "classroom/test_walkthrough.py",
     "grader mark 100099": "classroom/test_walkthrough.py",
     "grader batch /class/lab6": "a cluster: classroom/run/test_cluster.py",
-    "grader review --gradebook lab6.db --html": "a browser: browser/test_review.py",
+    "grader review --gradebook lab6-grades": "a browser: browser/test_review.py",
     "grader grade src/my_robot --watch": "waits for changes: cli/test_watch.py",
     "grader explain distance_between": "a plug-in: cli/test_plugin_template.py",
     "grader rubric check arm_lab.toml": "a plug-in: cli/test_plugin_template.py",

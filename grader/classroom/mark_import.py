@@ -1,6 +1,7 @@
 """Marks of many students in one CSV file: rows of a file of marks, a review sheet, or the grades as they were exported.
 
-A row of a sheet names an answer: it is a mark of all students with that answer. An export becomes marks where a person
+A row of a sheet names an answer: it is a mark of the students with that answer, of those among them whom the column
+`students` names. An export becomes marks where a person
 changed a cell: the column `exported` has what the cells were, and `submission` the digest of what was graded.
 """
 
@@ -75,7 +76,8 @@ class MarkImport(NamedTuple):
             answer = row["criterion"], row["answer"]
             if answer not in self.answers:
                 raise InputError(f"no student has this answer to {row['criterion']} now: write the sheet again")
-            return self.answers[answer]
+            named = row.get("students", "").split("; ")
+            return [key for key in self.answers[answer] if key in named] or self.answers[answer]
         cell, keys = row["student"], {one.key: one for one in self.students}
         if cell in keys or as_number(cell, tuple(keys)):
             return [known("student", cell, keys)]

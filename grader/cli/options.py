@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 _GROUPS = {
     "Gradebook and rubric": "gradebook rubric expect-rubric part answers hints keep from",
     "Input": "roster layout assignment ignore-file add arg joint relative-to max-size",
-    "Selection": "criterion section mine anonymous before after compare",
+    "Selection": "criterion section anonymous before after compare",
     "Grades": "due pending-as-zero",
-    "Marks": "comment list-comments excused undo second by missing import",
+    "Marks": "comment list-comments excused undo by missing import",
     "File of the LMS": "into strict column feedback-column any-maximum only",
-    "Run": "jobs timeout force cluster fail-under watch mutants seed html port",
-    "Output": "format output save fix excel reports report-format csv feedback feedback-format pictures verbose",
+    "Run": "jobs timeout force cluster fail-under watch mutants seed port",
+    "Output": "format output save fix sheet excel reports report-format csv feedback feedback-format verbose",
 }
 _GROUP_OF = {f"--{name}": group for group, names in _GROUPS.items() for name in names.split()}
 _OTHER = "Options"

@@ -1,7 +1,5 @@
-"""grader mark and grader review: manual grading by command, or one item at a time."""
+"""grader mark and grader review: manual grading by command, on a page in the browser, or in a spreadsheet."""
 
-import io
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -10,11 +8,11 @@ import typer
 from grader.cli.options import AnswersOption, ByOption, GradebookOption
 from grader.cli.terminal import TERMINAL, warn
 from grader.errors import InputError
-from grader.usecases.writing import write_stdout
-
 
 _CRITERION = "The id of the criterion; total: the whole submission; deadline: the student's own."
 _POINTS = "The points; with total also excused; with deadline a time; - withdraws a mark."
+_SHEET = "Write the open items into a new CSV file instead."
+_PORT = "The port of the page; default: any free port."
 
 
 def mark(
@@ -30,9 +28,9 @@ def mark(
     """Give a mark for a criterion or the whole submission, or another deadline.
 
     Use it for criteria that need manual grading, or to override a check. `total` gives a final mark, which is the whole
-    grade, also without a submission; `excused` in place of its points means that the student needs no grade. A comment without POINTS
-    changes no points. The mark is appended to the file of --by in the folder marks/ of the gradebook: people may edit these files, and add
-    files of their own. The latest mark counts, and `-` withdraws it.
+    grade, also without a submission; `excused` in place of its points means that the student needs no grade. A comment
+    without POINTS changes no points. The mark is appended to the file of --by in the folder marks/ of the gradebook:
+    people may edit these files, and add files of their own. The latest mark counts, and `-` withdraws it.
 
     Examples:
 
@@ -65,75 +63,37 @@ def review(
     gradebook: GradebookOption,
     criterion: Annotated[str, typer.Option(metavar="ID", help="Only this criterion.")] = "",
     section: Annotated[str | None, typer.Option(metavar="NAME", help="Only this section of the roster.")] = None,
-    mine: Annotated[
-        bool, typer.Option("--mine", help="Only students whose marker in the roster is the name of --by.")
-    ] = False,
-    second: Annotated[
-        bool, typer.Option("--second", help="Give second opinions, which change no grade; needs --by.")
-    ] = False,
     anonymous: Annotated[bool, typer.Option("--anonymous", help="Show no names, ids or paths of students.")] = False,
     by: ByOption = "",
     answers: AnswersOption = None,
-    pictures: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="First write all pictures into this folder.")
-    ] = None,
-    html: Annotated[bool, typer.Option("--html", help="Grade on a page in the browser.")] = False,
-    port: Annotated[
-        int,
-        typer.Option(
-            metavar="N", min=0, max=65535, show_default=False, help="The port of the page; default: any free port."
-        ),
-    ] = 0,
-) -> int:
-    """Grade what needs manual grading, one item at a time.
+    sheet: Annotated[Path | None, typer.Option(metavar="FILE", help=_SHEET)] = None,
+    port: Annotated[int, typer.Option(metavar="N", min=0, max=65535, show_default=False, help=_PORT)] = 0,
+) -> str:
+    """Grade what needs manual grading on a page in the browser.
 
-    Each item shows the student's answer beside the model answer, or the paths of the pictures. The gradebook keeps the
-    model answers of --answers, also of batch. Type the points and a
-    comment: 3.5 the roots are missing. 3.5 #2 repeats comment 2. You can stop at any time: marks are kept, and the next
-    review continues with the rest.
+    The command prints the address of the page, which works on this machine only. An item is a criterion with the
+    student's answer, the model answer of --answers, and the pictures; students with the same answer are one item. Each
+    mark is saved immediately, in the file of --by in the folder marks/ of the gradebook. Marked items can be opened and
+    marked again. Ctrl-C ends the review.
 
-    With --second, you see no marks of others, and your marks change no grade. `grader stats` shows the agreement.
-
-    With --html, you review on a page in the browser that shows the pictures. The command prints the address of the
-    page, which works on this machine only. Ctrl-C ends the review.
+    With --sheet, no page is served: fill in the points in a spreadsheet, and record them with `mark --import FILE`.
 
     Examples:
 
-      grader review --gradebook lab6.db --html
+      grader review --gradebook lab6-grades --by Kim
 
-      grader review --gradebook lab6.db
+      grader review --gradebook lab6-grades --answers answers.toml
 
-      grader review --gradebook lab6.db --criterion answer-floating-link
+      grader review --gradebook lab6-grades --section A --anonymous
 
-      grader review --gradebook lab6.db --pictures pictures
-
-      grader review --gradebook lab6.db --section A --anonymous
-
-      grader review --gradebook lab6.db --mine --by Kim
-
-      grader review --gradebook lab6.db --second --by Lee
+      grader review --gradebook lab6-grades --sheet sheet.csv
     """
-    from grader.classroom.gradebook.manual_queue import ReviewScope
+    from grader.classroom.review_items import ReviewFilter
+    from grader.usecases.review_page import review_in_browser
+    from grader.usecases.review_pictures import write_sheet
+    from grader.usecases.review_session import ReviewSession
 
     if section is not None and not section.strip():
         raise InputError("--section is empty: name a section, or omit it to review all")
-    if answers is not None:
-        from grader.usecases.class_inputs import keep_answers
-
-        keep_answers(gradebook, answers)
-    scope = ReviewScope(criterion, by, section or "", mine, second, anonymous)
-    if html:
-        from grader.usecases.review_page import review_in_browser
-
-        if pictures is not None:
-            raise InputError("--pictures cannot be used with --html, which shows the pictures on the page")
-        write_stdout(review_in_browser(gradebook, scope, port, TERMINAL))
-        return 0
-    if port:
-        raise InputError("--port needs --html")
-    from grader.usecases.review import review as review_all
-
-    if isinstance(sys.stdin, io.TextIOWrapper):
-        sys.stdin.reconfigure(errors="backslashreplace")  # a terminal in another encoding
-    write_stdout(review_all(gradebook, scope, pictures, TERMINAL))
-    return 0
+    session = ReviewSession(gradebook, ReviewFilter(criterion, section or ""), by, answers, is_anonymous=anonymous)
+    return write_sheet(session, sheet) if sheet is not None else review_in_browser(session, port, TERMINAL)

@@ -1,34 +1,59 @@
-"""Write the pictures of all items that need manual grading to files, for a review without a browser."""
+"""Read the submission of an item again: what was found for its criterion, its pictures, and a sheet of open items.
 
-from collections.abc import Callable
+A person fills in the sheet, a CSV file, and `grader mark --import` records it.
+"""
+
+import os
+from functools import lru_cache
 from itertools import starmap
 from pathlib import Path
 
-from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.manual_queue import QueuedResult
-from grader.classroom.gradebook.submission_files import SubmissionSources
-from grader.classroom.review.items import QueuedItem
-from grader.classroom.review.session import ReviewSession
+from grader.checks.outcome import Outcome
+from grader.classroom.grades import Class
+from grader.classroom.reopening import reopened
+from grader.classroom.review_items import ReviewItem, order
+from grader.classroom.tables import write_table
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import InputError
+from grader.grading.grade import grade
 from grader.grading.pictures import may_have_pictures, pictures_of
-from grader.grading.rubric import Rubric
-from grader.report.review import who
-from grader.text import printable, printable_path
-from grader.usecases.class_reports import refuse_report_folder
-from grader.usecases.report_names import file_names, report_names, update_index
-from grader.usecases.writing import make_folder, save_bytes
+from grader.grading.report import Report, Result
+from grader.report.details import answer_lines
+from grader.report.pages.review import NO_ANSWER, OpenedItem, files_text, message_text, who
+from grader.submission.submission import Submission
+from grader.text import counted, cut, printable, printable_path, shell_quoted
+from grader.usecases.review_session import ReviewSession
+from grader.usecases.writing import save
 
-_CHANGED = "the files have changed or moved since they were graded: run `grader batch` again"
+SHEET_COLUMNS = ("criterion", "answer", "points", "comment", "text", "students")
+_PRIVATE = 0o600
+_MAX_TEXT = 30_000  # characters; a cell of Excel has at most 32,767
 
 
-def item_pictures(item: QueuedResult, rubric: Rubric) -> tuple[EmbeddedPicture | NotShown, ...]:
-    """Return an item's pictures, and files that are not shown; the submission is reopened and must be unchanged."""
-    if item.is_empty_group or not may_have_pictures(item.result):
-        return ()
-    submission = SubmissionSources(item.grade.files, rubric).submission
-    found = (NotShown("pictures", _CHANGED),) if submission is None else pictures_of(item.result, submission)
-    return found if item.first.number is None else tuple(starmap(_anonymous, enumerate(found, 1)))
+@lru_cache(maxsize=1)
+def _graded_again(book: Class, key: str) -> tuple[Submission, Report]:
+    """Return a student's submission as it was graded, and its report. Raises InputError."""
+    graded = book.results.of(key)
+    submission = reopened(book, graded) if graded is not None else None
+    if submission is None:
+        command = f"`grader batch NEWPATH --gradebook {shell_quoted(book.folder)}` with its class folder"
+        raise InputError(f"the submission has moved or changed since it was graded: run {command}")
+    return submission, grade(book.rubric, submission, book.settings.parts, is_one_of_class=True)
+
+
+def open_item(book: Class, item: ReviewItem) -> OpenedItem:
+    """Return what a person looks at for an item. Raises InputError if its submission has moved or changed."""
+    if item.is_empty_group:
+        return OpenedItem(Result(item.criterion, Outcome("pending", "")))
+    submission, report = _graded_again(book, item.first.student.key)
+    result = next((one for one in report.results if one.criterion.id == item.criterion.id), None)
+    if result is None:
+        raise InputError("this criterion is no longer graded for this student")
+    found = pictures_of(result, submission) if may_have_pictures(result) else ()
+    if item.first.number is not None:
+        return OpenedItem(result, [*starmap(_anonymous, enumerate(found, 1))])
+    root = book.settings.roots(book.folder)[item.first.graded.root].resolve()
+    return OpenedItem(result, found, files_text(item, result, root))
 
 
 def _anonymous(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPicture | NotShown:
@@ -38,63 +63,30 @@ def _anonymous(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPictur
     return NotShown(f"file {number}", found.reason.replace(found.where, f"file {number}"))
 
 
-class PictureFolder:
-    """Writes pictures as FOLDER/CRITERION/STUDENT.NUMBER.ENDING.
-
-    The ending is that of the verified format. No symlink in the folder is followed, and no file of another student is
-    overwritten. An anonymous review needs an empty folder, because it must not show whose files are there. Raises
-    InputError.
-    """
-
-    def __init__(self, session: ReviewSession, book: Gradebook, folder: Path) -> None:
-        self._session, self._folder = session, folder
-        refuse_report_folder(folder, (), sorted({Path(run.source) for run in book.runs()}))
-        self._folders = file_names([criterion.id for criterion in session.criteria])
-        self._names = {} if session.scope.anonymous else report_names(book)
-        make_folder(folder)
-        if not session.scope.anonymous:
-            keys = {key for item in session.queue.items for key, _ in item.students}
-            update_index(folder, {key: self._names[key] for key in sorted(keys)})
-        elif any(folder.iterdir()):
-            raise InputError(f"{printable_path(folder)} is not empty: --anonymous needs a new folder for --pictures")
-
-    def write(self, item: QueuedResult) -> list[str]:
-        """Write the pictures of an item; return a line for each, also for those that are not shown."""
-        key, criterion = item.grade.student.key, item.result.criterion.id
-        name = self._names[key] if item.first.number is None else f"submission-{item.first.number}"
-        start = self._folder / self._folders[criterion] / name
-        found = item_pictures(item, self._session.rubric_of(item))
-        return [_write_picture(one, start, number, item) for number, one in enumerate(found, 1)]
+def write_sheet(session: ReviewSession, file: Path) -> str:
+    """Write the items that are shown into a new file, and return what to do with it. Raises InputError."""
+    if os.path.lexists(file):
+        raise InputError(f"{printable_path(file)} exists, perhaps with marks in it: name another file for --sheet")
+    items = [session.item_at(position) for position in session.listed]
+    by_student = sorted(range(len(items)), key=lambda at: order(items[at].first))  # a submission is read once
+    texts = {at: _text(session.book, items[at]) for at in by_student}
+    rows = ((one.criterion.id, one.answer, "", "", texts[at], _students(one)) for at, one in enumerate(items))
+    save(file, write_table(SHEET_COLUMNS, rows), session.book.settings.roots(session.folder), _PRIVATE)
+    command = f"grader mark --import {shell_quoted(file)} --gradebook {shell_quoted(session.folder)}"
+    return f"{counted(len(items), 'item')} written for {session.left} marks; fill in the points, then: {command}\n"
 
 
-def write_all_pictures(
-    session: ReviewSession, folder: PictureFolder, show: Callable[[str], None]
-) -> dict[QueuedItem, list[str]]:
-    """Write the pictures of all items, and print the student of each; return those of each item."""
-    found: dict[QueuedItem, list[str]] = {}
-    for position in session.queue.listed():
-        item, queued = session.queue.item_at(position), session.queue.items[position]
-        if item is None or not item.content:
-            continue
-        found[queued] = folder.write(item)
-        for line in found[queued]:
-            show(f"{who(item.first)}, {printable(queued.criterion)}: {line}\n")
-    session.start()
-    return found
+def _students(item: ReviewItem) -> str:
+    return "; ".join(one.student.key if one.number is None else who(one) for one in item.members)
 
 
-def _write_picture(found: EmbeddedPicture | NotShown, start: Path, number: int, item: QueuedResult) -> str:
-    """Write a picture, unless it is not shown, and return the line about it."""
-    if isinstance(found, NotShown):
-        return printable(str(found))
-    path = start.with_name(f"{start.name}.{number}.{found.kind.ending}")
-    make_folder(path.parent)
-    _refuse_symlink(path)
-    save_bytes(path, found.data, [item.grade.files.root])
-    return f"{printable_path(path)}  {printable(found.words)}"
-
-
-def _refuse_symlink(path: Path) -> None:
-    for place in (path.parent, path):
-        if place.is_symlink():
-            raise InputError(f"cannot write {printable_path(path)}: {printable_path(place)} is a symlink")
+def _text(book: Class, item: ReviewItem) -> str:
+    """Return the answer, else what was found, and the files, which may show more."""
+    if item.is_empty_group:
+        return NO_ANSWER
+    try:
+        opened = open_item(book, item)
+    except InputError as error:
+        return f"Not shown: {error}"
+    lines = [*filter(str.strip, answer_lines(opened.result.outcome))] or [message_text(item, opened.result)]
+    return cut("\n".join(map(printable, [*lines, *opened.paths])), _MAX_TEXT)

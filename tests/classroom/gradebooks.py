@@ -1,20 +1,8 @@
-"""A small lab, gradebooks with given results for it, and a class of it on disk."""
+"""A small lab, and a class of it on disk."""
 
 import subprocess
-from collections.abc import Iterable
-from decimal import Decimal
 from pathlib import Path
 
-from grader.checks.outcome import Outcome, Status
-from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.marks import AddedMark, Entry, add_mark
-from grader.classroom.gradebook.result import GradingResult, GradingVerdict
-from grader.classroom.gradebook.run_writer import RunWriter, save_student
-from grader.classroom.gradebook.student_grade import StudentGrade
-from grader.classroom.students import ClassSubmission, Student
-from grader.files.reading import sha256_of
-from grader.grading.criterion import Criterion
-from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
 from tests.command_line import clean_environment, run_with_input
 from tests.samples import ROOT
@@ -31,7 +19,6 @@ _CRITERIA = {
     'with = { question = "Why?", answer = "Because of the roots.", places = ["step 1"] }',
     "picture": 'part = "report"\ncheck = "evidence_shown"\nwith = { names = ["screen"] }',
 }
-_STATUSES: dict[str, Status] = {"p": "passed", "f": "failed", "s": "skipped", "?": "pending", "!": "errored"}
 ENVIRONMENT = clean_environment()
 HOSTILE = ROOT / "tests" / "classroom" / "hostile"
 
@@ -51,49 +38,6 @@ def lab_text(late: str = "", **points: str) -> str:
 def lab(late: str = "", **points: str) -> Rubric:
     """Return the lab as a rubric."""
     return read_rubric(lab_text(late, **points).encode(), Path("small.toml"))
-
-
-def graded_as(rubric: Rubric, key: str, signs: str, digest: str = "a", reason: str = "") -> GradingResult:
-    """Return the result of a submission from one sign per criterion; one with a reason could not be read."""
-    results = tuple(
-        Result(criterion, Outcome(_STATUSES[sign], f"what was found of {criterion.id}"))
-        for criterion, sign in zip(rubric.criteria, signs, strict=True)
-        if sign != "-"
-    )
-    verdict: GradingVerdict = "unreadable" if reason else "errored" if "!" in signs else "graded"
-    from grader.grading.graded_submission import GradedSubmission
-
-    report = Report(GradedSubmission(key), rubric, tuple(part.id for part in rubric.parts), results)
-    result = GradingResult(key, verdict, sha256_of(digest.encode()), "", reason=reason)
-    return result.with_report(report, b"")
-
-
-def record_run(book: Gradebook, rubric: Rubric, found: Iterable[GradingResult], submitted: str = "") -> int:
-    """Record results as one run and return its number."""
-    writer = RunWriter(book, "class", "folders", rubric)
-    with book.transaction():
-        for graded in found:
-            who = Student(graded.key)
-            student = save_student(book, who, None)
-            result = writer.add_result(student, graded)
-            writer.add_submission(student, result, ClassSubmission(who, (graded.key,), submitted=submitted), "")
-    writer.finish()
-    return writer.run
-
-
-def grade_without(gradebook: Path, key: str, criterion: str) -> None:
-    """Record a run in which the rubric has another criterion in place of this one."""
-    other = read_rubric(lab_text().replace(f'id = "{criterion}"', 'id = "other"').encode(), Path("small.toml"))
-    with Gradebook(gradebook) as book:
-        record_run(book, other, [graded_as(other, key, "ppp??", "b")])
-
-
-def units(points: str | Decimal) -> int:
-    """Return points in ten-thousandths."""
-    return int(Decimal(points) * 10_000)
-
-
-# --- The command line, and a class on the disk ------------------------------------------------------------------------
 
 
 def grader(*arguments: object, stdin: str | bytes = "", **variables: str) -> subprocess.CompletedProcess[str]:
@@ -157,23 +101,8 @@ def make_class(top: Path, late: str = "") -> Path:
 
 
 def batch(top: Path, *more: object, rubric: object = None) -> subprocess.CompletedProcess[str]:
-    """Grade the class into book.db."""
+    """Grade the class into the folder `book`."""
     return grader(
-        "batch", top / "class", "--gradebook", top / "book.db", "--rubric", rubric or top / "small.toml",
+        "batch", top / "class", "--gradebook", top / "book", "--rubric", rubric or top / "small.toml",
         "--roster", top / "roster.csv", "--jobs", 2, *more,
     )  # fmt: skip
-
-
-def mark(
-    book: Gradebook,
-    grade: StudentGrade,
-    criterion: Criterion,
-    points: Decimal | None,
-    by: str,
-    why: str,
-    *,
-    shown: int | None = None,
-) -> AddedMark:
-    """Give a manual mark; None withdraws one."""
-    entry = Entry("withdrawn", None, why) if points is None else Entry("points", points, why)
-    return add_mark(book, grade, criterion.id, entry, by, shown=shown)

@@ -72,10 +72,9 @@ def prepare(top: Path) -> None:
 
 
 def _mark_on_the_page(top: Path, fault: Fault) -> Done:
-    """Mark the first item on the page of `review --html`; the answer is the output, and an error the exit code 2."""
-    with running(top / "book.db") as review:
-        item = review.item("1")
-        sent = {"do": "mark", "points": "1", "comment": "seen", "shown": 0, "item": item}
+    """Mark the first item on the page of `review`; the answer is the output, and an error the exit code 2."""
+    with running(top / "book") as review:
+        sent = {"do": "mark", "points": "1", "comment": "seen", **review.seen("1")}
         with fault:
             answer = review.post("1", sent)
         is_saved = answer.status == 200 and "go" in answer.json
@@ -96,8 +95,8 @@ SCENARIOS = (
     Scenario("mark", ("mark", "anna", "essay", "3.5", "--comment", "good", *_BOOK)),
     Scenario("mark-import", ("mark", "--import", "marks.csv", *_BOOK)),
     Scenario("extend", ("extend", "anna", "2026-11-25", *_BOOK)),
-    Scenario("review", ("review", *_BOOK), b"3.5 good\nq\n", goes_on=True),
-    Scenario("review-html", act=_mark_on_the_page),
+    Scenario("review", act=_mark_on_the_page),
+    Scenario("review-sheet", ("review", *_BOOK, "--sheet", "sheet.csv")),
     Scenario("export-csv", ("export", "csv", *_BOOK, "--output", "grades.csv")),
     Scenario("export-into", ("export", "canvas", *_BOOK, "--into", "canvas.csv", "--output", "upload.csv")),
     Scenario("export-html", ("export", "html", *_BOOK, "--output", "pages")),

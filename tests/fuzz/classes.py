@@ -2,6 +2,7 @@
 
 import io
 import re
+import shutil
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future
 from decimal import Decimal
@@ -9,14 +10,10 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
-from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.manual_queue import ReviewScope
 from grader.classroom.intake.roster import entry_from_json, entry_to_json
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.lms.filling import FillOptions
 from grader.classroom.lms.grades import LmsGrade
-from grader.classroom.review.session import ReviewSession
 from grader.classroom.tables import Table, TableRow, _rows, read_table
 from grader.errors import RubricError
 from grader.grading.grade import grade
@@ -25,7 +22,8 @@ from grader.usecases import local_server
 from grader.usecases.grade_files import FILLERS, preflight_lines
 from grader.usecases.local_server import LocalServer
 from grader.usecases.review_page import ReviewPage
-from tests.classroom.gradebooks import ROSTER, graded_as, lab, lab_text, record_run
+from grader.usecases.review_session import ReviewSession
+from tests.classroom.gradebooks import ROSTER, batch, lab_text, make_class
 from tests.classroom.lms.enrolled_class import CLASS
 from tests.classroom.lms.test_round_trips import blackboard_file, brightspace_file, canvas_file, moodle_file
 from tests.fuzz.harness import GUARD, check_message, user_errors
@@ -190,23 +188,22 @@ class _AtOnce:
 
 
 @cache
-def _server() -> tuple[LocalServer, Gradebook]:
-    """Return a server of a review with three items, and its gradebook."""
-    path = Path(GUARD.folder, "book.db")
-    for ending in ("", "-wal", "-shm"):
-        path.with_name(f"book.db{ending}").unlink(missing_ok=True)
-    book = Gradebook(path, create=True)
-    record_run(book, lab(), [graded_as(lab(), key, "ppp??", key) for key in ("anna", "ben")])
+def _server() -> tuple[LocalServer, Path]:
+    """Return a server of a review with six items, and its gradebook."""
+    top = Path(GUARD.folder, "review")
+    shutil.rmtree(top, ignore_errors=True)
+    top.mkdir()
+    make_class(top)
+    assert batch(top).returncode == 0
     pool: Any = _AtOnce()
-    page = ReviewPage(ReviewSession(Grades(book, answers=True), ReviewScope("", "Kim")), book, pool)
-    server = _Server(page, pool, 80)
+    server = _Server(ReviewPage(ReviewSession(top / "book", by="Kim"), pool), pool, 80)
     server.socket.close()
     server.token = "t"
-    return server, book
+    return server, top / "book"
 
 
-def _marks(book: Gradebook) -> int:
-    return int(next(iter(book.rows("SELECT count(*) FROM mark")))[0])
+def _marks(book: Path) -> int:
+    return sum(path.read_bytes().count(b"\n") for path in (book / "marks").glob("*.csv"))
 
 
 def sent_requests() -> Iterator[bytes]:
@@ -214,18 +211,18 @@ def sent_requests() -> Iterator[bytes]:
     _server.cache_clear()
     for path in ("/t/", "/t/1", "/t/2/picture/1", "/t/1/report", "/t/end", "/favicon.ico", "/", "/t/99"):
         yield f"GET {path} HTTP/1.1\r\nHost: localhost:80\r\n\r\n".encode()
-    item = re.search(rb'"item":"(\w+)"', _answer(b"GET /t/1 HTTP/1.1\r\nHost: localhost:80\r\n\r\n"))
-    mark = b'{"do":"mark","points":"2","comment":"good","shown":0,"item":"%b"}' % (item[1] if item else b"")
+    page = _answer(b"GET /t/1 HTTP/1.1\r\nHost: localhost:80\r\n\r\n")
+    shown, item = re.findall(rb'"(?:shown|item)":"(\w+)"', page) or (b"", b"")
+    mark = b'{"do":"mark","points":"2","comment":"good","shown":"%b","item":"%b"}' % (shown, item)
     bodies = (
         mark,
         b'{"do":"next"}',
-        b'{"do":"undo"}',
+        b'{"do":"back"}',
         b'{"do":"find","student":"ben"}',
         b"[]",
-        b'{"do":"keep"}',
-        b'{"do":"split"}',
+        b'{"do":"again"}',
     )
-    other = b'{"do":"filter","criterion":"essay","section":"","state":"open"}'
+    other = b'{"do":"filter","criterion":"essay","section":"","state":"marked"}'
     yield from (_START + b"%d\r\n\r\n%b" % (len(body), body) for body in (*bodies, other))
     yield b"HEAD /t/1 HTTP/1.1\r\nHost: 127.0.0.1:80\r\n\r\nOPTIONS * HTTP/1.1\r\n\r\n"
 

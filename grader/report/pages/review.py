@@ -1,35 +1,30 @@
-"""The pages of a review in the browser: one item that needs manual grading, the end of the queue, an error."""
+"""The pages of a review in the browser: one item in words and pictures, the end of the review, a message."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from datetime import datetime
 from decimal import Decimal
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from grader import __version__
-from grader.classroom.gradebook.manual_queue import QueuedResult
-from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.classroom.lateness import time_text
+from grader.classroom.marks import Mark
+from grader.classroom.review_items import UNMARKED, Member, ReviewItem
 from grader.documents.pictures import EmbeddedPicture, NotShown
-from grader.files.reading import sha256_of
 from grader.grading.criterion import Criterion
-from grader.report.details import answer_lines, model_lines
+from grader.grading.pictures import evidence_files
+from grader.grading.report import Result
+from grader.report.details import answer_lines, counts_lines, model_lines
 from grader.report.pages.shell import Assets, render_page
-from grader.report.review import (
-    choice_words,
-    files_text,
-    marked_text,
-    message_text,
-    place_text,
-    together_text,
-    who,
-    who_together,
-)
-from grader.text import counted, counted_points, format_points, shell_quoted
+from grader.text import counted, counted_points, format_points, named, printable, shell_quoted
 
 _SOURCES = "img-src 'self'; frame-src 'self'; connect-src 'self'"
+NO_ANSWER = "No answer"
 _DECIMALS = Decimal("0.0001")
 
 
 class Place(NamedTuple):
-    """The number of an item in the queue, from 1, and its address; whether this review has marked it, or any item.
+    """The number of an item among those that are shown, from 1, and its address.
 
     `filters` are the lists to filter by: the name of each, its label, its values with their words, and the value that
     is chosen. `students` are the keys and names to find one by.
@@ -38,47 +33,52 @@ class Place(NamedTuple):
     number: int
     total: int
     address: str
-    is_own: bool
-    can_undo: bool
-    filters: Sequence[tuple[str, str, Mapping[str, str], str]] = ()
-    students: Sequence[tuple[str, str]] = ()
+    filters: Sequence[tuple[str, str, Mapping[str, str], str]]
+    students: Sequence[tuple[str, str]]
 
 
-def item_page(
-    item: QueuedResult, place: Place, found: Sequence[EmbeddedPicture | NotShown], comments: Sequence[str], notice: str
-) -> str:
-    """Return the page of an item. The addresses of its pictures are ADDRESS/picture/1 and so on."""
-    criterion = item.result.criterion
-    given, comment = item.result.manual_mark, item.result.comment
+class OpenedItem(NamedTuple):
+    """The result as the check finds it, the pictures, with files that are not shown, and the paths of the files."""
+
+    result: Result
+    pictures: Sequence[EmbeddedPicture | NotShown] = ()
+    paths: Sequence[str] = ()
+
+
+def item_page(item: ReviewItem, opened: OpenedItem, criterion: Criterion, comments: Sequence[str], place: Place) -> str:
+    """Return the page of an item with earlier comments. `criterion` has the model answer.
+
+    The addresses of the pictures are ADDRESS/picture/1 and so on.
+    """
+    mark, members = item.first.mark, [who(one) for one in item.members]
+    is_alone, shown = len(members) == 1, [*enumerate(opened.pictures, 1)]
+    together = members[0] if is_alone else f"{len(members)} students"
     values = {
-        "title": f"{place.number} of {place.total}: {who_together(item)}, {criterion.title}",
+        "title": f"{place.number} of {place.total}: {together}, {criterion.title}",
         "place": place,
-        "who": who_together(item),
-        "first": who(item.first),
-        "together": together_text(item),
-        "members": [who(one) for one in item.members if item.others],
+        "who": together,
+        "first": members[0],
+        "together": "The same answer" if item.answer else NO_ANSWER,
+        "members": [] if is_alone else members,
         "criterion": criterion,
-        "points": counted_points(criterion.points),
         "maximum": format_points(criterion.points),
-        "score": "" if item.is_second or item.others else _grade(item.grade),
-        "message": "" if item.is_empty_group else message_text(item),
-        "answer": [] if item.is_empty_group else answer_lines(item.result.outcome),
+        "message": message_text(item, opened.result),
+        "answer": answer_lines(opened.result.outcome),
         "model": model_lines(criterion),
-        "places": [*files_text(item), *filter(None, [place_text(item)])],
-        "pictures": [*_pictures(found, place.address)],
-        "not_shown": [(one.where, one.reason) for one in found if isinstance(one, NotShown)],
+        "places": opened.paths,
+        "pictures": [(f"{place.address}/picture/{at}", one) for at, one in shown if isinstance(one, EmbeddedPicture)],
+        "not_shown": [one for _, one in shown if isinstance(one, NotShown)],
         "report": f"{place.address}/report" if has_report(item) else "",
         "marked": marked_text(item),
         "buttons": _buttons(criterion),
-        "choices": choice_words(criterion),
+        "choices": [f"{text} ({format_points(points)})" for text, points in criterion.choices.items()],
         "comments": [" ".join(comment.split()) for comment in comments],
-        "notice": notice,
     }
     data = {
-        "shown": item.newest,
-        "item": stamp_of(item),
-        "points": format_points(given.points) if given is not None else "",
-        "comment": given.comment if given is not None else comment.text if comment is not None else "",
+        "shown": item.view,
+        "item": item.stamp,
+        "points": mark.value if mark is not None else "",
+        "comment": mark.comment if mark is not None else "",
         "comments": [*comments],
         "choices": [[text, float(points)] for text, points in criterion.choices.items()],
         "maximum": float(criterion.points),
@@ -86,45 +86,28 @@ def item_page(
     return _page("review.html", values, data)
 
 
-def stamp_of(item: QueuedResult) -> str:
-    """Return a text that tells whether an item is the one that a page shows, without the names of its students."""
-    results = (f"{one.grade.student.key}\n{one.grade.result}" for one in item.members)
-    return sha256_of("\n".join((item.result.criterion.id, *results)).encode())[:16]
+def has_report(item: ReviewItem) -> bool:
+    """Return whether the student's page may be shown: it has the name."""
+    return item.first.number is None and not item.is_empty_group
 
 
-def has_report(item: QueuedResult) -> bool:
-    """Return whether the student's page may be shown: it has the name, and the marks of others."""
-    return item.first.number is None and not item.is_second and not item.is_empty_group
-
-
-def _grade(grade: StudentGrade) -> str:
-    """Return the points that count for a student, and what they are: a final mark, after the penalty, or so far."""
-    if grade.is_excused:
-        return "excused"
-    late = " after the late penalty" if grade.late.points else ""
-    how = "final mark" if grade.final is not None else f"points so far{late}"
-    return f"{format_points(grade.total)} of {format_points(grade.out_of)} {how}"
-
-
-def end_page(marked: int, left: int, place: Place, gradebook: str, notice: str) -> str:
-    """Return the page after the last item: the numbers of marked and remaining items, and the next command."""
+def end_page(marked: int, left: int, place: Place, gradebook: str) -> str:
+    """Return the page after the last item: how many marks were given, how many are left, and the next command."""
     values = {
         "title": "Manual grading complete" if not left else f"{counted(left, 'mark')} left",
         "summary": f"{counted(marked, 'mark')} given in this review.",
         "left": left,
         "place": place,
-        "is_filtered": any(chosen for *_, chosen in place.filters),
+        "is_filtered": any(chosen not in ("", UNMARKED) for *_, chosen in place.filters),
         "command": f"grader export csv --gradebook {shell_quoted(gradebook)}",
-        "notice": notice,
     }
     return _page("review-end.html", values, {})
 
 
 def error_page(message: str, following: str) -> str:
     """Return the page of an item that cannot be shown; `following` is the address of the next one."""
-    return _page(
-        "review-error.html", {"title": "This item cannot be shown", "message": message, "following": following}, {}
-    )
+    values = {"title": "This item cannot be shown", "message": message, "following": following}
+    return _page("review-error.html", values, {})
 
 
 def _page(template: str, values: dict[str, Any], data: dict[str, Any]) -> str:
@@ -132,24 +115,45 @@ def _page(template: str, values: dict[str, Any], data: dict[str, Any]) -> str:
     return render_page(template, shared, data, Assets("review.css", "review.js", sources=_SOURCES))
 
 
-class _Picture(NamedTuple):
-    """A picture on the page; a PDF has no width and height."""
-
-    address: str
-    words: str
-    width: int
-    height: int
-
-
-def _pictures(found: Sequence[EmbeddedPicture | NotShown], address: str) -> Iterator[_Picture]:
-    for index, one in enumerate(found, 1):
-        if isinstance(one, EmbeddedPicture):
-            page = "" if one.height else f"#page={one.page}&navpanes=0"
-            yield _Picture(f"{address}/picture/{index}{page}", one.words, one.width, one.height)
-
-
 def _buttons(criterion: Criterion) -> list[tuple[str, str]]:
     """Return the points that have a button, and the name of each."""
     half = criterion.points / 2
     named = {Decimal(0): "none", half: "half", criterion.points: "all"}
     return [(format_points(value), name) for value, name in named.items() if value == value.quantize(_DECIMALS)]
+
+
+def who(one: Member) -> str:
+    """Return the name and key of the student, or the number of an anonymous one; printable."""
+    return f"submission {one.number}" if one.number is not None else printable(named(one.student.key, one.student.name))
+
+
+def message_text(item: ReviewItem, result: Result) -> str:
+    """Return what was found; of an anonymous student the question alone, because students choose the names of files."""
+    if item.is_empty_group or item.first.number is None:
+        return printable(result.outcome.message)
+    question = str(item.criterion.arguments.get("question", ""))
+    return printable(question if result.outcome.status == "pending" else f"the check: {result.outcome.status}")
+
+
+def marked_text(item: ReviewItem) -> str:
+    """Return the mark or comment that counts, and whether it is for an earlier submission; empty without one."""
+    older = ", before the submission changed" if item.first.state == "older" else ""
+    return f"{mark_text(item.first.mark)}{older}" if item.first.mark is not None else ""
+
+
+def mark_text(mark: Mark) -> str:
+    """Return a mark in one printable line: points, name, time, comment."""
+    points = counted_points(mark.points) if mark.points is not None else mark.kind
+    time = f"at {time_text(datetime.fromisoformat(mark.time))}" if mark.time else f"in {mark.place}"
+    words = f"{points} by {mark.by or 'an unnamed person'} {time}"
+    comment = " ".join(mark.comment.split())
+    return printable(f"{words}: {comment}" if comment else words)
+
+
+def files_text(item: ReviewItem, result: Result, root: Path) -> list[str]:
+    """Return the files that a criterion is about, and the submission in the class folder `root`, printable."""
+    location, found = result.outcome.location, [*evidence_files(result)]
+    if location is not None:
+        found.append(f"{location.path}, line {location.line}" if counts_lines(location) else location.path)
+    submitted = ", ".join(str(root / path) for path in item.first.graded.paths)
+    return [printable(f"{place} in {submitted}") for place in found] or [printable(submitted)]

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from grader.classroom.mark_import import MarkImport, exported_cell
 from grader.classroom.marks import Mark, Marks, append_marks
-from grader.classroom.students import Student
+from grader.classroom.roster import Student
 from grader.classroom.tables import write_table
 from grader.errors import InputError
 from tests.classroom.marks import LAB, folder_of, read, said

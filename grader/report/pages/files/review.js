@@ -5,7 +5,7 @@
   let shown, busy = false, leaving = "", current = 0, showsReport = false;
   let typed = [];  // the keys that were pressed while no item was shown: they are for the next one
 
-  const say = (text) => { error.textContent = text; };
+  const say = (text, isBusy = false) => { error.textContent = text; error.classList.toggle("busy", isBusy); };
   const isChanged = () => form !== null && (points.value !== data.points || comment.value !== data.comment);
 
   async function send(action, more = {}) {
@@ -19,7 +19,7 @@
       return;
     }
     busy = true;
-    say("Saving ...");
+    say("Saving ...", true);
     find("main").inert = true;
     try {
       const mark = { points: points?.value, comment: comment?.value, shown, item: data.item };
@@ -84,8 +84,8 @@
     find("keep").focus();
   }
 
-  function keep() { discard(); send("keep"); }
-  function replace() { shown = Number(newer.dataset.shown); newer.hidden = true; send("mark"); }
+  function keep() { discard(); send("next"); }
+  function replace() { shown = newer.dataset.shown; newer.hidden = true; send("mark"); }
   function discard() { points.value = data.points; comment.value = data.comment; }
 
   function setPoints(button) {
@@ -110,9 +110,10 @@
   function choose(number) {
     const choice = data.choices[number - 1];
     if (!choice) return;
-    const [text, cost] = choice, at = parts().indexOf(text), isTyped = points.value !== "" && Number(points.value) !== left();
+    const [text, cost] = choice, at = parts().indexOf(text), given = Number(points.value.replace(",", ".") || NaN);
+    const isTyped = !Number.isNaN(given) && given !== left();
     comment.value = at >= 0 ? parts().toSpliced(Math.min(at, Math.max(0, parts().length - 2)), 2).join("") : [text, ...comment.value ? [comment.value] : []].join("; ");
-    points.value = isTyped ? between(Number(points.value.replace(",", ".")) + (at >= 0 ? -cost : cost)) : left();
+    points.value = isTyped ? between(given + (at >= 0 ? -cost : cost)) : left();
     points.focus();
     showChosen();
   }
@@ -156,13 +157,13 @@
   }
 
   const keys = {
-    n: () => send("next"), s: () => send("next"), b: () => send("back"), u: () => send("undo"), z: zoom,
+    n: () => send("next"), s: () => send("next"), b: () => send("back"), z: zoom,
     f: () => setPoints(buttons.at(-1)), h: () => setPoints(buttons.find((button) => button.dataset.name === "half")),
-    o: () => send("split"), v: () => toggle("#report"), d: () => toggle(".document:not(#report)"), "/": findStudent,
+    v: () => toggle("#report"), d: () => toggle(".document:not(#report)"), "/": findStudent,
     c: () => comment.focus(), p: () => points.select(), "?": () => help.showModal(),
     k: () => { if (!newer.hidden) keep(); }, r: () => { if (!newer.hidden) replace(); },
   };
-  const keysOfEnd = { b: keys.b, u: keys.u, "/": findStudent };
+  const keysOfEnd = { b: keys.b, "/": findStudent };
 
   function onKey(event) {
     if (event.ctrlKey || event.metaKey || event.isComposing || (event.altKey && !isChoice(event))) return;
@@ -197,7 +198,7 @@
       if (!event.repeat) send("mark");
       return true;
     }
-    if (target === comment || target instanceof HTMLSelectElement) return false;
+    if (target === comment || target instanceof HTMLSelectElement || (target === points && key === "/")) return false;
     const action = (form ? keys : keysOfEnd)[key];
     if (action) {
       if (!event.repeat) action();
@@ -224,12 +225,6 @@
     for (const list of filters) list.addEventListener("change", () => send("filter", wanted()));
     find("find-button")?.addEventListener("click", findStudent);
     find("find-form")?.addEventListener("submit", () => send("find", { student: find("student").value }));
-    const status = find("status");
-    if (status?.textContent) {  // screen readers read a live region when it changes
-      const text = status.textContent;
-      status.textContent = "";
-      setTimeout(() => { status.textContent = text; }, 100);
-    }
     if (!form) return;
     points.value = data.points;
     comment.value = data.comment;
