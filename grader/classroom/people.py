@@ -9,18 +9,24 @@ from typing import NamedTuple
 from grader.classroom.roster import Student, plain
 
 CERTAIN = 1  # the rank of an id as it is spelt; an LMS's own has 0
+_UNCLEAR = 4
 _MAX_WORDS = 8
 
 
 class Match(NamedTuple):
-    """The indices of the students that a submission may belong to: of one, or of a group; several others are no match.
+    """The indices of the students that a submission may belong to; `rank` grows with the doubt.
 
-    `rank` grows with the doubt.
+    The submission of a group belongs to each of them.
     """
 
     students: tuple[int, ...]
     rank: int = 0
     is_group: bool = False
+
+    @property
+    def only(self) -> int | None:
+        """The student to whom it belongs; None if that is nobody or not clear."""
+        return self.students[0] if len(self.students) == 1 and self.rank < _UNCLEAR else None
 
 
 class People:
@@ -46,7 +52,7 @@ class People:
 
     def knows_student(self, name: str, team: str = "") -> bool:
         """Return whether a name is that of one student."""
-        return len(self._person(Student(name, login=name, group=team)).students) == 1
+        return self._person(Student(name, login=name, group=team)).only is not None
 
     def match(self, claim: Student) -> Match:
         """Return whose a submission is by what its name claims; with a `group`, only of a member of that team.
@@ -56,7 +62,7 @@ class People:
         """
         if claim.aliases:
             users = {index for user in claim.aliases for index in self._tables[0].get(f"canvas {user}", ())}
-            return Match(tuple(sorted(users)), len(self._tables))
+            return Match(tuple(sorted(users)), _UNCLEAR)
         found = self._person(claim)
         name = _letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
         group = () if claim.group else tuple(self._groups.get(name, ()))
@@ -65,7 +71,7 @@ class People:
                 is_own_name = name in _in_canvas(self.students[found.students[0]].name)
                 return found if is_own_name or found.students[0] not in group else Match(group, is_group=True)
             if found.students or any(self.students[index].canvas for index in group):
-                return Match((*found.students, *group), found.rank)
+                return Match((*found.students, *group), _UNCLEAR)
         return found if found.students or not group else Match(group, is_group=True)
 
     def _person(self, claim: Student) -> Match:

@@ -125,8 +125,8 @@ class _Owners:
                 continue
             if match.is_group:
                 groups[match.students].append(one)
-            elif len(match.students) == 1 and not one.student.aliases:
-                claims[match.students[0]].append((match.rank, one))
+            elif match.only is not None:
+                claims[match.only].append((match.rank, one))
             else:
                 others.append((match.students, one))
         for index, claimed in claims.items():
