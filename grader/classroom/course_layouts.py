@@ -9,6 +9,7 @@ from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 from datetime import UTC, datetime
+from functools import lru_cache
 
 from grader.classroom.layouts import ENDINGS, PATTERNS, ClassFolder, ClassSubmission, files_below, is_submission, upload
 from grader.classroom.listing import ClassListing
@@ -167,7 +168,7 @@ def team_labs(folder: ClassFolder) -> dict[str, str]:
 
 def _labs_below(folder: ClassFolder, team: str) -> list[str]:
     """Return a team's folders of the lab that hold students'; not an only student's if the robot is in another lab's."""
-    top, names = (folder.start + team).rstrip("/"), LabFolders(folder.labs)
+    top, (names, _) = (folder.start + team).rstrip("/"), _names_of(folder.labs)
     below = folder.listing.children(top, 1000).folders
     labs = [f"{top}/{name}".lstrip("/") for name in below if names.is_lab(name)]
     labs = [lab for lab in labs if _holds_students(folder, lab, team)]
@@ -194,15 +195,21 @@ def _holds_students(folder: ClassFolder, lab: str, team: str) -> bool:
         return True
     if folder.is_explicit:
         return len(parts) < len(inner.folders)
-    tops = [f"{lab}/{name}" for name in inner.folders]
-    is_package = any("package.xml" in folder.listing.children(top, 1000).files for top in tops)
-    return not is_package and sum(_has_robot(folder.listing, top) for top in tops) > 1
+    below = {f"{lab}/{name}": files_below(folder.listing, f"{lab}/{name}") for name in inner.folders}
+    robots = sum(any(_ROBOT.search(path.lower()) for path in paths) for paths in below.values())
+    return robots > 1 and not any(f"{top}/package.xml" in paths for top, paths in below.items())
 
 
 def _parts(folder: ClassFolder, names: Collection[str], team: str) -> list[str]:
     """Return the names in a lab's folder that are those of parts of a submission, and not of students."""
-    words = {word for lab in folder.labs for word in lab_words(lab)}
+    _, words = _names_of(folder.labs)
     return [name for name in names if is_part(name, words) and not folder.people.knows(name, team)]
+
+
+@lru_cache(maxsize=1)
+def _names_of(labs: tuple[str, ...]) -> tuple[LabFolders, frozenset[str]]:
+    """Return the names of the lab's folders, and the words in them."""
+    return LabFolders(labs), frozenset(word for lab in labs for word in lab_words(lab))
 
 
 def _has_robot(listing: ClassListing, top: str) -> bool:

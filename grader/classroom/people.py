@@ -43,7 +43,7 @@ class People:
                 for word in {*words} - {""}:
                     table[unicodedata.normalize("NFC", word)].append(index)
             if team := one.group or one.section:
-                for name in {plain(team), _letters(team)} - {""}:
+                for name in {plain(team), letters(team)} - {""}:
                     self._groups[name].append(index)
 
     def knows(self, name: str, team: str = "") -> bool:
@@ -64,7 +64,7 @@ class People:
             users = {index for user in claim.aliases for index in self._tables[0].get(f"canvas {user}", ())}
             return Match(tuple(sorted(users)), _UNCLEAR)
         found = self._person(claim)
-        name = _letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
+        name = letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
         group = () if claim.group else tuple(self._groups.get(name, ()))
         if claim.canvas and group:
             if found.students and found.rank == 0:
@@ -76,9 +76,11 @@ class People:
 
     def _person(self, claim: Student) -> Match:
         """Return the students with the best of the words in a claim, without those whom the LMS knows by another id."""
+        if not self.students:
+            return Match(())
         login, team = plain(claim.login), self._groups.get(plain(claim.group), ()) if claim.group else None
         names = (
-            [_letters(claim.name)]
+            [letters(claim.name)]
             if claim.canvas
             else [plain(claim.name), login, _surname(login) if claim.group else ""]
         )
@@ -106,7 +108,7 @@ def _surname(name: str) -> str:
     return f"surname\n{word}" if word else ""
 
 
-def _letters(name: str) -> str:
+def letters(name: str) -> str:
     """Return a name as Canvas writes it into names of files (canvas-lms, content_zipper.rb)."""
     composed = re.sub(r"_(\d+)_", r"\1", unicodedata.normalize("NFC", name))
     letters = re.sub(r"\W", "", composed).casefold()
@@ -117,4 +119,4 @@ def _in_canvas(name: str) -> Iterable[str]:
     """Return what Canvas may call a student in names of files: sorted by any word of the name, or as the user set."""
     words = name.split()[:_MAX_WORDS]
     orders = [name] if "," in name else [" ".join(words[index:] + words[:index]) for index in range(len(words))]
-    return map(_letters, orders)
+    return map(letters, orders)

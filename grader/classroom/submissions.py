@@ -170,15 +170,15 @@ class _Owners:
 
     def _visit(self, one: ClassSubmission, reason: str) -> None:
         self._visitors.append(one)
-        self._list(one, reason, one.student.key)
+        if self._has_roster:
+            self._list(one, reason)
 
-    def _list(self, one: ClassSubmission, reason: str, key: str) -> None:
-        """List a submission with the row of the roster that assigns it."""
-        row = [
-            f'"{cell.replace(chr(34), 2 * chr(34))}"' if set(cell) & set(',;"') else cell
-            for cell in (printable_path(key), self._shown(one))
-        ]
-        self._unmatched.append(f"{self._shown(one)} {reason}: a row `{','.join(row)}` below `id,submission` assigns it")
+    def _list(self, one: ClassSubmission, reason: str, student: str = "") -> None:
+        """List a submission with what assigns it: a cell of the student's row, or a row of a visitor's own."""
+        key, place = (_cell(text) for text in (printable_path(one.student.key), self._shown(one)))
+        row = "" if student else f", or add the row `{key},{place}` below `id,submission`"
+        advice = f"write {place} in the column `submission` of {student or 'its student'}{row}"
+        self._unmatched.append(f"{self._shown(one)} {reason}; to assign it, {advice}")
 
     def _decide(self, index: int, claims: Sequence[tuple[int, ClassSubmission]]) -> None:
         """Give a student the submission with the only best id; if there is none, none of them is graded."""
@@ -195,10 +195,10 @@ class _Owners:
         for _, one in others:
             self._visit(one, f"may belong to {key}, who has another submission")
 
-    def _reject(self, several: Sequence[ClassSubmission], reason: str, key: str) -> None:
+    def _reject(self, several: Sequence[ClassSubmission], reason: str, student: str = "") -> None:
         names = enumerated([self._shown(one) for one in several], _MAX_NAMED)
         for one in several:
-            self._list(one, f"{reason}, and of {names} none is graded", key)
+            self._list(one, f"{reason}, and of {names} none is graded", student)
 
     def _share(self, members: Iterable[int], named: Sequence[ClassSubmission]) -> None:
         """Let the only submission of a group count for each member without another; that of a section for nobody."""
@@ -210,7 +210,7 @@ class _Owners:
             elif not without:
                 self._visit(one, "is named like a group whose members all have other submissions")
         if without and len(alone) > 1:
-            self._reject(alone, "is named like a group", alone[0].student.key)
+            self._reject(alone, "is named like a group")
             self._unclear.update(without)
         elif alone:
             self._owned |= dict.fromkeys(without, alone[0]._replace(student=Student("")))  # the ids are one member's
@@ -252,10 +252,15 @@ class _Owners:
             tuple(sorted(submissions, key=lambda one: one.student.key)),
             tuple(absent),
             tuple(sorted(students, key=lambda one: one.key)),
-            tuple(self._unmatched if self._has_roster and not self._is_anonymous else ()),
+            tuple(self._unmatched if not self._is_anonymous else ()),
             tuple(self.notes),
             tuple(first_lines(sorted(self.ignored), _MAX_LINES)),
         )
+
+
+def _cell(text: str) -> str:
+    """Return a text as a cell of a CSV file."""
+    return '"' + text.replace('"', '""') + '"' if set(text) & set(',;"') else text
 
 
 def _path_key(path: str) -> str:

@@ -2,7 +2,7 @@
 
 A class is laid out as one of the layouts, with or without a roster. Then a student adds what a student can add: further
 folders and files in every odd spelling, symlinks to others' work, attempts, archives. After each addition every honest
-student has the same submission as before, or none, and it is listed. `python -m tests.classroom.intake.hostile_submissions 20000` tries as many
+student has the same submission as before, or none, and it is listed. `python -m tests.classroom.hostile_submissions 20000` tries as many
 classes and prints its seed, which a second argument repeats.
 """
 
