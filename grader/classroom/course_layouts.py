@@ -8,7 +8,6 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator
 from dataclasses import replace
-from datetime import UTC, datetime
 from functools import lru_cache
 
 from grader.classroom.layouts import ENDINGS, PATTERNS, ClassFolder, ClassSubmission, files_below, is_submission, upload
@@ -121,18 +120,10 @@ def nbgrader(folder: ClassFolder) -> Iterator[ClassSubmission]:
     course.ignore(course.children.files, "is not a student's folder")
     for student in found[name]:
         path = f"{course.start}{student}/{name}"
-        stamp = folder.listing.start(f"{path}/timestamp.txt", 100).decode("utf-8", "replace")
-        yield ClassSubmission(Student(student, login=student), 0, (path,), submitted=_utc_time(stamp))
-
-
-def _utc_time(text: str) -> str:
-    """Return a time as ISO 8601 in UTC; one without a zone is in UTC. Empty if it is none."""
-    try:
-        time = datetime.fromisoformat(iso_time(text))
-        time = time.replace(tzinfo=UTC) if time.tzinfo is None else time.astimezone(UTC)
-    except (ValueError, OverflowError):  # OverflowError for a time in the year 1
-        return ""
-    return time.isoformat(timespec="seconds").replace("+00:00", "Z")
+        time = iso_time(folder.listing.start(f"{path}/timestamp.txt", 100).decode("utf-8", "replace"))
+        has_zone = re.search(r"Z\Z|[+-][0-9:]+\Z", time[len("2026-09-01") :])
+        submitted = f"{time}Z" if time and not has_zone else time  # in UTC
+        yield ClassSubmission(Student(student, login=student), 0, (path,), submitted=submitted)
 
 
 def teams(folder: ClassFolder) -> Iterator[ClassSubmission]:
@@ -167,7 +158,7 @@ def team_labs(folder: ClassFolder) -> dict[str, str]:
 
 
 def _labs_below(folder: ClassFolder, team: str) -> list[str]:
-    """Return a team's folders of the lab that hold students'; not an only student's if the robot is in another lab's."""
+    """Return a team's folders of the lab that hold students'; not an only one's if the robot is in another lab's."""
     top, (names, _) = (folder.start + team).rstrip("/"), _names_of(folder.labs)
     below = folder.listing.children(top, 1000).folders
     labs = [f"{top}/{name}".lstrip("/") for name in below if names.is_lab(name)]

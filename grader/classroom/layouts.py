@@ -185,9 +185,6 @@ def _files_in_moodle(
     if first not in every and every == named[first]:  # one folder
         is_file = len(every) == 1 and all(path.rpartition("/")[0] == first and is_submission(path) for path in every)
         return tuple(every) if is_file else (first,), ()
-    if len(every) > _MAX_FILES:
-        folder.ignored.append(f"{printable_path(first)} has more than {_MAX_FILES} files: only it is read")
-        return (first,), ()
     return tuple(every), tuple(every.values())
 
 

@@ -105,7 +105,7 @@ IN_MOODLE = st.text(
 )
 def test_any_download_of_canvas_is_grouped_again(people: dict[int, tuple[str, bool, dict[str, None]]]) -> None:
     """Whatever students and files are called, Canvas' names for them give the same submissions."""
-    names, expected = [], {}
+    names, expected = list[str](), {}
     for user, (name, is_late, originals) in people.items():
         shown = re.sub(r"_\d+$", "", letters(name).partition("\n")[2]) or "x"
         for original in originals:
