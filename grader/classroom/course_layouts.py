@@ -29,22 +29,29 @@ _MAX_NAMED = 10
 def folders(folder: ClassFolder) -> Iterator[ClassSubmission]:
     """Yield one submission for each folder, archive or URDF, without the prefix of the assignment in its name."""
     folder.ignore((name for name in folder.children.folders if name in BUILD_FOLDERS), "is a build folder")
-    names = [f"{name}/" for name in folder.children.folders if name not in BUILD_FOLDERS] + folder.children.files
-    entries = [entry for name in names if (entry := PATTERNS["folders"].fullmatch(name))]
-    unfit = {*folder.children.files}.difference(entry.string for entry in entries)
+    parse, unfit, by_login = PATTERNS["folders"].fullmatch, list[str](), defaultdict[str, list[str]](list)
+    for name in (
+        *(f"{name}/" for name in folder.children.folders if name not in BUILD_FOLDERS),
+        *folder.children.files,
+    ):
+        if entry := parse(name):
+            by_login[entry["login"]].append(name)
+        else:
+            unfit.append(name)
     folder.ignore(unfit, "is not a folder, an archive or a URDF")
-    logins = {entry["login"] for entry in entries if entry["ending"] == "/"} or {entry["login"] for entry in entries}
-    prefix, plain = _prefix(logins, folder), {entry["login"] for entry in entries if not entry["upload"]}
-    by_owner: dict[str, list[re.Match[str]]] = defaultdict(list)
-    for entry in entries:
-        login = entry["login"]
-        is_own_number = entry["upload"] and login not in plain and not folder.people.knows(_without(prefix, login))
-        by_owner[entry.string.removesuffix(entry["ending"]) if is_own_number else login].append(entry)
-    for owner, copies in by_owner.items():
-        *others, last = (copy.string.rstrip("/") for copy in sorted(copies, key=_order))
-        folder.ignore(others, f"is not graded: {printable_path(last)} counts")
-        login = _without(prefix, owner)
-        yield ClassSubmission(Student(login, login=login), 0, (folder.start + last,))
+    prefix = _prefix([login for login, names in by_login.items() if names[0].endswith("/")] or by_login, folder)
+    while by_login:  # of a large class not all is kept twice
+        login, names = by_login.popitem()
+        copies = sorted(filter(None, map(parse, names)), key=_order)
+        owners: dict[str, list[str]] = {login: [copy.string.rstrip("/") for copy in copies]}
+        if all(copy["upload"] for copy in copies) and not folder.people.knows(_without(prefix, login)):
+            owners = defaultdict(list)  # Team (1) and Team (2) are two teams
+            for copy in copies:
+                owners[copy.string.removesuffix(copy["ending"])].append(copy.string.rstrip("/"))
+        for owner, (*others, last) in owners.items():
+            folder.ignore(others, f"is not graded: {printable_path(last)} counts")
+            key = _without(prefix, owner)
+            yield ClassSubmission(Student(key, login=key), 0, (folder.start + last,))
 
 
 def _order(copy: re.Match[str]) -> tuple[int, int, str]:
@@ -186,9 +193,9 @@ def _holds_students(folder: ClassFolder, lab: str, team: str) -> bool:
         return True
     if folder.is_explicit:
         return len(parts) < len(inner.folders)
-    below = {f"{lab}/{name}": files_below(folder.listing, f"{lab}/{name}") for name in inner.folders}
-    robots = sum(any(_ROBOT.search(path.lower()) for path in paths) for paths in below.values())
-    return robots > 1 and not any(f"{top}/package.xml" in paths for top, paths in below.items())
+    tops = [f"{lab}/{name}" for name in inner.folders]
+    is_package = any(folder.listing.has(f"{top}/package.xml") for top in tops)
+    return not is_package and sum(_has_robot(folder.listing, top) for top in tops) > 1
 
 
 def _parts(folder: ClassFolder, names: Collection[str], team: str) -> list[str]:

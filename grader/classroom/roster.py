@@ -237,8 +237,6 @@ def iso_time(text: str) -> str:
         time = datetime.fromisoformat(re.sub(r"\s+(?=[+-][0-9:]+\Z)", "", zoned))
     except ValueError:
         return ""
-    if not 1900 < time.year < 9000:  # others cannot be converted to every zone
-        return ""
     if ":" not in text:
         return time.date().isoformat() if len(text) == len("2026-09-01") else ""
     return time.isoformat(timespec="seconds").replace("+00:00", "Z")

@@ -115,6 +115,9 @@ class _Owners:
     def find(self, found: Sequence[ClassSubmission]) -> None:
         """Assign all submissions: what a person has assigned decides, then ids and names, then groups."""
         self._is_anonymous = all(one.student.key.startswith("anon_") for one in found)
+        if not self._has_roster:
+            self._visitors.extend(found)
+            return
         claims: dict[int, list[tuple[int, ClassSubmission]]] = defaultdict(list)
         groups: dict[tuple[int, ...], list[ClassSubmission]] = defaultdict(list)
         others: list[tuple[tuple[int, ...], ClassSubmission]] = []
@@ -170,8 +173,7 @@ class _Owners:
 
     def _visit(self, one: ClassSubmission, reason: str) -> None:
         self._visitors.append(one)
-        if self._has_roster:
-            self._list(one, reason)
+        self._list(one, reason)
 
     def _list(self, one: ClassSubmission, reason: str, student: str = "") -> None:
         """List a submission with what assigns it: a cell of the student's row, or a row of a visitor's own."""
@@ -243,8 +245,8 @@ class _Owners:
             if counts[key] > 1 or not key.isprintable() or plain(key) in taken:
                 key = _path_key(f"{self.roots[one.root][1]}/{one.paths[0]}" if len(self.roots) > 1 else one.paths[0])
             visitor = one.student._replace(key=key, name=name, aliases=(), is_on_roster=not self._has_roster)
-            submissions.append(one._replace(student=visitor))
-            students.append(visitor)
+            submissions.append(one if visitor == one.student else one._replace(student=visitor))
+            students.append(submissions[-1].student)
         if self._is_anonymous:
             self.notes.append(_ANONYMOUS)
         return Intake(

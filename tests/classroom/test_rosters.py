@@ -1,7 +1,6 @@
 """Rosters: a table of CSV files with the students or mistakes in them, and laws that hold for any file."""
 
 import tomllib
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +45,7 @@ def test_any_bytes_give_a_roster_or_lines(data: bytes) -> None:
             assert len({student.key for student in students}) == len(students)
 
 
-@given(st.datetimes(datetime(1901, 1, 1), datetime(8999, 1, 1)))
+@given(st.datetimes())
 def test_times(time: object) -> None:
     """A time as Python writes it is read to the second."""
     text = str(time)
