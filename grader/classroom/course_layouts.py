@@ -135,7 +135,7 @@ def nbgrader(folder: ClassFolder) -> Iterator[ClassSubmission]:
 
 def teams(folder: ClassFolder) -> Iterator[ClassSubmission]:
     """Yield the submissions of the students in lab folders, and of the teams without one."""
-    labs = team_labs(folder)
+    labs = dict(team_labs(folder))
     rest = [name for name in folder.children.folders if name not in labs.values()]
     if "" in labs.values():  # the repository of one team
         folder.ignore([*rest, *folder.children.files], "is outside the folder of the lab")
@@ -152,16 +152,17 @@ def teams(folder: ClassFolder) -> Iterator[ClassSubmission]:
             yield found._replace(student=Student(f"{team}/{name}" if team else name, name, login=name, group=team))
 
 
-def team_labs(folder: ClassFolder) -> dict[str, str]:
-    """Return the lab folders with students' folders, each with its team; without a team those of one repository.
+def team_labs(folder: ClassFolder) -> Iterator[tuple[str, str]]:
+    """Yield the lab folders with students' folders, each with its team; without a team those of one repository.
 
     A folder of a student stays whole, unless the user has named the layout.
     """
     if folder.is_explicit and (own := _labs_below(folder, "")):
-        return dict.fromkeys(own, "")
-    names = sorted(folder.children.folders)
-    split = [team for team in names if folder.is_explicit or not folder.people.knows_student(team)]
-    return {lab: team for team in split for lab in _labs_below(folder, team)}
+        yield from ((lab, "") for lab in own)
+        return
+    for team in sorted(folder.children.folders):
+        if folder.is_explicit or not folder.people.knows_student(team):
+            yield from ((lab, team) for lab in _labs_below(folder, team))
 
 
 def _labs_below(folder: ClassFolder, team: str) -> list[str]:

@@ -28,7 +28,7 @@ def layout_of(folder: ClassFolder) -> str:
     course = course_layouts.course_of(folder)
     if course_layouts.is_course(course) or (course is not folder and course.children.folders):
         return "nbgrader"
-    return "teams" if course_layouts.team_labs(folder) else "folders"
+    return "teams" if any(course_layouts.team_labs(folder)) else "folders"
 
 
 def _fits(layout: str, name: str) -> bool:

@@ -2,7 +2,7 @@
 
 import os
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
@@ -57,16 +57,19 @@ def read_class(
         raise InputError(f"there is no layout {layout!r}; the layouts are: auto, {', '.join(LAYOUTS)}")
     labs = folders or tuple(filter(None, [rubric_id]))
     students, notes = roster if roster is not None else Roster(())
-    owners = _Owners(
-        People(students), [(listing_of(path), path.resolve().name) for path in paths], has_roster=roster is not None
-    )
+    ways = (["/".join(path.resolve().parts[-count:]) for path in paths] for count in (1, 2))
+    names = next((way for way in ways if len(set(way)) == len(way)), [])
+    if not names:
+        raise InputError("the class folders have the same names: rename one, so that the roster can name them")
+    roots = list(zip(map(listing_of, paths), names, strict=True))
+    owners = _Owners(People(students), roots, has_roster=roster is not None)
     owners.notes.extend(notes)
     found: list[ClassSubmission] = []
     layouts: dict[str, None] = {}
-    for root, (path, (listing, name)) in enumerate(zip(paths, owners.roots, strict=True)):
+    for root, (path, (listing, _)) in enumerate(zip(paths, roots, strict=True)):
         top = ClassFolder(
-            listing, listing.children(""), "", name, owners.people, rubric_id, labs, assignment, layout != "auto",
-            owners.ignored, owners.notes,
+            listing, listing.children(""), "", path.resolve().name, owners.people, rubric_id, labs, assignment,
+            layout != "auto", owners.ignored, owners.notes,
         )  # fmt: skip
         folder = inner_class(top)
         chosen = layout_of(folder) if layout == "auto" else layout
@@ -144,32 +147,36 @@ class _Owners:
     def _assigned(self, found: Iterable[ClassSubmission]) -> set[ClassSubmission]:
         """Give students what the roster's column `submission` names, and return these submissions."""
         wanted = [(index, one) for index, one in enumerate(self.people.students) if one.submission]
-        places = {self._shown(one, path): one for one in found for path in one.paths} if wanted else {}
+        places: dict[str, list[ClassSubmission]] = defaultdict(list)
+        for one in found if wanted else ():
+            for place in {text for path in one.paths for text in (self._shown(one, path), _plain_path(path))}:
+                places[place].append(one)
         for index, student in wanted:
-            place = " ".join(student.submission.split())
-            if one := places.get(place) or self._submission_at(place):
-                self._owned[index] = one
+            place = _plain_path(student.submission)
+            named = places.get(place) or list(self._submissions_at(place))
+            if len(named) == 1:
+                self._owned[index] = named[0]
             else:
                 self._unclear.add(index)
-                self.notes.append(f"{student.key} has the submission {place!r} on the roster, which does not exist")
+                why = "is in several class folders: begin it with the name of one" if named else "does not exist"
+                self.notes.append(f"{student.key} has the submission {place!r} on the roster, which {why}")
         return set(self._owned.values())
 
-    def _submission_at(self, place: str) -> ClassSubmission | None:
-        """Return what is at a place in a class folder, and no submission by itself; None if there is nothing."""
+    def _submissions_at(self, place: str) -> Iterator[ClassSubmission]:
+        """Yield what is at a place in the class folders, and no submission by itself."""
         for root, (listing, name) in enumerate(self.roots):
             path = ""
-            for part in place.removeprefix(f"{name}/" if len(self.roots) > 1 else "").split("/"):
+            for part in place.removeprefix(f"{_plain_path(name)}/" if len(self.roots) > 1 else "").split("/"):
                 inner = listing.children(path)
-                same = [one for one in inner.folders + inner.files if " ".join(printable_path(one).split()) == part]
+                same = [one for one in inner.folders + inner.files if _plain_path(one) == part]
                 path = f"{path}/{same[0]}".lstrip("/") if len(same) == 1 else "\0"
             if "\0" not in path:
-                return ClassSubmission(Student(""), root, (path,))
-        return None
+                yield ClassSubmission(Student(""), root, (path,))
 
     def _shown(self, one: ClassSubmission, path: str = "") -> str:
         """Return a path as a person can write it on the roster, of several class folders with the name of its own."""
         top = f"{self.roots[one.root][1]}/" if len(self.roots) > 1 else ""
-        return " ".join(printable_path(top + (path or one.paths[0])).split())
+        return _plain_path(top + (path or one.paths[0]))
 
     def _visit(self, one: ClassSubmission, reason: str) -> None:
         self._visitors.append(one)
@@ -258,6 +265,10 @@ class _Owners:
             tuple(self.notes),
             tuple(first_lines(sorted(self.ignored), _MAX_LINES)),
         )
+
+
+def _plain_path(path: str) -> str:
+    return " ".join(printable_path(path).split())
 
 
 def _cell(text: str) -> str:

@@ -79,6 +79,7 @@ def test_a_class_is_read(row: dict[str, Any], tmp_path: Path) -> None:
 
 def packed(folder: str, names: list[str]) -> Path:
     """Return a zip with these empty members."""
+    Path(folder).mkdir(exist_ok=True)
     with zipfile.ZipFile(Path(folder, "class.zip"), "w") as archive:
         for name in names:
             archive.writestr(zipfile.ZipInfo(name), b"")
@@ -138,21 +139,18 @@ def test_any_names_are_accepted_and_can_be_assigned(names: list[str], is_twice: 
     """Keys are printable and unique, all paths are in the zip, and the roster can assign every submission to a student."""
     with tempfile.TemporaryDirectory() as folder:
         members = {zipfile.ZipInfo(name).filename or "x" for name in ("ann.zip", "bea.zip", *names)}  # cut at a NUL
-        target = packed(folder, sorted(members - {"package.xml"}))
-        targets = [target, target] if is_twice else [target]
+        targets = [packed(f"{folder}/{root}", sorted(members - {"package.xml"})) for root in "ab"[: 1 + is_twice]]
         for roster in (None, Roster((Student("nobody"),))):
-            found = read_class([target], roster)
+            found = read_class(targets, roster)
             keys = [one.student.key for one in found.submissions]
             assert keys == sorted(set(keys)) and all(map(str.isprintable, keys))
             assert len(found.unmatched) == (len(keys) if roster else 0)
             assert all(line.isprintable() for line in (*found.unmatched, *found.notes, *found.ignored))
-        assert len(read_class(targets, None).submissions) == len(keys) * len(targets)
         for one in found.submissions:
-            student = Student("nobody", submission=" ".join(one.paths[0].split()))
-            given = read_class([target], Roster((student,)))
-            assert [(it.student.key, it.paths) for it in given.submissions if it.student.is_on_roster] == [
-                ("nobody", one.paths)
-            ]
+            place = f"{'ab'[one.root]}/class.zip/{one.paths[0]}" if is_twice else one.paths[0]
+            given = read_class(targets, Roster((Student("nobody", submission=place),)))
+            paths = [(it.student.key, it.root, it.paths) for it in given.submissions if it.student.is_on_roster]
+            assert paths == [("nobody", one.root, one.paths)]
 
 
 def test_names_that_are_not_utf_8_can_be_opened(tmp_path: Path) -> None:
