@@ -57,8 +57,8 @@ class People:
     def match(self, claim: Student) -> Match:
         """Return whose a submission is by what its name claims; with a `group`, only of a member of that team.
 
-        A file of Canvas that is named like a group belongs to it only if its id is that of a member, or no member has
-        one. Of `aliases`, ids of Canvas, it is not clear which is the user's.
+        Named like a group, it belongs to that only if its id of Canvas is a member's, or no member has one, and if its
+        number in Moodle, that of the group, is no participant's. Of `aliases` it is not clear which is the user's id.
         """
         if claim.aliases:
             users = {index for user in claim.aliases for index in self._tables[0].get(f"canvas {user}", ())}
@@ -66,12 +66,17 @@ class People:
         found = self._person(claim)
         name = letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
         group = () if claim.group else tuple(self._groups.get(name, ()))
-        if claim.canvas and group:
-            if found.students and found.rank == 0:
-                is_own_name = name in _in_canvas(self.students[found.students[0]].name)
-                return found if is_own_name or found.students[0] not in group else Match(group, is_group=True)
-            if found.students or any(self.students[index].canvas for index in group):
-                return Match((*found.students, *group), _UNCLEAR)
+        if group and found.students and found.rank == 0:
+            owner = self.students[found.students[0]]
+            if (
+                name in _in_canvas(owner.name)
+                or name == plain(owner.name)
+                or (claim.canvas and found.only not in group)
+            ):
+                return found
+            return Match(group, is_group=True) if claim.canvas else Match((*found.students, *group), _UNCLEAR)
+        if claim.canvas and group and (found.students or any(self.students[index].canvas for index in group)):
+            return Match((*found.students, *group), _UNCLEAR)
         return found if found.students or not group else Match(group, is_group=True)
 
     def _person(self, claim: Student) -> Match:
@@ -79,11 +84,8 @@ class People:
         if not self.students:
             return Match(())
         login, team = plain(claim.login), self._groups.get(plain(claim.group), ()) if claim.group else None
-        names = (
-            [letters(claim.name)]
-            if claim.canvas
-            else [plain(claim.name), login, _surname(login) if claim.group else ""]
-        )
+        names = [plain(claim.name), login, _surname(login) if claim.group else ""]
+        names = [letters(claim.name)] if claim.canvas else names
         ranked = (_numbers(claim), [unicodedata.normalize("NFC", claim.login)], [login], names)
         for rank, (words, table) in enumerate(zip(ranked, self._tables, strict=True)):
             found = {index for word in words for index in table.get(word, ()) if team is None or index in team}

@@ -113,7 +113,7 @@ class _Owners:
         self._unclear: set[int] = set()
         self._visitors: list[ClassSubmission] = []
         self._unmatched: list[str] = []
-        self._is_anonymous = False
+        self._is_anonymous, self._shared = False, 0
 
     def find(self, found: Sequence[ClassSubmission]) -> None:
         """Assign all submissions: what a person has assigned decides, then ids and names, then groups."""
@@ -221,7 +221,8 @@ class _Owners:
         if without and len(alone) > 1:
             self._reject(alone, "is named like a group")
             self._unclear.update(without)
-        elif alone:
+        elif alone and without:
+            self._shared += 1
             self._owned |= dict.fromkeys(without, alone[0]._replace(student=Student("")))  # the ids are one member's
 
     def _holds_students(self, one: ClassSubmission) -> bool:
@@ -254,8 +255,8 @@ class _Owners:
             visitor = one.student._replace(key=key, name=name, aliases=(), is_on_roster=not self._has_roster)
             submissions.append(one if visitor == one.student else one._replace(student=visitor))
             students.append(submissions[-1].student)
-        if self._is_anonymous:
-            self.notes.append(_ANONYMOUS)
+        self.notes += [_ANONYMOUS] if self._is_anonymous else []
+        self.notes += [f"group submissions that count for each member: {self._shared}"] if self._shared else []
         return Intake(
             layout,
             tuple(sorted(submissions, key=lambda one: one.student.key)),
