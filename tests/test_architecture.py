@@ -36,7 +36,7 @@ INNER = {
         ("typed_names", "roster"),
         ("people",),
         ("layouts",),
-        ("course_layouts",),
+        ("course_layouts", "owners"),
         ("detection",),
         ("submissions",),
         ("intake", "lms"),
