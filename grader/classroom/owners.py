@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from hashlib import sha256
 from typing import NamedTuple
 
+from grader.classroom.detection import is_of_course
 from grader.classroom.layouts import PATTERNS, ClassSubmission
 from grader.classroom.listing import ClassListing
 from grader.classroom.people import CERTAIN, Match, People
@@ -54,6 +55,10 @@ class Owners:
         self._is_anonymous = all(one.student.key.startswith("anon_") for one in found)
         if not self._has_roster:
             self._visitors.extend(found)
+            if names := sorted(self._shown(one) for one in found if is_of_course(one.paths[0])):
+                self.notes.append(
+                    f"graded like students', and may be the course's own: {enumerated(names, _MAX_NAMED)}"
+                )
             return
         claims: dict[int, list[tuple[int, ClassSubmission]]] = defaultdict(list)
         groups: dict[tuple[int, ...], list[ClassSubmission]] = defaultdict(list)
@@ -113,6 +118,9 @@ class Owners:
         return _plain_path(top + (path or one.paths[0]))
 
     def _visit(self, one: ClassSubmission, reason: str) -> None:
+        if is_of_course(one.paths[0]):
+            self.ignored.append(f"{self._shown(one)} is of the course, and not of a student")
+            return
         self._visitors.append(one)
         self._list(one, reason)
 

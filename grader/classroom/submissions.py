@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from grader.classroom.detection import LAYOUTS, inner_class, layout_of, submissions_in
+from grader.classroom.detection import LAYOUTS, downloads_in, inner_class, is_of_course, layout_of, submissions_in
 from grader.classroom.layouts import ClassFolder, ClassSubmission
 from grader.classroom.listing import listing_of
 from grader.classroom.owners import Intake, Owners
@@ -75,3 +75,10 @@ def _refuse(path: Path, folder: ClassFolder, layout: str) -> None:
             f"{shown} is one submission and not a class: it contains a package.xml "
             f"(grade it with `grader grade {shell_quoted(path)}`)"
         )
+    downloads = downloads_in(folder) if layout == "folders" and not folder.is_explicit else []
+    for name in downloads:
+        what, command = "a download of a whole class", f"grade it with `grader batch {shell_quoted(path / name)}`"
+        if len(downloads) == sum(not is_of_course(entry) for entry in folder.entries):
+            advice = f"{command}; if it is the submission of one student, add --layout folders"
+            raise InputError(f"{shown}/{printable_path(name)} is {what}: {advice}")
+        folder.notes.append(f"{printable_path(name)} is graded as one submission; if it is {what}, {command}")
