@@ -38,6 +38,7 @@ INNER = {
         ("layouts",),
         ("course_layouts",),
         ("detection",),
+        ("owners",),
         ("submissions",),
         ("intake", "lms"),
         ("gradebook",),

@@ -8,7 +8,7 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterator
 from dataclasses import replace
-from datetime import UTC, datetime
+from functools import lru_cache
 
 from grader.classroom.layouts import ENDINGS, PATTERNS, ClassFolder, ClassSubmission, files_below, is_submission, upload
 from grader.classroom.listing import ClassListing
@@ -29,22 +29,29 @@ _MAX_NAMED = 10
 def folders(folder: ClassFolder) -> Iterator[ClassSubmission]:
     """Yield one submission for each folder, archive or URDF, without the prefix of the assignment in its name."""
     folder.ignore((name for name in folder.children.folders if name in BUILD_FOLDERS), "is a build folder")
-    names = [f"{name}/" for name in folder.children.folders if name not in BUILD_FOLDERS] + folder.children.files
-    entries = [entry for name in names if (entry := PATTERNS["folders"].fullmatch(name))]
-    unfit = {*folder.children.files}.difference(entry.string for entry in entries)
+    parse, unfit, by_login = PATTERNS["folders"].fullmatch, list[str](), defaultdict[str, list[str]](list)
+    for name in (
+        *(f"{name}/" for name in folder.children.folders if name not in BUILD_FOLDERS),
+        *folder.children.files,
+    ):
+        if entry := parse(name):
+            by_login[entry["login"]].append(name)
+        else:
+            unfit.append(name)
     folder.ignore(unfit, "is not a folder, an archive or a URDF")
-    logins = {entry["login"] for entry in entries if entry["ending"] == "/"} or {entry["login"] for entry in entries}
-    prefix, plain = _prefix(logins, folder), {entry["login"] for entry in entries if not entry["upload"]}
-    by_owner: dict[str, list[re.Match[str]]] = defaultdict(list)
-    for entry in entries:
-        login = entry["login"]
-        is_own_number = entry["upload"] and login not in plain and not folder.people.knows(_without(prefix, login))
-        by_owner[entry.string.removesuffix(entry["ending"]) if is_own_number else login].append(entry)
-    for owner, copies in by_owner.items():
-        *others, last = (copy.string.rstrip("/") for copy in sorted(copies, key=_order))
-        folder.ignore(others, f"is not graded: {printable_path(last)} counts")
-        login = _without(prefix, owner)
-        yield ClassSubmission(Student(login, login=login), 0, (folder.start + last,))
+    prefix = _prefix([login for login, names in by_login.items() if names[0].endswith("/")] or by_login, folder)
+    while by_login:  # of a large class not all is kept twice
+        login, names = by_login.popitem()
+        copies = sorted(filter(None, map(parse, names)), key=_order)
+        owners: dict[str, list[str]] = {login: [copy.string.rstrip("/") for copy in copies]}
+        if all(copy["upload"] for copy in copies) and not folder.people.knows(_without(prefix, login)):
+            owners = defaultdict(list)  # Team (1) and Team (2) are two teams
+            for copy in copies:
+                owners[copy.string.removesuffix(copy["ending"])].append(copy.string.rstrip("/"))
+        for owner, (*others, last) in owners.items():
+            folder.ignore(others, f"is not graded: {printable_path(last)} counts")
+            key = _without(prefix, owner)
+            yield ClassSubmission(Student(key, login=key), 0, (folder.start + last,))
 
 
 def _order(copy: re.Match[str]) -> tuple[int, int, str]:
@@ -120,23 +127,15 @@ def nbgrader(folder: ClassFolder) -> Iterator[ClassSubmission]:
     course.ignore(course.children.files, "is not a student's folder")
     for student in found[name]:
         path = f"{course.start}{student}/{name}"
-        stamp = folder.listing.start(f"{path}/timestamp.txt", 100).decode("utf-8", "replace")
-        yield ClassSubmission(Student(student, login=student), 0, (path,), submitted=_utc_time(stamp))
-
-
-def _utc_time(text: str) -> str:
-    """Return a time as ISO 8601 in UTC; one without a zone is in UTC. Empty if it is none."""
-    try:
-        time = datetime.fromisoformat(iso_time(text))
-        time = time.replace(tzinfo=UTC) if time.tzinfo is None else time.astimezone(UTC)
-    except (ValueError, OverflowError):  # OverflowError for a time in the year 1
-        return ""
-    return time.isoformat(timespec="seconds").replace("+00:00", "Z")
+        time = iso_time(folder.listing.start(f"{path}/timestamp.txt", 100).decode("utf-8", "replace"))
+        has_zone = re.search(r"Z\Z|[+-][0-9:]+\Z", time[len("2026-09-01") :])
+        submitted = f"{time}Z" if time and not has_zone else time  # in UTC
+        yield ClassSubmission(Student(student, login=student), 0, (path,), submitted=submitted)
 
 
 def teams(folder: ClassFolder) -> Iterator[ClassSubmission]:
     """Yield the submissions of the students in lab folders, and of the teams without one."""
-    labs = team_labs(folder)
+    labs = dict(team_labs(folder))
     rest = [name for name in folder.children.folders if name not in labs.values()]
     if "" in labs.values():  # the repository of one team
         folder.ignore([*rest, *folder.children.files], "is outside the folder of the lab")
@@ -153,21 +152,22 @@ def teams(folder: ClassFolder) -> Iterator[ClassSubmission]:
             yield found._replace(student=Student(f"{team}/{name}" if team else name, name, login=name, group=team))
 
 
-def team_labs(folder: ClassFolder) -> dict[str, str]:
-    """Return the lab folders with students' folders, each with its team; without a team those of one repository.
+def team_labs(folder: ClassFolder) -> Iterator[tuple[str, str]]:
+    """Yield the lab folders with students' folders, each with its team; without a team those of one repository.
 
     A folder of a student stays whole, unless the user has named the layout.
     """
     if folder.is_explicit and (own := _labs_below(folder, "")):
-        return dict.fromkeys(own, "")
-    names = sorted(folder.children.folders)
-    split = [team for team in names if folder.is_explicit or not folder.people.knows_student(team)]
-    return {lab: team for team in split for lab in _labs_below(folder, team)}
+        yield from ((lab, "") for lab in own)
+        return
+    for team in sorted(folder.children.folders):
+        if folder.is_explicit or not folder.people.knows_student(team):
+            yield from ((lab, team) for lab in _labs_below(folder, team))
 
 
 def _labs_below(folder: ClassFolder, team: str) -> list[str]:
-    """Return a team's folders of the lab that hold students'; not an only student's if the robot is in another lab's."""
-    top, names = (folder.start + team).rstrip("/"), LabFolders(folder.labs)
+    """Return a team's folders of the lab that hold students'; not an only one's if the robot is in another lab's."""
+    top, (names, _) = (folder.start + team).rstrip("/"), _names_of(folder.labs)
     below = folder.listing.children(top, 1000).folders
     labs = [f"{top}/{name}".lstrip("/") for name in below if names.is_lab(name)]
     labs = [lab for lab in labs if _holds_students(folder, lab, team)]
@@ -195,14 +195,20 @@ def _holds_students(folder: ClassFolder, lab: str, team: str) -> bool:
     if folder.is_explicit:
         return len(parts) < len(inner.folders)
     tops = [f"{lab}/{name}" for name in inner.folders]
-    is_package = any("package.xml" in folder.listing.children(top, 1000).files for top in tops)
+    is_package = any(folder.listing.has(f"{top}/package.xml") for top in tops)
     return not is_package and sum(_has_robot(folder.listing, top) for top in tops) > 1
 
 
 def _parts(folder: ClassFolder, names: Collection[str], team: str) -> list[str]:
     """Return the names in a lab's folder that are those of parts of a submission, and not of students."""
-    words = {word for lab in folder.labs for word in lab_words(lab)}
+    _, words = _names_of(folder.labs)
     return [name for name in names if is_part(name, words) and not folder.people.knows(name, team)]
+
+
+@lru_cache(maxsize=1)
+def _names_of(labs: tuple[str, ...]) -> tuple[LabFolders, frozenset[str]]:
+    """Return the names of the lab's folders, and the words in them."""
+    return LabFolders(labs), frozenset(word for lab in labs for word in lab_words(lab))
 
 
 def _has_robot(listing: ClassListing, top: str) -> bool:

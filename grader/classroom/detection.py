@@ -1,5 +1,6 @@
 """Which layout the names in a class folder prove, and which folder contains the submissions."""
 
+import re
 from dataclasses import replace
 
 from grader.classroom import course_layouts, layouts
@@ -10,6 +11,21 @@ from grader.submission.labs import MAX_WRAPPERS
 from grader.submission.students import is_part
 from grader.text import printable_path
 
+# Words in the names of folders with what a course hands out: Lab6 resources, Handout (old); no other may be in them.
+_COURSE = frozenset(
+    {
+        "resource", "handout", "solution", "template", "starter", "skeleton", "material", "example", "instruction",
+        "reference", "rubric", "grading", "demo", "slide",
+    }
+)  # fmt: skip
+_BESIDE = frozenset(
+    word.removesuffix("s")
+    for word in (
+        "lab", "course", "class", "code", "file", "folder", "for", "of", "the", "and", "to", "from", "old", "new",
+        "sample", "model", "student", "project", "assignment", "exercise", "task", "week", "ws", "workspace",
+    )
+)  # fmt: skip
+_MAX_CHECKED = 20  # entries of a class folder
 LAYOUTS = {
     "folders": course_layouts.folders,
     "canvas": layouts.canvas,
@@ -28,7 +44,7 @@ def layout_of(folder: ClassFolder) -> str:
     course = course_layouts.course_of(folder)
     if course_layouts.is_course(course) or (course is not folder and course.children.folders):
         return "nbgrader"
-    return "teams" if course_layouts.team_labs(folder) else "folders"
+    return "teams" if any(course_layouts.team_labs(folder)) else "folders"
 
 
 def _fits(layout: str, name: str) -> bool:
@@ -51,6 +67,28 @@ def submissions_in(folder: ClassFolder, layout: str) -> list[ClassSubmission]:
     """Return the submissions in a folder, each with the student as far as names tell."""
     folder.ignored.extend(f"{printable_path(folder.start + name)} {reason}" for name, reason in folder.children.refused)
     return list(LAYOUTS[layout](folder))
+
+
+def is_of_course(path: str) -> bool:
+    """Return whether a name has a word of the course's own folders, and no word that could be a student's."""
+    stem = path.rpartition("/")[2].partition(".")[0].casefold()
+    words = {word.removesuffix("s") for word in re.findall(r"[^\W\d_]+", stem)}
+    return not words.isdisjoint(_COURSE) and words <= _COURSE | _BESIDE
+
+
+def downloads_in(folder: ClassFolder) -> list[str]:
+    """Return the folders in a small class folder that are downloads of a whole class, by their names."""
+    names = [
+        name
+        for name in folder.children.folders
+        if len(folder.entries) <= _MAX_CHECKED and not folder.people.knows(name)
+    ]
+    return [name for name in sorted(names) if is_download(_inside(folder, name))]
+
+
+def _inside(folder: ClassFolder, name: str) -> ClassFolder:
+    start = f"{folder.start}{name}"
+    return replace(folder, children=folder.listing.children(start), start=f"{start}/", name=name)
 
 
 def inner_class(folder: ClassFolder) -> ClassFolder:
@@ -80,9 +118,7 @@ def _only_folder(folder: ClassFolder) -> ClassFolder | None:
     name, *others = folder.entries or [""]
     if others or name not in folder.children.folders or name == "submitted" or folder.people.knows_student(name):
         return None
-    start = f"{folder.start}{name}"
-    inner = replace(folder, children=folder.listing.children(start), start=f"{start}/", name=name)
-    return inner if layout_of(folder) == "folders" else None
+    return _inside(folder, name) if layout_of(folder) == "folders" else None
 
 
 def _is_one_submission(folder: ClassFolder) -> bool:

@@ -178,26 +178,23 @@ def _files_in_moodle(
         own = {top: part + (file["file"] or file.string)}
         if file.string in folders:
             below = files_below(folder.listing, top, 2 if len(files) == 1 else _MAX_FILES)
-            own = {path: part + path[len(top) + 1 :] for path in below}
+            own = {path: part + path[len(top) + 1 :] for path in sorted(below)}
         named[top] = own
     first = next((top for top, own in named.items() if own), min(named))
     every = {path: name for own in named.values() for path, name in own.items()}
     if first not in every and every == named[first]:  # one folder
         is_file = len(every) == 1 and all(path.rpartition("/")[0] == first and is_submission(path) for path in every)
         return tuple(every) if is_file else (first,), ()
-    if len(every) > _MAX_FILES:
-        folder.ignored.append(f"{printable_path(first)} has more than {_MAX_FILES} files: only it is read")
-        return (first,), ()
     return tuple(every), tuple(every.values())
 
 
-def files_below(listing: ClassListing, top: str, most: int = 300) -> list[str]:
-    """Return the paths of the files below a folder; of more than `most` some more than that."""
-    folders, found = [top], list[str]()
+def files_below(listing: ClassListing, top: str, most: int = 300) -> Iterator[str]:
+    """Yield the paths of the files below a folder, those in it first; of more than `most` some more than that."""
+    folders, count = [top], 0
     for here in folders:
         children = listing.children(here, _MAX_FILES + 1)
-        found += [f"{here}/{name}" for name in children.files]
+        yield from (f"{here}/{name}" for name in children.files)
         folders += [f"{here}/{name}" for name in sorted(children.folders)]
-        if len(found) + len(folders) > most:
+        count += len(children.files)
+        if count + len(folders) > most:
             break
-    return sorted(found)

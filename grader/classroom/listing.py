@@ -50,6 +50,10 @@ class FolderListing:
                 raise refused from None
         return found
 
+    def has(self, path: str) -> bool:
+        """Return whether there is a file or folder."""
+        return os.path.lexists(f"{self._top}/{path}")
+
     def start(self, path: str, count: int) -> bytes:
         """Return the first bytes of a file; none if it cannot be read."""
         with suppress(InputError):
@@ -115,6 +119,10 @@ class ZipListing:
                 found.refused.append((name, kind))
         return found
 
+    def has(self, path: str) -> bool:
+        """Return whether there is a file or folder."""
+        return path in self._folders or path in self._zip.members
+
     def start(self, path: str, count: int) -> bytes:
         """Return the first bytes of a file; none if it cannot be read."""
         try:
@@ -149,5 +157,6 @@ def listing_of(path: Path) -> ClassListing:
 
 def is_gradebook(listing: ClassListing, folder: str) -> bool:
     """Return whether a folder is a gradebook of the grader, and no submission."""
-    inner = listing.children(folder, 100)
-    return "class.toml" in inner.files and ("results.jsonl" in inner.files or "marks" in inner.folders)
+    return listing.has(f"{folder}/class.toml") and any(
+        listing.has(f"{folder}/{name}") for name in ("results.jsonl", "marks")
+    )

@@ -9,18 +9,24 @@ from typing import NamedTuple
 from grader.classroom.roster import Student, plain
 
 CERTAIN = 1  # the rank of an id as it is spelt; an LMS's own has 0
+_UNCLEAR = 4
 _MAX_WORDS = 8
 
 
 class Match(NamedTuple):
-    """The indices of the students that a submission may belong to: of one, or of a group; several others are no match.
+    """The indices of the students that a submission may belong to; `rank` grows with the doubt.
 
-    `rank` grows with the doubt.
+    The submission of a group belongs to each of them.
     """
 
     students: tuple[int, ...]
     rank: int = 0
     is_group: bool = False
+
+    @property
+    def only(self) -> int | None:
+        """The student to whom it belongs; None if that is nobody or not clear."""
+        return self.students[0] if len(self.students) == 1 and self.rank < _UNCLEAR else None
 
 
 class People:
@@ -37,7 +43,7 @@ class People:
                 for word in {*words} - {""}:
                     table[unicodedata.normalize("NFC", word)].append(index)
             if team := one.group or one.section:
-                for name in {plain(team), _letters(team)} - {""}:
+                for name in {plain(team), letters(team)} - {""}:
                     self._groups[name].append(index)
 
     def knows(self, name: str, team: str = "") -> bool:
@@ -46,36 +52,40 @@ class People:
 
     def knows_student(self, name: str, team: str = "") -> bool:
         """Return whether a name is that of one student."""
-        return len(self._person(Student(name, login=name, group=team)).students) == 1
+        return self._person(Student(name, login=name, group=team)).only is not None
 
     def match(self, claim: Student) -> Match:
         """Return whose a submission is by what its name claims; with a `group`, only of a member of that team.
 
-        A file of Canvas that is named like a group belongs to it only if its id is that of a member, or no member has
-        one. Of `aliases`, ids of Canvas, it is not clear which is the user's.
+        Named like a group, it belongs to that only if its id of Canvas is a member's, or no member has one, and if its
+        number in Moodle, that of the group, is no participant's. Of `aliases` it is not clear which is the user's id.
         """
         if claim.aliases:
             users = {index for user in claim.aliases for index in self._tables[0].get(f"canvas {user}", ())}
-            return Match(tuple(sorted(users)), len(self._tables))
+            return Match(tuple(sorted(users)), _UNCLEAR)
         found = self._person(claim)
-        name = _letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
+        name = letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
         group = () if claim.group else tuple(self._groups.get(name, ()))
-        if claim.canvas and group:
-            if found.students and found.rank == 0:
-                is_own_name = name in _in_canvas(self.students[found.students[0]].name)
-                return found if is_own_name or found.students[0] not in group else Match(group, is_group=True)
-            if found.students or any(self.students[index].canvas for index in group):
-                return Match((*found.students, *group), found.rank)
+        if group and found.students and found.rank == 0:
+            owner = self.students[found.students[0]]
+            if (
+                name in _in_canvas(owner.name)
+                or name == plain(owner.name)
+                or (claim.canvas and found.only not in group)
+            ):
+                return found
+            return Match(group, is_group=True) if claim.canvas else Match((*found.students, *group), _UNCLEAR)
+        if claim.canvas and group and (found.students or any(self.students[index].canvas for index in group)):
+            return Match((*found.students, *group), _UNCLEAR)
         return found if found.students or not group else Match(group, is_group=True)
 
     def _person(self, claim: Student) -> Match:
         """Return the students with the best of the words in a claim, without those whom the LMS knows by another id."""
+        if not self.students:
+            return Match(())
         login, team = plain(claim.login), self._groups.get(plain(claim.group), ()) if claim.group else None
-        names = (
-            [_letters(claim.name)]
-            if claim.canvas
-            else [plain(claim.name), login, _surname(login) if claim.group else ""]
-        )
+        names = [plain(claim.name), login, _surname(login) if claim.group else ""]
+        names = [letters(claim.name)] if claim.canvas else names
         ranked = (_numbers(claim), [unicodedata.normalize("NFC", claim.login)], [login], names)
         for rank, (words, table) in enumerate(zip(ranked, self._tables, strict=True)):
             found = {index for word in words for index in table.get(word, ()) if team is None or index in team}
@@ -100,7 +110,7 @@ def _surname(name: str) -> str:
     return f"surname\n{word}" if word else ""
 
 
-def _letters(name: str) -> str:
+def letters(name: str) -> str:
     """Return a name as Canvas writes it into names of files (canvas-lms, content_zipper.rb)."""
     composed = re.sub(r"_(\d+)_", r"\1", unicodedata.normalize("NFC", name))
     letters = re.sub(r"\W", "", composed).casefold()
@@ -111,4 +121,4 @@ def _in_canvas(name: str) -> Iterable[str]:
     """Return what Canvas may call a student in names of files: sorted by any word of the name, or as the user set."""
     words = name.split()[:_MAX_WORDS]
     orders = [name] if "," in name else [" ".join(words[index:] + words[:index]) for index in range(len(words))]
-    return map(_letters, orders)
+    return map(letters, orders)

@@ -128,7 +128,7 @@ def read_roster(data: bytes, shown: str) -> Roster:
         for _, row in read:
             row["canvas"] = row["canvas"] or row["id"]
     students: list[tuple[int, Student]] = []
-    unclear: list[str] = []
+    notes: list[str] = []
     for line, row in read:
         mistakes += ((line, text) for text in _normalise(row))
         if (student := _student(row)) is None:
@@ -136,15 +136,13 @@ def read_roster(data: bytes, shown: str) -> Roster:
             continue
         students.append((line, student))
         if student.is_late and student.days_late is None and not row["late"] and _days_of(row["status"]) is None:
-            unclear.append(f"line {line} of {shown}: the status {row['status']!r}")
+            late = f"{row['status']!r} does not say clearly how late the submission is, and counts as late"
+            notes.append(f"line {line} of {shown}: {late}: add a column `late` with `no` or a number of days")
     lines = [f"line {line} of {shown} {text}" for line, text in sorted(mistakes, key=lambda mistake: mistake[0])]
     lines += _duplicates(students, shown)
     if lines or not students:
         raise InputError("\n".join(first_lines(lines or [f"{shown} has no students"], _MAX_MISTAKES)))
-    more = f" ({len(unclear)} lines)" if len(unclear) > 1 else ""
-    advice = "counts as late: add a column `late` with `no` or a number of days"
-    notes = (f"{unclear[0]} does not say clearly how late the submission is{more}, and {advice}",) if unclear else ()
-    return Roster(tuple(student for _, student in students), notes)
+    return Roster(tuple(student for _, student in students), tuple(first_lines(notes, _MAX_MISTAKES)))
 
 
 def _by_field(
@@ -191,11 +189,8 @@ def _student(row: dict[str, str]) -> Student | None:
     name = row["name"] or f"{row['first']} {row['last']}".strip()
     if not (key := own or row["sis"] or login or row["email"] or name or canvas or moodle):
         return None
-    extension = _DAYS.fullmatch(row["extension"])
-    days = _number(extension[1]) if extension else 0.0
-    due = row["due"] or ("" if extension else row["extension"])
-    late = _DAYS.fullmatch(row["late"])
-    days_late = _number(late[1]) if late else None
+    extension, days_late = _days(row["extension"]), _days(row["late"])
+    due, days = row["due"] or (row["extension"] if extension is None else ""), extension or 0.0
     is_late = days_late > 0 if days_late is not None else bool(_YES.fullmatch(row["late"])) if row["late"] else None
     if moodle and not (row["late"] or row["submitted"]) and (status := _days_of(row["status"])) != 0:
         is_late = status is None or bool(due) or status > days  # Moodle knows neither this extension nor the deadline
@@ -207,8 +202,9 @@ def _student(row: dict[str, str]) -> Student | None:
     )  # fmt: skip
 
 
-def _number(text: str) -> float:
-    return float(text.replace(",", "."))
+def _days(text: str) -> float | None:
+    found = _DAYS.fullmatch(text)
+    return float(found[1].replace(",", ".")) if found else None
 
 
 def _days_of(status: str) -> float | None:

@@ -1,43 +1,18 @@
-"""The submissions of a class, one a student: each belongs to whom an id or a full name says, or is listed."""
+"""The submissions of a class, one a student, in one or several folders or zips."""
 
-import os
-from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
-from hashlib import sha256
+from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
 
-from grader.classroom.detection import LAYOUTS, inner_class, layout_of, submissions_in
-from grader.classroom.layouts import PATTERNS, ClassFolder, ClassSubmission
-from grader.classroom.listing import ClassListing, listing_of
-from grader.classroom.people import CERTAIN, Match, People
-from grader.classroom.roster import Roster, Student, plain
+from grader.classroom.detection import LAYOUTS, downloads_in, inner_class, is_of_course, layout_of, submissions_in
+from grader.classroom.layouts import ClassFolder, ClassSubmission
+from grader.classroom.listing import listing_of
+from grader.classroom.owners import Intake, Owners
+from grader.classroom.people import People
+from grader.classroom.roster import Roster
 from grader.errors import InputError
-from grader.text import enumerated, first_lines, printable_path, shell_quoted
+from grader.text import printable_path, shell_quoted
 
 __all__ = ["ClassSubmission", "Intake", "read_class"]
-_MAX_LINES, _MAX_NAMED = 200, 10
-_ANONYMOUS = (
-    "this is an anonymous download: its submissions (anon_...) match no student. "
-    "Canvas shows the names when the grades are posted: download again then"
-)
-
-
-class Intake(NamedTuple):
-    """The submissions of a class and its students, both in the order of their keys.
-
-    Students without a submission are `absent`, but not those with several possible ones, of which none is graded.
-    `unmatched` says which submissions are certainly nobody's on the roster, and which row of it assigns them; `notes`
-    says what was chosen, `ignored` what in the folders is no submission.
-    """
-
-    layout: str
-    submissions: tuple[ClassSubmission, ...]
-    absent: tuple[Student, ...]
-    students: tuple[Student, ...]
-    unmatched: tuple[str, ...]
-    notes: tuple[str, ...]
-    ignored: tuple[str, ...]
 
 
 def read_class(
@@ -57,16 +32,19 @@ def read_class(
         raise InputError(f"there is no layout {layout!r}; the layouts are: auto, {', '.join(LAYOUTS)}")
     labs = folders or tuple(filter(None, [rubric_id]))
     students, notes = roster if roster is not None else Roster(())
-    owners = _Owners(
-        People(students), [(listing_of(path), path.resolve().name) for path in paths], has_roster=roster is not None
-    )
+    ways = (["/".join(path.resolve().parts[-count:]) for path in paths] for count in (1, 2))
+    names = next((way for way in ways if len(set(way)) == len(way)), [])
+    if not names:
+        raise InputError("the class folders have the same names: rename one, so that the roster can name them")
+    roots = list(zip(map(listing_of, paths), names, strict=True))
+    owners = Owners(People(students), roots, has_roster=roster is not None)
     owners.notes.extend(notes)
     found: list[ClassSubmission] = []
     layouts: dict[str, None] = {}
-    for root, (path, (listing, name)) in enumerate(zip(paths, owners.roots, strict=True)):
+    for root, (path, (listing, _)) in enumerate(zip(paths, roots, strict=True)):
         top = ClassFolder(
-            listing, listing.children(""), "", name, owners.people, rubric_id, labs, assignment, layout != "auto",
-            owners.ignored, owners.notes,
+            listing, listing.children(""), "", path.resolve().name, owners.people, rubric_id, labs, assignment,
+            layout != "auto", owners.ignored, owners.notes,
         )  # fmt: skip
         folder = inner_class(top)
         chosen = layout_of(folder) if layout == "auto" else layout
@@ -97,169 +75,10 @@ def _refuse(path: Path, folder: ClassFolder, layout: str) -> None:
             f"{shown} is one submission and not a class: it contains a package.xml "
             f"(grade it with `grader grade {shell_quoted(path)}`)"
         )
-
-
-class _Owners:
-    """Whose each submission is: a student's, by the index on the roster, a visitor's, or nobody's for certain."""
-
-    def __init__(self, people: People, roots: Sequence[tuple[ClassListing, str]], *, has_roster: bool) -> None:
-        self.people, self.roots, self._has_roster = people, roots, has_roster
-        self.notes: list[str] = []
-        self.ignored: list[str] = []
-        self._owned: dict[int, ClassSubmission] = {}
-        self._unclear: set[int] = set()
-        self._visitors: list[ClassSubmission] = []
-        self._unmatched: list[str] = []
-        self._is_anonymous = False
-
-    def find(self, found: Sequence[ClassSubmission]) -> None:
-        """Assign all submissions: what a person has assigned decides, then ids and names, then groups."""
-        self._is_anonymous = all(one.student.key.startswith("anon_") for one in found)
-        claims: dict[int, list[tuple[int, ClassSubmission]]] = defaultdict(list)
-        groups: dict[tuple[int, ...], list[ClassSubmission]] = defaultdict(list)
-        others: list[tuple[tuple[int, ...], ClassSubmission]] = []
-        taken = self._assigned(found)
-        for one in sorted(found, key=lambda one: (one.student.key, one.root, one.paths)):
-            match = Match(()) if self._is_anonymous else self.people.match(one.student)
-            if one in taken:
-                continue
-            if match.is_group:
-                groups[match.students].append(one)
-            elif len(match.students) == 1 and not one.student.aliases:
-                claims[match.students[0]].append((match.rank, one))
-            else:
-                others.append((match.students, one))
-        for index, claimed in claims.items():
-            self._decide(index, sorted(claimed, key=lambda claim: claim[0]))
-        for members, named in groups.items():
-            self._share(members, named)
-        for students, one in others:
-            keys = [self.people.students[index].key for index in students]
-            self._visit(one, f"may belong to {enumerated(keys, _MAX_NAMED, 'or')}" if keys else "is not on the roster")
-            self._unclear.update(students)
-
-    def _assigned(self, found: Iterable[ClassSubmission]) -> set[ClassSubmission]:
-        """Give students what the roster's column `submission` names, and return these submissions."""
-        wanted = [(index, one) for index, one in enumerate(self.people.students) if one.submission]
-        places = {self._shown(one, path): one for one in found for path in one.paths} if wanted else {}
-        for index, student in wanted:
-            place = " ".join(student.submission.split())
-            if one := places.get(place) or self._submission_at(place):
-                self._owned[index] = one
-            else:
-                self._unclear.add(index)
-                self.notes.append(f"{student.key} has the submission {place!r} on the roster, which does not exist")
-        return set(self._owned.values())
-
-    def _submission_at(self, place: str) -> ClassSubmission | None:
-        """Return what is at a place in a class folder, and no submission by itself; None if there is nothing."""
-        for root, (listing, name) in enumerate(self.roots):
-            path = ""
-            for part in place.removeprefix(f"{name}/" if len(self.roots) > 1 else "").split("/"):
-                inner = listing.children(path)
-                same = [one for one in inner.folders + inner.files if " ".join(printable_path(one).split()) == part]
-                path = f"{path}/{same[0]}".lstrip("/") if len(same) == 1 else "\0"
-            if "\0" not in path:
-                return ClassSubmission(Student(""), root, (path,))
-        return None
-
-    def _shown(self, one: ClassSubmission, path: str = "") -> str:
-        """Return a path as a person can write it on the roster, of several class folders with the name of its own."""
-        top = f"{self.roots[one.root][1]}/" if len(self.roots) > 1 else ""
-        return " ".join(printable_path(top + (path or one.paths[0])).split())
-
-    def _visit(self, one: ClassSubmission, reason: str) -> None:
-        self._visitors.append(one)
-        self._list(one, reason, one.student.key)
-
-    def _list(self, one: ClassSubmission, reason: str, key: str) -> None:
-        """List a submission with the row of the roster that assigns it."""
-        row = [
-            f'"{cell.replace(chr(34), 2 * chr(34))}"' if set(cell) & set(',;"') else cell
-            for cell in (printable_path(key), self._shown(one))
-        ]
-        self._unmatched.append(f"{self._shown(one)} {reason}: a row `{','.join(row)}` below `id,submission` assigns it")
-
-    def _decide(self, index: int, claims: Sequence[tuple[int, ClassSubmission]]) -> None:
-        """Give a student the submission with the only best id; if there is none, none of them is graded."""
-        key = self.people.students[index].key
-        (rank, first), *others = claims
-        if index in self._owned or index in self._unclear:
-            others = list(claims)
-        elif not others or (rank <= CERTAIN and others[0][0] > rank):
-            self._owned[index] = first
-        else:
-            self._reject([one for _, one in claims], f"may belong to {key}", key)
-            self._unclear.add(index)
-            return
-        for _, one in others:
-            self._visit(one, f"may belong to {key}, who has another submission")
-
-    def _reject(self, several: Sequence[ClassSubmission], reason: str, key: str) -> None:
-        names = enumerated([self._shown(one) for one in several], _MAX_NAMED)
-        for one in several:
-            self._list(one, f"{reason}, and of {names} none is graded", key)
-
-    def _share(self, members: Iterable[int], named: Sequence[ClassSubmission]) -> None:
-        """Let the only submission of a group count for each member without another; that of a section for nobody."""
-        without = [index for index in members if index not in self._owned and index not in self._unclear]
-        alone = [one for one in named if not self._holds_students(one)]
-        for one in named:
-            if one not in alone:
-                self._visit(one, "is named like a group, but contains submissions of several students")
-            elif not without:
-                self._visit(one, "is named like a group whose members all have other submissions")
-        if without and len(alone) > 1:
-            self._reject(alone, "is named like a group", alone[0].student.key)
-            self._unclear.update(without)
-        elif alone:
-            self._owned |= dict.fromkeys(without, alone[0]._replace(student=Student("")))  # the ids are one member's
-
-    def _holds_students(self, one: ClassSubmission) -> bool:
-        """Return whether two students or more have submissions in a folder: it is a section, not a team's work."""
-        inner = self.roots[one.root][0].children(one.paths[0], 1000)
-        names = filter(
-            None, map(PATTERNS["folders"].fullmatch, [*(f"{name}/" for name in inner.folders), *inner.files])
-        )
-        return sum(self.people.knows_student(name["login"]) for name in names) > 1
-
-    def intake(self, layout: str) -> Intake:
-        """Return what was found, with the data of the roster, and the LMS's name and ids where it has none."""
-        students = list(self.people.students)
-        submissions: list[ClassSubmission] = []
-        for index, one in self._owned.items():
-            own, given = students[index], one.student
-            name = own.name or ("" if given.canvas else given.name)
-            own = own._replace(name=name, canvas=own.canvas or given.canvas, moodle=own.moodle or given.moodle)
-            is_late = one.is_late if own.is_late is None else own.is_late
-            submissions.append(one._replace(student=own, is_late=is_late, submitted=own.submitted or one.submitted))
-            students[index] = own
-        unclear = range(len(students)) if self._is_anonymous else self._unclear
-        absent = [one for index, one in enumerate(students) if index not in self._owned and index not in unclear]
-        counts = Counter(one.student.key for one in self._visitors)
-        taken = {plain(one.key) for one in students}
-        for one in self._visitors:
-            key, name = one.student.key, "" if one.student.canvas else one.student.name
-            if counts[key] > 1 or not key.isprintable() or plain(key) in taken:
-                key = _path_key(f"{self.roots[one.root][1]}/{one.paths[0]}" if len(self.roots) > 1 else one.paths[0])
-            visitor = one.student._replace(key=key, name=name, aliases=(), is_on_roster=not self._has_roster)
-            submissions.append(one._replace(student=visitor))
-            students.append(visitor)
-        if self._is_anonymous:
-            self.notes.append(_ANONYMOUS)
-        return Intake(
-            layout,
-            tuple(sorted(submissions, key=lambda one: one.student.key)),
-            tuple(absent),
-            tuple(sorted(students, key=lambda one: one.key)),
-            tuple(self._unmatched if self._has_roster and not self._is_anonymous else ()),
-            tuple(self.notes),
-            tuple(first_lines(sorted(self.ignored), _MAX_LINES)),
-        )
-
-
-def _path_key(path: str) -> str:
-    """Return the key of a submission whose name cannot be one: `./` begins no name that a student can give a folder."""
-    if path.isprintable():
-        return f"./{path}"
-    return f"./{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"
+    downloads = downloads_in(folder) if layout == "folders" and not folder.is_explicit else []
+    for name in downloads:
+        what, command = "a download of a whole class", f"grade it with `grader batch {shell_quoted(path / name)}`"
+        if len(downloads) == sum(not is_of_course(entry) for entry in folder.entries):
+            advice = f"{command}; if it is the submission of one student, add --layout folders"
+            raise InputError(f"{shown}/{printable_path(name)} is {what}: {advice}")
+        folder.notes.append(f"{printable_path(name)} is graded as one submission; if it is {what}, {command}")
