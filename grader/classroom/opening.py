@@ -1,10 +1,12 @@
 """Open one submission of a class folder or zip: the same submission that `grader grade` would see, and its digest."""
 
 import os
+from collections.abc import Mapping
 from functools import lru_cache
 from hashlib import sha256
 from io import BytesIO
 from pathlib import Path
+from types import MappingProxyType
 from typing import IO, TYPE_CHECKING, NamedTuple
 
 from grader.documents.evidence_files import EVIDENCE
@@ -45,15 +47,21 @@ class OpenedSubmission(NamedTuple):
     tree: Tree | None
     max_size: int = URDF_LIMIT
 
-    def submission(self, rubric: Rubric, no_documents: str = "") -> Submission:
-        """Return the submission; raises InputError if it is empty. `no_documents` says why documents are not read."""
+    def submission(
+        self, rubric: Rubric, no_documents: str = "", arguments: Mapping[str, str] = MappingProxyType({})
+    ) -> Submission:
+        """Return the submission; raises InputError if it is empty.
+
+        `no_documents` says why documents are not read; `arguments` are those of xacro.
+        """
+        opening = Opening(self.max_size, arguments, no_documents)
         if self.tree is None:
-            return read_submission(self.data or b"", identity=self.name, path=self.shown)
+            return read_submission(self.data or b"", identity=self.name, path=self.shown, opening=opening)
         return submission_of(
             with_inner(self.tree, LabFolders(rubric.folders).is_lab),
             self.name,
             rubric.lab,
-            Opening(self.max_size, no_documents=no_documents),
+            opening,
             shown=self.shown,
         )
 

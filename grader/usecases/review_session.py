@@ -8,7 +8,6 @@ from grader.classroom import folder as names
 from grader.classroom.grades import Class
 from grader.classroom.mark_files import is_open_in_libreoffice, mark_file
 from grader.classroom.marks import Key, Mark, append_marks, mark_in, read_marks
-from grader.classroom.opening import file_stamp
 from grader.classroom.review_items import Member, ReviewFilter, ReviewItem, review_items
 from grader.classroom.roster import plain
 from grader.classroom.settings import CLASS_FILE
@@ -185,4 +184,5 @@ class ReviewSession:
 
 
 def _stamps(files: Iterable[Path]) -> list[tuple[str, str]]:
-    return [(str(path), file_stamp(str(path))) for path in files]
+    found = ((path, path.stat()) for path in files if path.exists())
+    return [(str(path), f"{status.st_ino} {status.st_size} {status.st_mtime_ns}") for path, status in found]
