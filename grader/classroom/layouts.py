@@ -172,12 +172,17 @@ def _files_in_moodle(
 
     A folder with one archive or URDF in it, and nothing else, counts as that file, as in Canvas.
     """
+    if len(files) == 1 and files[0].string in folders:  # nearly always
+        top = folder.start + files[0].string
+        inner = folder.listing.children(top, 9)
+        is_file = len(inner.files) == 1 and not (inner.folders or inner.refused) and is_submission(inner.files[0])
+        return (f"{top}/{inner.files[0]}" if is_file else top,), ()
     named: dict[str, dict[str, str]] = {}
     for file in sorted(files, key=lambda file: (file["plugin"] != "file", file.string)):
         top, part = folder.start + file.string, "" if file["plugin"] == "file" else f"{file['plugin']}/"
         own = {top: part + (file["file"] or file.string)}
         if file.string in folders:
-            below = files_below(folder.listing, top, 2 if len(files) == 1 else _MAX_FILES)
+            below = files_below(folder.listing, top, _MAX_FILES)
             own = {path: part + path[len(top) + 1 :] for path in sorted(below)}
         named[top] = own
     first = next((top for top, own in named.items() if own), min(named))
