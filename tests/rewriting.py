@@ -182,7 +182,7 @@ def shade(draw: st.DrawFn, tree: Element) -> None:
             continue
         if material.get("name") == "white" and min(channels) == max(channels) >= 0.75:
             channels = [draw(st.floats(0.755, 0.995))] * 3
-        if material.get("name") == "gray":
+        if material.get("name") == "gray" and alpha >= 0.02:  # what is not seen stays unseen
             alpha = draw(st.floats(0.1, 1))
         changed = [value + draw(st.floats(-0.005, 0.005)) for value in (*channels, alpha)]
         colour.set("rgba", attribute_text(min(1.0, max(0.0, value)) for value in changed))
