@@ -178,11 +178,11 @@ def shade(draw: st.DrawFn, tree: Element) -> None:
         material = colour.getparent()
         assert material is not None
         *channels, alpha = attribute_numbers(colour, "rgba")
-        if alpha == 0:
+        if alpha < 0.02:  # what is not seen stays unseen
             continue
         if material.get("name") == "white" and min(channels) == max(channels) >= 0.75:
             channels = [draw(st.floats(0.755, 0.995))] * 3
-        if material.get("name") == "gray" and alpha >= 0.02:  # what is not seen stays unseen
+        if material.get("name") == "gray":
             alpha = draw(st.floats(0.1, 1))
         changed = [value + draw(st.floats(-0.005, 0.005)) for value in (*channels, alpha)]
         colour.set("rgba", attribute_text(min(1.0, max(0.0, value)) for value in changed))

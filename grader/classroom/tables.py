@@ -153,9 +153,11 @@ _AT_START = re.compile(rf"\s*[{_TRIGGERS}]|[\t\r\n]")
 FORMULA_BEHIND_SEMICOLON = re.compile(rf"(?<=;)\s*+[{_TRIGGERS}\s]*+")
 _INSIDE = re.compile(rf"([;\t\r\n]\s*+)(?=[{_TRIGGERS}])")
 
-# Control characters but tab and line ends, C1 controls, bidirectional embeddings and isolates, surrogates, and what is no
-# character in HTML.
-_ESCAPED = re.compile("[\\0-\\x08\\v\\f\\x0e-\\x1f\\x7f-\\x9f\\u202a-\\u202e\\u2066-\\u2069\\ud800-\\udfff\\ufdd0-\\ufdef\\ufffe\\uffff]")
+# Control characters but tab and line ends, C1 controls, bidirectional embeddings and isolates, surrogates, and what is
+# no character in HTML.
+_ESCAPED = re.compile(
+    "[\\0-\\x08\\v\\f\\x0e-\\x1f\\x7f-\\x9f\\u202a-\\u202e\\u2066-\\u2069\\ud800-\\udfff\\ufdd0-\\ufdef\\ufffe\\uffff]"
+)
 
 CellValue = str | int | Decimal | None
 
