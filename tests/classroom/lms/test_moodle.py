@@ -3,7 +3,7 @@
 import re
 from decimal import Decimal
 
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from grader.checks.outcome import Outcome
@@ -93,6 +93,7 @@ REMARKS = st.builds(
 
 
 @given(st.lists(REMARKS, max_size=8))
+@example([FeedbackItem("a", Decimal(0), Decimal(5), "\ufdd0 \uffff \U0001fffe \U0010ffff")])
 def test_feedback_is_always_safe(remarks: list[FeedbackItem]) -> None:
     """Any text gives one line within the limit, with only the grader's tags, no formula, and is recognised again."""
     text = feedback_html(Decimal(1), Decimal(2), remarks)
