@@ -178,7 +178,7 @@ def shade(draw: st.DrawFn, tree: Element) -> None:
         material = colour.getparent()
         assert material is not None
         *channels, alpha = attribute_numbers(colour, "rgba")
-        if alpha == 0:
+        if alpha < 0.02:  # what is not seen stays unseen
             continue
         if material.get("name") == "white" and min(channels) == max(channels) >= 0.75:
             channels = [draw(st.floats(0.755, 0.995))] * 3

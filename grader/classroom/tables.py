@@ -160,8 +160,13 @@ _INSIDE = re.compile(rf"([;\t\r\n]\s*+)(?=[{_TRIGGERS}])")
 _FORMULA = re.compile(rf"(\A\s*+|[;\t\r\n]\s*+)('*+[{_TRIGGERS}])")
 _PROTECTED = re.compile(rf"(\A\s*+|[;\t\r\n]\s*+)'('*+[{_TRIGGERS}])")
 
-# Control characters but tab and line ends, C1 controls, bidirectional embeddings and isolates, surrogates.
-_ESCAPED = re.compile("[\\0-\\x08\\v\\f\\x0e-\\x1f\\x7f-\\x9f\\u202a-\\u202e\\u2066-\\u2069\\ud800-\\udfff]")
+# Control characters but tab and line ends, C1 controls, bidirectional embeddings and isolates, surrogates, and the
+# noncharacters of Unicode, which HTML has no reference for.
+_NONCHARACTERS = "".join(chr(plane << 16 | last) for plane in range(17) for last in (0xFFFE, 0xFFFF))
+_ESCAPED = re.compile(
+    "[\\0-\\x08\\v\\f\\x0e-\\x1f\\x7f-\\x9f\\u202a-\\u202e\\u2066-\\u2069\\ud800-\\udfff\\ufdd0-\\ufdef"
+    f"{_NONCHARACTERS}]"
+)
 
 CellValue = str | int | Decimal | None
 

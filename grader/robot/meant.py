@@ -121,7 +121,7 @@ def _repeated_names(root: Element) -> Iterator[Word]:
     }
     for tag, names in used.items():
         given = Counter(element.get("name") for element in root.iterchildren(tag))
-        repeated = [name for name, count in given.items() if count > 1]
+        repeated = [name for name, count in given.items() if name is not None and count > 1]
         missing = [name for name in dict.fromkeys(names) if name and name not in given]
         if len(repeated) == len(missing) == 1 and given[repeated[0]] == 2:
             *_, later = (element for element in root.iterchildren(tag) if element.get("name") == repeated[0])

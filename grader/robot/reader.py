@@ -72,9 +72,9 @@ def read_urdf(data: bytes | str, path: str = "robot.urdf") -> Reading:
 def read_robot(document: XmlDocument) -> Reading:
     """Read a document as `read_urdf` does; its list of problems is extended."""
     root, source, listed = document.root, document.source, document.problems
-    content = root if root is not None and root.tag == "robot" else document.recovered
-    if content is not None:
-        return _read_content(document, content)
+    for content in (root, document.recovered):
+        if content is not None and content.tag == "robot":
+            return _read_content(document, content)
     effects = {problem.kind.effect for problem in listed}
     if effects.isdisjoint(_FATAL):
         effects.add("rejects")

@@ -11,7 +11,7 @@ from grader.files.names import ignored_part
 from tests.command_line import HANG_TIMEOUT
 
 # Runs the setup.py in each folder of those on the command line, in a process of its own that has setuptools already; below the
-# folder's `root`, so that a file with an absolute path is written nowhere else. The output is in its `output`.
+# folder's `installed`, so that a file with an absolute path is written nowhere else. The output is in its `output`.
 _BUILDER = """
 import os, runpy, sys, traceback
 import setuptools, setuptools.command.egg_info, setuptools.dist, distutils.command.install_data
@@ -25,7 +25,7 @@ for top in sys.argv[1:]:
             os.dup2(output.fileno(), 2)
         os.chdir(f"{top}/my_robot")
         sys.path[0] = os.getcwd()
-        install = ["--quiet", "install_data", "--root", f"{top}/root", "--install-dir", f"{top}/root/prefix"]
+        install = ["--quiet", "install_data", "--root", f"{top}/installed", "--install-dir", f"{top}/installed/prefix"]
         sys.argv = ["setup.py", *install]
         try:
             runpy.run_path("setup.py", run_name="__main__")
@@ -68,7 +68,7 @@ def build_all(folders: Iterable[Path]) -> list[tuple[int, str]]:
 
 def build_of(folder: Path, sources: dict[str, str], code: int, output: str) -> Build:
     """Return what was installed in a folder; `sources` are the paths of the package's files by their texts."""
-    root = folder / "root"
+    root = folder / "installed"
     installed = {
         os.path.relpath(path, root / "prefix")
         if path.is_relative_to(root / "prefix")

@@ -15,6 +15,7 @@ import pytest
 from tests.classroom.class_runs import WITH_HOSTILE, Done, grader, rows
 from tests.samples import ROOT
 
+pytestmark = pytest.mark.exhaustive
 LAB = ROOT / "rubrics/lab6"
 REFERENCE = (LAB / "my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
 _RIGHT = 'xyz="-0.15 -0.2 0" rpy="-1.57 0 0"'
@@ -327,7 +328,6 @@ def forget(top: Path) -> None:
         book.execute("UPDATE hint SET hints = ?", ('{"hints":[],"complete":true}',))
 
 
-@pytest.mark.exhaustive
 def test_a_lost_search_costs_only_its_own_hints(tmp_path: Path) -> None:
     """A crash and a timeout while edits are tried: every report is written, and the others have hints."""
     names = {"ash": "dies_when_tried", "birch": "fine", "cedar": "hangs_when_tried"}
