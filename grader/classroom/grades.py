@@ -14,7 +14,7 @@ from grader.classroom.lateness import Lateness, SubmissionTimes, lateness, read_
 from grader.classroom.marks import Mark, Marks, read_marks
 from grader.classroom.results import Graded, Results, Run
 from grader.classroom.roster import Roster, Student, read_roster
-from grader.classroom.settings import ClassSettings, read_settings
+from grader.classroom.settings import read_settings
 from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import InputError
 from grader.files.reading import read_capped

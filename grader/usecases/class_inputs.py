@@ -75,7 +75,9 @@ def read_inputs(options: ClassOptions, warn: Warn) -> ClassInputs:
     if rubric is None:
         rubric = load_rubric(DEFAULT_RUBRIC if is_new else folder / settings.rubric)
     elif not is_new and (recorded := load_rubric(folder / settings.rubric)).id != rubric.id:
-        raise InputError(f"{printable_path(folder)} is the gradebook of {recorded.id}, not of {rubric.id}: name another folder")
+        raise InputError(
+            f"{printable_path(folder)} is the gradebook of {recorded.id}, not of {rubric.id}: name another folder"
+        )
     if not (options.paths or settings.submissions):
         raise InputError("name the PATH of the submissions, a folder or the zip of an LMS")
     if settings.due and options.due is None:

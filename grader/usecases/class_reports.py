@@ -15,7 +15,6 @@ from grader.classroom.run.progress import Progress
 from grader.classroom.run.queue import Queue
 from grader.classroom.run.worker import undecided_report
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
-from grader.grading.criterion import TOTAL
 from grader.grading.grade import grade as grade_submission
 from grader.grading.graded_submission import Grade, GradedSubmission
 from grader.grading.hints.hinting import hinted

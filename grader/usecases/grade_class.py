@@ -128,7 +128,9 @@ def write_grades(book: Class) -> None:
 def warn_of_due(due: str | None, inputs: ClassInputs, warn: Warn) -> None:
     """Say that `--due` changes no grade if the rubric has no late penalty."""
     if due and inputs.rubric.late is None:
-        warn(f"--due has no effect on grades, because the rubric {inputs.rubric.id} has no [late]: only the days late are shown")
+        warn(
+            f"--due has no effect on grades, because the rubric {inputs.rubric.id} has no [late]: only the days late are shown"
+        )
 
 
 def _reference(folder: Path) -> str:
