@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 from shutil import copyfile, copytree, ignore_patterns, rmtree
+from typing import Any
 
 from grader.classroom import folder as names
 from grader.classroom.lateness import read_time, time_text
@@ -94,7 +95,7 @@ def _updated(options: ClassOptions, settings: ClassSettings, folder: Path, rubri
     """Return the settings with the options of the command."""
     for name in options.part:
         rubric.part(name)
-    given = {
+    given: dict[str, Any] = {
         "due": read_time(options.due).isoformat() if options.due else None,
         "layout": options.layout,
         "assignment": options.assignment,
