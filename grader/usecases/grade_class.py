@@ -103,7 +103,7 @@ def _grade(
     terminal.warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged")
     time = datetime.now(UTC).isoformat(timespec="milliseconds")
     present = dict.fromkeys(one.student.key for one in intake.submissions)
-    run = Run(results.next_run, time, __version__, rubric.sha256, context, present)
+    run = Run(results.next_run, time, __version__, rubric.sha256, context, present, sorted(intake.unclear))
     book, table = Class(folder, run=run), ClassTable(rubric, verbose=request.verbose)
     totals: dict[str, str | None] = {}
 
