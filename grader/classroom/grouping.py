@@ -14,7 +14,7 @@ from grader.names import folded
 from grader.text import enumerated, printable_path
 
 _NUMBERED = re.compile(r"(.+?)-[1-9][0-9]?((?:\.[A-Za-z][A-Za-z0-9]*)*(?:\.[A-Za-z0-9]*)?)", re.DOTALL)
-_MAX_FILES = 2_000  # of one participant, if files and an online text have to be put side by side
+_MAX_FILES = 200_000  # of one participant; a zip has no more
 _MAX_NAMED = 10
 
 
@@ -105,7 +105,7 @@ def files_below(listing: ClassListing, top: str, most: int = 300) -> Iterator[st
     """Yield the paths of the files below a folder, those in it first; of more than `most` some more than that."""
     every, count = [top], 0
     for here in every:
-        children = listing.children(here, _MAX_FILES + 1)
+        children = listing.children(here, most + 1)
         yield from (f"{here}/{name}" for name in children.files)
         every += [f"{here}/{name}" for name in sorted(children.folders)]
         count += len(children.files)
