@@ -7,10 +7,11 @@ from functools import lru_cache
 
 from grader.classroom.grouping import ClassSubmission, files_below, one_each
 from grader.classroom.layouts import PATTERNS, ClassFolder, is_submission
+from grader.classroom.listing import ClassListing
 from grader.classroom.people import People
 from grader.classroom.roster import Student
 from grader.files.names import PACKAGE_FILES
-from grader.submission.labs import LabFolders, lab_words
+from grader.submission.labs import Belonging, LabFolders, lab_words
 from grader.submission.students import is_part
 
 _ROBOT = re.compile(r"\.urdf$|xacro|urdf\b|/package\.xml$")
@@ -41,8 +42,19 @@ def team_labs(folder: ClassFolder) -> Iterator[tuple[str, str]]:
     for team in sorted(folder.children.folders):
         if folder.is_explicit or not folder.people.knows_student(team):
             top = folder.start + team
-            labs = (f"{top}/{name}" for name in folder.listing.children(top, 1000).folders if names.is_lab(name))
-            yield from ((lab, team) for lab in labs if _holds_students(folder, lab, team))
+            below = folder.listing.children(top, 1000).folders
+            labs = [f"{top}/{name}" for name in below if names.is_lab(name)]
+            others = [name for name in below if names.belonging(f"{name}/") is Belonging.OTHER_LAB]
+            others = [f"{top}/{name}" for name in others if not names.is_project(f"{name}/")]
+            labs = [lab for lab in labs if _holds_students(folder, lab, team)]
+            if not _is_elsewhere(folder.listing, labs, others):
+                yield from ((lab, team) for lab in labs)
+
+
+def _is_elsewhere(listing: ClassListing, labs: list[str], others: list[str]) -> bool:
+    """Return whether the robot of an only student is in another lab's folder."""
+    are_alone = [len(listing.children(lab).folders) for lab in labs] == [1]
+    return are_alone and not _has_robot(listing, labs[0]) and any(_has_robot(listing, lab) for lab in others)
 
 
 def _holds_students(folder: ClassFolder, lab: str, team: str) -> bool:
@@ -56,8 +68,12 @@ def _holds_students(folder: ClassFolder, lab: str, team: str) -> bool:
     if (known and known >= min(len(names), 2)) or folder.is_explicit:
         return bool(known) or len(parts) < len(inner.folders)
     tops = [f"{lab}/{name}" for name in inner.folders]
-    robots = [top for top in tops if any(_ROBOT.search(path.lower()) for path in files_below(folder.listing, top))]
-    return len(robots) > 1 and not any(folder.listing.has(f"{top}/package.xml") for top in tops)
+    is_package = any(folder.listing.has(f"{top}/package.xml") for top in tops)
+    return not is_package and sum(_has_robot(folder.listing, top) for top in tops) > 1
+
+
+def _has_robot(listing: ClassListing, top: str) -> bool:
+    return any(_ROBOT.search(path.lower()) for path in files_below(listing, top))
 
 
 def _parts(folder: ClassFolder, names: Collection[str], team: str) -> list[str]:
