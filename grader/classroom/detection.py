@@ -30,8 +30,6 @@ def layout_of(folder: ClassFolder) -> str:
 
 def submissions_in(folder: ClassFolder, layout: str) -> Iterator[ClassSubmission]:
     """Return the submissions in a folder, each with the student as far as names tell."""
-    for name, reason in folder.children.refused:
-        folder.ignore([name], reason)
     if layout in ("teams", "nbgrader"):
         return teams(folder) if layout == "teams" else nbgrader(folder)
     return one_each(folder, layout)

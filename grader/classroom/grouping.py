@@ -35,6 +35,7 @@ class ClassSubmission(NamedTuple):
 def one_each(folder: ClassFolder, layout: str) -> Iterator[ClassSubmission]:
     """Yield one submission for each owner. In Moodle, hidden names are the same word."""
     by_owner: dict[str, list[Entry]] = defaultdict(list)
+    folder.list_refused()
     for entry in READERS[layout](folder):
         by_owner[entry.owner].append(entry)
     are_hidden = layout == "moodle" and len(by_owner) > 1 == len(
@@ -145,6 +146,7 @@ def nbgrader(folder: ClassFolder) -> Iterator[ClassSubmission]:
     (name,) = wanted or found
     course.ignore({*course.children.folders}.difference(found[name]), f"has no submission for {printable_path(name)}")
     course.ignore(course.children.files)
+    course.list_refused()
     for student in found[name]:
         path = f"{course.start}{student}/{name}"
         time = iso_time(_start(folder.listing, f"{path}/timestamp.txt").decode("utf-8", "replace"))

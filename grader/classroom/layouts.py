@@ -104,6 +104,11 @@ class ClassFolder:
         """Say why some names are no submissions; the reason continues a sentence that begins with the name."""
         self.ignored.extend(f"{printable_path(self.start + name)} {reason}" for name in names)
 
+    def list_refused(self) -> None:
+        """Say which names are not read, such as symlinks."""
+        for name, reason in self.children.refused:
+            self.ignore([name], reason)
+
 
 def is_submission(name: str) -> bool:
     """Return whether a file has the ending of a submission."""

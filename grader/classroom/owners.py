@@ -175,10 +175,12 @@ class Owners:
         counts = Counter(one.student.key for one in self._visitors)
         taken = {plain(one.key) for one in students}
         for one in self._visitors:
-            key, name = one.student.key, "" if one.student.canvas else one.student.name
+            key, is_chosen = one.student.key, bool(one.student.canvas or one.student.aliases)
             if counts[key] > 1 or not key.isprintable() or plain(key) in taken:
                 key = _path_key(f"{self.roots[one.root][1]}/{one.paths[0]}" if len(self.roots) > 1 else one.paths[0])
-            visitor = one.student._replace(key=key, name=name, aliases=(), is_on_roster=not self._has_roster)
+            visitor = one.student._replace(
+                key=key, name="" if is_chosen else one.student.name, aliases=(), is_on_roster=not self._has_roster
+            )
             found.append(one if visitor == one.student else one._replace(student=visitor))
         return Intake(
             layout,

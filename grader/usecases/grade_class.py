@@ -142,7 +142,7 @@ def _reference(folder: Path) -> str:
 def _check_same_class(folder: Path, results: Results, intake: Intake) -> None:
     """Raise InputError if most of the students who submitted in the last run are missing, or the roster fits nobody."""
     recorded = results.runs[-1].totals if results.runs else {}
-    here = {one.student.key for one in intake.submissions}
+    here = intake.unclear | {one.student.key for one in intake.submissions}
     missing = sorted(recorded.keys() - here)
     if 2 * len(missing) > len(recorded):
         raise InputError(
