@@ -23,7 +23,7 @@ _ANONYMOUS = (
 class Intake(NamedTuple):
     """The submissions of a class in the order of their keys, and lines for the user.
 
-    `unclear` are the keys of students with possible submissions of which none is graded. `unmatched` says which
+    `unclear` are the keys of students with possible submissions of which none counts. `unmatched` says which
     submissions are certainly nobody's on the roster, and which row of it assigns them; `notes` says what was chosen,
     `ignored` what in the folders is no submission.
     """
@@ -185,7 +185,7 @@ class Owners:
         return Intake(
             layout,
             tuple(sorted(found, key=lambda one: one.student.key)),
-            frozenset(students[index].key for index in self._unclear),
+            frozenset(students[index].key for index in self._unclear - self._owned.keys()),
             tuple(self._unmatched),
             tuple(self.notes),
             tuple(first_lines(sorted(self.ignored), _MAX_LINES)),

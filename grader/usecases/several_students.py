@@ -19,7 +19,7 @@ def refuse_class(path: str, rubric: "Rubric", options: str) -> None:
     """Raise InputError, with the command for the class, if a path is a whole class as an LMS or nbgrader gives it."""
     if not _may_be_class(path):
         return
-    from grader.classroom.grouping import is_submission  # late: few submissions look like a class
+    from grader.classroom.layouts import is_submission  # late: few submissions look like a class
     from grader.classroom.submissions import read_class
 
     try:

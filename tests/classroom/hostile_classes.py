@@ -188,6 +188,7 @@ class HostileClass(RuleBasedStateMachine):
         found = self._read()
         for name, paths in self.before.items():
             listed = [line for line in self.unmatched if line.startswith(paths[0]) and "none is graded" in line]
+            assert not self.unclear & {f"k{_NUMBER[one]}" for one in found}, self.made
             is_unclear = not self.made.has_roster or f"k{_NUMBER[name]}" in self.unclear  # so that it is no 0
             assert found.get(name) == paths or (name not in found and len(listed) == 1 and is_unclear), (
                 self.made,
