@@ -7,7 +7,7 @@ ignored, and cut before the next one is appended.
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from json.decoder import scanstring  # type: ignore[attr-defined,unused-ignore]
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -77,7 +77,8 @@ class Graded(NamedTuple):
 class Run(NamedTuple):
     """A finished run: its number, the time in ISO 8601, and the total of each student who submitted, None while it is open.
 
-    `rubric` is its hash, `context` that of all that results depend on besides the submissions.
+    `rubric` is its hash, `context` that of all that results depend on besides the submissions. `unclear` are the students with
+    possible submissions of which none was graded.
     """
 
     run: int
@@ -86,6 +87,7 @@ class Run(NamedTuple):
     rubric: str
     context: str
     totals: Mapping[str, str | None]
+    unclear: Sequence[str] = ()
 
     @property
     def line(self) -> bytes:

@@ -94,7 +94,7 @@ def _grade(
         done = _batch(request, inputs, Batch(results, writer, shared, context), intake, terminal)
         time = datetime.now(UTC).isoformat(timespec="milliseconds")
         present = dict.fromkeys(one.student.key for one in intake.submissions)
-        run = Run(results.next_run, time, __version__, rubric.sha256, context, present)
+        run = Run(results.next_run, time, __version__, rubric.sha256, context, present, sorted(intake.unclear))
         book, table = Class(folder, run=run), ClassTable(rubric, verbose=request.verbose)
         totals: dict[str, str | None] = {}
 
@@ -148,7 +148,7 @@ def _reference(folder: Path) -> str:
 def _check_same_class(folder: Path, results: Results, intake: Intake) -> None:
     """Raise InputError if most of the students who submitted in the last run are missing, or the roster fits nobody."""
     recorded = results.runs[-1].totals if results.runs else {}
-    here = {one.student.key for one in intake.submissions}
+    here = intake.unclear | {one.student.key for one in intake.submissions}
     missing = sorted(recorded.keys() - here)
     if 2 * len(missing) > len(recorded):
         raise InputError(

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from grader.checks.outcome import Outcome, Status
 from grader.classroom.equal_work import forms_of, hashes_of
-from grader.classroom.opening import open_class_submission, unreadable_digest
+from grader.classroom.opening import open_class_submission
 from grader.classroom.results import Graded, answers_of, digest_of, entries_of
 from grader.classroom.run.pool import NO_MEMORY
 from grader.errors import InputError, MachineError
@@ -71,9 +71,8 @@ def _grade_one(context: ClassContext, task: Task) -> Graded:
             raise InputError(students_refusal(submission))  # noqa: TRY301  it is handled like files that cannot be read
         report = grade(rubric, submission, context.parts, is_one_of_class=True)
     except InputError as error:
-        read = result.digest or unreadable_digest(root, task.paths)
-        result = result._replace(digest=result.digest or (digest_of(read) if read else ""))
-        if result.digest and result.digest == task.graded:
+        result = result._replace(digest=result.digest or digest_of(str(error)))
+        if result.digest == task.graded:
             return result
         return undecided(context, result._replace(verdict="unreadable", reason=str(error)))
     except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of the grader affects only this submission

@@ -1,5 +1,6 @@
 """The class's page: statistics, and a table of students with links, which shows those behind each figure."""
 
+import unicodedata
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -8,7 +9,6 @@ from grader import __version__
 from grader.classroom.grade_table import status_of
 from grader.classroom.grades import Class, StudentGrade
 from grader.classroom.statistics import ClassStatistics, CriterionFigures
-from grader.classroom.typed_names import without_accents
 from grader.report import class_summary as words
 from grader.report.pages.shell import Assets, render_page
 from grader.text import counted, enumerated, format_points, printable
@@ -90,7 +90,13 @@ def _row(grade: StudentGrade, links: Mapping[str, str]) -> Row:
 def _by_family_name(row: Row) -> tuple[str, str, str]:
     """Return the family name, which is before a comma or the last word, then the name and the key."""
     family = row.name.partition(",")[0] if "," in row.name else (row.name.split() or [""])[-1]
-    return without_accents(family.casefold())[0], without_accents(row.name.casefold())[0], row.key
+    return _letters(family), _letters(row.name), row.key
+
+
+def _letters(name: str) -> str:
+    """Return a name without accents, so that Öz is not after Zed."""
+    apart = unicodedata.normalize("NFKD", name.casefold())
+    return "".join(letter for letter in apart if not unicodedata.combining(letter))
 
 
 def _columns(rows: Sequence[Row], found: ClassStatistics) -> list[tuple[str, str, str]]:
@@ -128,7 +134,10 @@ def _groups(grades: Sequence[StudentGrade], found: ClassStatistics) -> Iterator[
         yield f"grade-{tenth}", Group(f"a grade of {words.span(found, tenth)}", keys)
     lost = _lost(grades)
     for row in found.criteria:
-        yield f"criterion-{row.criterion.position}", Group(f"lost points in {row.criterion.id}", lost[row.criterion.id], row.criterion.id)
+        yield (
+            f"criterion-{row.criterion.position}",
+            Group(f"lost points in {row.criterion.id}", lost[row.criterion.id], row.criterion.id),
+        )
     for number, mistake in enumerate(found.mistakes):
         yield f"mistake-{number}", Group(f"{mistake.criterion.id}: {mistake.message}", mistake.students)
     for number, work in enumerate(found.equal):
@@ -164,7 +173,12 @@ def _data(rows: Sequence[Row], groups: Mapping[str, Group]) -> dict[str, Any]:
 def _bars(found: ClassStatistics) -> list[dict[str, Any]]:
     most = max(map(len, found.tenths))
     return [
-        {"group": f"grade-{tenth}", "span": words.span(found, tenth), "count": len(keys), "height": round(100 * len(keys) / most)}
+        {
+            "group": f"grade-{tenth}",
+            "span": words.span(found, tenth),
+            "count": len(keys),
+            "height": round(100 * len(keys) / most),
+        }
         for tenth, keys in enumerate(found.tenths if most else ())
     ]
 
