@@ -27,7 +27,6 @@ def export(
     output: Annotated[Path | None, typer.Option(metavar="FILE|DIR", help=_OUTPUT)] = None,
     strict: Annotated[bool, typer.Option("--strict", help=_STRICT)] = False,
     column: Annotated[str, typer.Option(metavar="TITLE", help="The grade's column, if it is ambiguous.")] = "",
-    feedback_column: Annotated[str, typer.Option(metavar="TITLE", help="The feedback's column in Moodle.")] = "",
     pending_as_zero: Annotated[bool, typer.Option("--pending-as-zero", help=_PENDING)] = False,
     any_maximum: Annotated[bool, typer.Option("--any-maximum", help=_MAXIMUM)] = False,
     only: Annotated[bool, typer.Option("--only", help=_ONLY)] = False,

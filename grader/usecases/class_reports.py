@@ -22,13 +22,12 @@ from grader.grading.hints.hinting import hinted
 from grader.grading.report import Report, Result
 from grader.report.formats import Format, render
 from grader.text import by_name, counted, counted_points, enumerated, format_points, printable, printable_path
-from grader.usecases.report_names import CLASS_PAGE, INDEX, file_names, update_index
+from grader.usecases.report_names import CLASS_PAGE, INDEX, file_names, write_index
 from grader.usecases.saves import address
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import make_folder, refuse_symlinks, save
 
 _TASK_SIZE = 4  # reports
-_MAX_NAMED = 3
 _SECONDS = 120.0  # in which hints are searched, and a few reports written
 _MOVED = "The submission has moved or changed since it was graded, so this report has no details: run `grader batch` again."
 
@@ -66,11 +65,13 @@ def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True, feedb
     report = _nothing_submitted(book, grade)
     if grade.graded is not None and grade.report is not None:
         report = book.with_marks(_again(book, grade.graded, has_hints=has_hints), grade.graded)[0]
-    marked = any(result.manual_mark for result in report.results)
-    counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final_points is not None)
-    is_changed = grade.has_final or grade.late.points or marked
-    notes = (*report.notes, *_whole(grade), *_graders(grade, report, feedback=feedback), *_late(grade))
-    return report._replace(notes=notes, grade=counting if is_changed and counting.points is not None or grade.is_excused else None)
+    counting = None
+    is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
+    if grade.is_excused or (is_changed and grade.total is not None):
+        counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final_points is not None)
+    graders = graders_of(grade, report, feedback=feedback)
+    notes = (*_whole(grade), *([f"Graded {graders}."] if graders else []), *_late(grade))
+    return report._replace(notes=(*report.notes, *notes), grade=counting)
 
 
 def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
@@ -108,17 +109,16 @@ def _whole(grade: StudentGrade) -> list[str]:
     return [f"Excused{by}.{comment}" if grade.is_excused else f"Comment{by}:{comment}"]
 
 
-def _graders(grade: StudentGrade, report: Report, *, feedback: bool) -> list[str]:
-    """Return who graded, the checks or people, as a sentence; empty if that is clear or nothing is graded yet."""
-    marks = [row.manual_mark for row in report.results if row.manual_mark is not None]
-    people = {mark.by for mark in marks}
+def graders_of(grade: StudentGrade, report: Report, *, feedback: bool = True) -> str:
+    """Return who graded, the checks or people; empty if nothing is graded, or only by checks and not for `feedback`."""
+    people = {row.manual_mark.by for row in report.results if row.manual_mark is not None}
     is_automatic = any(row.manual_mark is None and not row.is_open and grade.graded is not None for row in report.results)
     if grade.final_points is not None and grade.final is not None:
-        marks, people, is_automatic = [], {grade.final.by}, False
-    if not (people or (feedback and is_automatic)):
-        return []
-    manually = f"manually{by_name(enumerated(sorted(filter(None, people))))}" if people else ""
-    return [f"Graded {', and '.join(filter(None, ['automatically' * is_automatic, manually]))}."]
+        people, is_automatic = {grade.final.by}, False
+    if not people:
+        return "automatically" * (feedback and is_automatic)
+    manually = f"manually{by_name(enumerated(sorted(filter(None, people))))}"
+    return f"automatically, and {manually}" if is_automatic else manually
 
 
 def _late(grade: StudentGrade) -> list[str]:
@@ -156,7 +156,7 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -
     book = Class(run.gradebook)
     keys = [one.student.key for one in book if one.graded is not None or one.has_final]
     files = file_names(keys)
-    earlier = update_index(run.folder, files)
+    write_index(run.folder, files)
     lost = _render_all(replace(run, time=book.run.time), files, terminal, jobs)
     if Format.HTML in run.formats:
         from grader.usecases.class_page import write_class_page
@@ -169,9 +169,6 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -
     terminal.warn(f"{counted(len(files) - len(lost), 'report')} written to {shown}")
     for key, why in lost.items():
         terminal.warn(printable(f"no report for {key}: {why}"))
-    if earlier:
-        reports = f"{counted(len(earlier), 'report')} of students who are not in the gradebook"
-        terminal.warn(f"{shown} also has {reports}: {printable(enumerated(earlier, _MAX_NAMED))}")
 
 
 def _render_all(run: ReportRun, files: dict[str, str], terminal: Terminal, jobs: int | None) -> dict[str, str]:

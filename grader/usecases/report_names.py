@@ -7,8 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from grader.classroom.tables import neutral, rows_of_table, write_table
-from grader.errors import InputError
+from grader.classroom.tables import write_table
 from grader.usecases.writing import save
 
 INDEX = "index.csv"  # the student of each report
@@ -32,29 +31,12 @@ def file_names(keys: Sequence[str]) -> dict[str, str]:
         is_valid = name == key and counts[_fold(name)] == 1 and not _DIGEST.search(name)
         digest = "" if is_valid else f"-{hashlib.sha256(key.encode('utf-8', 'surrogateescape')).hexdigest()}"
         names[key] = name + digest
-    if len(set(map(_fold, names.values()))) < len(names):
-        raise InputError("two students would share a report file; nothing was written")
     return names
 
 
-def update_index(folder: Path, names: dict[str, str]) -> list[str]:
-    """Record the student of each report, and return the names of earlier reports of students who have no report now.
-
-    Raises InputError if the report of another student would be overwritten.
-    """
-    index = folder / INDEX
-    try:
-        before = {row[0]: row[1] for row in rows_of_table(index.read_text(encoding="utf-8"))} if index.exists() else {}
-    except (OSError, ValueError, IndexError):
-        raise InputError(
-            f"cannot read {index}, the list of the students of the reports: remove it, or choose another folder"
-        ) from None
-    rows = {neutral(name): neutral(key) for key, name in names.items()}
-    other = next((name for name, key in rows.items() if before.get(name, key) != key), None)
-    if other is not None:
-        raise InputError(f"{index.parent} has a report of {before[other]} named {other}: choose another folder")
-    save(index, write_table(("report", "id"), sorted({**before, **rows}.items())))
-    return sorted(before.keys() - rows.keys())
+def write_index(folder: Path, names: dict[str, str]) -> None:
+    """Write which student each report is of. Raises InputError."""
+    save(folder / INDEX, write_table(("report", "id"), sorted((name, key) for key, name in names.items())))
 
 
 def _fold(name: str) -> str:

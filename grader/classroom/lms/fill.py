@@ -5,7 +5,7 @@ as a change, and Moodle's worksheets have rounded grades. So rows of students wi
 """
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from decimal import ROUND_FLOOR, Decimal
 from typing import NamedTuple
@@ -14,17 +14,16 @@ from grader.classroom.lms.comments import is_own_comment
 from grader.classroom.lms.forms import Form
 from grader.classroom.lms.grade_file import FillOptions, GradeFile, StudentRow, read_grade_file, read_points
 from grader.classroom.lms.owners import AMBIGUOUS, MISSING, UNKNOWN, ClassGrade, Note, match_rows
-from grader.classroom.tables import TableRow, neutral
+from grader.classroom.tables import TableRow
 from grader.errors import InputError
-from grader.text import counted, first_lines, format_points, people_text, printable
+from grader.text import first_lines, format_points, people_text, printable
 
-_OPEN, _EXCUSED, _REFUSED = "without a grade", "excused", "the LMS would refuse the grade"
-_REDUCED, _KEPT = "the LMS would reduce the grade", "kept the comment"
+_OPEN, _EXCUSED, _KEPT = "without a grade", "excused", "kept the comment"
+_REFUSED = "the LMS would refuse the grade"
 _INCOMPLETE = frozenset({_REFUSED, UNKNOWN, MISSING, AMBIGUOUS})
 _NOT_GRADED = frozenset({"", "-", "needs grading"})  # the last in Blackboard
-_NO = frozenset({"no", "nein", "non", "não", "nee"})
 _COMMA = re.compile(r"[0-9],[0-9]{1,2}$")
-_MAX_CHANGES, _MAX_REASONS = 40, 50
+_MAX_CHANGES, _MAX_REASONS, _MAX_NAMED = 40, 50, 3
 
 
 class Filled(NamedTuple):
@@ -48,43 +47,45 @@ class _Filling:
 
     def row(self, one: StudentRow, grade: ClassGrade) -> TableRow | None:
         """Return a row with the grade and the comment; None, with a note, if it cannot be filled."""
+        new = self.form.excuse
+        if grade.total is not None:
+            new = _points_text(grade.total, like=self.file.maximum)
         if why := self._why_not(one.row, grade):
             self.notes.append(Note(_OPEN, one.who, why))
             return None
-        new, maximum = self.form.excuse, self.file.maximum
+        if self.form.above and (read_points(new) or 0) > (read_points(self.file.maximum) or 0):
+            why = f"{new} points are above the maximum of {self.file.maximum}: {self.form.above}"
+            self.notes.append(Note(_REFUSED, one.who, why))
+            return None
         if grade.total is None:
             self.notes.append(Note(_EXCUSED, one.who, f"{new} in the file"))
-        else:
-            new = _points_text(grade.total, like=maximum)
-            if self.form.above and (read_points(new) or 0) > (read_points(maximum) or 0):
-                why = f"{new} points are above the maximum of {maximum}: {self.form.above}"
-                self.notes.append(Note(_REDUCED if self.form.reduces_above else _REFUSED, one.who, why))
-                if not self.form.reduces_above:
-                    return None
-        row = self._with_comment(self._with_grade(one, new), one, neutral(grade.comment))
+        row = self._with_comment(self._with_grade(one, new), one, grade.comment)
         self.filled += row is not one.row
         self.unchanged += row is one.row
         return row
 
     def _why_not(self, row: TableRow, grade: ClassGrade) -> str:
         """Return why a row gets no grade; empty if it gets one."""
-        old = row.value(self.file.grade).casefold()
-        cells, titles = len(row.cells), len(self.file.table.rows[0].cells)
         if grade.total is None and not grade.is_excused:
             return grade.why_open or "has no grade"
-        if cells != titles:
-            return f"the row has {cells} cells and the header {titles}"
-        if row.value(self.file.roles.get("locked")).casefold() in _NO:
-            return f"has a grade that is locked in {self.form.lms}"
-        return "" if grade.is_excused and old == self.form.excuse.casefold() else self.form.no_grade.get(old, "")
+        titles = self.file.table.titles
+        if len(row.cells) != len(titles):
+            return f"the row has {len(row.cells)} cells and the header {len(titles)}"
+        for role, words in self.form.locked.items():
+            column = self.file.roles.get(role)
+            is_same = grade.is_excused and row.value(column).casefold() == self.form.excuse.casefold()
+            if column is not None and row.value(column).casefold() in words and not is_same:
+                return f"{titles[column]!r} is {row.value(column)!r} in {self.form.lms}"
+        return ""
 
     def _with_grade(self, one: StudentRow, new: str) -> TableRow:
-        old = one.row.value(self.file.grade)
+        column = self.file.roles["grade"]
+        old = one.row.value(column)
         if old.casefold() == new.casefold() or (read_points(old) is not None and read_points(old) == read_points(new)):
             return one.row
         if old.casefold() not in _NOT_GRADED:
             self.changes.append(f"{one.who}: was {old}, becomes {new}")
-        return self.file.table.changed(one.row, self.file.grade, new)
+        return self.file.table.changed(one.row, column, new)
 
     def _with_comment(self, row: TableRow, one: StudentRow, new: str) -> TableRow:
         column = self.file.roles.get("comment")
@@ -100,7 +101,8 @@ class _Filling:
 def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOptions) -> Filled:
     """Return a grade file with the grades in the column of the lab; raises InputError if it is not such a file."""
     file = read_grade_file(data, form, options)
-    warnings = [*_warnings(file, form, options, grades)]
+    header = file.table.titles[file.roles["grade"]]
+    warnings = _check_maximum(file.maximum, f"{header!r} in {form.lms}", options)
     known = [grade if form.excuse else grade._replace(is_excused=False) for grade in grades]
     found, notes = match_rows(file.students, known, form.lms)
     filling, students = _Filling(form, file, notes), {one.row.number: one for one in file.students}
@@ -110,12 +112,11 @@ def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOpt
         new = filling.row(students[row.number], grade) if grade else None if row.number in students else row
         rows += [new] if new else []
     table = replace(file.table, rows=tuple(rows))
-    if options.only and not form.is_maximum_next:
-        table = table.with_columns([*{*file.roles.values(), file.grade}])
+    if options.only and "maximum" not in file.roles:
+        table = table.with_columns([*{*file.roles.values()}])
     lines = [
-        f"column {file.header!r}: {filling.filled} filled in, {filling.unchanged} already the same",
+        f"column {header!r}: {filling.filled} filled in, {filling.unchanged} already the same",
         *first_lines(filling.changes, _MAX_CHANGES),
-        *([form.overwriting] if filling.changes and form.overwriting else []),
         *by_reason(notes),
         *warnings,
     ]
@@ -129,12 +130,12 @@ def participants(data: bytes, grades: Sequence[ClassGrade], form: Form, options:
     return {found[one.row.number].student.key: one.student.moodle for one in file.students if one.row.number in found}
 
 
-def by_reason(notes: Iterable[Note], most: int = 3) -> list[str]:
+def by_reason(notes: Iterable[Note]) -> list[str]:
     """Return a line for each reason: who has it, of several how many and the first of them."""
     names: dict[tuple[str, str], list[str]] = {}
     for note in notes:
         names.setdefault((note.kind, note.why), []).append(note.who)
-    groups = ((*key, f"{len(who)} ({people_text(who, most)})" if who[1:] else who[0]) for key, who in names.items())
+    groups = ((*key, f"{len(who)} ({people_text(who, _MAX_NAMED)})" if who[1:] else who[0]) for key, who in names.items())
     return first_lines([f"{kind}: {who}: {why}" for kind, why, who in groups], _MAX_REASONS)
 
 
@@ -144,20 +145,11 @@ def _points_text(points: Decimal, like: str) -> str:
     return text.replace(".", ",") if _COMMA.search(like) else text
 
 
-def _warnings(file: GradeFile, form: Form, options: FillOptions, grades: Sequence[ClassGrade]) -> Iterator[str]:
-    """Yield what to know of a file; raises InputError for another maximum: 9.33 of 100 is not 9.33 of 10."""
-    maximum, out_of = read_points(file.maximum), options.out_of
-    if maximum is None and form.is_maximum_next:
-        what = f"no number as the maximum grade after {file.header!r}"
-        raise InputError(f"{options.shown} has {what}: an assignment that is graded by a scale takes no points")
-    if maximum is None:
-        yield f"the file does not state the maximum of {file.header!r} in {form.lms}"
-    elif maximum != out_of and not options.any_maximum:
-        others = f"{format_points(maximum)}, but that of the rubric is {format_points(out_of)}"
+def _check_maximum(text: str, what: str, options: FillOptions) -> list[str]:
+    """Return a warning about a maximum that is not known; raises InputError for another: 9.33 of 100 is not 9.33 of 10."""
+    maximum = read_points(text)
+    if maximum is not None and maximum != options.out_of and not options.any_maximum:
+        others = f"{format_points(maximum)}, but that of the rubric is {format_points(options.out_of)}"
         advice = "change it in the LMS and export again, or pass --any-maximum to write the points unchanged"
-        raise InputError(f"the maximum of {file.header!r} in {form.lms} is {others}: {advice}")
-    if file.others and not options.only:
-        others = counted(file.others, "other assignment")
-        yield f"importing the file resets {others} to the grades at the time of the export, unless you pass --only"
-    if "comment" in form.columns.keys() - file.roles.keys() and any(grade.comment for grade in grades):
-        yield "the file has no known column for comments: name it with --feedback-column"
+        raise InputError(f"the maximum of {what} is {others}: {advice}")
+    return [] if maximum is not None else [f"the file does not state the maximum of {what}"]
