@@ -38,7 +38,9 @@ def check_gradebook(folder: Path) -> None:
                 )
         raise InputError(f"{shown} is a file: a gradebook is a folder")
     if not folder.is_dir():
-        raise InputError(f"there is no gradebook {shown}: `grader batch PATH --gradebook {shell_quoted(folder)}` makes it")
+        raise InputError(
+            f"there is no gradebook {shown}: `grader batch PATH --gradebook {shell_quoted(folder)}` makes it"
+        )
     if not is_gradebook(folder):
         raise InputError(f"{shown} is no gradebook: it has no {CLASS_FILE}")
 

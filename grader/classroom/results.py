@@ -58,7 +58,9 @@ class Graded(NamedTuple):
     @property
     def line(self) -> bytes:
         """The line of the file, without what is empty."""
-        values = {name: value for name, value in zip(self._fields, self, strict=True) if value or name in ("student", "run")}
+        values = {
+            name: value for name, value in zip(self._fields, self, strict=True) if value or name in ("student", "run")
+        }
         return f"{json.dumps(values, separators=(',', ':'))}\n".encode()
 
     def report(self, rubric: Rubric) -> Report:
@@ -66,7 +68,9 @@ class Graded(NamedTuple):
         unread = self.reason if self.verdict == "unreadable" else ""
         submission = GradedSubmission(self.student, path=self.paths[0] if self.paths else None, unread=unread)
         rows = ((row, self.results.get(row.id)) for row in rubric.criteria)
-        results = (Result(row, Outcome(entry[1], entry[2]), carried=entry[3]) for row, entry in rows if entry is not None)  # type: ignore[arg-type]
+        results = (
+            Result(row, Outcome(entry[1], entry[2]), carried=entry[3]) for row, entry in rows if entry is not None
+        )  # type: ignore[arg-type]
         return Report(submission, rubric, self.parts, without_gifts(results, submission))
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 from shutil import copyfile, copytree, ignore_patterns, rmtree
+from typing import Any
 
 from grader.classroom import folder as names
 from grader.classroom.lateness import read_time, time_text
@@ -75,7 +76,9 @@ def read_inputs(options: ClassOptions, warn: Warn) -> ClassInputs:
     if rubric is None:
         rubric = load_rubric(DEFAULT_RUBRIC if is_new else folder / settings.rubric)
     elif not is_new and (recorded := load_rubric(folder / settings.rubric)).id != rubric.id:
-        raise InputError(f"{printable_path(folder)} is the gradebook of {recorded.id}, not of {rubric.id}: name another folder")
+        raise InputError(
+            f"{printable_path(folder)} is the gradebook of {recorded.id}, not of {rubric.id}: name another folder"
+        )
     if not (options.paths or settings.submissions):
         raise InputError("name the PATH of the submissions, a folder or the zip of an LMS")
     if settings.due and options.due is None:
@@ -92,7 +95,7 @@ def _updated(options: ClassOptions, settings: ClassSettings, folder: Path, rubri
     """Return the settings with the options of the command."""
     for name in options.part:
         rubric.part(name)
-    given = {
+    given: dict[str, Any] = {
         "due": read_time(options.due).isoformat() if options.due else None,
         "layout": options.layout,
         "assignment": options.assignment,

@@ -12,10 +12,9 @@ from grader.classroom.reopening import reopened
 from grader.classroom.results import Graded
 from grader.classroom.run.pool import Processes, WorkerError, processors
 from grader.classroom.run.progress import Progress
-from grader.classroom.run.queue import Queue
+from grader.classroom.run.queue import results_of
 from grader.classroom.run.worker import undecided_report
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
-from grader.grading.criterion import TOTAL
 from grader.grading.grade import grade as grade_submission
 from grader.grading.graded_submission import Grade, GradedSubmission
 from grader.grading.hints.hinting import hinted
@@ -175,19 +174,19 @@ def _render_all(run: ReportRun, files: dict[str, str], terminal: Terminal, jobs:
     """Write the reports of students, by their file names; return who has none, and why."""
     workers, lost = jobs or processors(), dict[str, str]()
 
-    def give_up(task: _Task, error: Exception) -> tuple[str, str] | None:
+    def again(task: _Task, _: WorkerError) -> _Task | None:
+        return replace(task, has_hints=False) if task.has_hints else None
+
+    def give_up(task: _Task, error: Exception) -> tuple[str, str]:
         if isinstance(error, InputError | RubricError):
             raise error
-        if task.has_hints and isinstance(error, WorkerError):
-            queue.put_back(replace(task, has_hints=False))
-            return None
         fault = f"the grader itself failed: {type(error).__name__}: {error}"
         return task.key, str(error) if isinstance(error, WorkerError | MachineError) else fault
 
     with Processes(workers, _SECONDS) as executor, terminal.show_class("writing reports") as show:
         show(progress := Progress(len(files)))
-        queue = Queue(executor, workers, partial(_write_some, run), give_up, _TASK_SIZE)
-        for results in queue.all(_Task(key, name) for key, name in files.items()):
+        tasks = (_Task(key, name) for key, name in files.items())
+        for results in results_of(executor, workers, partial(_write_some, run), tasks, again, give_up, _TASK_SIZE):
             lost |= {key: why for key, why in results if why}
             show(progress := replace(progress, graded=progress.graded + len(results)))
     return {key: lost[key] for key in files if key in lost}

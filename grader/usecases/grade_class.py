@@ -92,9 +92,9 @@ def _grade(
     )
     writer = ResultsWriter(folder / names.RESULTS, results.end)
     with _executor(request, inputs) as (executor, workers), terminal.show_class("grading") as show:
-        batch = Batch(results, writer, shared, context, executor, workers, show)
+        batch = Batch(results, writer, shared, context)
         try:
-            done = batch.grade(intake.submissions, len(intake.submissions), force=request.force)
+            done = batch.grade(intake.submissions, executor, workers, show, force=request.force)
         except BaseException:
             graded = f"{batch.progress.done} of {len(intake.submissions)} have a result, which is kept"
             terminal.warn(f"stopped: {graded}; rerun the same command to resume")
@@ -111,7 +111,8 @@ def _grade(
         for grade in book:
             table.add(grade)
             if grade.student.key in present:
-                totals[grade.student.key] = format_points(grade.total) if grade.published is not None else None
+                published = grade.published
+                totals[grade.student.key] = format_points(published) if published is not None else None
             yield grade
 
     save(folder / names.GRADES, write_table(*grade_table(book, passing())), inputs.roots, _PRIVATE)
@@ -128,7 +129,9 @@ def write_grades(book: Class) -> None:
 def warn_of_due(due: str | None, inputs: ClassInputs, warn: Warn) -> None:
     """Say that `--due` changes no grade if the rubric has no late penalty."""
     if due and inputs.rubric.late is None:
-        warn(f"--due has no effect on grades, because the rubric {inputs.rubric.id} has no [late]: only the days late are shown")
+        warn(
+            f"--due has no effect on grades, because the rubric {inputs.rubric.id} has no [late]: only the days late are shown"
+        )
 
 
 def _reference(folder: Path) -> str:
