@@ -41,7 +41,7 @@ class SubmissionTimes:
     is_extended: bool = False
 
     def extended(self, deadline: str) -> "SubmissionTimes":
-        """Return the times with the deadline of `grader mark STUDENT deadline`, empty for none, in place of the roster's."""
+        """Return the times with the deadline of `grader mark STUDENT deadline` instead of the roster's, unless empty."""
         days = None if self.submitted and self.days_late else self.days_late  # without a time no days can be counted
         return replace(self, deadline=deadline, extension=0.0, days_late=days, is_extended=True) if deadline else self
 

@@ -20,8 +20,8 @@ def stats(
 ) -> str:
     """Show statistics of a class: grades, criteria, mistakes, sections, equal work.
 
-    A grade is the one that is published: after marks, adjustments and the late penalty. The share of a criterion is the mean share of
-    its points that students earned.
+    A grade is the one that is published: after marks, adjustments and the late penalty. The share of a criterion is the
+    mean share of its points that students earned.
 
     Examples:
 
@@ -52,8 +52,8 @@ def diff(
 ) -> str:
     """Show whose grade changed between two runs, and why.
 
-    Compares the last two runs of a gradebook, or two gradebooks. A grade changes with the submission, the rubric, the grader, marks,
-    the roster or the deadline. Runs count from 1.
+    Compares the last two runs of a gradebook, or two gradebooks. A grade changes with the submission, the rubric, the
+    grader, marks, the roster or the deadline. Runs count from 1.
 
     Examples:
 

@@ -28,7 +28,7 @@ from grader.usecases.writing import make_folder, refuse_symlinks, save
 
 _TASK_SIZE = 4  # reports
 _SECONDS = 120.0  # in which hints are searched, and a few reports written
-_MOVED = "The submission has moved or changed since it was graded, so this report has no details: run `grader batch` again."
+_MOVED = "The submission has moved or changed, so this report has no details: run `grader batch` again."
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,9 +57,9 @@ class _Task:
 def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True, feedback: bool = False) -> Report:
     """Return the report on a student's submission, with the marks, the grade and notes.
 
-    There is a note for a final mark, an excuse, a comment and a late penalty. Another one says who graded if a person did, and
-    always in `feedback`. Without notes, the report is the same as that of `grader grade`. A submission that has changed since has its
-    points only.
+    There is a note for a final mark, an excuse, a comment and a late penalty. Another one says who graded if a person
+    did, and always in `feedback`. Without notes, the report is the same as that of `grader grade`. A submission that
+    has changed since has its points only.
     """
     report = _nothing_submitted(book, grade)
     if grade.graded is not None and grade.report is not None:
@@ -104,14 +104,16 @@ def _whole(grade: StudentGrade) -> list[str]:
     words = " ".join(mark.comment.split())
     by, comment = by_name(mark.by), f" {words}" if words else ""
     if mark.points is not None:
-        return [f"Final mark: {counted_points(mark.points)}, given{by or ' manually'} instead of the sum of the criteria.{comment}"]
+        points = counted_points(mark.points)
+        return [f"Final mark: {points}, given{by or ' manually'} instead of the sum of the criteria.{comment}"]
     return [f"Excused{by}.{comment}" if grade.is_excused else f"Comment{by}:{comment}"]
 
 
 def graders_of(grade: StudentGrade, report: Report, *, feedback: bool = True) -> str:
     """Return who graded, the checks or people; empty if nothing is graded, or only by checks and not for `feedback`."""
     people = {row.manual_mark.by for row in report.results if row.manual_mark is not None}
-    is_automatic = any(row.manual_mark is None and not row.is_open and grade.graded is not None for row in report.results)
+    decided = [row for row in report.results if row.manual_mark is None and not row.is_open]
+    is_automatic = bool(decided) and grade.graded is not None
     if grade.final_points is not None and grade.final is not None:
         people, is_automatic = {grade.final.by}, False
     if not people:

@@ -6,7 +6,7 @@ from pathlib import Path
 from zipfile import is_zipfile
 
 from grader.classroom import folder as names
-from grader.classroom.grade_table import export_table
+from grader.classroom.grade_table import grade_table
 from grader.classroom.grades import Class, StudentGrade
 from grader.classroom.lms.comments import comment_html, lost_points
 from grader.classroom.lms.feedback_zip import canvas_names, moodle_names, write_feedback
@@ -68,7 +68,7 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
         terminal.warn(line)
     data, is_complete = _data(request, book, terminal)
     if request.strict and (book.marks.ignored or not is_complete):
-        terminal.warn("nothing was written, because of --strict: marks do not count, or some rows or students are unmatched")
+        terminal.warn("nothing was written, because of --strict: marks do not count, or rows or students are unmatched")
         return b"", ExitCode.FAILED
     if request.feedback is not None:
         save_bytes(request.feedback, _feedback(request, book, terminal), roots)
@@ -81,7 +81,7 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
 def _data(request: ExportRequest, book: Class, terminal: Terminal) -> tuple[bytes, bool]:
     """Return the exported file, empty if only feedback is asked for, and whether everybody is in it."""
     if request.target == "csv":
-        return _BOM * request.excel + write_table(*export_table(book, book)).encode(), True
+        return _BOM * request.excel + write_table(*grade_table(book, book, is_exported=True)).encode(), True
     if request.target == "json":
         from grader.report.class_json import render_class_json
 

@@ -135,7 +135,9 @@ def by_reason(notes: Iterable[Note]) -> list[str]:
     names: dict[tuple[str, str], list[str]] = {}
     for note in notes:
         names.setdefault((note.kind, note.why), []).append(note.who)
-    groups = ((*key, f"{len(who)} ({people_text(who, _MAX_NAMED)})" if who[1:] else who[0]) for key, who in names.items())
+    groups = (
+        (*key, f"{len(who)} ({people_text(who, _MAX_NAMED)})" if who[1:] else who[0]) for key, who in names.items()
+    )
     return first_lines([f"{kind}: {who}: {why}" for kind, why, who in groups], _MAX_REASONS)
 
 
@@ -146,7 +148,7 @@ def _points_text(points: Decimal, like: str) -> str:
 
 
 def _check_maximum(text: str, what: str, options: FillOptions) -> list[str]:
-    """Return a warning about a maximum that is not known; raises InputError for another: 9.33 of 100 is not 9.33 of 10."""
+    """Return a warning about an unknown maximum; raises InputError for another one: 9.33 of 100 is not 9.33 of 10."""
     maximum = read_points(text)
     if maximum is not None and maximum != options.out_of and not options.any_maximum:
         others = f"{format_points(maximum)}, but that of the rubric is {format_points(options.out_of)}"

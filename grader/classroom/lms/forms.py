@@ -54,8 +54,7 @@ CANVAS = Form(
 MOODLE = Form(
     "Moodle",
     {  # as the language packs have them (assign.php, assignfeedback_comments.php), as far as they were looked up
-        "moodle": "identifier | id | identifiant | identificador | identificativo"
-        " | identificatie",
+        "moodle": "identifier | id | identifiant | identificador | identificativo | identificatie",
         "name": "full name | vollständiger name | nom complet | nombre completo | nome completo | volledige naam",
         "email": "email address | e-mail-adresse | adresse de courriel | dirección de correo | indirizzo email"
         " | endereço de email | e-mailadres",
