@@ -47,7 +47,8 @@ def check_gradebook(folder: Path) -> None:
 
 def check_free(folder: Path) -> None:
     """Raise InputError unless a path is a gradebook, an empty folder, or absent."""
-    if folder.is_dir() and not is_gradebook(folder) and any(folder.iterdir()):
+    is_begun = is_gradebook(folder) or (folder / _LOCK).exists()  # a first run may have been killed
+    if folder.is_dir() and not is_begun and any(folder.iterdir()):
         raise InputError(f"{printable_path(folder)} is no gradebook and not empty: name another folder")
     if folder.exists() and not folder.is_dir():
         check_gradebook(folder)
@@ -58,6 +59,7 @@ def make_gradebook(folder: Path) -> None:
     check_free(folder)
     try:
         folder.mkdir(mode=0o700, exist_ok=True)
+        (folder / _LOCK).touch(0o600)
         (folder / MARKS).mkdir(mode=0o700, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot make the gradebook {printable_path(folder)}: {error.strerror}") from None

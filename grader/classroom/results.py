@@ -207,7 +207,12 @@ class ResultsWriter:
         except OSError as error:
             raise InputError(f"cannot write {self._shown}: {error.strerror}") from None
 
-    def close(self) -> None:
+    def __enter__(self) -> "ResultsWriter":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        os.close(self._handle)
+
+    def sync(self) -> None:
         """Write to the disk what the system still holds."""
         os.fsync(self._handle)
-        os.close(self._handle)

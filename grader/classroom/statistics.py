@@ -110,6 +110,8 @@ def statistics(book: Class, grades: Iterable[StudentGrade]) -> ClassStatistics:
         sections[grade.student.section].append(grade.total)
         for result in grade.report.results if grade.report is not None else ():
             name = result.criterion.id
+            if name not in found:  # marked, in a part that is not graded
+                continue
             found[name].update(_of(result))
             earned[name] += result.points
             if result.is_lost and result.manual_mark is None:

@@ -142,19 +142,23 @@ def keep_inputs(inputs: ClassInputs, options: ClassOptions, warn: Warn) -> Class
 
 def _copy_rubric(folder: Path, rubric: Rubric) -> str:
     """Copy a rubric and its reference into a gradebook, where they stand to each other as before; return where it is."""
-    target = folder / names.RUBRIC
+    target, made = folder / names.RUBRIC, folder / f".{names.RUBRIC}"
     files = [file for file in files_of(str(rubric.path)) if file.name != rubric.answers and file.exists()]
     near = [file.resolve() for file in files if not Path(rubric.reference).is_absolute() or file == rubric.path]
     base = Path(os.path.commonpath([file.parent for file in near]))
-    if target.exists():
-        rmtree(target)
-    for file in near:
-        place = target / file.relative_to(base)
-        place.parent.mkdir(parents=True, exist_ok=True)
-        if file.is_dir():
-            copytree(file, place, ignore=ignore_patterns("__pycache__"), dirs_exist_ok=True)
-        else:
-            copyfile(file, place)
+    try:
+        rmtree(made, ignore_errors=True)  # of a run that was killed
+        for file in near:
+            place = made / file.relative_to(base)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            if file.is_dir():
+                copytree(file, place, ignore=ignore_patterns("__pycache__"), dirs_exist_ok=True)
+            else:
+                copyfile(file, place)
+        rmtree(target, ignore_errors=True)
+        made.rename(target)
+    except OSError as error:
+        raise InputError(f"cannot write {printable_path(target)}: {error.strerror or 'some files cannot be copied'}") from None
     return (target / rubric.path.resolve().relative_to(base)).relative_to(folder).as_posix()
 
 

@@ -27,7 +27,7 @@ from grader.usecases.terminal import Terminal
 from grader.usecases.writing import make_folder, refuse_symlinks, save
 
 _TASK_SIZE = 4  # reports
-_SECONDS = 120.0  # in which hints are searched, and a few reports written
+_SECONDS = 60.0  # in which hints are searched, and a few reports written
 _MOVED = "The submission has moved or changed, so this report has no details: run `grader batch` again."
 
 
@@ -148,7 +148,7 @@ def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: S
         raise InputError(f"cannot write {page}: it exists, and grader did not write it; choose another folder")
 
 
-def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -> None:
+def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS) -> None:
     """Write a report for each student who has a result, a final mark or an excuse; in HTML also the class's page.
 
     Raises InputError and RubricError, which concern all reports.
@@ -158,7 +158,8 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -
     keys = [one.student.key for one in book if one.graded is not None or one.has_final]
     files = file_names(keys)
     write_index(run.folder, files)
-    lost = _render_all(replace(run, time=book.run.time), files, terminal, jobs)
+    with Processes(jobs or processors(), timeout) as executor:
+        lost = _render_all(replace(run, time=book.run.time), files, terminal, executor, jobs or processors())
     if Format.HTML in run.formats:
         from grader.usecases.class_page import write_class_page
 
@@ -172,9 +173,11 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -
         terminal.warn(printable(f"no report for {key}: {why}"))
 
 
-def _render_all(run: ReportRun, files: dict[str, str], terminal: Terminal, jobs: int | None) -> dict[str, str]:
+def _render_all(
+    run: ReportRun, files: dict[str, str], terminal: Terminal, executor: Processes, workers: int
+) -> dict[str, str]:
     """Write the reports of students, by their file names; return who has none, and why."""
-    workers, lost = jobs or processors(), dict[str, str]()
+    lost = dict[str, str]()
 
     def again(task: _Task, _: WorkerError) -> _Task | None:
         return replace(task, has_hints=False) if task.has_hints else None
@@ -185,7 +188,7 @@ def _render_all(run: ReportRun, files: dict[str, str], terminal: Terminal, jobs:
         fault = f"the grader itself failed: {type(error).__name__}: {error}"
         return task.key, str(error) if isinstance(error, WorkerError | MachineError) else fault
 
-    with Processes(workers, _SECONDS) as executor, terminal.show_class("writing reports") as show:
+    with terminal.show_class("writing reports") as show:
         show(progress := Progress(len(files)))
         tasks = (_Task(key, name) for key, name in files.items())
         for results in results_of(executor, workers, partial(_write_some, run), tasks, again, give_up, _TASK_SIZE):

@@ -71,7 +71,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
         table, done = _grade(request, inputs, results, intake, terminal)
     if request.report_format:
         run = ReportRun(folder, request.reports or folder / names.REPORTS, request.report_format, request.answers)
-        write_reports(run, terminal, request.jobs)
+        write_reports(run, terminal, request.jobs, request.timeout)
     if request.output_format is OutputFormat.JSON:
         from grader.report.class_json import render_class_json
 
@@ -90,9 +90,31 @@ def _grade(
     context = digest_of(
         rubric.sha256, _reference(folder), settings.parts, sorted(arguments.items()), settings.max_size, __version__
     )
-    writer = ResultsWriter(folder / names.RESULTS, results.end)
+    with ResultsWriter(folder / names.RESULTS, results.end) as writer:
+        done = _batch(request, inputs, Batch(results, writer, shared, context), intake, terminal)
+        time = datetime.now(UTC).isoformat(timespec="milliseconds")
+        present = dict.fromkeys(one.student.key for one in intake.submissions)
+        run = Run(results.next_run, time, __version__, rubric.sha256, context, present)
+        book, table = Class(folder, run=run), ClassTable(rubric, verbose=request.verbose)
+        totals: dict[str, str | None] = {}
+
+        def passing() -> Iterator[StudentGrade]:
+            for grade in book:
+                table.add(grade)
+                if grade.student.key in present:
+                    published = grade.published
+                    totals[grade.student.key] = format_points(published) if published is not None else None
+                yield grade
+
+        save(folder / names.GRADES, write_table(*grade_table(book, passing())), inputs.roots, _PRIVATE)
+        writer.append(run._replace(totals=totals).line)
+        writer.sync()
+    return table, done
+
+
+def _batch(request: ClassRequest, inputs: ClassInputs, batch: Batch, intake: Intake, terminal: Terminal) -> Progress:
+    """Grade what has no current result, and say how many that were."""
     with _executor(request, inputs) as (executor, workers), terminal.show_class("grading") as show:
-        batch = Batch(results, writer, shared, context)
         try:
             done = batch.grade(intake.submissions, executor, workers, show, force=request.force)
         except BaseException:
@@ -101,24 +123,7 @@ def _grade(
             raise
     errored = f" ({done.errored} errored)" if done.errored else ""
     terminal.warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged")
-    time = datetime.now(UTC).isoformat(timespec="milliseconds")
-    present = dict.fromkeys(one.student.key for one in intake.submissions)
-    run = Run(results.next_run, time, __version__, rubric.sha256, context, present)
-    book, table = Class(folder, run=run), ClassTable(rubric, verbose=request.verbose)
-    totals: dict[str, str | None] = {}
-
-    def passing() -> Iterator[StudentGrade]:
-        for grade in book:
-            table.add(grade)
-            if grade.student.key in present:
-                published = grade.published
-                totals[grade.student.key] = format_points(published) if published is not None else None
-            yield grade
-
-    save(folder / names.GRADES, write_table(*grade_table(book, passing())), inputs.roots, _PRIVATE)
-    writer.append(run._replace(totals=totals).line)
-    writer.close()
-    return table, done
+    return done
 
 
 def write_grades(book: Class) -> None:

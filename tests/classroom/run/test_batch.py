@@ -150,7 +150,9 @@ def test_several_files_are_graded_like_a_folder(tmp_path: Path) -> None:
     several = 0
     for key, line in newest(tmp_path / "out.book").items():
         paths = line["paths"]
-        if len(paths) > 1 and line["verdict"] == "graded" and not line.get("is_late"):  # a late penalty is a note in the report
+        if (
+            len(paths) > 1 and line["verdict"] == "graded" and not line.get("is_late")
+        ):  # a late penalty is a note in the report
             together = tmp_path / "together" / key
             together.mkdir(parents=True)
             for path, name in zip(paths, line["names"], strict=True):
