@@ -7,7 +7,7 @@ from zipfile import is_zipfile
 
 from grader.classroom import folder as names
 from grader.classroom.grade_table import grade_table
-from grader.classroom.grades import Class, StudentGrade
+from grader.classroom.grades import Class, Reason, StudentGrade
 from grader.classroom.lms.comments import comment_html, lost_points
 from grader.classroom.lms.feedback_zip import canvas_names, moodle_names, write_feedback
 from grader.classroom.lms.fill import by_reason, fill, participants
@@ -18,7 +18,7 @@ from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.errors import GraderError, InputError
 from grader.files.reading import read_capped
 from grader.report.formats import Format, render
-from grader.text import enumerated, first_lines, format_points, printable, printable_path
+from grader.text import enumerated, first_lines, format_points, named, printable, printable_path
 from grader.usecases.class_reports import ReportRun, graders_of, refuse_report_folder, report_of, write_reports
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.terminal import Terminal
@@ -91,7 +91,12 @@ def _data(request: ExportRequest, book: Class, terminal: Terminal) -> tuple[byte
     form = FORMS[request.target]
     grades = [_class_grade(book, one, request, has_comment="comment" in form.columns) for one in book]
     filled = fill(read_capped(request.into, SIZE_LIMIT, advice=""), grades, form, _options(request, book))
-    for line in filled.lines:
+    older = [
+        Note(Reason.OLDER_MARKS, named(one.student.key, one.student.name), ", ".join(one.older))
+        for one in book
+        if one.older
+    ]
+    for line in [*filled.lines, *map(printable, by_reason(older))]:
         terminal.warn(line)
     return filled.data, filled.is_complete
 
