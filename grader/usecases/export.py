@@ -176,4 +176,4 @@ def _refuse_files(request: ExportRequest) -> None:
     if any(other is not None and is_same_file(feedback, other) for other in (into, output)):
         raise GraderError(f"cannot write {printable_path(feedback)}: it is also the file of --into or --output")
     if feedback.is_symlink() or (feedback.exists() and not is_zipfile(feedback)):
-        raise InputError(f"cannot write {printable_path(feedback)}: it exists and is not a zip; name another file")
+        raise InputError(f"cannot write {printable_path(feedback)}: it is a symlink, or exists and is no zip; name another file")
