@@ -4,8 +4,8 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO
 
+from grader.classroom.mark_files import lock
 from grader.classroom.settings import CLASS_FILE
 from grader.errors import InputError
 from grader.text import printable_path, shell_quoted
@@ -73,21 +73,10 @@ def batch_lock(folder: Path) -> Iterator[None]:
     except OSError as error:
         raise InputError(f"cannot write to the gradebook {printable_path(folder)}: {error.strerror}") from None
     with file:
-        if not _try_lock(file):
-            raise InputError(f"another `grader batch` writes to {printable_path(folder)}: wait until it has ended")
+        try:
+            lock(file.fileno(), wait=False)
+        except OSError:
+            raise InputError(
+                f"another `grader batch` writes to {printable_path(folder)}: wait until it has ended"
+            ) from None
         yield
-
-
-def _try_lock(file: IO[bytes]) -> bool:
-    try:
-        if os.name == "nt":
-            import msvcrt
-
-            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined,unused-ignore]
-        else:
-            import fcntl
-
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        return False
-    return True
