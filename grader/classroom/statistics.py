@@ -114,7 +114,7 @@ def statistics(book: Class, grades: Iterable[StudentGrade]) -> ClassStatistics:
                 continue
             found[name].update(_of(result))
             earned[name] += result.points
-            if result.is_lost and result.manual_mark is None:
+            if result.is_lost and result.manual_mark is None and result.outcome.message:
                 mistakes[name, result.outcome.message].append(key)
     common = sorted(mistakes.items(), key=lambda item: (-len(item[1]), item[0]))
     by_id = {row.id: row for row in book.rubric.criteria}

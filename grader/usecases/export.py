@@ -18,7 +18,8 @@ from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.errors import GraderError, InputError
 from grader.files.reading import read_capped
 from grader.report.formats import Format, render
-from grader.text import enumerated, first_lines, format_points, named, printable, printable_path
+from grader.text import enumerated, format_points, named, printable, printable_path
+from grader.usecases.class_figures import warn_of_ignored
 from grader.usecases.class_reports import ReportRun, graders_of, refuse_report_folder, report_of, write_reports
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.terminal import Terminal
@@ -27,7 +28,6 @@ from grader.usecases.writing import is_same_file, is_stdout, refuse_symlinks, sa
 _BOM = b"\xef\xbb\xbf"  # by which Excel recognises UTF-8
 # The targets of each option that not all targets take.
 _TARGETS = {"--into": tuple(FORMS), "--feedback": ("moodle", "canvas"), "--excel": ("csv",)}
-_MAX_LINES = 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,8 +64,7 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
         refuse_symlinks(path, roots)
         if book.folder.resolve() in path.resolve().parents:
             raise InputError(f"cannot write {printable_path(path)}: the gradebook is written by its own commands")
-    for line in first_lines(book.marks.ignored, _MAX_LINES):
-        terminal.warn(line)
+    warn_of_ignored(book, terminal.warn)
     data, is_complete = _data(request, book, terminal)
     if request.strict and (book.marks.ignored or not is_complete):
         terminal.warn("nothing was written, because of --strict: marks do not count, or rows or students are unmatched")
@@ -176,4 +175,6 @@ def _refuse_files(request: ExportRequest) -> None:
     if any(other is not None and is_same_file(feedback, other) for other in (into, output)):
         raise GraderError(f"cannot write {printable_path(feedback)}: it is also the file of --into or --output")
     if feedback.is_symlink() or (feedback.exists() and not is_zipfile(feedback)):
-        raise InputError(f"cannot write {printable_path(feedback)}: it is a symlink, or exists and is no zip; name another file")
+        raise InputError(
+            f"cannot write {printable_path(feedback)}: it is a symlink, or exists and is no zip; name another file"
+        )
