@@ -6,7 +6,7 @@ as a change, and Moodle's worksheets have rounded grades. So rows of students wi
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from decimal import ROUND_FLOOR, Decimal
 from typing import NamedTuple
 
@@ -34,100 +34,78 @@ class Filled(NamedTuple):
     is_complete: bool
 
 
-@dataclass(slots=True)
-class _Filling:
-    """What was filled so far."""
-
-    form: Form
-    file: GradeFile
-    notes: list[Note]
-    changes: list[str] = field(default_factory=list)
-    filled: int = 0
-    unchanged: int = 0
-
-    def row(self, one: StudentRow, grade: ClassGrade) -> TableRow | None:
-        """Return a row with the grade and the comment; None, with a note, if it cannot be filled."""
-        new = self.form.excuse
-        if grade.total is not None:
-            new = _points_text(grade.total, like=self.file.maximum)
-        if why := self._why_not(one.row, grade):
-            self.notes.append(Note(_OPEN, one.who, why))
-            return None
-        if self.form.above and (read_points(new) or 0) > (read_points(self.file.maximum) or 0):
-            why = f"{new} points are above the maximum of {self.file.maximum}: {self.form.above}"
-            self.notes.append(Note(_REFUSED, one.who, why))
-            return None
-        if grade.total is None:
-            self.notes.append(Note(_EXCUSED, one.who, f"{new} in the file"))
-        row = self._with_comment(self._with_grade(one, new), one, grade.comment)
-        self.filled += row is not one.row
-        self.unchanged += row is one.row
-        return row
-
-    def _why_not(self, row: TableRow, grade: ClassGrade) -> str:
-        """Return why a row gets no grade; empty if it gets one."""
-        if grade.total is None and not grade.is_excused:
-            return grade.why_open or "has no grade"
-        titles = self.file.table.titles
-        if len(row.cells) != len(titles):
-            return f"the row has {len(row.cells)} cells and the header {len(titles)}"
-        for role, words in self.form.locked.items():
-            column = self.file.roles.get(role)
-            is_same = grade.is_excused and row.value(column).casefold() == self.form.excuse.casefold()
-            if column is not None and row.value(column).casefold() in words and not is_same:
-                return f"{titles[column]!r} is {row.value(column)!r} in {self.form.lms}"
-        return ""
-
-    def _with_grade(self, one: StudentRow, new: str) -> TableRow:
-        column = self.file.roles["grade"]
-        old = one.row.value(column)
-        if old.casefold() == new.casefold() or (read_points(old) is not None and read_points(old) == read_points(new)):
-            return one.row
-        if old.casefold() not in _NOT_GRADED:
-            self.changes.append(f"{one.who}: was {old}, becomes {new}")
-        return self.file.table.changed(one.row, column, new)
-
-    def _with_comment(self, row: TableRow, one: StudentRow, new: str) -> TableRow:
-        column = self.file.roles.get("comment")
-        old = row.value(column)
-        if column is None or not new or old == new:
-            return row
-        if old and not is_own_comment(old):
-            self.notes.append(Note(_KEPT, one.who, f"a person wrote or changed it in {self.form.lms}"))
-            return row
-        return self.file.table.changed(row, column, new)
-
-
 def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOptions) -> Filled:
     """Return a grade file with the grades in the column of the lab; raises InputError if it is not such a file."""
     file = read_grade_file(data, form, options)
     header = file.table.titles[file.roles["grade"]]
     warnings = _check_maximum(file.maximum, f"{header!r} in {form.lms}", options)
     known = [grade if form.excuse else grade._replace(is_excused=False) for grade in grades]
-    found, notes = match_rows(file.students, known, form.lms)
-    filling, students = _Filling(form, file, notes), {one.row.number: one for one in file.students}
-    rows = list[TableRow]()
+    found, notes = match_rows([*file.students.values()], known, form.lms)
+    rows, changes, filled, unchanged = list[TableRow](), list[str](), 0, 0
     for row in file.table.rows:
-        grade = found.get(row.number)
-        new = filling.row(students[row.number], grade) if grade else None if row.number in students else row
-        rows += [new] if new else []
+        grade, one = found.get(row.number), file.students.get(row.number)
+        new = form.excuse if grade is None or grade.total is None else _points_text(grade.total, like=file.maximum)
+        if one is None:
+            rows.append(row)
+        elif grade is not None and (note := _why_not(file, form, row, grade, new)):
+            notes.append(Note(note[0], one.who, note[1]))
+        elif grade is not None:
+            if grade.total is None:
+                notes.append(Note(_EXCUSED, one.who, f"{new} in the file"))
+            rows.append(_with_grade(file, one, new, changes))
+            if (comment := _with_comment(file, rows[-1], grade.comment)) is None:
+                notes.append(Note(_KEPT, one.who, f"a person wrote or changed it in {form.lms}"))
+            rows[-1] = comment or rows[-1]
+            filled += rows[-1] is not row
+            unchanged += rows[-1] is row
     table = replace(file.table, rows=tuple(rows))
     if options.only and "maximum" not in file.roles:
         table = table.with_columns([*{*file.roles.values()}])
-    lines = [
-        f"column {header!r}: {filling.filled} filled in, {filling.unchanged} already the same",
-        *first_lines(filling.changes, _MAX_CHANGES),
-        *by_reason(notes),
-        *warnings,
-    ]
+    count = f"column {header!r}: {filled} filled in, {unchanged} already the same"
+    lines = [count, *first_lines(changes, _MAX_CHANGES), *by_reason(notes), *warnings]
     return Filled(table.encoded(), [*map(printable, lines)], not any(note.kind in _INCOMPLETE for note in notes))
+
+
+def _why_not(file: GradeFile, form: Form, row: TableRow, grade: ClassGrade, new: str) -> tuple[str, str] | None:
+    """Return why a row does not get a grade: the kind of the reason, and the reason."""
+    titles = file.table.titles
+    if grade.total is None and not grade.is_excused:
+        return _OPEN, grade.why_open or "has no grade"
+    if len(row.cells) != len(titles):
+        return _OPEN, f"the row has {len(row.cells)} cells and the header {len(titles)}"
+    for role, words in form.locked.items():
+        cell = row.value(file.roles.get(role))
+        if cell.casefold() in words and cell.casefold() != new.casefold():
+            return _OPEN, f"{titles[file.roles[role]]!r} is {cell!r} in {form.lms}"
+    if form.above and (read_points(new) or 0) > (read_points(file.maximum) or 0):
+        return _REFUSED, f"{new} points are above the maximum of {file.maximum}: {form.above}"
+    return None
+
+
+def _with_grade(file: GradeFile, one: StudentRow, new: str, changes: list[str]) -> TableRow:
+    """Return a row with a grade, and add a line to the changes if it replaces another one."""
+    old = one.row.value(file.roles["grade"])
+    if old.casefold() == new.casefold() or (read_points(old) is not None and read_points(old) == read_points(new)):
+        return one.row
+    if old.casefold() not in _NOT_GRADED:
+        changes.append(f"{one.who}: was {old}, becomes {new}")
+    return file.table.changed(one.row, file.roles["grade"], new)
+
+
+def _with_comment(file: GradeFile, row: TableRow, new: str) -> TableRow | None:
+    """Return a row with a comment; None if there is one of a person."""
+    column = file.roles.get("comment")
+    old = row.value(column)
+    if column is None or not new or old == new:
+        return row
+    return file.table.changed(row, column, new) if not old or is_own_comment(old) else None
 
 
 def participants(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOptions) -> dict[str, str]:
     """Return the students' numbers in a worksheet of Moodle by key; raises InputError if it is none."""
     file = read_grade_file(data, form, options)
-    found, _ = match_rows(file.students, grades, form.lms)
-    return {found[one.row.number].student.key: one.student.moodle for one in file.students if one.row.number in found}
+    found, _ = match_rows([*file.students.values()], grades, form.lms)
+    return {grade.student.key: file.students[number].student.moodle for number, grade in found.items()}
 
 
 def by_reason(notes: Iterable[Note]) -> list[str]:

@@ -44,7 +44,7 @@ class GradeFile(NamedTuple):
     table: Table
     roles: dict[str, int]
     maximum: str
-    students: list[StudentRow]
+    students: dict[int, StudentRow]  # by the number of the row
 
 
 def read_grade_file(data: bytes, form: Form, options: FillOptions) -> GradeFile:
@@ -68,7 +68,7 @@ def read_grade_file(data: bytes, form: Form, options: FillOptions) -> GradeFile:
     rows = [row for row in table.rows[1:] if row is not points and any(row.value(roles.get(role)) for role in _WHO)]
     maximum = columns[grade].groupdict().get("maximum") or (points.value(grade) if points else "")
     maximum = maximum or next(filter(None, (row.value(roles.get("maximum")) for row in rows)), "")
-    return GradeFile(table, roles, maximum, [_student_row(row, roles, form) for row in rows])
+    return GradeFile(table, roles, maximum, {row.number: _student_row(row, roles, form) for row in rows})
 
 
 def read_points(text: str) -> Decimal | None:
