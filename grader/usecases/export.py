@@ -144,7 +144,7 @@ def _feedback(request: ExportRequest, book: Class, terminal: Terminal) -> bytes:
             numbers = participants(data, known, FORMS["moodle"], _options(request, book))
         names, without = moodle_names([one.student for one in grades.values()], name, numbers)
     else:
-        files = ((one.student, one.graded.paths if one.graded is not None else ()) for one in grades.values())
+        files = [(one.student, one.graded.paths if one.graded is not None else ()) for one in grades.values()]
         names, without = canvas_names(files, name)
     reports = {key: render(report_of(book, grades[key], feedback=True), kind).encode() for key in names}
     zipped, left = write_feedback(reports, names, name)
