@@ -1,4 +1,4 @@
-"""The grades of a class as a table, one row a student: `grades.csv`, and `export csv`, whose cells people may change."""
+"""The grades of a class as a table, one row a student: `grades.csv`, and `export csv`, which people may change."""
 
 from collections.abc import Iterable, Iterator
 

@@ -21,13 +21,14 @@ from grader.grading.hints.hinting import hinted
 from grader.grading.report import Report, Result
 from grader.report.formats import Format, render
 from grader.text import by_name, counted, counted_points, enumerated, format_points, printable, printable_path
-from grader.usecases.report_names import CLASS_PAGE, INDEX, file_names, write_index
+from grader.usecases.report_names import CLASS_PAGE, INDEX, file_names, write_class_page, write_index
 from grader.usecases.saves import address
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import make_folder, refuse_symlinks, save
 
 _TASK_SIZE = 4  # reports
 _SECONDS = 60.0  # in which hints are searched, and a few reports written
+_NOTHING = Outcome("skipped", "not graded, because nothing was submitted")
 _MOVED = "The submission has moved or changed, so this report has no details: run `grader batch` again."
 
 
@@ -61,9 +62,11 @@ def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True, feedb
     did, and always in `feedback`. Without notes, the report is the same as that of `grader grade`. A submission that
     has changed since has its points only.
     """
-    report = _nothing_submitted(book, grade)
-    if grade.graded is not None and grade.report is not None:
+    if grade.graded is not None:
         report = book.with_marks(_again(book, grade.graded, has_hints=has_hints), grade.graded)[0]
+    else:
+        results = tuple(Result(criterion, _NOTHING) for criterion in book.criteria)
+        report = Report(GradedSubmission(grade.student.key), book.rubric, book.settings.parts, results)
     counting = None
     is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
     if grade.is_excused or (is_changed and grade.total is not None):
@@ -88,12 +91,6 @@ def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
         return hinted(report, submission, book.rubric.hints).report
     except (Exception, OutOfTime):  # noqa: BLE001  a fault of the search must not cost the report
         return report
-
-
-def _nothing_submitted(book: Class, grade: StudentGrade) -> Report:
-    outcome = Outcome("skipped", "not graded, because nothing was submitted")
-    results = tuple(Result(criterion, outcome) for criterion in book.criteria)
-    return Report(GradedSubmission(grade.student.key), book.rubric, book.settings.parts, results)
 
 
 def _whole(grade: StudentGrade) -> list[str]:
@@ -161,8 +158,6 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
     with Processes(jobs or processors(), timeout) as executor:
         lost = _render_all(replace(run, time=book.run.time), files, terminal, executor, jobs or processors())
     if Format.HTML in run.formats:
-        from grader.usecases.class_page import write_class_page
-
         is_inside = run.folder == run.gradebook / names.REPORTS
         prefix = f"{names.REPORTS}/" * is_inside
         pages = {key: f"{prefix}{name}" for key, name in files.items() if key not in lost}
