@@ -140,14 +140,14 @@ class Results:
             self.end = place + len(line)
 
     def _lines(self) -> Iterator[tuple[int, bytes]]:
-        """Yield the whole lines and where they begin."""
+        """Yield the whole lines and where they begin, up to one that was not written to its end."""
         if not self._file.exists():
             return
         place = 0
         try:
             with self._file.open("rb") as file:
                 for line in file:
-                    if not line.endswith(b"\n"):
+                    if not line.endswith(b"\n") or b"\0" in line:  # a power failure leaves holes
                         return
                     yield place, line
                     place += len(line)

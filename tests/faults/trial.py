@@ -29,7 +29,7 @@ class Ran(NamedTuple):
 
 
 _CLASS_PAGE = "/index.html"
-_RESULTS, _GRADES = "results.jsonl", "/grades.csv"
+RESULTS, _GRADES = "/results.jsonl", "/grades.csv"
 _REMOVED = ("report.json",)  # what `--save` names is removed first: a run that is refused leaves no old report
 
 
@@ -111,8 +111,9 @@ class Bench:
 
 def _normal(name: str, data: bytes) -> bytes:
     """Return the newest results of a gradebook, its different marks, and other files as they are."""
-    if name.endswith(_RESULTS):
-        lines = map(json.loads, data[: data.rfind(b"\n") + 1].splitlines())
+    if name.endswith(RESULTS):
+        whole = data.partition(b"\0")[0]  # a power failure leaves holes
+        lines = map(json.loads, whole[: whole.rfind(b"\n") + 1].splitlines())
         newest = {line.get("student", ""): {**line, "run": 0} for line in lines}
         return b"".join(json.dumps(newest[key]).encode() + b"\n" for key in sorted(newest))
     return b"".join(dict.fromkeys(data.splitlines(keepends=True))) if "/marks/" in name else data
@@ -134,7 +135,7 @@ def complaints(bench: Bench, scenario: Scenario, expected: Expected, ran: Ran, k
     is_done = ran.code == expected.ran.code
     yield from _of_files(state, expected, kind, is_done=is_done, has_warned=bool(new))
     for name in expected.after:
-        if name.endswith(_RESULTS):
+        if name.endswith(RESULTS):
             yield from _of_results(name, state.get(name, b""), expected, is_done=is_done)
     if state == expected.after and (ran.code == expected.ran.code or scenario.goes_on):
         return
@@ -165,7 +166,8 @@ def _of_files(
     before, after = expected.before, expected.after
     for name in sorted(state.keys() | before.keys() | after.keys()):
         found = state.get(name)
-        if name.endswith(_RESULTS) or found == after.get(name) or (name.endswith(_GRADES) and has_warned):
+        is_other = has_warned or state.get(name.replace(_GRADES, RESULTS)) != after.get(name.replace(_GRADES, RESULTS))
+        if name.endswith(RESULTS) or found == after.get(name) or (name.endswith(_GRADES) and is_other):
             continue
         if name.endswith(_CLASS_PAGE) and found is not None and found.endswith(b"</html>\n"):
             continue  # a picture of a robot on it may be missing
