@@ -79,8 +79,9 @@ class ClassStatistics(NamedTuple):
 
 def counts(grade: StudentGrade) -> bool:
     """Return whether a grade is in the figures."""
-    is_graded = grade.graded is not None and grade.graded.verdict == "graded" and not grade.is_gone
-    return grade.student.is_on_roster and (grade.final_points is not None or (is_graded and not grade.is_excused))
+    is_graded = grade.graded is not None and grade.graded.verdict == "graded"
+    is_in = (is_graded and not (grade.is_gone or grade.is_excused)) or grade.published is not None
+    return is_in and grade.student.is_on_roster
 
 
 def statistics(book: Class, grades: Iterable[StudentGrade]) -> ClassStatistics:
