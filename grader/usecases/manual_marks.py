@@ -1,6 +1,6 @@
 """Give and withdraw marks by command: of one student, of all who submitted nothing, and of a CSV file."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
@@ -11,10 +11,9 @@ from grader.classroom import folder as names
 from grader.classroom.grades import Class, StudentGrade
 from grader.classroom.mark_files import COLUMNS, SURPLUS, WITHDRAWN, mark_file
 from grader.classroom.mark_import import MarkImport
-from grader.classroom.marks import Key, Mark, append_marks, mark_in, maxima
-from grader.classroom.roster import Student
+from grader.classroom.marks import Key, Mark, append_marks
 from grader.classroom.tables import SIZE_LIMIT
-from grader.classroom.typed_names import criterion_of, find_typed
+from grader.classroom.typed_names import find_typed
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import DEADLINE, TOTAL
@@ -22,7 +21,6 @@ from grader.text import by_name, counted_points, format_points, named, people_te
 from grader.usecases.grade_class import write_grades
 from grader.usecases.terminal import Warn
 
-_NOT_COUNTED = "{} is corrected after grading, by [adjust] in the rubric: its marks do not count"
 _MAX_NAMED = 10
 
 
@@ -42,13 +40,12 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
     if not (request.student and request.criterion and (request.points or request.comment)):
         raise InputError("name a STUDENT and a CRITERION, and give POINTS or --comment")
     book = Class(gradebook)
-    advice = f"; {printable_path(gradebook / names.GRADES)} lists all students"
-    students = _students(book)
-    exact = [one for one in students if one.key == request.student]
-    student = exact[0] if exact else find_typed(students, request.student, advice)
+    reader, advice = _reader(book), f"; {printable_path(gradebook / names.GRADES)} lists all students"
+    exact = [one for one in reader.students if one.key == request.student]
+    student = exact[0] if exact else find_typed(reader.students, request.student, advice)
     key = student.key, request.criterion
     before = book.marks.counting.get(key) or book.marks.comments.get(key)
-    append_marks(_file(book, request.by), [_mark(book, key, request)])
+    append_marks(_file(book, request.by), _given(reader, [student.key], request))
     now = Class(gradebook)
     write_grades(now)
     for line in _warnings(now, key, request, before):
@@ -64,7 +61,7 @@ def mark_missing(gradebook: Path, request: MarkRequest) -> str:
         raise InputError(f"write it as --missing {TOTAL} POINTS")
     book = Class(gradebook)
     missing = [one.student.key for one in book if one.graded is None and not one.has_final]
-    append_marks(_file(book, request.by), [_mark(book, (key, TOTAL), request) for key in missing])
+    append_marks(_file(book, request.by), _given(_reader(book), missing, request))
     write_grades(Class(gradebook))
     return f"{len(missing)} of {len(book.keys)} submitted nothing, and have the final mark {request.points} now\n"
 
@@ -74,16 +71,25 @@ def import_marks(gradebook: Path, file: Path, by: str) -> str:
     from grader.classroom.review_items import answers_of
 
     book = Class(gradebook)
-    digests = {one.student: one.digest for one in book.results.all()}
-    reader = MarkImport(_students(book), book.rubric, book.marks, digests, answers_of(book))
+    reader = _reader(book)._replace(answers=answers_of(book))
     new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file), by)
     append_marks(_file(book, by), new)
     write_grades(Class(gradebook))
     return f"{printable_path(file)}: {len(new)} recorded, {same} the same as before\n"
 
 
-def _students(book: Class) -> list[Student]:
-    return [book.student(key, book.results.of(key)) for key in book.keys]
+def _reader(book: Class) -> MarkImport:
+    graded = {one.student: one for one in book.results.all()}
+    students = [book.student(key, graded.get(key)) for key in book.keys]
+    return MarkImport(students, book.rubric, book.marks, {key: one.digest for key, one in graded.items()})
+
+
+def _given(reader: MarkImport, keys: Iterable[str], request: MarkRequest) -> list[Mark]:
+    """Return the mark of a request for each student, given for the submission as it is now. Raises InputError."""
+    cells = {**dict.fromkeys((*COLUMNS, SURPLUS), ""), "by": request.by, "criterion": request.criterion}
+    cells |= {"points": request.points, "comment": request.comment}
+    marks = [mark for key in keys for mark in reader.marks_in({**cells, "student": key})]
+    return [mark._replace(time=reader.marks.next_time((mark.student, mark.criterion))) for mark in marks]
 
 
 def _file(book: Class, by: str) -> Path:
@@ -91,22 +97,6 @@ def _file(book: Class, by: str) -> Path:
     with suppress(OSError, KeyError):  # of an account without a name
         by = by or getuser()
     return mark_file(book.folder / names.MARKS, by)
-
-
-def _mark(book: Class, key: Key, request: MarkRequest) -> Mark:
-    """Return the mark of a request, given for the submission as it is now. Raises InputError."""
-    graded = book.results.of(key[0])
-    if key[1] not in (TOTAL, DEADLINE):
-        criterion = criterion_of(book.rubric, key[1])
-        if graded is None:
-            raise InputError(f"{key[0]} has submitted nothing that could be marked: `{TOTAL}` is a final mark")
-        if criterion.adjustment is not None and not criterion.points and request.points not in ("", WITHDRAWN):
-            raise InputError(_NOT_COUNTED.format(criterion.id))
-    digest = graded.digest if graded is not None and key[1] != DEADLINE else ""
-    cells = dict.fromkeys((*COLUMNS, SURPLUS), "")
-    cells |= {"by": request.by, "points": request.points, "comment": request.comment, "submission": digest}
-    [mark] = mark_in(cells, key, maxima(book.rubric)[key[1]], "")
-    return mark._replace(time=book.marks.next_time(key))
 
 
 def _warnings(book: Class, key: Key, request: MarkRequest, before: Mark | None) -> Iterator[str]:
@@ -119,7 +109,7 @@ def _warnings(book: Class, key: Key, request: MarkRequest, before: Mark | None) 
     elif request.points == WITHDRAWN:
         yield f"there was no mark of {criterion} to withdraw"
     if any(row.id == criterion and row.adjustment is not None for row in book.rubric.criteria):
-        yield _NOT_COUNTED.format(criterion)
+        yield f"{criterion} is corrected after grading, by [adjust] in the rubric: its marks do not count"
     if criterion not in (TOTAL, DEADLINE) and (others := [*_unmarked_members(book, key)]):
         yield f"the same submission counts for {people_text(others, _MAX_NAMED)}: mark them as well"
 
