@@ -79,8 +79,9 @@ class ClassStatistics(NamedTuple):
 
 def counts(grade: StudentGrade) -> bool:
     """Return whether a grade is in the figures."""
-    is_graded = grade.graded is not None and grade.graded.verdict == "graded" and not grade.is_gone
-    return grade.student.is_on_roster and (grade.final_points is not None or (is_graded and not grade.is_excused))
+    is_graded = grade.graded is not None and grade.graded.verdict == "graded"
+    is_in = (is_graded and not (grade.is_gone or grade.is_excused)) or grade.published is not None
+    return is_in and grade.student.is_on_roster
 
 
 def statistics(book: Class, grades: Iterable[StudentGrade]) -> ClassStatistics:
@@ -110,9 +111,11 @@ def statistics(book: Class, grades: Iterable[StudentGrade]) -> ClassStatistics:
         sections[grade.student.section].append(grade.total)
         for result in grade.report.results if grade.report is not None else ():
             name = result.criterion.id
+            if name not in found:  # marked, in a part that is not graded
+                continue
             found[name].update(_of(result))
             earned[name] += result.points
-            if result.is_lost and result.manual_mark is None:
+            if result.is_lost and result.manual_mark is None and result.outcome.message:
                 mistakes[name, result.outcome.message].append(key)
     common = sorted(mistakes.items(), key=lambda item: (-len(item[1]), item[0]))
     by_id = {row.id: row for row in book.rubric.criteria}

@@ -36,7 +36,8 @@ class ClassTable:
         self.count += 1
         name = grade.student.name or grade.student.key
         if self.verbose or len(self.rows) < _MAX_ROWS:
-            total = format_points(grade.total) if grade.total is not None else "–"
+            is_ungraded = grade.graded is not None and grade.graded.verdict != "graded" and not grade.total
+            total = "–" if grade.total is None or (is_ungraded and grade.why_open) else format_points(grade.total)
             self.rows.append((name, total, ", ".join(_costs(grade)), _open(grade)))
         if grade.total is not None and counts(grade):
             self._totals.append(float(grade.total))

@@ -3,22 +3,30 @@
 from functools import partial
 from pathlib import Path
 
+from grader.classroom import folder as names
 from grader.classroom.changes import changes, snapshot
 from grader.classroom.grades import Class
 from grader.classroom.results import Results
-from grader.classroom import folder as names
 from grader.classroom.statistics import statistics
 from grader.errors import InputError
 from grader.report.formats import OutputFormat
 from grader.report.screen import Screen, draw
-from grader.usecases.terminal import Terminal
+from grader.text import first_lines
+from grader.usecases.terminal import Terminal, Warn
 
-_MAX_BOOKS = 2
+_MAX_BOOKS, _MAX_LINES = 2, 20
+
+
+def warn_of_ignored(book: Class, warn: Warn) -> None:
+    """Print the marks that do not count."""
+    for line in first_lines(book.marks.ignored, _MAX_LINES):
+        warn(f"this mark does not count: {line}")
 
 
 def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *, verbose: bool) -> str:
     """Return the statistics of a class. Raises InputError."""
     book = Class(gradebook)
+    warn_of_ignored(book, terminal.warn)
     if kind is OutputFormat.JSON:
         from grader.report.class_json import render_class_json
 

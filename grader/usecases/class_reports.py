@@ -21,15 +21,15 @@ from grader.grading.hints.hinting import hinted
 from grader.grading.report import Report, Result
 from grader.report.formats import Format, render
 from grader.text import by_name, counted, counted_points, enumerated, format_points, printable, printable_path
-from grader.usecases.report_names import CLASS_PAGE, INDEX, file_names, update_index
+from grader.usecases.report_names import CLASS_PAGE, INDEX, file_names, write_class_page, write_index
 from grader.usecases.saves import address
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import make_folder, refuse_symlinks, save
 
 _TASK_SIZE = 4  # reports
-_MAX_NAMED = 3
 _SECONDS = 60.0  # in which hints are searched, and a few reports written
-_MOVED = "The submission has moved or changed since it was graded, so this report has no details: run `grader batch` again."
+_NOTHING = Outcome("skipped", "not graded, because nothing was submitted")
+_MOVED = "The submission has moved or changed, so this report has no details: run `grader batch` again."
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,18 +58,22 @@ class _Task:
 def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True, feedback: bool = False) -> Report:
     """Return the report on a student's submission, with the marks, the grade and notes.
 
-    There is a note for a final mark, an excuse, a comment and a late penalty. Another one says who graded if a person did, and
-    always in `feedback`. Without notes, the report is the same as that of `grader grade`. A submission that has changed since has its
-    points only.
+    There is a note for a final mark, an excuse, a comment and a late penalty. Another one says who graded if a person
+    did, and always in `feedback`. Without notes, the report is the same as that of `grader grade`. A submission that
+    has changed since has its points only.
     """
-    report = _nothing_submitted(book, grade)
-    if grade.graded is not None and grade.report is not None:
+    if grade.graded is not None:
         report = book.with_marks(_again(book, grade.graded, has_hints=has_hints), grade.graded)[0]
-    marked = any(result.manual_mark for result in report.results)
-    counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final_points is not None)
-    is_changed = grade.has_final or grade.late.points or marked
-    notes = (*report.notes, *_whole(grade), *_graders(grade, report, feedback=feedback), *_late(grade))
-    return report._replace(notes=notes, grade=counting if is_changed and counting.points is not None or grade.is_excused else None)
+    else:
+        results = tuple(Result(criterion, _NOTHING) for criterion in book.criteria)
+        report = Report(GradedSubmission(grade.student.key), book.rubric, book.settings.parts, results)
+    counting = None
+    is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
+    if grade.is_excused or (is_changed and grade.total is not None):
+        counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final_points is not None)
+    graders = graders_of(grade, report, feedback=feedback)
+    notes = (*_whole(grade), *([f"Graded {graders}."] if graders else []), *_late(grade))
+    return report._replace(notes=(*report.notes, *notes), grade=counting)
 
 
 def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
@@ -89,12 +93,6 @@ def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
         return report
 
 
-def _nothing_submitted(book: Class, grade: StudentGrade) -> Report:
-    outcome = Outcome("skipped", "not graded, because nothing was submitted")
-    results = tuple(Result(criterion, outcome) for criterion in book.criteria)
-    return Report(GradedSubmission(grade.student.key), book.rubric, book.settings.parts, results)
-
-
 def _whole(grade: StudentGrade) -> list[str]:
     """Return the sentence about the mark, the excuse or the comment of the whole submission."""
     mark = grade.final
@@ -103,21 +101,22 @@ def _whole(grade: StudentGrade) -> list[str]:
     words = " ".join(mark.comment.split())
     by, comment = by_name(mark.by), f" {words}" if words else ""
     if mark.points is not None:
-        return [f"Final mark: {counted_points(mark.points)}, given{by or ' manually'} instead of the sum of the criteria.{comment}"]
+        points = counted_points(mark.points)
+        return [f"Final mark: {points}, given{by or ' manually'} instead of the sum of the criteria.{comment}"]
     return [f"Excused{by}.{comment}" if grade.is_excused else f"Comment{by}:{comment}"]
 
 
-def _graders(grade: StudentGrade, report: Report, *, feedback: bool) -> list[str]:
-    """Return who graded, the checks or people, as a sentence; empty if that is clear or nothing is graded yet."""
-    marks = [row.manual_mark for row in report.results if row.manual_mark is not None]
-    people = {mark.by for mark in marks}
-    is_automatic = any(row.manual_mark is None and not row.is_open and grade.graded is not None for row in report.results)
+def graders_of(grade: StudentGrade, report: Report, *, feedback: bool = True) -> str:
+    """Return who graded, the checks or people; empty if nothing is graded, or only by checks and not for `feedback`."""
+    people = {row.manual_mark.by for row in report.results if row.manual_mark is not None}
+    decided = [row for row in report.results if row.manual_mark is None and not row.is_open]
+    is_automatic = bool(decided) and grade.graded is not None
     if grade.final_points is not None and grade.final is not None:
-        marks, people, is_automatic = [], {grade.final.by}, False
-    if not (people or (feedback and is_automatic)):
-        return []
-    manually = f"manually{by_name(enumerated(sorted(filter(None, people))))}" if people else ""
-    return [f"Graded {', and '.join(filter(None, ['automatically' * is_automatic, manually]))}."]
+        people, is_automatic = {grade.final.by}, False
+    if not people:
+        return "automatically" * (feedback and is_automatic)
+    manually = f"manually{by_name(enumerated(sorted(filter(None, people))))}"
+    return f"automatically, and {manually}" if is_automatic else manually
 
 
 def _late(grade: StudentGrade) -> list[str]:
@@ -155,12 +154,10 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
     book = Class(run.gradebook)
     keys = [one.student.key for one in book if one.graded is not None or one.has_final]
     files = file_names(keys)
-    earlier = update_index(run.folder, files)
+    write_index(run.folder, files)
     with Processes(jobs or processors(), timeout) as executor:
         lost = _render_all(replace(run, time=book.run.time), files, terminal, executor, jobs or processors())
     if Format.HTML in run.formats:
-        from grader.usecases.class_page import write_class_page
-
         is_inside = run.folder == run.gradebook / names.REPORTS
         prefix = f"{names.REPORTS}/" * is_inside
         pages = {key: f"{prefix}{name}" for key, name in files.items() if key not in lost}
@@ -169,9 +166,6 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
     terminal.warn(f"{counted(len(files) - len(lost), 'report')} written to {shown}")
     for key, why in lost.items():
         terminal.warn(printable(f"no report for {key}: {why}"))
-    if earlier:
-        reports = f"{counted(len(earlier), 'report')} of students who are not in the gradebook"
-        terminal.warn(f"{shown} also has {reports}: {printable(enumerated(earlier, _MAX_NAMED))}")
 
 
 def _render_all(

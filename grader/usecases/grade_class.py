@@ -26,6 +26,7 @@ from grader.report.class_table import ClassTable
 from grader.report.formats import Format, OutputFormat
 from grader.report.screen import draw
 from grader.text import counted, enumerated, first_lines, format_points, printable, printable_path
+from grader.usecases.class_figures import warn_of_ignored
 from grader.usecases.class_inputs import ClassInputs, ClassOptions, keep_inputs, read_inputs
 from grader.usecases.class_reports import ReportRun, refuse_report_folder, write_reports
 from grader.usecases.terminal import Terminal, Warn
@@ -109,6 +110,7 @@ def _grade(
         save(folder / names.GRADES, write_table(*grade_table(book, passing())), inputs.roots, _PRIVATE)
         writer.append(run._replace(totals=totals).line)
         writer.sync()
+    warn_of_ignored(book, terminal.warn)
     return table, done
 
 
