@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 from grader.classroom.grades import Class
 from grader.classroom.review_items import ReviewFilter
-from grader.usecases.local_server import HOST
-from grader.usecases.review_page import serving
+from grader.usecases.local_server import HOST, LocalServer
+from grader.usecases.review_page import ReviewPage
 from grader.usecases.review_session import ReviewSession
 
 _TIMEOUT = 60.0  # seconds, of a machine that is busy
@@ -76,11 +76,12 @@ class Review(NamedTuple):
 @contextmanager
 def running(gradebook: Path, criterion: str = "", by: str = "Kim", **options: Any) -> Iterator[Review]:
     """Yield a review that runs in another thread."""
-    with serving(ReviewSession(gradebook, ReviewFilter(criterion), by, **options)) as server:
+    session = ReviewSession(gradebook, ReviewFilter(criterion), by, **options)
+    with LocalServer(ReviewPage(session)) as server:
         thread = Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02})
         thread.start()
         try:
-            yield Review(server.url, server.server_port, server.token)
+            yield Review(server.url, server.port, server.token)
         finally:
             server.shutdown()
             thread.join()

@@ -4,6 +4,7 @@ A person fills in the sheet, a CSV file, and `grader mark --import` records it.
 """
 
 import os
+from collections.abc import Sequence
 from functools import lru_cache
 from itertools import starmap
 from pathlib import Path
@@ -41,15 +42,20 @@ def _graded_again(book: Class, key: str) -> tuple[Submission, Report]:
     return submission, grade(book.rubric, submission, book.settings.parts, is_one_of_class=True)
 
 
+@lru_cache(maxsize=2)  # a page asks for its pictures one by one
+def _opened(book: Class, key: str, criterion: str) -> tuple[Result, Sequence[EmbeddedPicture | NotShown]]:
+    submission, report = _graded_again(book, key)
+    result = next((one for one in report.results if one.criterion.id == criterion), None)
+    if result is None:
+        raise InputError("this criterion is no longer graded for this student")
+    return result, pictures_of(result, submission) if may_have_pictures(result) else ()
+
+
 def open_item(book: Class, item: ReviewItem) -> OpenedItem:
     """Return what a person looks at for an item. Raises InputError if its submission has moved or changed."""
     if item.is_empty_group:
         return OpenedItem(Result(item.criterion, Outcome("pending", "")))
-    submission, report = _graded_again(book, item.first.student.key)
-    result = next((one for one in report.results if one.criterion.id == item.criterion.id), None)
-    if result is None:
-        raise InputError("this criterion is no longer graded for this student")
-    found = pictures_of(result, submission) if may_have_pictures(result) else ()
+    result, found = _opened(book, item.first.student.key, item.criterion.id)
     if item.first.number is not None:
         return OpenedItem(result, [*starmap(_anonymous, enumerate(found, 1))])
     root = book.settings.roots(book.folder)[item.first.graded.root].resolve()

@@ -139,29 +139,6 @@ def test_who_has_no_items(book: Path) -> None:
     assert found == {"box: birch", "essay: birch", "essay: cedar", "essay: gum holly", "essay: dogwood fir"}
 
 
-@pytest.mark.parametrize(
-    ("name", "found"), [("elm", "essay: elm"), ("Fir", "essay: dogwood fir"), ("holly", "essay: gum holly")]
-)
-def test_a_student_is_found(name: str, found: str, session: ReviewSession) -> None:
-    """By key or name: the item of the current criterion if there is one."""
-    session.find(name)
-    assert words(session, session.position) == found
-
-
-def test_who_is_not_found(session: ReviewSession, book: Path) -> None:
-    """An unknown name, a student of another section, and a name in an anonymous review, which has numbers."""
-    of_b = ReviewSession(book, ReviewFilter("", "Lab B"))
-    hidden = ReviewSession(book, is_anonymous=True)
-    for one, name, why in (
-        (session, "nobody", "there is no student 'nobody'"), (of_b, "ash", "nothing of 'ash' is shown"),
-        (hidden, "ash", "nothing of 'ash' is shown"),
-    ):  # fmt: skip
-        with pytest.raises(InputError, match=why):
-            one.find(name)
-    hidden.find("3")
-    assert 3 in [one.number for one in hidden.item_at(hidden.position).members]
-
-
 @pytest.fixture
 def contents(tmp_path: Path) -> Callable[..., dict[str, list[str]]]:
     """Return a function that grades files: the students with each answer by criterion, and those without one."""

@@ -8,21 +8,16 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from http.client import HTTPConnection
 from pathlib import Path
-from threading import Event
 from typing import Any
 from urllib.request import urlopen
 
 import pytest
 
 from grader.classroom.grades import Class
-from grader.classroom.review_items import ReviewItem
 from grader.errors import InputError
-from grader.report.pages.review import OpenedItem
 from grader.usecases import local_server
-from grader.usecases.local_server import HOST, MAX_BODY, MAX_UNAUTHENTICATED
-from grader.usecases.review_pictures import open_item
+from grader.usecases.local_server import HOST, MAX_BODY
 from tests.classroom.gradebooks import ENVIRONMENT, PNG, batch, grader, lab_text, refusal, write_submission
 from tests.command_line import HANG_TIMEOUT
 from tests.documents.files import pdf
@@ -165,40 +160,12 @@ def test_states(review: Review, book: Path) -> None:
     assert "did you mean 'essay'" in wrong["error"]
 
 
-def test_comments_given_before(review: Review) -> None:
-    """The page of the same criterion offers them; of another criterion not."""
-    review.mark("1", "3", "two <b>roots</b>")
-    assert "<kbd>1</kbd> two &lt;b&gt;roots&lt;/b&gt;" in review.get("2").text
-    assert "two" not in review.get("4").text
-
-
 def test_marks_at_once(review: Review, book: Path) -> None:
     """Requests that arrive together are followed one after the other."""
     with ThreadPoolExecutor(ITEMS) as pool:
         answers = list(pool.map(lambda number: review.mark(str(number), "1"), range(1, ITEMS + 1)))
     assert [list(answer) for answer in answers] == [["go"]] * ITEMS
     assert len(marks_in(book)) == ITEMS
-
-
-def test_pictures_that_take_long_do_not_delay_marks(book: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Those of the next item are read in another thread, before its page is asked for."""
-    read, started = Event(), Event()
-
-    def slow(book: Class, item: ReviewItem) -> OpenedItem:
-        if item.first.student.key != "anna":
-            started.set()
-            assert read.wait(HANG_TIMEOUT)
-        return open_item(book, item)
-
-    monkeypatch.setattr("grader.usecases.review_page.open_item", slow)
-    with running(book, "picture") as review:
-        try:
-            assert review.get("4").status == 200
-            assert started.wait(HANG_TIMEOUT)
-            assert review.mark("4", "1", **review.seen("4")) == {"go": "5"}
-        finally:
-            read.set()
-        assert review.get("5").status == 200
 
 
 def test_the_end(review: Review, book: Path) -> None:
@@ -211,12 +178,6 @@ def test_the_end(review: Review, book: Path) -> None:
     assert "<h1>Manual grading complete</h1>" in page
     assert "6 marks given in this review." in page
     assert f"grader export csv --gradebook {book}" in page
-
-
-def test_the_last_item_stays_the_current_one(review: Review) -> None:
-    """Also after its page has looked for a next item."""
-    assert review.get(str(ITEMS)).status == 200
-    assert review.get().headers["location"] == f"/{review.token}/{ITEMS}"
 
 
 def test_a_submission_that_has_moved_or_changed_is_not_marked(review: Review, book: Path) -> None:
@@ -250,14 +211,14 @@ def test_a_submission_that_has_moved_or_changed_is_not_marked(review: Review, bo
         ("GET", "/TOKEN/4/picture/99999999999999999999", 404),
         ("GET", "/TOKEN/../TOKEN/1", 404),
         ("GET", "/TOKEN/\u0661", 404),
-        ("GET", "/favicon.ico", 200),
+        ("GET", "/favicon.ico", 204),
         ("HEAD", "/TOKEN/1", 200),
         ("HEAD", "/1", 404),
-        ("PUT", "/TOKEN/1", 405),
-        ("DELETE", "/TOKEN/1", 405),
-        ("OPTIONS", "/TOKEN/1", 405),
-        ("TRACE", "/TOKEN/1", 405),
-        ("BREW", "/TOKEN/1", 405),
+        ("PUT", "/TOKEN/1", 501),
+        ("DELETE", "/TOKEN/1", 501),
+        ("OPTIONS", "/TOKEN/1", 501),
+        ("TRACE", "/TOKEN/1", 501),
+        ("BREW", "/TOKEN/1", 501),
     ],
 )
 def test_what_there_is_and_what_not(method: str, path: str, status: int, review: Review, book: Path) -> None:
@@ -370,39 +331,14 @@ def broken_page(*_: object) -> str:
     raise InputError("the gradebook: disk I/O error")
 
 
-def test_idle_and_slow_clients_do_not_block_others(review: Review) -> None:
-    """Of connections without the secret, the oldest one is disconnected; one with the secret stays."""
-    own = HTTPConnection(HOST, review.port, timeout=HANG_TIMEOUT)
-    others = []
-    try:
-        for number in range(MAX_UNAUTHENTICATED + 6):
-            others.append(socket.create_connection((HOST, review.port), timeout=HANG_TIMEOUT))
-            others[-1].sendall(b"POST / HTTP/1.1\r\nContent-Le")
-            if number % 10 == 0:
-                own.request("GET", f"/{review.token}/1")
-                assert own.getresponse().read()
-        assert [review.get("1").status for _ in range(3)] == [200] * 3
-        assert others[0].recv(1) == b""
-        others[-1].sendall(b"ngth: 0\r\n\r\n")
-        assert others[-1].recv(12) == b"HTTP/1.1 421"
-    finally:
-        own.close()
-        for connection in others:
-            connection.close()
-
-
-@pytest.mark.parametrize(("patience", "size"), [(0.3, 10**9), (HANG_TIMEOUT, 500)])
-def test_a_request_without_end_is_disconnected(
-    patience: float, size: int, book: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The limits of time and size are those of the whole request, not of each part that arrives."""
-    monkeypatch.setattr(local_server, "PATIENCE", patience)
-    monkeypatch.setattr(local_server, "MAX_REQUEST", size)
-    with running(book) as review, socket.create_connection((HOST, review.port)) as slow:
-        slow.settimeout(0.01)
+def test_a_request_without_end_is_disconnected(book: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The limit of time is that of the whole request, not of each part that arrives; others are answered meanwhile."""
+    monkeypatch.setattr(local_server, "PATIENCE", 0.5)
+    with running(book) as review, socket.create_connection((HOST, review.port), timeout=0.01) as slow:
+        assert review.get("1").status == 200
         for _ in range(3000):
             try:
-                slow.sendall(b"a long word")
+                slow.sendall(b"x")
                 if slow.recv(1) == b"":
                     return
             except ConnectionError:
@@ -410,11 +346,6 @@ def test_a_request_without_end_is_disconnected(
             except TimeoutError:
                 continue
         pytest.fail("the connection is still open")
-
-
-def test_it_listens_on_this_machine_only(review: Review) -> None:
-    """The address is that of the loopback interface, and the secret is long."""
-    assert re.fullmatch(rf"http://127\.0\.0\.1:{review.port}/[\w-]{{32}}/", review.url)
 
 
 def test_the_command(book: Path) -> None:
@@ -493,27 +424,3 @@ def test_a_pdf_is_served_to_the_viewer(tmp_path: Path) -> None:
         assert review.get("2/picture/1").headers["content-type"] == "image/png"  # by its bytes
 
 
-@pytest.mark.parametrize(
-    ("sent", "answer"),
-    [
-        ({"do": "find", "student": "emil"}, {"go": "2"}),
-        ({"do": "find", "student": "Anna"}, {"go": "1"}),
-        ({"do": "find", "student": "nobody"}, None),
-        ({"do": "filter", "criterion": "picture", "section": "", "state": ""}, {"go": "4"}),
-        ({"do": "filter", "criterion": "", "section": "", "state": "marked"}, {"go": "end"}),
-    ],
-)
-def test_other_actions(sent: dict[str, str], answer: dict[str, str] | None, review: Review) -> None:
-    """A jump to a student, and filters."""
-    review.get("1")
-    found = review.post("1", sent).json
-    assert found == answer if answer is not None else "there is no student 'nobody'" in found["error"]
-    if answer == {"go": "end"}:
-        assert "The filter shows no more items." in review.get("end").text
-
-
-@pytest.mark.parametrize("state", ["", "unknown"])
-def test_a_filter_of_another_form_is_refused(state: str, review: Review) -> None:
-    """Each value must be there, and be a known one."""
-    sent = {"do": "filter", "criterion": "", "state": state} | ({"section": ""} if state else {})
-    assert review.post("1", sent).status == 400

@@ -27,14 +27,13 @@ class Place(NamedTuple):
     """The number of an item among those that are shown, from 1, and its address.
 
     `filters` are the lists to filter by: the name of each, its label, its values with their words, and the value that
-    is chosen. `students` are the keys and names to find one by.
+    is chosen.
     """
 
     number: int
     total: int
     address: str
     filters: Sequence[tuple[str, str, Mapping[str, str], str]]
-    students: Sequence[tuple[str, str]]
 
 
 class OpenedItem(NamedTuple):
@@ -45,8 +44,8 @@ class OpenedItem(NamedTuple):
     paths: Sequence[str] = ()
 
 
-def item_page(item: ReviewItem, opened: OpenedItem, criterion: Criterion, comments: Sequence[str], place: Place) -> str:
-    """Return the page of an item with earlier comments. `criterion` has the model answer.
+def item_page(item: ReviewItem, opened: OpenedItem, criterion: Criterion, place: Place) -> str:
+    """Return the page of an item. `criterion` has the model answer.
 
     The addresses of the pictures are ADDRESS/picture/1 and so on.
     """
@@ -72,14 +71,12 @@ def item_page(item: ReviewItem, opened: OpenedItem, criterion: Criterion, commen
         "marked": marked_text(item),
         "buttons": _buttons(criterion),
         "choices": [f"{text} ({format_points(points)})" for text, points in criterion.choices.items()],
-        "comments": [" ".join(comment.split()) for comment in comments],
     }
     data = {
         "shown": item.view,
         "item": item.stamp,
         "points": mark.value if mark is not None else "",
         "comment": mark.comment if mark is not None else "",
-        "comments": [*comments],
         "choices": [[text, float(points)] for text, points in criterion.choices.items()],
         "maximum": float(criterion.points),
     }
