@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import FormatOption, GradebookOption
-from grader.cli.terminal import TERMINAL, screen
+from grader.cli.terminal import screen
 from grader.report.formats import OutputFormat
 
 _FIRST = "The gradebook, in place of the first argument."
@@ -37,7 +37,7 @@ def stats(
     """
     from grader.usecases.class_figures import class_statistics
 
-    return class_statistics(gradebook, output_format, TERMINAL, verbose=verbose)
+    return class_statistics(gradebook, output_format, screen(), verbose=verbose)
 
 
 def diff(

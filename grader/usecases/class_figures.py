@@ -1,22 +1,25 @@
-"""The statistics of a class, and what changed in its grades."""
+"""The statistics of a class on a terminal, as JSON and as a page, and what changed in its grades."""
 
 from functools import partial
 from pathlib import Path
 
+from grader.classroom import folder as names
 from grader.classroom.changes import changes, snapshot
 from grader.classroom.grades import Class
 from grader.classroom.results import Results
-from grader.classroom import folder as names
 from grader.classroom.statistics import statistics
 from grader.errors import InputError
-from grader.report.formats import OutputFormat
+from grader.report.formats import Format, OutputFormat
 from grader.report.screen import Screen, draw
-from grader.usecases.terminal import Terminal
+from grader.text import without_commands
+from grader.usecases.report_names import CLASS_PAGE
+from grader.usecases.saves import address
+from grader.usecases.writing import save
 
 _MAX_BOOKS = 2
 
 
-def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *, verbose: bool) -> str:
+def class_statistics(gradebook: Path, kind: OutputFormat, screen: Screen, *, verbose: bool) -> str:
     """Return the statistics of a class. Raises InputError."""
     book = Class(gradebook)
     if kind is OutputFormat.JSON:
@@ -25,7 +28,17 @@ def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *,
         return render_class_json(book)
     from grader.report.class_summary import render_class
 
-    return draw(partial(render_class, book, statistics(book, book), verbose=verbose), terminal.screen())
+    return draw(partial(render_class, book, statistics(book, book), verbose=verbose), screen)
+
+
+def write_class_page(book: Class, folder: Path, files: dict[str, str]) -> None:
+    """Write the page into the folder of the students' pages, by their names; a student without a page has no link."""
+    from grader.report.pages.class_page import render_class_page
+
+    grades = list(book)
+    links = {key: address(f"{name}.{Format.HTML.ending}") for key, name in files.items()}
+    page = render_class_page(book, grades, statistics(book, grades), links)
+    save(folder / CLASS_PAGE, without_commands(page))
 
 
 def compare(books: tuple[Path, ...], before: int | None, after: int | None, kind: OutputFormat, screen: Screen) -> str:
@@ -40,7 +53,7 @@ def compare(books: tuple[Path, ...], before: int | None, after: int | None, kind
         raise InputError(f"{books[0]} has one run: grade the class again, and compare then")
     earlier = before if before is not None or len(books) > 1 else (after or newest) - 1
     old, new = snapshot(books[0], earlier), snapshot(books[-1], after)
-    found, runs = changes(old, new), (old.run, new.run)
+    found, runs = [*changes(old, new)], (old.run, new.run)
     if kind is OutputFormat.JSON:
         return render_changes_json(found, runs)
     return draw(partial(render_changes, found, runs), screen)

@@ -159,7 +159,7 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -
     earlier = update_index(run.folder, files)
     lost = _render_all(replace(run, time=book.run.time), files, terminal, jobs)
     if Format.HTML in run.formats:
-        from grader.usecases.class_page import write_class_page
+        from grader.usecases.class_figures import write_class_page
 
         is_inside = run.folder == run.gradebook / names.REPORTS
         prefix = f"{names.REPORTS}/" * is_inside
