@@ -70,7 +70,7 @@ class Review(NamedTuple):
 
     def seen(self, path: str) -> dict[str, str]:
         """Return what the page of an item sends back to say what it shows; nothing for an address without an item."""
-        return dict(re.findall(r'"(item|shown)":"(\w+)"', self.get(path).text)) or {"item": "", "shown": ""}
+        return dict(re.findall(r'"(shown)":"(\w+)"', self.get(path).text)) or {"shown": ""}
 
 
 @contextmanager

@@ -13,19 +13,17 @@ from grader.classroom.review_items import STATES, ReviewFilter, ReviewItem
 from grader.documents.pictures import EmbeddedPicture
 from grader.errors import GraderError
 from grader.report.pages import review as pages
-from grader.report.pages.student import render_html
 from grader.text import counted, printable_path
-from grader.usecases.class_reports import report_of
 from grader.usecases.grade_class import write_grades
 from grader.usecases.local_server import SANDBOX, LocalServer, Request, Response
 from grader.usecases.review_pictures import open_item
-from grader.usecases.review_session import CONFIRMED, ReviewSession
+from grader.usecases.review_session import ReviewSession
 from grader.usecases.terminal import Terminal
 
 _HTML, _JSON = "text/html; charset=utf-8", "application/json"
 _PAGE_POLICY = "frame-ancestors 'none'"  # the page itself contains the rest
-_REPORT_POLICY = "sandbox allow-scripts; frame-ancestors 'self'"
 _PDF_POLICY = "default-src 'none'; frame-ancestors 'self'"
+_CHANGED = "Not saved: this item has changed since it was shown. Look at it again."
 _NO_PAGE = Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
 
 
@@ -61,7 +59,7 @@ class ReviewPage:
         return _NO_PAGE
 
     def _of_item(self, item: ReviewItem, rest: list[str]) -> Response:
-        """Return the page of the current item, one of its pictures, or the student's page without model answers."""
+        """Return the page of the current item, or one of its pictures."""
         session, book = self.session, self.session.book
         match rest:
             case []:
@@ -71,8 +69,6 @@ class ReviewPage:
                 found = {str(at): one for at, one in enumerate(open_item(book, item).pictures, 1)}.get(which)
                 if isinstance(found, EmbeddedPicture):
                     return Response(found.data, found.kind.media_type, policy=SANDBOX if found.height else _PDF_POLICY)
-            case ["report"] if pages.has_report(item):
-                return _html(render_html(report_of(book, book.grade(item.first.student.key))), policy=_REPORT_POLICY)
         return _NO_PAGE
 
     def _place(self) -> pages.Place:
@@ -90,9 +86,9 @@ class ReviewPage:
         session = self.session
         at = len(session.places) if request.path == ("end",) else self._position("/".join(request.path))
         match _read(request.body or b"") if at >= 0 else None:
-            case {"do": "mark", "points": str(points), "comment": str(comment), "item": str(item), "shown": str(shown)}:
+            case {"do": "mark", "points": str(points), "comment": str(comment), "shown": str(shown)}:
                 session.position = at
-                return self._mark(points, comment.strip(), item, shown)
+                return self._mark(points, comment.strip(), shown)
             case {"do": "filter", "criterion": str(criterion), "section": str(section), "state": str(state)} if (
                 state in STATES
             ):
@@ -107,16 +103,17 @@ class ReviewPage:
                 return _json({"error": "this request is not from the page"}, HTTPStatus.BAD_REQUEST)
         return _json({"go": self._address(session.position)})
 
-    def _mark(self, points: str, comment: str, item: str, shown: str) -> Response:
+    def _mark(self, points: str, comment: str, shown: str) -> Response:
         """Save a mark, or return those of others that it would replace."""
         session = self.session
         open_item(session.book, session.item_at(session.position))  # what has moved or changed cannot be marked
-        if replaced := session.mark(points, comment, item, shown):
+        replaced = session.mark(points, comment, shown)
+        if replaced:
             more = f" (and {counted(len(replaced) - 1, 'more mark')})" if len(replaced) > 1 else ""
-            view = session.item_at(session.position).view
-            return _json({"newer": pages.mark_text(replaced[0]) + more, "shown": view + CONFIRMED})
-        session.position = session.following(session.position)
-        return _json({"go": self._address(session.position)})
+            return _json({"newer": pages.mark_text(replaced[0]) + more})
+        answer = {"error": _CHANGED} if replaced is None else {}
+        session.position = session.position if answer else session.following(session.position)
+        return _json({**answer, "go": self._address(session.position)})
 
     def _address(self, position: int) -> str:
         return str(position + 1) if position < len(self.session.places) else "end"

@@ -12,7 +12,7 @@ from pathlib import Path
 from grader.checks.outcome import Outcome
 from grader.classroom.grades import Class
 from grader.classroom.reopening import reopened
-from grader.classroom.review_items import ReviewItem, order
+from grader.classroom.review_items import ReviewItem
 from grader.classroom.tables import write_table
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import InputError
@@ -74,7 +74,7 @@ def write_sheet(session: ReviewSession, file: Path) -> str:
     if os.path.lexists(file):
         raise InputError(f"{printable_path(file)} exists, perhaps with marks in it: name another file for --sheet")
     items = [session.item_at(position) for position in session.listed]
-    by_student = sorted(range(len(items)), key=lambda at: order(items[at].first))  # a submission is read once
+    by_student = sorted(range(len(items)), key=lambda at: items[at].first.order)  # a submission is read once
     texts = {at: _text(session.book, items[at]) for at in by_student}
     rows = ((one.criterion.id, one.answer, "", "", texts[at], _students(one)) for at, one in enumerate(items))
     save(file, write_table(SHEET_COLUMNS, rows), session.book.settings.roots(session.folder), _PRIVATE)

@@ -18,7 +18,6 @@ from grader.text import enumerated, printable_path
 CONFIRMED = "!"  # ends what the page sends to replace marks that it was asked about
 _MAX_NAMED = 5
 _GONE = "this answer has changed, or its students have final marks: go to the next item"
-_CHANGED = "Not saved: this item has changed since it was shown. Look at it again."
 
 
 class ReviewSession:
@@ -106,21 +105,22 @@ class ReviewSession:
         self._kept.clear()
         self.position = self.following(-1)
 
-    def mark(self, points: str, comment: str, stamp: str, shown: str) -> list[Mark]:
+    def mark(self, points: str, comment: str, shown: str) -> list[Mark] | None:
         """Append a mark for each student of the current item; `-` as points withdraws marks.
 
-        `stamp` and `shown` say which item and marks the person saw. Returns the marks that it would replace and that
-        were not shown, or are another person's; nothing is saved then, unless `shown` confirms it. Raises InputError.
+        `shown` is the item's view that the person saw: without effect, returns None if it is another one. Returns the
+        marks of others that would be replaced; nothing is saved then, unless `shown` ends with CONFIRMED. Raises
+        InputError.
         """
         item = self.item_at(self.position)
         self._check_rows()
-        if stamp != item.stamp:
-            raise InputError(_CHANGED)
+        if shown.removesuffix(CONFIRMED) != item.view:
+            return None
         new = [self._new_mark(one, item, points, comment) for one in item.members]
         replaced = [one.mark for one in item.members if one.mark is not None and one.mark.points is not None]
-        is_asked = shown != item.view or any(mark.by != self.by for mark in replaced)
-        if replaced and is_asked and shown != item.view + CONFIRMED:
-            return replaced
+        others = [mark for mark in replaced if mark.by != self.by]
+        if others and not shown.endswith(CONFIRMED):
+            return others
         append_marks(self.file, new)
         given = {(mark.student, mark.criterion): mark for mark in new}
         self.own |= given

@@ -106,18 +106,20 @@ def test_a_mark_of_another_person_is_replaced_only_if_asked(book: Path) -> None:
     with running(book) as review:
         seen = review.seen("1")
         mark("1", "Lee")
-        newer = review.mark("1", "4", **seen)
-        assert re.fullmatch(r"1 point by Lee at 20\S+ \S+ \(UTC\S*\): no", newer["newer"])
-        assert "newer" in review.mark("1", "4")  # the page shows it now
+        changed = review.mark("1", "4", **seen)
+        assert (changed["go"], "has changed since it was shown" in changed["error"]) == ("1", True)
+        newer = review.mark("1", "4")["newer"]
+        assert re.fullmatch(r"1 point by Lee at 20\S+ \S+ \(UTC\S*\): no", newer)
+        confirmed = review.seen("1")["shown"] + "!"
         mark("2", "Lee")
-        newer = review.mark("1", "4", shown=newer["shown"])
-        assert newer["newer"].startswith("2 points by Lee")
+        assert "has changed" in review.mark("1", "4", shown=confirmed)["error"]
+        assert review.mark("1", "4")["newer"].startswith("2 points by Lee")
         assert rows_of(book) == []
-        assert review.mark("1", "4", shown=newer["shown"]) == {"go": "2"}
+        assert review.mark("1", "4", shown=review.seen("1")["shown"] + "!") == {"go": "2"}
         assert review.mark("1", "3") == {"go": "2"}
         seen = review.seen("1")
         mark("1", "Kim")  # elsewhere, under the same name
-        assert review.mark("1", "2", **seen)["newer"].startswith("1 point by Kim")
+        assert "has changed" in review.mark("1", "2", **seen)["error"]
     assert rows_of(book) == ["4", "3", "1"]
 
 
@@ -289,8 +291,8 @@ def test_only_the_page_itself_can_mark(headers: dict[str, str], status: int, rev
     "sent",
     [
         None, [], "mark", {}, {"do": "delete"}, {"do": ["mark"]}, {"do": "mark"},
-        {"do": "mark", "points": 4, "comment": "", "shown": "", "item": ""}, {"do": "mark", "points": "4", "comment": None, "shown": "", "item": ""},
-        {"do": "mark", "points": "4", "comment": "", "shown": 0, "item": ""}, {"do": "mark", "points": "4", "comment": "", "shown": ""},
+        {"do": "mark", "points": 4, "comment": "", "shown": ""}, {"do": "mark", "points": "4", "comment": None, "shown": ""},
+        {"do": "mark", "points": "4", "comment": "", "shown": 0},
         {"do": "filter", "criterion": "", "section": "", "state": "other"},
     ],
 )  # fmt: skip
@@ -305,7 +307,7 @@ def test_a_body_of_another_form_is_refused(sent: object, review: Review, book: P
 def test_an_error_of_the_gradebook_is_a_message(review: Review, book: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """On the page, and in the answer to a mark; the review goes on."""
     (book / "marks" / "lee.csv").write_text("student,criterion,points\nanna,essay,x\n")
-    assert "marks/lee.csv:2: points are a number" in review.mark("1", "3", item="", shown="")["error"]
+    assert "marks/lee.csv:2: points are a number" in review.mark("1", "3", shown="")["error"]
     assert (review.get("1").status, "marks/lee.csv:2" in review.get("1").text) == (503, True)
     (book / "marks" / "lee.csv").unlink()
     assert review.mark("1", "3") == {"go": "2"}
@@ -387,20 +389,6 @@ def test_a_port_that_is_taken(book: Path, review: Review) -> None:
     """It is refused in one line."""
     refused = refusal(grader("review", "--gradebook", book, "--port", review.port))
     assert refused.startswith(f"cannot listen on port {review.port} of 127.0.0.1")
-
-
-def test_the_report_of_a_student(review: Review, book: Path) -> None:
-    """It is the student's page, in a sandbox; not in an anonymous review, nor for several students."""
-    found = review.get("1/report")
-    assert (found.status, found.headers["content-security-policy"]) == (
-        200,
-        "sandbox allow-scripts; frame-ancestors 'self'",
-    )
-    assert "<h1>A small lab</h1>" in found.text and "Because of the roots." not in found.text
-    assert 'data-src="1/report"' in review.get("1").text
-    with running(book, is_anonymous=True) as anonymous:
-        assert anonymous.get("1/report").status == 404
-        assert "/report" not in anonymous.get("1").text.partition("<script>")[0]
 
 
 def test_a_pdf_is_served_to_the_viewer(tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 {
   const find = (id) => document.getElementById(id);
   let data, form, points, comment, error, newer, large, picture, help, pictures, buttons;  // of the page that is shown
-  let shown, busy = false, leaving = "", current = 0, showsReport = false;
+  let shown, busy = false, leaving = "", current = 0;
   let typed = [];  // the keys that were pressed while no item was shown: they are for the next one
 
   const say = (text, isBusy = false) => { error.textContent = text; error.classList.toggle("busy", isBusy); };
@@ -22,7 +22,7 @@
     say("Saving ...", true);
     find("main").inert = true;
     try {
-      const mark = { points: points?.value, comment: comment?.value, shown, item: data.item };
+      const mark = { points: points?.value, comment: comment?.value, shown };
       const sent = { do: action, ...(action === "mark" ? mark : more) };
       const headers = { "Content-Type": "application/json" };
       const answer = await (await fetch(location.pathname, { method: "POST", headers, body: JSON.stringify(sent) })).json();
@@ -76,7 +76,6 @@
 
   function askToKeep(answer) {
     find("newer-text").textContent = answer.newer;
-    newer.dataset.shown = answer.shown;
     newer.hidden = false;
     say(typed.length ? "What was typed after it is discarded." : "");
     typed = [];
@@ -84,7 +83,7 @@
   }
 
   function keep() { discard(); send("next"); }
-  function replace() { shown = newer.dataset.shown; newer.hidden = true; send("mark"); }
+  function replace() { shown = `${data.shown}!`; newer.hidden = true; send("mark"); }
   function discard() { points.value = data.points; comment.value = data.comment; }
 
   function setPoints(button) {
@@ -119,7 +118,6 @@
     for (const frame of details.querySelectorAll("iframe[data-src]")) {
       if (details.open && !frame.src) frame.src = frame.dataset.src;
     }
-    if (details.id === "report") showsReport = details.open;
   }
 
   function toggle(selector) {
@@ -149,7 +147,7 @@
   const keys = {
     n: () => send("next"), s: () => send("next"), b: () => send("back"), z: zoom,
     f: () => setPoints(buttons.at(-1)), h: () => setPoints(buttons.find((button) => button.dataset.name === "half")),
-    v: () => toggle("#report"), d: () => toggle(".document:not(#report)"),
+    d: () => toggle(".document"),
     c: () => comment.focus(), p: () => points.select(), "?": () => help.showModal(),
     k: () => { if (!newer.hidden) keep(); }, r: () => { if (!newer.hidden) replace(); },
   };
@@ -220,7 +218,6 @@
     for (const button of document.querySelectorAll("[data-choice]")) button.addEventListener("click", () => choose(button.dataset.choice));
     for (const details of document.querySelectorAll(".document")) {
       details.addEventListener("toggle", () => loadFrame(details));
-      if (details.id === "report") details.open = showsReport;
       loadFrame(details);
     }
     comment.addEventListener("input", showChosen);
