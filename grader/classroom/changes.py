@@ -60,8 +60,10 @@ def changes(before: Snapshot, after: Snapshot) -> Iterator[Change]:
         texts = [one.run.totals.get(key) for one in (before, after)]
         first, last = (None if text is None else Decimal(text) for text in texts)
         steps: tuple[PointsChange, ...] = ()
-        why: tuple[str, ...] = ("first submission" if new is not None else "no longer there",)
-        if old is not None and new is not None:
+        why: tuple[str, ...] = ()
+        if old is None or new is None:
+            why = ("no longer there",) if old is not None else ("first submission",) if new is not None else ()
+        else:
             is_gone = key in before.run.totals and key not in after.run.totals
             steps, why = tuple(_steps(old, new)), tuple(_reasons(old, new, before.run, after.run, is_gone=is_gone))
         if steps or first != last or (old is None) != (new is None):

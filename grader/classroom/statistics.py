@@ -44,7 +44,7 @@ class Mistake(NamedTuple):
 
 
 class ClassStatistics(NamedTuple):
-    """The figures of a class. Visitors who are not on the roster count nowhere but in `attention`.
+    """The figures of a class. Visitors who are not on the roster, and submissions that have gone, are in `attention` only.
 
     A grade counts if it is a final mark, or that of a graded submission, after marks, adjustments and the late penalty;
     points that still need manual grading are not in it yet, and `open` is the number of such grades. `tenths` are the
@@ -82,7 +82,7 @@ def losses(grade: StudentGrade) -> list[tuple[Decimal, str]]:
 def statistics(book: Class, grades: Iterable[StudentGrade]) -> ClassStatistics:
     """Return the statistics of the grades of a class."""
     every = list(grades)
-    enrolled = [one for one in every if one.student.is_on_roster]
+    enrolled = [one for one in every if one.student.is_on_roster and (one.has_final or not one.is_gone)]
     counted = [one for one in enrolled if counts(one)]
     totals = {one.student.key: one.total or Decimal(0) for one in counted}
     most = sum((row.maximum for row in book.criteria), Decimal(0))
@@ -126,7 +126,7 @@ def _results(book: Class, grades: Iterable[StudentGrade]) -> tuple[list[Criterio
             name = result.criterion.id
             found[name].update(_of(result))
             earned[name] += result.points
-            if result.is_lost and result.manual_mark is None:
+            if result.is_lost and result.manual_mark is None and result.outcome.message:
                 mistakes[name, result.outcome.message].append(grade.student.key)
     common = sorted(mistakes.items(), key=lambda item: (-len(item[1]), item[0]))[:_MAX_MISTAKES]
     rows = [CriterionFigures(row, found[row.id], _share(row, found[row.id], earned[row.id])) for row in book.criteria]

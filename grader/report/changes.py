@@ -75,7 +75,7 @@ def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Co
             for line in first_lines([*_lines(steps)], _MAX_LINES):
                 wrapped(console, Text(printable(line)), 2)
             for one in some:
-                total = f"{named(one.key, one.name)}: {_span(one.before, one.after)}"
+                total = f"{named(one.key, one.name)}: {_span(one.before, one.after, 'not final')}"
                 wrapped(console, Text(printable(total), style="bold"), 4)
 
 
@@ -86,9 +86,10 @@ def _lines(steps: Sequence[PointsChange]) -> Iterator[str]:
         yield f"{names}: {_span(*span)}{' each' * (len(some) > 1)}"
 
 
-def _span(before: Decimal | None, after: Decimal | None) -> str:
+def _span(before: Decimal | None, after: Decimal | None, nothing: str = "none") -> str:
     """Return points before and after: "50 to 60 (+10)"."""
-    if before == after and before is not None:
-        return f"{format_points(before)} as before"
-    words = " to ".join("none" if points is None else format_points(points) for points in (before, after))
+    first, last = (nothing if points is None else format_points(points) for points in (before, after))
+    if first == last:
+        return f"{first}, as before"
+    words = f"{first} to {last}"
     return words if before is None or after is None else f"{words} ({signed_points(after - before)})"

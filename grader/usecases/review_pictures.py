@@ -58,7 +58,7 @@ def open_item(book: Class, item: ReviewItem) -> OpenedItem:
     result, found = _opened(book, item.first.student.key, item.criterion.id)
     if item.first.number is not None:
         return OpenedItem(result, [*starmap(_anonymous, enumerate(found, 1))])
-    root = book.settings.roots(book.folder)[item.first.graded.root].resolve()
+    root = book.settings.roots(book.folder)[item.first.graded.root]
     return OpenedItem(result, found, files_text(item, result, root))
 
 
