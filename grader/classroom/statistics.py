@@ -103,7 +103,7 @@ def statistics(book: Class, grades: Iterable[StudentGrade]) -> ClassStatistics:
         dict(sorted(Counter(map(status_of, enrolled)).items())),
         _summary(totals.values()) if totals else None,
         sum(bool(one.why_open) for one in counted),
-        sum(one.late.days > 0 for one in enrolled),
+        sum(one.late.days > 0 and not one.has_final for one in enrolled),
         tenths,
         *_results(book, counted),
         {name: _summary(values) for name, values in sorted(sections.items())} if len(sections) > 1 else {},

@@ -83,7 +83,7 @@ def _row(grade: StudentGrade, links: Mapping[str, str]) -> Row:
         status_of(grade) + ", final mark" * (grade.final_points is not None),
         "" if grade.total is None else format_points(grade.total),
         format_points(grade.pending) if grade.pending else "",
-        f"{counted(late.days, 'day')}{penalty}" if late.days else "",
+        f"{counted(late.days, 'day')}{penalty}" if late.days and not grade.has_final else "",
         enumerated(lost, _MAX_LOST) if lost else "",
     )
 
@@ -118,7 +118,7 @@ def _groups(grades: Sequence[StudentGrade], found: ClassStatistics) -> dict[str,
             (f"section {one.student.section or '(none)'}", has_sections),
             ("need a person", any(one.concerns)),
             ("need manual grading", one.pending),
-            ("late", one.late.days),
+            ("late", one.late.days and not one.has_final),
             ("a final mark", one.final_points is not None),
         )
         for place in ((at, label) for at, (label, is_in) in enumerate(labels) if is_in):
