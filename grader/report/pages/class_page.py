@@ -102,7 +102,7 @@ def _columns(rows: Sequence[Row], found: ClassStatistics) -> list[tuple[str, str
         ("status", "status", ""),
         ("grade", f"grade of {format_points(found.maximum)}", "number"),
         ("open", "needs manual grading", "number"),
-        ("late", "late", ""),
+        ("late", "late", "text"),
         ("lost", "lost points in", "text"),
     )
     return [column for column in columns if column[1] and any(getattr(row, column[0]) for row in rows)]
