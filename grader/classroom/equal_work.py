@@ -4,7 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from itertools import combinations
+from itertools import combinations, starmap
 from typing import Any, NamedTuple
 
 from grader.classroom.results import Graded
@@ -22,11 +22,10 @@ _IGNORED = re.compile(rb"^(?:[ \t]*+#.*|(?:Panels|Window Geometry):.*\n(?:[ \t-]
 
 
 class EqualWork(NamedTuple):
-    """Students with `equal` work; `same_file` groups those among them whose URDFs are the same bytes."""
+    """Students with work that is equal, and what of it is: "the same file"."""
 
     students: tuple[str, ...]
-    same_file: tuple[tuple[str, ...], ...] = ()
-    equal: str = "the same robot"
+    equal: str
 
 
 def forms_of(submission: Submission, *, is_handed_out: bool = False) -> dict[str, Any]:
@@ -67,19 +66,16 @@ def hashes_of(submission: Submission) -> tuple[str, ...]:
 def equal_work(results: Iterable[Graded], handed_out: Iterable[str]) -> list[EqualWork]:
     """Return the groups of students with equal work, without what the course handed out.
 
-    Groups with equal files come first, then the largest; at the end those in which only a part is equal.
+    Those with the same file come first, then those with the same robot, which include them.
     """
     known, works = set(handed_out), [one for one in results if one.work]
     robots = [one for one in works if "urdf" in one.work and known.isdisjoint(map(one.work.get, ("urdf", "robot")))]
-    return [*_same_robots(robots), *_same_parts(works, known)]
-
-
-def _same_robots(works: list[Graded]) -> list[EqualWork]:
-    same = []
-    for group in _groups((one.work.get("robot") or one.work["urdf"], one) for one in works).values():
-        files = _groups((one.work["urdf"], one) for one in group)
-        same.append(EqualWork(_keys(group), tuple(map(_keys, files.values()))))
-    return sorted(same, key=lambda work: (not work.same_file, -len(work.students), work.students))
+    files = _groups((one.work["urdf"], one) for one in robots)
+    same = {_keys(group): "the same file" for group in files.values()}
+    for group in _groups((one.work.get("robot") or one.work["urdf"], one) for one in robots).values():
+        same.setdefault(_keys(group), "the same robot")
+    found = starmap(EqualWork, same.items())
+    return [*sorted(found, key=lambda one: (one.equal, -len(one.students), one)), *_same_parts(works, known)]
 
 
 def _same_parts(works: list[Graded], handed_out: set[str]) -> Iterator[EqualWork]:
@@ -88,7 +84,7 @@ def _same_parts(works: list[Graded], handed_out: set[str]) -> Iterator[EqualWork
     written = ((one.work["written"], one) for one in works if one.work.get("written", "") not in {"", *handed_out})
     for group in _groups(written).values():
         if len(group) <= most and len({one.work.get("robot") for one in group}) > 1:
-            yield EqualWork(_keys(group), equal="the same links, joints and materials")
+            yield EqualWork(_keys(group), "the same links, joints and materials")
     files = {one.student: tuple(one.work.get("package", {}).items()) for one in works}
     counts = Counter(file for own in files.values() for file in own)
     rare = {file for file, count in counts.items() if count <= most and file[1] not in handed_out}
@@ -97,7 +93,7 @@ def _same_parts(works: list[Graded], handed_out: set[str]) -> Iterator[EqualWork
     for pair, group in _groups(pairs).items():
         kinds.setdefault(_keys(group), {}).update(dict.fromkeys(kind for kind, _ in pair))
     for keys, same in kinds.items():
-        yield EqualWork(keys, equal=f"the same {enumerated(same)}")
+        yield EqualWork(keys, f"the same {enumerated(same)}")
 
 
 def _groups(works: Iterable[tuple[Any, Graded]]) -> dict[Any, list[Graded]]:

@@ -28,7 +28,7 @@ class Summary(NamedTuple):
 
 
 class CriterionFigures(NamedTuple):
-    """The students by each of COUNTS, and the mean share of a criterion's points that they earned, None if it is open."""
+    """The students by each of COUNTS, and the mean share of the points that they earned; None if all are open."""
 
     criterion: Criterion
     counts: Counter[str]
@@ -44,7 +44,7 @@ class Mistake(NamedTuple):
 
 
 class ClassStatistics(NamedTuple):
-    """The figures of a class. Visitors who are not on the roster, and submissions that have gone, are in `attention` only.
+    """The figures of a class. Visitors who are not on the roster, and what has gone, are in `attention` only.
 
     A grade counts if it is a final mark, or that of a graded submission, after marks, adjustments and the late penalty;
     points that still need manual grading are not in it yet, and `open` is the number of such grades. `tenths` are the

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from functools import partial
 from operator import itemgetter
-from typing import Any, NamedTuple
+from types import SimpleNamespace
 
 from grader import __version__
 from grader.classroom.grade_table import status_of
 from grader.classroom.grades import Class, StudentGrade
 from grader.classroom.run.progress import Progress
-from grader.classroom.statistics import COUNTS, ClassStatistics, CriterionFigures, statistics
+from grader.classroom.statistics import COUNTS, CriterionFigures, statistics
 from grader.grading.report import Result
 from grader.report.json_data import (
     COUNT,
@@ -29,7 +29,6 @@ from grader.report.json_data import (
     mapping,
     nullable,
     record,
-    rounded,
     schema_key,
     to_json,
 )
@@ -66,7 +65,7 @@ _STATISTICS = Record(
         ),
     }
 )
-_EQUAL = Record({"students": array(TEXT), "same_file": array(array(TEXT)), "equal": TEXT})
+_EQUAL = Record({"students": array(TEXT), "equal": TEXT})
 _CONCERN = Record({"id": (TEXT, itemgetter(0)), "detail": (TEXT, itemgetter(1))})
 _ATTENTION = Record({"reason": (TEXT, itemgetter(0)), "students": (Many(_CONCERN), itemgetter(1))})
 
@@ -103,22 +102,13 @@ _STUDENT = Record(
 )
 
 
-class _Report(NamedTuple):
-    """What is said of a class; `run` counts what a batch has just done."""
-
-    book: Class
-    statistics: ClassStatistics
-    students: list[StudentGrade]
-    run: Progress | None
-
-
 CLASS = Record(
     {
         **schema_key("grader/class/v1"),
         "grader": (GRADER, lambda _: {"version": __version__}),
-        "rubric": (RUBRIC, "book.rubric"),
+        "rubric": (RUBRIC, "statistics.rubric"),
         "run": Record(each(TOTAL, "total graded unchanged errored")),
-        "max_score": (POINTS, lambda report: rounded(sum(row.maximum for row in report.book.criteria))),
+        "max_score": (POINTS, "statistics.maximum"),
         "statistics": _STATISTICS,
         "equal": (Many(_EQUAL), "statistics.equal"),
         "attention": (Many(_ATTENTION), lambda report: report.statistics.attention.items()),
@@ -132,5 +122,5 @@ CLASS = Record(
 def render_class_json(book: Class, done: Progress | None = None) -> str:
     """Return the statistics and all current grades."""
     students = list(book)
-    data: Any = CLASS.data(_Report(book, statistics(book, students), students, done))
-    return to_json(data)
+    report = SimpleNamespace(book=book, statistics=statistics(book, students), students=students, run=done)
+    return to_json(CLASS.data(report))

@@ -7,7 +7,6 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from grader.classroom.equal_work import EqualWork
 from grader.classroom.grades import Class, Reason
 from grader.classroom.statistics import ClassStatistics, CriterionFigures
 from grader.report.console import wrapped
@@ -37,7 +36,8 @@ def render_class(book: Class, found: ClassStatistics, console: Console, *, verbo
     mistakes = [(len(one.students), f"{one.criterion}: {one.message}") for one in found.mistakes[:_MAX_MISTAKES]]
     _print_lines("Common mistakes", (f"{count:>4}  {words}" for count, words in mistakes), console, 8)
     names = Names(book)
-    equal = (f"{names.text(work.students)}: {what_is_same(work, names)}" for work in found.equal[:_MAX_GROUPS])
+    works = (([names.of(key) for key in one.students], one.equal) for one in found.equal[:_MAX_GROUPS])
+    equal = (f"{people_text(who, MAX_NAMED)}: {what}" for who, what in works)
     _print_lines("Equal work", equal, console, note=EQUAL_NOTE)
     groups = ((reason, [names.of(*one) for one in those]) for reason, those in found.attention.items())
     attention = (attention_line(reason, len(who), who, len(who) if verbose else MAX_NAMED) for reason, who in groups)
@@ -54,10 +54,6 @@ class Names:
         """Return the name of a student, with a detail."""
         name = named(key, self._book.student(key, self._book.results.of(key)).name)
         return f"{name} ({detail})" if detail else name
-
-    def text(self, keys: Sequence[str]) -> str:
-        """Return the names of some students."""
-        return people_text([self.of(key) for key in keys], MAX_NAMED)
 
 
 def head_lines(found: ClassStatistics) -> Iterator[str]:
@@ -89,13 +85,6 @@ def span(found: ClassStatistics, tenth: int) -> str:
 def percent(share: float) -> str:
     """Return a share in percent, not rounded up to 100 % or down to 0 %."""
     return f"{share:.0%}" if share in (0, 1) else f"{min(99, max(1, round(100 * share)))}%"
-
-
-def what_is_same(work: EqualWork, names: Names) -> str:
-    """Return what is equal for all of the students, and who of them has the same file."""
-    if work.students in work.same_file:
-        return "the same file"
-    return "; ".join([work.equal, *(f"the same file: {names.text(keys)}" for keys in work.same_file)])
 
 
 def attention_line(reason: Reason, count: int, who: Sequence[str], most: int) -> str:

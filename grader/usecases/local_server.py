@@ -10,7 +10,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler
-from socket import SHUT_RDWR
+from socket import SHUT_RD, socket
 from socketserver import ThreadingTCPServer
 from threading import Lock, Timer
 from typing import Any, NamedTuple
@@ -35,13 +35,6 @@ _HEADERS = {
 SANDBOX = "sandbox; default-src 'none'"  # for everything that is not a page
 
 
-class Request(NamedTuple):
-    """A request: the parts of the path after the secret, and the body of a POST."""
-
-    path: tuple[str, ...]
-    body: bytes | None = None
-
-
 class Response(NamedTuple):
     """A response. `location` is the path of a redirect, after the secret."""
 
@@ -59,6 +52,8 @@ class _RefusedError(Exception):
 class LocalServer(ThreadingTCPServer):
     """Serves an application until it is interrupted. `url` is the address with its secret.
 
+    The application gets the parts of the path after the secret, and the body of a POST.
+
     Raises InputError if the port is taken.
     """
 
@@ -66,7 +61,7 @@ class LocalServer(ThreadingTCPServer):
     allow_reuse_address = True
     request_queue_size = 64
 
-    def __init__(self, application: Callable[[Request], Response], port: int = 0) -> None:
+    def __init__(self, application: Callable[[tuple[str, ...], bytes | None], Response], port: int = 0) -> None:
         self.application, self.lock = application, Lock()
         self.token = secrets.token_urlsafe(_TOKEN_BYTES)
         try:
@@ -78,11 +73,19 @@ class LocalServer(ThreadingTCPServer):
         self.hosts = tuple(f"{name}:{self.port}" for name in (HOST, "localhost"))
         self.url = f"http://{self.hosts[0]}/{self.token}/"
 
-    def answer(self, request: Request) -> Response:
+    def finish_request(self, request: Any, client_address: Any) -> None:
+        """Serve a connection; the whole request must arrive in time, however slowly its bytes do."""
+        timer = Timer(PATIENCE, _stop_reading, [request])
+        timer.daemon = True
+        timer.start()
+        super().finish_request(request, client_address)
+        timer.cancel()
+
+    def answer(self, path: tuple[str, ...], body: bytes | None) -> Response:
         """Return the response of the application; a fault of it is one line."""
         try:
             with self.lock:
-                return self.application(request)
+                return self.application(path, body)
         except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
             message = printable(f"the grader failed on this request: {type(error).__name__}: {error}")
             return Response(f"{message}\n".encode(), status=HTTPStatus.INTERNAL_SERVER_ERROR)
@@ -91,29 +94,17 @@ class LocalServer(ThreadingTCPServer):
         """Ignore errors of broken connections."""
 
 
+def _stop_reading(connection: socket) -> None:
+    with suppress(OSError):  # it has ended
+        connection.shutdown(SHUT_RD)
+
+
 class _Handler(BaseHTTPRequestHandler):
     """Reads one request of a connection (HTTP/1.0), and answers it."""
 
     server: LocalServer
     server_version, sys_version = f"grader/{__version__}", ""
-    policy = SANDBOX
-
-    def setup(self) -> None:
-        """Bound the time of the whole request, however slowly its bytes arrive, and then that of the response."""
-        super().setup()
-        self.connection.settimeout(PATIENCE)
-        self._patience = Timer(PATIENCE, self._disconnect)
-        self._patience.daemon = True
-        self._patience.start()
-
-    def finish(self) -> None:
-        """End a connection."""
-        self._patience.cancel()
-        super().finish()
-
-    def _disconnect(self) -> None:
-        with suppress(OSError):  # it has ended
-            self.connection.shutdown(SHUT_RDWR)
+    timeout, policy = PATIENCE, SANDBOX
 
     def do_GET(self) -> None:
         """Answer a request that changes nothing; HEAD without the body."""
@@ -128,13 +119,11 @@ class _Handler(BaseHTTPRequestHandler):
     def _serve(self, *, has_body: bool) -> None:
         try:
             path = self._path()
-            request = Request(path, self._body() if has_body else None)
+            body = self._body() if has_body else None
         except _RefusedError as error:
-            self._patience.cancel()
             self.send_error(*error.args)
             return
-        self._patience.cancel()
-        response = self.server.answer(request)
+        response = self.server.answer(path, body)
         self.policy = response.policy
         self.send_response(response.status)
         self.send_header("Content-Type", response.media_type)

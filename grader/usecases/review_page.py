@@ -15,7 +15,7 @@ from grader.errors import GraderError
 from grader.report.pages import review as pages
 from grader.text import counted, printable_path
 from grader.usecases.grade_class import write_grades
-from grader.usecases.local_server import SANDBOX, LocalServer, Request, Response
+from grader.usecases.local_server import SANDBOX, LocalServer, Response
 from grader.usecases.review_pictures import open_item
 from grader.usecases.review_session import ReviewSession
 from grader.usecases.terminal import Terminal
@@ -33,16 +33,16 @@ class ReviewPage:
     def __init__(self, session: ReviewSession) -> None:
         self.session = session
 
-    def __call__(self, request: Request) -> Response:
+    def __call__(self, path: tuple[str, ...], body: bytes | None) -> Response:
         """Return the response to a request; errors of the gradebook become messages."""
         session = self.session
         try:
             session.refresh()
-            return self._act(request) if request.body is not None else self._page(request.path)
+            return self._act(path, body) if body is not None else self._page(path)
         except GraderError as error:
-            if request.body is not None:
+            if body is not None:
                 return _json({"error": str(error)})
-            following = session.following(self._position(request.path[0]))
+            following = session.following(self._position(path[0]))
             return _html(pages.error_page(str(error), self._address(following)), HTTPStatus.SERVICE_UNAVAILABLE)
 
     def _page(self, path: tuple[str, ...]) -> Response:
@@ -81,11 +81,11 @@ class ReviewPage:
         filters = [*zip(ReviewFilter._fields, ("Question", "Section", "Items"), values, session.filter, strict=True)]
         return pages.Place(bisect(listed, session.position), len(listed), self._address(session.position), filters)
 
-    def _act(self, request: Request) -> Response:
+    def _act(self, path: tuple[str, ...], body: bytes) -> Response:
         """Execute an action of the page."""
         session = self.session
-        at = len(session.places) if request.path == ("end",) else self._position("/".join(request.path))
-        match _read(request.body or b"") if at >= 0 else None:
+        at = len(session.places) if path == ("end",) else self._position("/".join(path))
+        match _read(body) if at >= 0 else None:
             case {"do": "mark", "points": str(points), "comment": str(comment), "shown": str(shown)}:
                 session.position = at
                 return self._mark(points, comment.strip(), shown)

@@ -46,7 +46,7 @@ def render_class_page(
     """Return the class's page; `links` are the addresses of students' pages by key, relative to this page."""
     rows = sorted((_row(grade, links) for grade in grades), key=_by_family_name)
     groups = {name: group for name, group in _groups(grades, found).items() if group.keys}
-    most, names = max(map(len, found.tenths)), words.Names(book)
+    most = max(map(len, found.tenths))
     values = {
         "version": __version__,
         "title": found.rubric.title,
@@ -60,7 +60,7 @@ def render_class_page(
         "criteria": _criteria(found),
         "criteria_note": words.SHARE_NOTE,
         "mistakes": [(one.criterion, one.message, len(one.students)) for one in found.mistakes],
-        "equal": [(work.students, words.what_is_same(work, names)) for work in found.equal],
+        "equal": [(work.students, work.equal) for work in found.equal],
         "equal_note": words.EQUAL_NOTE,
         "attention": [(str(reason), those[:_MAX_ATTENTION], len(those)) for reason, those in found.attention.items()],
         "ignored": book.marks.ignored,
