@@ -126,7 +126,8 @@ def _results(book: Class, grades: Iterable[StudentGrade]) -> tuple[list[Criterio
             name = result.criterion.id
             found[name].update(_of(result))
             earned[name] += result.points
-            if result.is_lost and result.manual_mark is None and result.outcome.message:
+            is_mistake = result.is_lost and result.manual_mark is None and not result.criterion.bonus
+            if is_mistake and result.outcome.message:
                 mistakes[name, result.outcome.message].append(grade.student.key)
     common = sorted(mistakes.items(), key=lambda item: (-len(item[1]), item[0]))[:_MAX_MISTAKES]
     rows = [CriterionFigures(row, found[row.id], _share(row, found[row.id], earned[row.id])) for row in book.criteria]
