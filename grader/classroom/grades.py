@@ -5,7 +5,7 @@ from datetime import datetime
 from decimal import Decimal
 from enum import StrEnum
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from grader import __version__
 from grader.checks.outcome import Outcome
@@ -14,7 +14,7 @@ from grader.classroom.lateness import Lateness, SubmissionTimes, lateness, read_
 from grader.classroom.marks import Mark, Marks, read_marks
 from grader.classroom.results import Graded, Results, Run
 from grader.classroom.roster import Roster, Student, read_roster
-from grader.classroom.settings import ClassSettings, read_settings
+from grader.classroom.settings import read_settings
 from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import InputError
 from grader.files.reading import read_capped
@@ -183,7 +183,7 @@ class Class:
 
     def student(self, key: str, graded: Graded | None) -> Student:
         """Return a student as the roster has it, completed by the LMS ids in the names of the submission."""
-        person = dict(graded.person) if graded is not None else {}
+        person: dict[str, Any] = dict(graded.person) if graded is not None else {}
         found = self._on_roster.get(key)
         if found is None:
             return Student(key, **person, is_on_roster=self.roster is None)

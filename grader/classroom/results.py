@@ -58,7 +58,9 @@ class Graded(NamedTuple):
     @property
     def line(self) -> bytes:
         """The line of the file, without what is empty."""
-        values = {name: value for name, value in zip(self._fields, self, strict=True) if value or name in ("student", "run")}
+        values = {
+            name: value for name, value in zip(self._fields, self, strict=True) if value or name in ("student", "run")
+        }
         return f"{json.dumps(values, separators=(',', ':'))}\n".encode()
 
     def report(self, rubric: Rubric) -> Report:
@@ -66,7 +68,9 @@ class Graded(NamedTuple):
         unread = self.reason if self.verdict == "unreadable" else ""
         submission = GradedSubmission(self.student, path=self.paths[0] if self.paths else None, unread=unread)
         rows = ((row, self.results.get(row.id)) for row in rubric.criteria)
-        results = (Result(row, Outcome(entry[1], entry[2]), carried=entry[3]) for row, entry in rows if entry is not None)  # type: ignore[arg-type]
+        results = (
+            Result(row, Outcome(entry[1], entry[2]), carried=entry[3]) for row, entry in rows if entry is not None
+        )  # type: ignore[arg-type]
         return Report(submission, rubric, self.parts, without_gifts(results, submission))
 
 
@@ -136,14 +140,14 @@ class Results:
             self.end = place + len(line)
 
     def _lines(self) -> Iterator[tuple[int, bytes]]:
-        """Yield the whole lines and where they begin."""
+        """Yield the whole lines and where they begin, up to one that was not written to its end."""
         if not self._file.exists():
             return
         place = 0
         try:
             with self._file.open("rb") as file:
                 for line in file:
-                    if not line.endswith(b"\n"):
+                    if not line.endswith(b"\n") or b"\0" in line:  # a power failure leaves holes
                         return
                     yield place, line
                     place += len(line)
@@ -203,7 +207,12 @@ class ResultsWriter:
         except OSError as error:
             raise InputError(f"cannot write {self._shown}: {error.strerror}") from None
 
-    def close(self) -> None:
+    def __enter__(self) -> "ResultsWriter":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        os.close(self._handle)
+
+    def sync(self) -> None:
         """Write to the disk what the system still holds."""
         os.fsync(self._handle)
-        os.close(self._handle)

@@ -58,7 +58,7 @@ def _root(
 
       grader rubric show lab6
 
-      grader batch submissions.zip 
+      grader batch submissions.zip
     """
 
 

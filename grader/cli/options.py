@@ -107,5 +107,4 @@ DueOption = Annotated[
     str | None, typer.Option("--due", metavar="TIME", help="The deadline, such as 2026-11-20T23:59+01:00.")
 ]
 ByOption = Annotated[str, typer.Option("--by", metavar="NAME", help="Your name in reports; default: none.")]
-ClassVerboseOption = Annotated[bool, typer.Option("--verbose", help="Name all students who need attention (terminal).")]
 FormatOption = Annotated[OutputFormat, typer.Option("--format", help="Output format.")]

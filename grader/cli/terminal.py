@@ -44,15 +44,6 @@ def write_stderr(text: str) -> None:
             sys.stderr.flush()
 
 
-def ask(prompt: str) -> str | None:
-    """Print a prompt and return the line that is typed; None at the end of the input."""
-    write_stdout(prompt)
-    try:
-        return input()
-    except (EOFError, RuntimeError):  # the latter if standard input is closed
-        return None
-
-
 class TransientLine:
     """A line on standard error that the next text replaces; nothing unless that is a terminal."""
 
@@ -138,4 +129,4 @@ def _line(progress: "Progress", seconds: float) -> str:
     return f"{progress.done} of {progress.total}, {rate:.0f}/s, {time_left} left{f' ({counts})' if counts else ''}"
 
 
-TERMINAL = Terminal(write_stdout, warn, screen, ask, TransientLine().show, show_class)
+TERMINAL = Terminal(write_stdout, warn, screen, TransientLine().show, show_class)

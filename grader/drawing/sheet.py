@@ -142,15 +142,6 @@ def sheet_of(picture: Picture, top: float = 0.0) -> Sheet:
     return Sheet(panels, (left, top), top + (upper + lower), scale)
 
 
-def single_panel(picture: Picture, view: View, width: float, height: float, margin: float) -> Panel:
-    """Return the panel of a single view, in a rectangle of this size in pixels."""
-    low, high = _bounds(picture)
-    (a, b, _), (c, d, _) = view.T_view_frame.apply(low), view.T_view_frame.apply(high)
-    pairs = ((width, abs(c - a)), (height, abs(d - b)))
-    scale = min((room - 2.0 * margin) / max(size, _SMALLEST) for room, size in pairs)
-    return _panel(view, (0.0, 0.0), (width, height), _middle(low, high), scale, 0.0)
-
-
 def _panel(view: View, corner: Place, size: Place, middle: Vector, scale: float, title: float) -> Panel:
     """Return a panel with the robot centred below the title."""
     u, v, _ = view.T_view_frame.apply(middle)

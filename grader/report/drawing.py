@@ -9,22 +9,19 @@ from typing import Any
 
 from lxml import etree
 
-from grader.drawing.curves import SIDE, Curve, Edge, View, inner_edges
+from grader.drawing.curves import Curve, Edge, inner_edges
 from grader.drawing.picture import Picture, picture_of, plain_picture
-from grader.drawing.sheet import WIDTH, Panel, Seen, framed_links, projection, sheet_of, single_panel, with_fronts
+from grader.drawing.sheet import WIDTH, Panel, Seen, framed_links, projection, sheet_of, with_fronts
 from grader.grading.report import Report
 from grader.report.content import bonus_line, grade_line, score_text, summary
 from grader.report.details import remarks_on
 from grader.report.drawing_key import description, put_key, put_legend, why_no_picture
 from grader.report.drawing_signs import ViewSigns
 from grader.report.inspection import Inspection, effect
-from grader.report.svg_elements import DARK_RULES, LINE, SVG, circle, colour, edge_look, path_data, put, put_lines, wrap
+from grader.report.svg_elements import DARK_RULES, LINE, SVG, colour, edge_look, path_data, put, put_lines, wrap
 from grader.text import printable
 
 _FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"
-_RING = 8.0  # pixels
-_THUMBNAIL = (240.0, 150.0)  # pixels
-_MARGIN = 16.0
 _THICKNESS = 0.05  # of an edge, as a share of the size of a shape
 _THIN, _THICK = 0.3, 1.3  # pixels
 _HIDDEN = 0.7  # of the thickness of a visible edge
@@ -49,29 +46,6 @@ def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, lege
     return _set_size(root, WIDTH, put_legend(root, sheet.height, picture.callouts, notes) if legend else sheet.height)
 
 
-def thumbnail_element(picture: Picture, view: View = SIDE) -> Any:
-    """Return a small picture of a robot: one view, where the reference differs, and where wheels drive to.
-
-    Rings mark the links of callouts without a visible difference.
-    """
-    root = _root(f"The robot in the {view.title} view", description(picture), has_paper=False)
-    panel = single_panel(picture, view, *_THUMBNAIL, _MARGIN)
-    signs, group = ViewSigns(panel, picture), put(root, "g")
-    _put_bodies(group, panel, projection(picture.scene, view))
-    signs.add_ground()
-    _add_robot_signs(signs, [link for link in picture.frames if link in picture.scene.poses])
-    shown = {
-        *picture.frames,
-        *(body.link for body in picture.outlines),
-        *(wheel.link for wheel in picture.scene.wheels),
-    }
-    for callout in picture.callouts:
-        if callout.point is not None and callout.link not in shown:
-            signs.line("leader", circle(panel.place(callout.point), _RING))
-    signs.put(group)
-    return _set_size(root, *_THUMBNAIL)
-
-
 def _set_size(root: Any, width: float, height: float) -> Any:
     """Set the size of a drawing, and of its background, in pixels."""
     root.set("viewBox", f"0 0 {width:g} {height:.0f}")
@@ -82,15 +56,14 @@ def _set_size(root: Any, width: float, height: float) -> Any:
     return root
 
 
-def _root(title: str, words: str, *, has_paper: bool = True) -> Any:
+def _root(title: str, words: str) -> Any:
     """Return the root of a drawing, without its size."""
     looks = {"class": "drawing", "role": "img", "font-family": _FONT, "font-size": "12"}
     root = etree.Element(f"{{{SVG}}}svg", looks, nsmap=_NAMESPACES)
     put(root, "title", text=title[:_MAX_TITLE])
     if words:
         put(root, "desc", text=words)
-    if has_paper:
-        put(root, "rect", "paper", {"width": WIDTH, "height": 0})
+    put(root, "rect", "paper", {"width": WIDTH, "height": 0})
     return root
 
 

@@ -12,10 +12,9 @@ from grader.classroom.reopening import reopened
 from grader.classroom.results import Graded
 from grader.classroom.run.pool import Processes, WorkerError, processors
 from grader.classroom.run.progress import Progress
-from grader.classroom.run.queue import Queue
+from grader.classroom.run.queue import results_of
 from grader.classroom.run.worker import undecided_report
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
-from grader.grading.criterion import TOTAL
 from grader.grading.grade import grade as grade_submission
 from grader.grading.graded_submission import Grade, GradedSubmission
 from grader.grading.hints.hinting import hinted
@@ -29,7 +28,7 @@ from grader.usecases.writing import make_folder, refuse_symlinks, save
 
 _TASK_SIZE = 4  # reports
 _MAX_NAMED = 3
-_SECONDS = 120.0  # in which hints are searched, and a few reports written
+_SECONDS = 60.0  # in which hints are searched, and a few reports written
 _MOVED = "The submission has moved or changed since it was graded, so this report has no details: run `grader batch` again."
 
 
@@ -147,7 +146,7 @@ def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: S
         raise InputError(f"cannot write {page}: it exists, and grader did not write it; choose another folder")
 
 
-def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -> None:
+def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS) -> None:
     """Write a report for each student who has a result, a final mark or an excuse; in HTML also the class's page.
 
     Raises InputError and RubricError, which concern all reports.
@@ -157,7 +156,8 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -
     keys = [one.student.key for one in book if one.graded is not None or one.has_final]
     files = file_names(keys)
     earlier = update_index(run.folder, files)
-    lost = _render_all(replace(run, time=book.run.time), files, terminal, jobs)
+    with Processes(jobs or processors(), timeout) as executor:
+        lost = _render_all(replace(run, time=book.run.time), files, terminal, executor, jobs or processors())
     if Format.HTML in run.formats:
         from grader.usecases.class_figures import write_class_page
 
@@ -174,23 +174,25 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -
         terminal.warn(f"{shown} also has {reports}: {printable(enumerated(earlier, _MAX_NAMED))}")
 
 
-def _render_all(run: ReportRun, files: dict[str, str], terminal: Terminal, jobs: int | None) -> dict[str, str]:
+def _render_all(
+    run: ReportRun, files: dict[str, str], terminal: Terminal, executor: Processes, workers: int
+) -> dict[str, str]:
     """Write the reports of students, by their file names; return who has none, and why."""
-    workers, lost = jobs or processors(), dict[str, str]()
+    lost = dict[str, str]()
 
-    def give_up(task: _Task, error: Exception) -> tuple[str, str] | None:
+    def again(task: _Task, _: WorkerError) -> _Task | None:
+        return replace(task, has_hints=False) if task.has_hints else None
+
+    def give_up(task: _Task, error: Exception) -> tuple[str, str]:
         if isinstance(error, InputError | RubricError):
             raise error
-        if task.has_hints and isinstance(error, WorkerError):
-            queue.put_back(replace(task, has_hints=False))
-            return None
         fault = f"the grader itself failed: {type(error).__name__}: {error}"
         return task.key, str(error) if isinstance(error, WorkerError | MachineError) else fault
 
-    with Processes(workers, _SECONDS) as executor, terminal.show_class("writing reports") as show:
+    with terminal.show_class("writing reports") as show:
         show(progress := Progress(len(files)))
-        queue = Queue(executor, workers, partial(_write_some, run), give_up, _TASK_SIZE)
-        for results in queue.all(_Task(key, name) for key, name in files.items()):
+        tasks = (_Task(key, name) for key, name in files.items())
+        for results in results_of(executor, workers, partial(_write_some, run), tasks, again, give_up, _TASK_SIZE):
             lost |= {key: why for key, why in results if why}
             show(progress := replace(progress, graded=progress.graded + len(results)))
     return {key: lost[key] for key in files if key in lost}

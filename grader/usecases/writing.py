@@ -16,7 +16,6 @@ from grader.files.names import ROBOT_ENDINGS
 from grader.text import printable, printable_path
 
 CHECKOUTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")  # the repository that GitHub Actions and GitLab CI checked out
-_SQLITE_FILES = ("", "-wal", "-shm", "-journal")  # SQLite keeps recent changes in files beside the gradebook
 _MAX_SYMLINKS = 40  # in one path, as in Linux
 
 
@@ -166,13 +165,6 @@ def _symlinks(path: Path) -> Iterator[Path]:
         count += 1
         here = Path(target.anchor) if target.anchor else here
         rest += reversed(target.parts[1:] if target.anchor else target.parts)
-
-
-def refuse_gradebook(path: Path, gradebook: Path) -> None:
-    """Raise InputError if a file to write is the gradebook, or one of the files that SQLite keeps beside it."""
-    book = Path(os.path.realpath(gradebook))
-    if any(is_same_file(path, book.with_name(book.name + ending)) for ending in _SQLITE_FILES):
-        raise InputError(f"cannot write {path}: this would overwrite the gradebook and all its manual marks")
 
 
 def refuse_inputs(option: str, path: Path, inputs: Iterable[Path]) -> None:

@@ -58,13 +58,6 @@ def grade_all(context: ClassContext, tasks: Sequence[Task]) -> list[Graded]:
     return [_grade_one(context, task) for task in tasks]
 
 
-def open_task(context: ClassContext, task: Task) -> tuple[str, Submission]:
-    """Return the digest of a submission, and the submission. Raises InputError."""
-    opened = open_class_submission(context.roots[task.root], task.paths, task.names, task.key, context.max_size)
-    rubric = rubric_from(context.rubric, context.rubric_path)
-    return digest_of(opened.digest), opened.submission(rubric, task.no_documents, context.arguments)
-
-
 def _grade_one(context: ClassContext, task: Task) -> Graded:
     rubric, root = rubric_from(context.rubric, context.rubric_path), context.roots[task.root]
     result = Graded(task.key, 0, "unchanged")
