@@ -70,7 +70,9 @@ def test_the_page_says_what_stats_says(tmp_path: Path) -> None:
         assert (shown["passed"], shown["lost"]) == (str(row["passed"]), str(row["failed"] + row["skipped"]))
         assert f"{row['id']} {shown['points']} {shown['passed']} {row['failed']}" in " ".join(printed.split())
     mistakes = page.texts("//section[@id='mistakes']//li")
-    assert mistakes == [f"{len(one['students'])} {one['criterion']}: {one['message']}" for one in statistics["mistakes"]]
+    assert mistakes == [
+        f"{len(one['students'])} {one['criterion']}: {one['message']}" for one in statistics["mistakes"]
+    ]
     assert [len(page.members(f"mistake-{at}")) for at in range(2)] == [250, 250]
     assert (tmp_path / "index.html").stat().st_size <= 500_000
     assert page.links()[0] == "reports/student000000.html"
