@@ -49,7 +49,7 @@ class ClassStatistics(NamedTuple):
     A grade counts if it is a final mark, or that of a graded submission, after marks, adjustments and the late penalty;
     points that still need manual grading are not in it yet, and `open` is the number of such grades. `tenths` are the
     keys of the students in each tenth of the maximum, which itself is in the last one. `attention` are those for whom a
-    person is needed, each with details.
+    person is needed, each with details; `names` are those of all students by key.
     """
 
     rubric: Rubric
@@ -64,6 +64,7 @@ class ClassStatistics(NamedTuple):
     sections: dict[str, Summary]
     attention: dict[Reason, list[tuple[str, str]]]
     equal: Sequence[EqualWork]
+    names: dict[str, str]
 
 
 def counts(grade: StudentGrade) -> bool:
@@ -96,7 +97,7 @@ def statistics(book: Class, grades: Iterable[StudentGrade]) -> ClassStatistics:
     for one in every:
         for reason, detail in one.concerns:
             attention[reason].append((one.student.key, detail))
-    present = (one for one in book.results.all() if one.student in book.run.totals)
+    present = [one.graded for one in every if one.graded is not None and not one.is_gone]
     return ClassStatistics(
         book.rubric,
         most,
@@ -109,6 +110,7 @@ def statistics(book: Class, grades: Iterable[StudentGrade]) -> ClassStatistics:
         {name: _summary(values) for name, values in sorted(sections.items())} if len(sections) > 1 else {},
         {reason: those for reason, those in attention.items() if those},
         equal_work(present, book.settings.handed_out),
+        {one.student.key: one.student.name for one in every},
     )
 
 

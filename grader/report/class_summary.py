@@ -7,14 +7,14 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from grader.classroom.grades import Class, Reason
+from grader.classroom.grades import Reason
 from grader.classroom.statistics import ClassStatistics, CriterionFigures
 from grader.report.console import wrapped
 from grader.text import counted, format_points, named, people_text, printable
 
 _BAR_WIDTH = 40
 _MAX_MISTAKES, _MAX_GROUPS = 10, 20
-MAX_NAMED = 12
+_MAX_NAMED = 12
 EQUAL_NOTE = (
     "The same robot may differ in names, order, comments and the spelling of numbers. This is no verdict: students who"
     " follow the handout and make the same mistake have the same robot or files."
@@ -22,7 +22,7 @@ EQUAL_NOTE = (
 SHARE_NOTE = "Share: the mean share of the points that students earned."
 
 
-def render_class(book: Class, found: ClassStatistics, console: Console, *, verbose: bool = False) -> None:
+def render_class(found: ClassStatistics, console: Console, *, verbose: bool = False) -> None:
     """Print the statistics. Text of submissions is never interpreted as markup or control codes."""
     wrapped(console, Text(printable(found.rubric.title), style="bold"), 0)
     for line in head_lines(found):
@@ -35,25 +35,14 @@ def render_class(book: Class, found: ClassStatistics, console: Console, *, verbo
         _print_criteria(found.criteria, console)
     mistakes = [(len(one.students), f"{one.criterion}: {one.message}") for one in found.mistakes[:_MAX_MISTAKES]]
     _print_lines("Common mistakes", (f"{count:>4}  {words}" for count, words in mistakes), console, 8)
-    names = Names(book)
-    works = (([names.of(key) for key in one.students], one.equal) for one in found.equal[:_MAX_GROUPS])
-    equal = (f"{people_text(who, MAX_NAMED)}: {what}" for who, what in works)
+    works = (([named(key, found.names[key]) for key in one.students], one.equal) for one in found.equal[:_MAX_GROUPS])
+    equal = (f"{people_text(who, _MAX_NAMED)}: {what}" for who, what in works)
     _print_lines("Equal work", equal, console, note=EQUAL_NOTE)
-    groups = ((reason, [names.of(*one) for one in those]) for reason, those in found.attention.items())
-    attention = (attention_line(reason, len(who), who, len(who) if verbose else MAX_NAMED) for reason, who in groups)
+    attention = (
+        attention_line(reason, [(named(key, found.names[key]), detail) for key, detail in those], verbose=verbose)
+        for reason, those in found.attention.items()
+    )
     _print_lines("Needs a person", attention, console)
-
-
-class Names:
-    """The names of the students of a class, with their keys."""
-
-    def __init__(self, book: Class) -> None:
-        self._book = book
-
-    def of(self, key: str, detail: str = "") -> str:
-        """Return the name of a student, with a detail."""
-        name = named(key, self._book.student(key, self._book.results.of(key)).name)
-        return f"{name} ({detail})" if detail else name
 
 
 def head_lines(found: ClassStatistics) -> Iterator[str]:
@@ -87,10 +76,10 @@ def percent(share: float) -> str:
     return f"{share:.0%}" if share in (0, 1) else f"{min(99, max(1, round(100 * share)))}%"
 
 
-def attention_line(reason: Reason, count: int, who: Sequence[str], most: int) -> str:
-    """Return the students who need a person for one reason, of `count` at least those who are named."""
-    names = people_text([*who, *[""] * (count - len(who))], most)
-    return f"{reason[:1].upper()}{reason[1:]} ({count}): {names}"
+def attention_line(reason: Reason, who: Sequence[tuple[str, str]], *, verbose: bool = False) -> str:
+    """Return the students who need a person for one reason, each with a detail."""
+    names = [f"{name} ({detail})" if detail else name for name, detail in who]
+    return f"{reason[:1].upper()}{reason[1:]} ({len(who)}): {people_text(names, len(who) if verbose else _MAX_NAMED)}"
 
 
 def _print_lines(title: str, lines: Iterator[str], console: Console, indent: int = 4, note: str = "") -> None:

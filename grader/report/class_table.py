@@ -1,7 +1,7 @@
 """What `grader batch` prints: a table of the class, one row a student, then the mean and what needs a person."""
 
 from array import array
-from collections import Counter, defaultdict
+from collections import defaultdict
 from decimal import Decimal
 from statistics import fmean, median
 
@@ -12,7 +12,7 @@ from rich.text import Text
 from grader.classroom.grades import Reason, StudentGrade
 from grader.classroom.statistics import counts, losses
 from grader.grading.rubric import Rubric
-from grader.report.class_summary import MAX_NAMED, attention_line, means
+from grader.report.class_summary import attention_line, means
 from grader.report.console import wrapped
 from grader.text import counted, format_points, printable
 
@@ -28,8 +28,7 @@ class ClassTable:
         self.rows: list[tuple[str, str, str, str]] = []  # the student, the total, what cost most, what is open
         self.count = 0
         self._totals = array("d")
-        self._named: defaultdict[Reason, list[str]] = defaultdict(list)
-        self._counts = Counter[Reason]()
+        self._concerns: defaultdict[Reason, list[tuple[str, str]]] = defaultdict(list)
 
     def add(self, grade: StudentGrade) -> None:
         """Add the next student."""
@@ -41,9 +40,7 @@ class ClassTable:
         if grade.total is not None and counts(grade):
             self._totals.append(float(grade.total))
         for reason, detail in grade.concerns:
-            self._counts[reason] += 1
-            if self.verbose or len(self._named[reason]) < MAX_NAMED:
-                self._named[reason].append(f"{name} ({detail})" if detail else name)
+            self._concerns[reason].append((name, detail))
 
     def print(self, console: Console) -> None:
         """Print the table. Text of submissions is never interpreted as markup or control codes."""
@@ -62,10 +59,8 @@ class ClassTable:
         if self._totals:
             who = counted(len(self._totals), "student")
             console.print(Text(f"{means(fmean(self._totals), median(self._totals)).capitalize()} ({who})"))
-        for reason in filter(self._counts.get, Reason):
-            count = self._counts[reason]
-            line = attention_line(reason, count, self._named[reason], count if self.verbose else MAX_NAMED)
-            wrapped(console, Text(printable(line)), 2)
+        for reason in filter(self._concerns.get, Reason):
+            wrapped(console, Text(printable(attention_line(reason, self._concerns[reason], verbose=self.verbose))), 2)
 
 
 def _costs(grade: StudentGrade) -> str:

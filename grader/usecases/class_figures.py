@@ -28,7 +28,7 @@ def class_statistics(gradebook: Path, kind: OutputFormat, screen: Screen, *, ver
         return render_class_json(book)
     from grader.report.class_summary import render_class
 
-    return draw(partial(render_class, book, statistics(book, book), verbose=verbose), screen)
+    return draw(partial(render_class, statistics(book, book), verbose=verbose), screen)
 
 
 def write_class_page(book: Class, folder: Path, files: dict[str, str]) -> None:

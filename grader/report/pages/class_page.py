@@ -60,7 +60,7 @@ def render_class_page(
         "criteria": _criteria(found),
         "criteria_note": words.SHARE_NOTE,
         "mistakes": [(one.criterion, one.message, len(one.students)) for one in found.mistakes],
-        "equal": [(work.students, work.equal) for work in found.equal],
+        "equal": found.equal,
         "equal_note": words.EQUAL_NOTE,
         "attention": [(str(reason), those[:_MAX_ATTENTION], len(those)) for reason, those in found.attention.items()],
         "ignored": book.marks.ignored,
