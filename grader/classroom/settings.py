@@ -41,8 +41,8 @@ class ClassSettings:
     arguments: Mapping[str, str] = field(default_factory=dict)
 
     def roots(self, folder: Path) -> tuple[Path, ...]:
-        """Return the paths of the submissions."""
-        return tuple(folder / path for path in self.submissions)
+        """Return the real paths of the submissions."""
+        return tuple((folder / path).resolve() for path in self.submissions)
 
     def with_roots(self, folder: Path, paths: tuple[Path, ...]) -> "ClassSettings":
         """Return the settings with other submissions, relative to the gradebook where that is possible."""
