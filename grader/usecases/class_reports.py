@@ -12,7 +12,7 @@ from grader.classroom.reopening import reopened
 from grader.classroom.results import Graded
 from grader.classroom.run.pool import Processes, WorkerError, processors
 from grader.classroom.run.progress import Progress
-from grader.classroom.run.queue import results_of
+from grader.classroom.run.queue import Queue
 from grader.classroom.run.worker import undecided_report
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
 from grader.grading.grade import grade as grade_submission
@@ -186,7 +186,8 @@ def _render_all(
     with terminal.show_class("writing reports") as show:
         show(progress := Progress(len(files)))
         tasks = (_Task(key, name) for key, name in files.items())
-        for results in results_of(executor, workers, partial(_write_some, run), tasks, again, give_up, _TASK_SIZE):
+        queue = Queue(executor, workers, partial(_write_some, run), again, give_up, _TASK_SIZE)
+        for results in queue.results(tasks):
             lost |= {key: why for key, why in results if why}
             show(progress := replace(progress, graded=progress.graded + len(results)))
     return {key: lost[key] for key in files if key in lost}
