@@ -40,7 +40,7 @@ LIBRARIES = {
     "docx": {"documents"},
     "pypdf": {"documents"},
     "numpy": {"robot"},
-    "tomllib": {"grading", "bundle", "package"},
+    "tomllib": {"grading", "bundle", "package", "classroom"},
     "pebble": {"classroom"},
     "distributed": {"classroom"},
     "csv": {"classroom"},
