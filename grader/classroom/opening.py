@@ -111,12 +111,12 @@ def _open_single(source: ClassListing, path: str, max_size: int) -> OpenedSubmis
         name = without_endings(last)
         digest = _digest(name, max_size)
         if (archive := source.archive(path, digest)) is not None:
-            return OpenedSubmission(name, shown, _text(digest), None, archive, max_size)
+            return OpenedSubmission(name, shown, digest.hexdigest(), None, archive, max_size)
     if not last.lower().endswith(ROBOT_ENDINGS) and not _is_robot(source, path):
         raise InputError(f"{last} is neither a URDF nor a folder, an archive or a document")
     data, digest = source.read(path, max_size), _digest(last, max_size)
     digest.update(data)
-    return OpenedSubmission(last.rpartition(".")[0] or last, last, _text(digest), data, None)
+    return OpenedSubmission(last.rpartition(".")[0] or last, last, digest.hexdigest(), data, None)
 
 
 def _is_document(source: ClassListing, path: str) -> bool:
@@ -139,11 +139,6 @@ def _digest(name: str, max_size: int) -> "hashlib._Hash":
     return sha256(repr(name if max_size == URDF_LIMIT else (name, max_size)).encode())
 
 
-def _text(digest: "hashlib._Hash") -> str:
-    """Return a digest as text that begins with a letter, so that no spreadsheet takes it for a number."""
-    return f"d{digest.hexdigest()[:32]}"
-
-
 def _digest_of_tree(name: str, tree: Tree, max_size: int) -> str:
     """Return the hash of all that a submission is read from: its name, its files with their paths, the ignored files.
 
@@ -157,4 +152,4 @@ def _digest_of_tree(name: str, tree: Tree, max_size: int) -> str:
             digest.update(file.read(_MAX_HASHED, first=True))
         except InputError as error:
             digest.update(str(error).encode())
-    return _text(digest)
+    return digest.hexdigest()
