@@ -31,18 +31,15 @@ LAYERS = (
 # The layers inside a package that is large enough to have its own.
 INNER = {
     "classroom": (
-        ("students", "listing", "opening"),
-        ("matching", "tables"),
-        ("typed_names", "roster"),
-        ("people",),
-        ("layouts",),
-        ("course_layouts",),
-        ("detection",),
-        ("owners",),
+        ("lateness", "listing", "results", "settings", "tables"),
+        ("equal_work", "folder", "mark_files", "opening", "roster"),
+        ("lms", "people", "typed_names"),
+        ("layouts", "marks"),
+        ("grades", "grouping", "mark_import"),
+        ("changes", "grade_table", "owners", "reopening", "review_items", "team_folders"),
+        ("detection", "statistics"),
         ("submissions",),
-        ("intake", "lms"),
-        ("gradebook",),
-        ("run", "review"),
+        ("run",),
     ),
 }
 # The packages that may import a library: each has one concern.
@@ -57,8 +54,7 @@ LIBRARIES = {
     "docx": {"documents"},
     "pypdf": {"documents"},
     "numpy": {"robot"},
-    "tomllib": {"grading", "bundle", "package"},
-    "sqlite3": {"classroom"},
+    "tomllib": {"grading", "bundle", "package", "classroom"},
     "pebble": {"classroom"},
     "distributed": {"classroom"},
     "csv": {"classroom"},
