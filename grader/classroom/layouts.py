@@ -36,7 +36,7 @@ PATTERNS = {
     ),
     "moodle": re.compile(  # not if two participants could have chosen it
         r"(?!.*_assignsubmission_.*_assignsubmission_)(?P<name>.+?)(?:_(?P<moodle>[0-9]{1,20}))?"
-        r"_assignsubmission_(?:file|(?P<plugin>[a-z]+))_?(?P<file>.*)",
+        r"_assignsubmission_(?:file(?![a-z])|(?P<plugin>[a-z]+))_?(?P<file>.*)",
         re.DOTALL,
     ),
 }
