@@ -78,7 +78,7 @@ class Entry(NamedTuple):
 class ClassFolder:
     """A folder of submissions: its path in the listing (empty or with a slash), its name, and what the user has said.
 
-    `labs` are the names of the lab's own folders. `ignored` and `notes` collect lines for the user.
+    `labs` are the names of the lab's own folders. `ignored` collects lines for the user.
     """
 
     listing: ClassListing
@@ -91,7 +91,6 @@ class ClassFolder:
     assignment: str
     is_explicit: bool
     ignored: list[str]
-    notes: list[str]
 
     @property
     def entries(self) -> list[str]:

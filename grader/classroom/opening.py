@@ -8,11 +8,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.classroom.listing import ClassListing
+from grader.classroom.listing import ClassListing, listing_of
 from grader.documents.evidence_files import EVIDENCE
 from grader.errors import InputError
-from grader.files.class_folder import ClassDirectory
-from grader.files.class_zip import ClassZip
 from grader.files.members import ARCHIVE_ERRORS, error_text
 from grader.files.names import ROBOT_ENDINGS
 from grader.files.opening import with_inner, without_endings
@@ -61,27 +59,19 @@ class OpenedSubmission(NamedTuple):
         )
 
 
-@lru_cache(maxsize=4)
-def is_zip(root: str) -> bool:
-    """Return whether a class is one zip."""
-    return not Path(root).is_dir()
-
-
 def _open(root: str) -> ClassListing:
     """Return a class folder, or a zip that stays open as long as the file is the same."""
-    if not is_zip(root):
-        return ClassDirectory(Path(root))
     try:
         status = os.stat(root)  # noqa: PTH116
     except OSError:
-        return _open_zip(root, ())
-    return _open_zip(root, (status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns))
+        return _opened(root, ())
+    return _opened(root, (status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns))
 
 
-@lru_cache(maxsize=2)
-def _open_zip(root: str, stamp: tuple[int, ...]) -> ClassZip:
+@lru_cache(maxsize=4)
+def _opened(root: str, stamp: tuple[int, ...]) -> ClassListing:
     del stamp
-    return ClassZip(Path(root))
+    return listing_of(Path(root))
 
 
 def open_class_submission(
