@@ -87,8 +87,8 @@ def run_process(
 
 
 def clean_environment() -> dict[str, str]:
-    """Return the variables of a command: 80 columns, UTF-8, and nothing else that changes the output."""
-    return {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8"}
+    """Return the variables of a command: 80 columns, UTF-8, an account, and nothing else that changes the output."""
+    return {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8", "LOGNAME": "teacher"}
 
 
 def _exit_code() -> int:

@@ -81,17 +81,12 @@ def render_line(report: Report) -> str:
     """Return a report in one line."""
     return f"{printable(report.submission.id)}: {report.score} of {report.max_score}\\n"
 '''
-LMS = """
-
-SAKAI = OfflineFormat(
-    lms="Sakai",
-    example="Lab 6 [100]",
-    header=re.compile(r"(?P<title>.*?) \\[(?P<maximum>[0-9.,]+)\\]"),
-    login="Student ID",
-    sis="Student Number",
-    email="",
-    kept=frozenset(),
-    above="",
+LMS = """\
+SAKAI = Form(
+    "Sakai",
+    {"login": "student id", "name": "name"},
+    ("login",),
+    re.compile(r"(?P<title>.*?) \\[(?P<maximum>[0-9.,]+)\\]"),
 )
 """
 
@@ -184,15 +179,12 @@ def test_a_new_format(project: Path) -> None:
 
 
 def test_a_new_lms(project: Path) -> None:
-    """A grade file of an LMS is a form, a row of the table of fillers, a name of the command and of its documentation."""
-    with (project / "grader/classroom/lms/offline.py").open("a", encoding="utf-8") as forms:
-        forms.write(LMS)
-    files = project / "grader/usecases/grade_files.py"
-    replace(files, "import BLACKBOARD, BRIGHTSPACE,", "import BLACKBOARD, BRIGHTSPACE, SAKAI,")
-    replace(files, '    "brightspace": ', '    "sakai": partial(fill_offline, form=SAKAI),\n    "brightspace": ')
-    replace(project / "grader/cli/export.py", '"brightspace", ', '"brightspace", "sakai", ')
+    """A grade file of an LMS is a form, and its name in the documentation."""
+    forms = project / "grader/classroom/lms/forms.py"
+    replace(forms, "FORMS = {", f"{LMS}FORMS = {{")
+    replace(forms, "BRIGHTSPACE)}", "BRIGHTSPACE, SAKAI)}")
     replace(project / "docs/command-line.md", "|brightspace|", "|brightspace|sakai|")
-    book, exported, filled = (str(project / name) for name in ("class.db", "sakai.csv", "upload.csv"))
+    book, exported, filled = (str(project / name) for name in ("class-grades", "sakai.csv", "upload.csv"))
     Path(exported).write_text("Student ID,Name,Lab 6 [100]\nash,Ash,\n", encoding="utf-8")
     shutil.copytree(project / "submissions/lab6/reference", project / "class/ash")
     python(project, "-m", "grader", "batch", "class", "--gradebook", book)

@@ -4,8 +4,8 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO
 
+from grader.classroom.mark_files import lock
 from grader.classroom.settings import CLASS_FILE
 from grader.errors import InputError
 from grader.text import printable_path, shell_quoted
@@ -33,9 +33,7 @@ def check_gradebook(folder: Path) -> None:
     if folder.is_file():
         with suppress(OSError), folder.open("rb") as file:
             if file.read(len(_SQLITE)) == _SQLITE:
-                raise InputError(
-                    f"{shown} is a gradebook of an earlier version: grade the class again with `grader batch`, into a folder"
-                )
+                raise InputError(f"{shown} is a gradebook of an earlier version: grade the class again, into a folder")
         raise InputError(f"{shown} is a file: a gradebook is a folder")
     if not folder.is_dir():
         raise InputError(
@@ -47,7 +45,8 @@ def check_gradebook(folder: Path) -> None:
 
 def check_free(folder: Path) -> None:
     """Raise InputError unless a path is a gradebook, an empty folder, or absent."""
-    if folder.is_dir() and not is_gradebook(folder) and any(folder.iterdir()):
+    is_begun = is_gradebook(folder) or (folder / _LOCK).exists()  # a first run may have been killed
+    if folder.is_dir() and not is_begun and any(folder.iterdir()):
         raise InputError(f"{printable_path(folder)} is no gradebook and not empty: name another folder")
     if folder.exists() and not folder.is_dir():
         check_gradebook(folder)
@@ -58,6 +57,7 @@ def make_gradebook(folder: Path) -> None:
     check_free(folder)
     try:
         folder.mkdir(mode=0o700, exist_ok=True)
+        (folder / _LOCK).touch(0o600)
         (folder / MARKS).mkdir(mode=0o700, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot make the gradebook {printable_path(folder)}: {error.strerror}") from None
@@ -71,21 +71,10 @@ def batch_lock(folder: Path) -> Iterator[None]:
     except OSError as error:
         raise InputError(f"cannot write to the gradebook {printable_path(folder)}: {error.strerror}") from None
     with file:
-        if not _try_lock(file):
-            raise InputError(f"another `grader batch` writes to {printable_path(folder)}: wait until it has ended")
+        try:
+            lock(file.fileno(), wait=False)
+        except OSError:
+            raise InputError(
+                f"another `grader batch` writes to {printable_path(folder)}: wait until it has ended"
+            ) from None
         yield
-
-
-def _try_lock(file: IO[bytes]) -> bool:
-    try:
-        if os.name == "nt":
-            import msvcrt
-
-            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)  # type: ignore[attr-defined,unused-ignore]
-        else:
-            import fcntl
-
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
-        return False
-    return True

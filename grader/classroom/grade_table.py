@@ -1,7 +1,6 @@
-"""The grades of a class as a table: one row a student. It is `grades.csv`, and `export csv`, whose cells people may change."""
+"""The grades of a class as a table, one row a student: `grades.csv`, and `export csv`, which people may change."""
 
 from collections.abc import Iterable, Iterator
-from decimal import Decimal
 
 from grader.classroom.grades import Class, StudentGrade
 from grader.classroom.mark_import import exported_cell
@@ -17,10 +16,16 @@ HEADER = (
 )
 
 
-def grade_table(book: Class, grades: Iterable[StudentGrade]) -> tuple[list[str], Iterator[list[CellValue]]]:
-    """Return the header, and the rows of grades; what is not decided is empty."""
+def grade_table(
+    book: Class, grades: Iterable[StudentGrade], *, is_exported: bool = False
+) -> tuple[list[str], Iterator[list[CellValue]]]:
+    """Return the header, and the rows of grades; what is not decided is empty.
+
+    A table that `is_exported` also says what the cells were that `mark --import` takes for marks.
+    """
     criteria = [row.id for row in book.rubric.criteria]
-    return [*HEADER, *criteria, "submission"], (_row(one, criteria) for one in grades)
+    exported = ["exported"] * is_exported
+    return [*HEADER, *criteria, *exported, "submission"], (_row(one, criteria, is_exported) for one in grades)
 
 
 def status_of(grade: StudentGrade) -> str:
@@ -30,37 +35,22 @@ def status_of(grade: StudentGrade) -> str:
     return grade.graded.verdict if grade.graded is not None else "missing"
 
 
-def _row(grade: StudentGrade, criteria: Iterable[str]) -> list[CellValue]:
+def _row(grade: StudentGrade, criteria: Iterable[str], is_exported: bool) -> list[CellValue]:
     student, report = grade.student, None if grade.is_excused else grade.report
-    head: list[CellValue] = [student.key, student.name, student.email, student.section, status_of(grade)]
     numbers: list[CellValue] = [None] * 5
+    results = {}
     if report is not None:
         numbers = [report.score, report.max_score, grade.pending, grade.late.days, grade.late.points]
+        results = {row.criterion.id: row.points for row in report.results if not _is_undecided(row)}
+    points = {name: results.get(name) for name in criteria}
+    old = {
+        name: "" if value is None else format_points(value) for name, value in {**points, TOTAL: grade.total}.items()
+    }
+    exported = [exported_cell(old)] * is_exported
     digest = grade.graded.digest if grade.graded is not None else None
-    return [*head, *numbers, grade.total, grade.why_open, *points_of(grade, criteria).values(), digest]
-
-
-def points_of(grade: StudentGrade, criteria: Iterable[str]) -> dict[str, Decimal | None]:
-    """Return the points of criteria; None for what is open, excused or not graded."""
-    report = None if grade.is_excused else grade.report
-    of = {row.criterion.id: row for row in report.results} if report is not None else {}
-    return {name: of[name].points if name in of and not _is_undecided(of[name]) else None for name in criteria}
+    head: list[CellValue] = [student.key, student.name, student.email, student.section, status_of(grade)]
+    return [*head, *numbers, grade.total, grade.why_open, *points.values(), *exported, digest]
 
 
 def _is_undecided(result: Result) -> bool:
     return result.is_open or (result.outcome.status == "errored" and result.manual_mark is None)
-
-
-def export_table(book: Class, grades: Iterable[StudentGrade]) -> tuple[list[str], Iterator[list[CellValue]]]:
-    """Return the same table with a last column, which says what the cells were that `mark --import` takes for marks."""
-    header, _ = grade_table(book, ())
-    criteria = [row.id for row in book.rubric.criteria]
-
-    def rows() -> Iterator[list[CellValue]]:
-        for one in grades:
-            points = points_of(one, criteria) | {TOTAL: one.total}
-            texts = {name: "" if value is None else format_points(value) for name, value in points.items()}
-            *cells, digest = _row(one, criteria)
-            yield [*cells, exported_cell(texts), digest]
-
-    return [*header[:-1], "exported", "submission"], rows()

@@ -1,11 +1,11 @@
-"""The grades of a class, computed from the results, the rubric, the roster and the marks of people: nothing is stored."""
+"""The grades of a class, computed from the results, the rubric, the roster and the marks of people."""
 
 from collections.abc import Iterator
 from datetime import datetime
 from decimal import Decimal
 from enum import StrEnum
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from grader import __version__
 from grader.checks.outcome import Outcome
@@ -45,10 +45,10 @@ class Reason(StrEnum):
 class StudentGrade(NamedTuple):
     """The grade of one student. Without a submission there is no result, and no report.
 
-    `report` has the points with the manual marks; `final` is the mark or excuse of the whole submission; `older` are the criteria
-    (or `total`) that were marked before the submission changed; `is_gone` means that the newest run did not find the submission,
-    `is_outdated` that it was graded by another rubric, version, or on other parts, and `is_unclear` that there are possible
-    submissions, of which none was graded.
+    `report` has the points with the manual marks; `final` is the mark or excuse of the whole submission; `older` are
+    the criteria (or `total`) that were marked before the submission changed; `is_gone` means that the newest run did
+    not find the submission, `is_outdated` that it was graded by another rubric, version, or on other parts, and
+    `is_unclear` that there are possible submissions, of which none was graded.
     """
 
     student: Student
@@ -188,7 +188,7 @@ class Class:
 
     def student(self, key: str, graded: Graded | None) -> Student:
         """Return a student as the roster has it, completed by the LMS ids in the names of the submission."""
-        person = dict(graded.person) if graded is not None else {}
+        person: dict[str, Any] = dict(graded.person) if graded is not None else {}
         found = self._on_roster.get(key)
         if found is None:
             return Student(key, **person, is_on_roster=self.roster is None)
@@ -217,7 +217,7 @@ class Class:
         return grade._replace(late=Lateness(late.days, reason=late.reason)) if grade.has_final else grade
 
     def with_marks(self, report: Report, graded: Graded) -> tuple[Report, tuple[str, ...]]:
-        """Return a report with the marks and comments, and the criteria that were marked before the submission changed."""
+        """Return a report with marks and comments, and the criteria that were marked before the submission changed."""
         results = {one.criterion.id: one for one in report.results}
         older: list[str] = []
         for row in self.rubric.criteria:

@@ -4,10 +4,10 @@ As in Canvas (app/models/late_policy.rb): a percentage of the maximum for each d
 """
 
 from contextlib import suppress
-from dataclasses import dataclass, replace
 from datetime import date, datetime, time, timedelta, tzinfo
 from decimal import Decimal
 from math import ceil
+from typing import NamedTuple
 
 from grader.errors import InputError
 from grader.grading.criterion import Late
@@ -17,8 +17,7 @@ from grader.text import counted
 _DAY = timedelta(days=1)
 
 
-@dataclass(frozen=True, slots=True)
-class Lateness:
+class Lateness(NamedTuple):
     """The lateness of a submission: days begun, the penalty in points (0 or less), and the reason in words."""
 
     days: int = 0
@@ -26,8 +25,7 @@ class Lateness:
     reason: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class SubmissionTimes:
+class SubmissionTimes(NamedTuple):
     """When something was submitted and was due: ISO 8601, empty or None where unknown. `extension` is in days.
 
     `is_extended`: the deadline is that of `grader mark STUDENT deadline`.
@@ -41,9 +39,9 @@ class SubmissionTimes:
     is_extended: bool = False
 
     def extended(self, deadline: str) -> "SubmissionTimes":
-        """Return the times with the deadline of `grader mark STUDENT deadline`, empty for none, in place of the roster's."""
+        """Return the times with the deadline of `grader mark STUDENT deadline`, unless empty."""
         days = None if self.submitted and self.days_late else self.days_late  # without a time no days can be counted
-        return replace(self, deadline=deadline, extension=0.0, days_late=days, is_extended=True) if deadline else self
+        return self._replace(deadline=deadline, extension=0.0, days_late=days, is_extended=True) if deadline else self
 
 
 def lateness(rubric: Rubric, times: SubmissionTimes, score: Decimal, deadline: datetime | None = None) -> Lateness:
@@ -100,14 +98,10 @@ def _days_late(times: SubmissionTimes, policy: Late | None, deadline: datetime |
     # A time without an offset is in the time zone of the other one.
     due = due.replace(tzinfo=due.tzinfo or submitted.tzinfo)
     submitted = submitted.replace(tzinfo=submitted.tzinfo or due.tzinfo)
-    allowed = times.extension * _DAY + grace
-    days = max(0, -((allowed - (submitted - due)) // _DAY))  # rounded up to days begun
-    if not days:
-        return 0, ""
+    days = max(0, -((times.extension * _DAY + grace - (submitted - due)) // _DAY))  # rounded up to days begun
     extension = f", {_extension(times)}" if times.extension else ""
-    zone = due.tzinfo
-    shown = f"submitted {time_text(submitted, zone)}, deadline {time_text(due, zone)}{extension}"
-    return days, f"{counted(days, 'day')} late: {shown}"
+    shown = f"submitted {time_text(submitted, due.tzinfo)}, deadline {time_text(due, due.tzinfo)}{extension}"
+    return days, f"{counted(days, 'day')} late: {shown}" if days else ""
 
 
 def _of_flag(times: SubmissionTimes, of_class: datetime | None) -> tuple[int, str]:

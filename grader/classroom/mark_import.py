@@ -38,7 +38,7 @@ class MarkImport(NamedTuple):
             raise InputError(f"the first line of {shown} must name the columns {enumerated(COLUMNS[2:6])}")
         cells = ((f"{shown}:{line}", {**dict.fromkeys(COLUMNS, ""), **values}) for line, values in rows)
         mistakes: list[str] = []
-        found = collect(cells, self._marks, mistakes, mistakes).newest
+        found = collect(cells, self.marks_in, mistakes, mistakes).newest
         new = {key: mark for key, mark in found.items() if not self._is_same(key, mark)}
         marks = [mark._replace(by=mark.by or by, time=self.marks.next_time(key)) for key, mark in new.items()]
         return marks, len(found) - len(new)
@@ -49,15 +49,15 @@ class MarkImport(NamedTuple):
         is_current = mark.kind == "comment" or before.submission in ("", mark.submission)
         return is_current and (before.value, before.comment) == (mark.value or before.value, mark.comment)
 
-    def _marks(self, row: Cells, place: str) -> Iterator[Mark]:
-        """Yield the marks in a row, without a time."""
+    def marks_in(self, row: Cells, place: str = "") -> Iterator[Mark]:
+        """Yield the marks in a row, without a time; raises InputError."""
         most = maxima(self.rubric)
         for key, points, comment in self._entries(row):
             student, criterion = key
             is_final = criterion in (TOTAL, DEADLINE)
             if not is_final and student not in self.digests:
                 raise InputError(f"{student} has submitted nothing that could be marked: `{TOTAL}` is a final mark")
-            digest = row["submission"] or self.digests.get(student, "")
+            digest = row["submission"] or ("" if criterion == DEADLINE else self.digests.get(student, ""))
             cells = {**row, "points": points, "comment": comment, "submission": digest, "time": ""}
             yield from mark_in(
                 cells, key, most[criterion if is_final else criterion_of(self.rubric, criterion).id], place

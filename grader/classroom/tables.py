@@ -154,9 +154,6 @@ def _rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
 
 
 _TRIGGERS = "=+\\-@\uff1d\uff0b\uff0d\uff20\ufe66\ufe62\ufe63\ufe6b"  # the last four are the small forms
-_AT_START = re.compile(rf"\s*[{_TRIGGERS}]|[\t\r\n]")
-FORMULA_BEHIND_SEMICOLON = re.compile(rf"(?<=;)\s*+[{_TRIGGERS}\s]*+")
-_INSIDE = re.compile(rf"([;\t\r\n]\s*+)(?=[{_TRIGGERS}])")
 _FORMULA = re.compile(rf"(\A\s*+|[;\t\r\n]\s*+)('*+[{_TRIGGERS}])")
 _PROTECTED = re.compile(rf"(\A\s*+|[;\t\r\n]\s*+)'('*+[{_TRIGGERS}])")
 
@@ -175,20 +172,9 @@ def write_table(header: Sequence[str], rows: Iterable[Sequence[CellValue]]) -> s
     """Return a table as CSV: commas, CRLF, quotes where necessary. Numbers stay numbers, None is an empty cell."""
     text = io.StringIO(newline="")
     writer = csv.writer(text)
-    writer.writerow(map(neutral, header))
+    writer.writerow(map(protected, header))
     writer.writerows(map(_cell, row) for row in rows)
     return text.getvalue()
-
-
-def rows_of_table(text: str) -> list[list[str]]:
-    """Return the rows below the header of a table from `write_table`."""
-    return list(csv.reader(io.StringIO(text, newline="")))[1:]
-
-
-def neutral(text: str) -> str:
-    """Return text that no spreadsheet takes for a formula: an apostrophe precedes what would start one."""
-    safe = _INSIDE.sub(r"\1'", spelt_out(text))
-    return f"'{safe}" if _AT_START.match(safe) else safe
 
 
 def protected(text: str) -> str:
@@ -212,5 +198,5 @@ def _cell(value: CellValue) -> str:
     if value is None:
         return ""
     if isinstance(value, str):
-        return neutral(value)
+        return protected(value)
     return format_points(value) if isinstance(value, Decimal) else str(value)

@@ -1,15 +1,17 @@
 """grader export: the current grades, for a spreadsheet or an LMS, and feedback for an LMS."""
 
 from pathlib import Path
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal
 
 import typer
+from click import Choice
 
+from grader.classroom.lms.forms import FORMS
 from grader.cli.options import GradebookOption
 from grader.cli.terminal import TERMINAL
 from grader.usecases.writing import write_stdout
 
-Target = Literal["csv", "canvas", "moodle", "blackboard", "brightspace", "json", "html"]
+_TARGETS = ("csv", *FORMS, "json", "html")
 _INTO = "The gradebook or worksheet that the LMS exported."
 _OUTPUT = "The file to write (default: standard output); with html, the folder (default: the gradebook)."
 _STRICT = "Write nothing if a row or a student is unmatched, or the LMS would refuse a grade."
@@ -21,13 +23,14 @@ _FEEDBACK = "Write each student's report into a zip for Moodle or Canvas."
 
 
 def export(
-    target: Annotated[Target, typer.Argument(metavar="|".join(get_args(Target)), help="The format of the grades.")],
+    target: Annotated[
+        str, typer.Argument(metavar="|".join(_TARGETS), click_type=Choice(_TARGETS), help="The format of the grades.")
+    ],
     gradebook: GradebookOption,
     into: Annotated[Path | None, typer.Option(metavar="LMS-FILE", help=_INTO)] = None,
     output: Annotated[Path | None, typer.Option(metavar="FILE|DIR", help=_OUTPUT)] = None,
     strict: Annotated[bool, typer.Option("--strict", help=_STRICT)] = False,
     column: Annotated[str, typer.Option(metavar="TITLE", help="The grade's column, if it is ambiguous.")] = "",
-    feedback_column: Annotated[str, typer.Option(metavar="TITLE", help="The feedback's column in Moodle.")] = "",
     pending_as_zero: Annotated[bool, typer.Option("--pending-as-zero", help=_PENDING)] = False,
     any_maximum: Annotated[bool, typer.Option("--any-maximum", help=_MAXIMUM)] = False,
     only: Annotated[bool, typer.Option("--only", help=_ONLY)] = False,
@@ -51,7 +54,7 @@ def export(
 
       grader export csv --gradebook lab6-grades --excel --output grades.csv
 
-      grader export canvas --gradebook lab6-grades --into canvas.csv > upload.csv
+      grader export canvas --gradebook lab6-grades --into lms.csv > upload.csv
 
       grader export canvas --gradebook lab6-grades --feedback feedback.zip
 

@@ -18,10 +18,10 @@ def stats(
     verbose: Annotated[bool, typer.Option("--verbose", help=_VERBOSE)] = False,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> str:
-    """Show statistics of a class: grades, criteria, mistakes, sections, equal work.
+    """Show statistics of a class: grades, mistakes, equal work.
 
-    A grade is the one that is published: after marks, adjustments and the late penalty. The share of a criterion is the mean share of
-    its points that students earned.
+    A grade is the one that is published: after marks, adjustments and the late penalty. The share of a criterion is the
+    mean share of its points that students earned.
 
     Examples:
 
@@ -52,8 +52,8 @@ def diff(
 ) -> str:
     """Show whose grade changed between two runs, and why.
 
-    Compares the last two runs of a gradebook, or two gradebooks. A grade changes with the submission, the rubric, the grader, marks,
-    the roster or the deadline. Runs count from 1.
+    Compares the last two runs of a gradebook, or two gradebooks. A grade changes with the submission, the rubric, the
+    grader, marks, the roster or the deadline. Runs count from 1.
 
     Examples:
 
@@ -62,6 +62,12 @@ def diff(
       grader diff --gradebook lab6-grades --before 3 --after 5
 
       grader diff lab6-monday lab6-grades --format json
+
+    Recipes:
+
+      Whose grade a new rubric changes: rerun `grader batch --rubric FILE`, then compare.
+
+      What changed since the grades were published: --before with the number of that run.
     """
     from grader.usecases.class_figures import compare
 

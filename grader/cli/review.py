@@ -25,7 +25,7 @@ def mark(
     file: Annotated[Path | None, typer.Option("--import", metavar="CSV", help="The marks of many students.")] = None,
     by: ByOption = "",
 ) -> str:
-    """Give a mark for a criterion or the whole submission, or another deadline.
+    """Give a mark for a criterion or a submission, or another deadline.
 
     Use it for criteria that need manual grading, or to override a check. `total` gives a final mark, which is the whole
     grade, also without a submission; `excused` in place of its points means that the student needs no grade. A comment
@@ -36,7 +36,7 @@ def mark(
 
       grader mark alice answer-floating-link 3.5 --gradebook lab6-grades
 
-      grader mark alice lidar-frame 6 --gradebook lab6-grades --comment "fixed it" --by Kim
+      grader mark alice lidar-frame 6 --gradebook lab6-grades --comment "fixed"
 
       grader mark alice lidar-frame - --gradebook lab6-grades
 

@@ -90,6 +90,12 @@ class Rubric:
         return shipped_rubrics().get(self.id) == self.path
 
     @property
+    def is_copy_of_shipped(self) -> bool:
+        """Return whether its text is that of the rubric of this id that comes with the grader."""
+        shipped = shipped_rubrics().get(self.id)
+        return shipped is not None and self.data == shipped.read_bytes()
+
+    @property
     def shown_by(self) -> str:
         """The command that shows its parts and criteria."""
         return f"grader rubric show {self.id if self.is_shipped else shell_quoted(self.path)}"

@@ -221,7 +221,7 @@ def what_is_left(report: Report) -> str:
 
 def explain_command(name: str, report: Report) -> str:
     """Return the command that explains a criterion. It shows no part of the rubric's path above the current folder."""
-    if report.rubric.is_shipped:
+    if report.rubric.is_copy_of_shipped:
         return f"grader explain {name}"
     path = report.rubric.path
     return f"grader explain {name} --rubric {shell_quoted(path.name if path.is_absolute() else path)}"

@@ -1,31 +1,39 @@
-"""The statistics of a class, and what changed in its grades."""
+"""The statistics of a class on a terminal and as JSON, and what changed in its grades."""
 
 from functools import partial
 from pathlib import Path
 
+from grader.classroom import folder as names
 from grader.classroom.changes import changes, snapshot
 from grader.classroom.grades import Class
 from grader.classroom.results import Results
-from grader.classroom import folder as names
 from grader.classroom.statistics import statistics
 from grader.errors import InputError
 from grader.report.formats import OutputFormat
 from grader.report.screen import Screen, draw
-from grader.usecases.terminal import Terminal
+from grader.text import first_lines
+from grader.usecases.terminal import Terminal, Warn
 
-_MAX_BOOKS = 2
+_MAX_BOOKS, _MAX_LINES = 2, 20
+
+
+def warn_of_ignored(book: Class, warn: Warn) -> None:
+    """Print the marks that do not count."""
+    for line in first_lines(book.marks.ignored, _MAX_LINES):
+        warn(f"this mark does not count: {line}")
 
 
 def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *, verbose: bool) -> str:
     """Return the statistics of a class. Raises InputError."""
     book = Class(gradebook)
+    warn_of_ignored(book, terminal.warn)
     if kind is OutputFormat.JSON:
         from grader.report.class_json import render_class_json
 
         return render_class_json(book)
     from grader.report.class_summary import render_class
 
-    return draw(partial(render_class, book, statistics(book, book), verbose=verbose), terminal.screen())
+    return draw(partial(render_class, statistics(book, book), verbose=verbose), terminal.screen())
 
 
 def compare(books: tuple[Path, ...], before: int | None, after: int | None, kind: OutputFormat, screen: Screen) -> str:
@@ -40,7 +48,7 @@ def compare(books: tuple[Path, ...], before: int | None, after: int | None, kind
         raise InputError(f"{books[0]} has one run: grade the class again, and compare then")
     earlier = before if before is not None or len(books) > 1 else (after or newest) - 1
     old, new = snapshot(books[0], earlier), snapshot(books[-1], after)
-    found, runs = changes(old, new), (old.run, new.run)
+    found, runs = [*changes(old, new)], (old.run, new.run)
     if kind is OutputFormat.JSON:
         return render_changes_json(found, runs)
     return draw(partial(render_changes, found, runs), screen)

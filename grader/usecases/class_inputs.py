@@ -5,13 +5,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
-from shutil import copyfile, copytree, ignore_patterns, rmtree
+from typing import Any
 
 from grader.classroom import folder as names
+from grader.classroom.equal_work import hashes_of
 from grader.classroom.lateness import read_time, time_text
 from grader.classroom.roster import Roster, read_roster
 from grader.classroom.run.worker import reference_hashes
-from grader.classroom.equal_work import hashes_of
 from grader.classroom.settings import CLASS_FILE, ClassSettings, read_settings, settings_text
 from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import InputError
@@ -94,7 +94,7 @@ def _updated(options: ClassOptions, settings: ClassSettings, folder: Path, rubri
     """Return the settings with the options of the command."""
     for name in options.part:
         rubric.part(name)
-    given = {
+    given: dict[str, Any] = {
         "due": read_time(options.due).isoformat() if options.due else None,
         "layout": options.layout,
         "assignment": options.assignment,
@@ -140,21 +140,27 @@ def keep_inputs(inputs: ClassInputs, options: ClassOptions, warn: Warn) -> Class
 
 
 def _copy_rubric(folder: Path, rubric: Rubric) -> str:
-    """Copy a rubric and its reference into a gradebook, where they stand to each other as before; return where it is."""
-    target = folder / names.RUBRIC
+    """Copy a rubric and its reference into a gradebook, placed to each other as before; return where it is."""
+    target, own = folder / names.RUBRIC, rubric.path.resolve()
     files = [file for file in files_of(str(rubric.path)) if file.name != rubric.answers and file.exists()]
     near = [file.resolve() for file in files if not Path(rubric.reference).is_absolute() or file == rubric.path]
     base = Path(os.path.commonpath([file.parent for file in near]))
-    if target.exists():
-        rmtree(target)
-    for file in near:
-        place = target / file.relative_to(base)
-        place.parent.mkdir(parents=True, exist_ok=True)
-        if file.is_dir():
-            copytree(file, place, ignore=ignore_patterns("__pycache__"), dirs_exist_ok=True)
-        else:
-            copyfile(file, place)
-    return (target / rubric.path.resolve().relative_to(base)).relative_to(folder).as_posix()
+    found = [path for file in near for path in (file.rglob("*") if file.is_dir() else [file])]
+    copies = {
+        target / path.relative_to(base): path
+        for path in sorted(found, key=lambda path: (path == own, path))  # the rubric when all that it needs is there
+        if path.is_file() and path.parent.name != "__pycache__"
+    }
+    try:
+        for place, path in copies.items():
+            place.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            save_bytes(place, path.read_bytes(), (), _PRIVATE)
+        for path in target.rglob("*"):
+            if path.is_file() and path not in copies:
+                path.unlink()
+    except OSError as error:
+        raise InputError(f"cannot write {printable_path(target)}: {error.strerror}") from None
+    return (target / own.relative_to(base)).relative_to(folder).as_posix()
 
 
 def _hash(file: Path) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
 
-from grader.checks.outcome import Outcome, Status
+from grader.checks.outcome import Outcome
 from grader.classroom import folder as names
 from grader.classroom.grades import Class, StudentGrade
 from grader.classroom.reopening import reopened
@@ -21,15 +21,15 @@ from grader.grading.hints.hinting import hinted
 from grader.grading.report import Report, Result
 from grader.report.formats import Format, render
 from grader.text import by_name, counted, counted_points, enumerated, format_points, printable, printable_path
-from grader.usecases.report_names import CLASS_PAGE, INDEX, file_names, update_index
+from grader.usecases.report_names import CLASS_PAGE, INDEX, file_names, write_class_page, write_index
 from grader.usecases.saves import address
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import make_folder, refuse_symlinks, save
 
 _TASK_SIZE = 4  # reports
-_MAX_NAMED = 3
-_SECONDS = 120.0  # in which hints are searched, and a few reports written
-_MOVED = "The submission has moved or changed since it was graded, so this report has no details: run `grader batch` again."
+_SECONDS = 60.0  # in which hints are searched, and a few reports written
+_NOTHING = Outcome("skipped", "not graded, because nothing was submitted")
+_MOVED = "The submission has moved or changed, so this report has no details: run `grader batch` again."
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,26 +58,31 @@ class _Task:
 def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True, feedback: bool = False) -> Report:
     """Return the report on a student's submission, with the marks, the grade and notes.
 
-    There is a note for a final mark, an excuse, a comment and a late penalty. Another one says who graded if a person did, and
-    always in `feedback`. Without notes, the report is the same as that of `grader grade`. A submission that has changed since has its
-    points only.
+    There is a note for a final mark, an excuse, a comment and a late penalty. Another one says who graded if a person
+    did, and always in `feedback`. Without notes, the report is the same as that of `grader grade`. A submission that
+    has changed since has its points only.
     """
-    report = _nothing_submitted(book, grade)
-    if grade.graded is not None and grade.report is not None:
+    if grade.graded is not None:
         report = book.with_marks(_again(book, grade.graded, has_hints=has_hints), grade.graded)[0]
-    marked = any(result.manual_mark for result in report.results)
-    counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final_points is not None)
-    is_changed = grade.has_final or grade.late.points or marked
-    notes = (*report.notes, *_whole(grade), *_graders(grade, report, feedback=feedback), *_late(grade))
-    return report._replace(notes=notes, grade=counting if is_changed and counting.points is not None or grade.is_excused else None)
+    else:
+        results = tuple(Result(criterion, _NOTHING) for criterion in book.criteria)
+        report = Report(GradedSubmission(grade.student.key), book.rubric, book.settings.parts, results)
+    counting = None
+    is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
+    if grade.is_excused or (is_changed and grade.total is not None):
+        counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final_points is not None)
+    graders = graders_of(grade, report, feedback=feedback)
+    notes = (*_whole(grade), *([f"Graded {graders}."] if graders else []), *_late(grade))
+    return report._replace(notes=(*report.notes, *notes), grade=counting)
 
 
 def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
     """Return the report on a submission as it was graded, with its details if it is still there."""
-    if graded.verdict != "graded":
-        status: Status = "errored" if graded.verdict == "errored" else "pending"
-        return undecided_report(book.rubric, graded.student, graded.reason, status, graded.parts)
+    if graded.verdict == "errored":
+        return graded.report(book.rubric)
     submission = reopened(book, graded)
+    if submission is None and graded.verdict == "unreadable":
+        return undecided_report(book.rubric, graded.student, graded.reason, "pending", graded.parts)
     if submission is None:
         return graded.report(book.rubric)._replace(notes=(_MOVED,))
     report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
@@ -89,12 +94,6 @@ def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
         return report
 
 
-def _nothing_submitted(book: Class, grade: StudentGrade) -> Report:
-    outcome = Outcome("skipped", "not graded, because nothing was submitted")
-    results = tuple(Result(criterion, outcome) for criterion in book.criteria)
-    return Report(GradedSubmission(grade.student.key), book.rubric, book.settings.parts, results)
-
-
 def _whole(grade: StudentGrade) -> list[str]:
     """Return the sentence about the mark, the excuse or the comment of the whole submission."""
     mark = grade.final
@@ -103,21 +102,22 @@ def _whole(grade: StudentGrade) -> list[str]:
     words = " ".join(mark.comment.split())
     by, comment = by_name(mark.by), f" {words}" if words else ""
     if mark.points is not None:
-        return [f"Final mark: {counted_points(mark.points)}, given{by or ' manually'} instead of the sum of the criteria.{comment}"]
+        points = counted_points(mark.points)
+        return [f"Final mark: {points}, given{by or ' manually'} instead of the sum of the criteria.{comment}"]
     return [f"Excused{by}.{comment}" if grade.is_excused else f"Comment{by}:{comment}"]
 
 
-def _graders(grade: StudentGrade, report: Report, *, feedback: bool) -> list[str]:
-    """Return who graded, the checks or people, as a sentence; empty if that is clear or nothing is graded yet."""
-    marks = [row.manual_mark for row in report.results if row.manual_mark is not None]
-    people = {mark.by for mark in marks}
-    is_automatic = any(row.manual_mark is None and not row.is_open and grade.graded is not None for row in report.results)
+def graders_of(grade: StudentGrade, report: Report, *, feedback: bool = True) -> str:
+    """Return who graded, the checks or people; empty if nothing is graded, or only by checks and not for `feedback`."""
+    people = {row.manual_mark.by for row in report.results if row.manual_mark is not None}
+    decided = [row for row in report.results if row.manual_mark is None and not row.is_open]
+    is_automatic = bool(decided) and grade.graded is not None
     if grade.final_points is not None and grade.final is not None:
-        marks, people, is_automatic = [], {grade.final.by}, False
-    if not (people or (feedback and is_automatic)):
-        return []
-    manually = f"manually{by_name(enumerated(sorted(filter(None, people))))}" if people else ""
-    return [f"Graded {', and '.join(filter(None, ['automatically' * is_automatic, manually]))}."]
+        people, is_automatic = {grade.final.by}, False
+    if not people:
+        return "automatically" * (feedback and is_automatic)
+    manually = f"manually{by_name(enumerated(sorted(filter(None, people))))}"
+    return f"automatically, and {manually}" if is_automatic else manually
 
 
 def _late(grade: StudentGrade) -> list[str]:
@@ -146,7 +146,7 @@ def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: S
         raise InputError(f"cannot write {page}: it exists, and grader did not write it; choose another folder")
 
 
-def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -> None:
+def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS) -> None:
     """Write a report for each student who has a result, a final mark or an excuse; in HTML also the class's page.
 
     Raises InputError and RubricError, which concern all reports.
@@ -155,11 +155,10 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -
     book = Class(run.gradebook)
     keys = [one.student.key for one in book if one.graded is not None or one.has_final]
     files = file_names(keys)
-    earlier = update_index(run.folder, files)
-    lost = _render_all(replace(run, time=book.run.time), files, terminal, jobs)
+    write_index(run.folder, files)
+    with Processes(jobs or processors(), timeout) as executor:
+        lost = _render_all(replace(run, time=book.run.time), files, terminal, executor, jobs or processors())
     if Format.HTML in run.formats:
-        from grader.usecases.class_page import write_class_page
-
         is_inside = run.folder == run.gradebook / names.REPORTS
         prefix = f"{names.REPORTS}/" * is_inside
         pages = {key: f"{prefix}{name}" for key, name in files.items() if key not in lost}
@@ -168,28 +167,28 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None) -
     terminal.warn(f"{counted(len(files) - len(lost), 'report')} written to {shown}")
     for key, why in lost.items():
         terminal.warn(printable(f"no report for {key}: {why}"))
-    if earlier:
-        reports = f"{counted(len(earlier), 'report')} of students who are not in the gradebook"
-        terminal.warn(f"{shown} also has {reports}: {printable(enumerated(earlier, _MAX_NAMED))}")
 
 
-def _render_all(run: ReportRun, files: dict[str, str], terminal: Terminal, jobs: int | None) -> dict[str, str]:
+def _render_all(
+    run: ReportRun, files: dict[str, str], terminal: Terminal, executor: Processes, workers: int
+) -> dict[str, str]:
     """Write the reports of students, by their file names; return who has none, and why."""
-    workers, lost = jobs or processors(), dict[str, str]()
+    lost = dict[str, str]()
 
-    def give_up(task: _Task, error: Exception) -> tuple[str, str] | None:
+    def again(task: _Task, _: WorkerError) -> _Task | None:
+        return replace(task, has_hints=False) if task.has_hints else None
+
+    def give_up(task: _Task, error: Exception) -> tuple[str, str]:
         if isinstance(error, InputError | RubricError):
             raise error
-        if task.has_hints and isinstance(error, WorkerError):
-            queue.put_back(replace(task, has_hints=False))
-            return None
         fault = f"the grader itself failed: {type(error).__name__}: {error}"
         return task.key, str(error) if isinstance(error, WorkerError | MachineError) else fault
 
-    with Processes(workers, _SECONDS) as executor, terminal.show_class("writing reports") as show:
+    with terminal.show_class("writing reports") as show:
         show(progress := Progress(len(files)))
-        queue = Queue(executor, workers, partial(_write_some, run), give_up, _TASK_SIZE)
-        for results in queue.all(_Task(key, name) for key, name in files.items()):
+        tasks = (_Task(key, name) for key, name in files.items())
+        queue = Queue(executor, workers, partial(_write_some, run), again, give_up, _TASK_SIZE)
+        for results in queue.results(tasks):
             lost |= {key: why for key, why in results if why}
             show(progress := replace(progress, graded=progress.graded + len(results)))
     return {key: lost[key] for key in files if key in lost}

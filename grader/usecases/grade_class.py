@@ -26,6 +26,7 @@ from grader.report.class_table import ClassTable
 from grader.report.formats import Format, OutputFormat
 from grader.report.screen import draw
 from grader.text import counted, enumerated, first_lines, format_points, printable, printable_path
+from grader.usecases.class_figures import warn_of_ignored
 from grader.usecases.class_inputs import ClassInputs, ClassOptions, keep_inputs, read_inputs
 from grader.usecases.class_reports import ReportRun, refuse_report_folder, write_reports
 from grader.usecases.terminal import Terminal, Warn
@@ -71,7 +72,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
         table, done = _grade(request, inputs, results, intake, terminal)
     if request.report_format:
         run = ReportRun(folder, request.reports or folder / names.REPORTS, request.report_format, request.answers)
-        write_reports(run, terminal, request.jobs)
+        write_reports(run, terminal, request.jobs, request.timeout)
     if request.output_format is OutputFormat.JSON:
         from grader.report.class_json import render_class_json
 
@@ -90,34 +91,41 @@ def _grade(
     context = digest_of(
         rubric.sha256, _reference(folder), settings.parts, sorted(arguments.items()), settings.max_size, __version__
     )
-    writer = ResultsWriter(folder / names.RESULTS, results.end)
+    with ResultsWriter(folder / names.RESULTS, results.end) as writer:
+        done = _batch(request, inputs, Batch(results, writer, shared, context), intake, terminal)
+        time = datetime.now(UTC).isoformat(timespec="milliseconds")
+        present = dict.fromkeys(one.student.key for one in intake.submissions)
+        run = Run(results.next_run, time, __version__, rubric.sha256, context, present, sorted(intake.unclear))
+        book, table = Class(folder, run=run), ClassTable(rubric, verbose=request.verbose)
+        totals: dict[str, str | None] = {}
+
+        def passing() -> Iterator[StudentGrade]:
+            for grade in book:
+                table.add(grade)
+                if grade.student.key in present:
+                    published = grade.published
+                    totals[grade.student.key] = format_points(published) if published is not None else None
+                yield grade
+
+        save(folder / names.GRADES, write_table(*grade_table(book, passing())), inputs.roots, _PRIVATE)
+        writer.append(run._replace(totals=totals).line)
+        writer.sync()
+    warn_of_ignored(book, terminal.warn)
+    return table, done
+
+
+def _batch(request: ClassRequest, inputs: ClassInputs, batch: Batch, intake: Intake, terminal: Terminal) -> Progress:
+    """Grade what has no current result, and say how many that were."""
     with _executor(request, inputs) as (executor, workers), terminal.show_class("grading") as show:
-        batch = Batch(results, writer, shared, context, executor, workers, show)
         try:
-            done = batch.grade(intake.submissions, len(intake.submissions), force=request.force)
+            done = batch.grade(intake.submissions, executor, workers, show, force=request.force)
         except BaseException:
             graded = f"{batch.progress.done} of {len(intake.submissions)} have a result, which is kept"
             terminal.warn(f"stopped: {graded}; rerun the same command to resume")
             raise
     errored = f" ({done.errored} errored)" if done.errored else ""
     terminal.warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged")
-    time = datetime.now(UTC).isoformat(timespec="milliseconds")
-    present = dict.fromkeys(one.student.key for one in intake.submissions)
-    run = Run(results.next_run, time, __version__, rubric.sha256, context, present, sorted(intake.unclear))
-    book, table = Class(folder, run=run), ClassTable(rubric, verbose=request.verbose)
-    totals: dict[str, str | None] = {}
-
-    def passing() -> Iterator[StudentGrade]:
-        for grade in book:
-            table.add(grade)
-            if grade.student.key in present:
-                totals[grade.student.key] = format_points(grade.total) if grade.published is not None else None
-            yield grade
-
-    save(folder / names.GRADES, write_table(*grade_table(book, passing())), inputs.roots, _PRIVATE)
-    writer.append(run._replace(totals=totals).line)
-    writer.close()
-    return table, done
+    return done
 
 
 def write_grades(book: Class) -> None:
@@ -128,9 +136,8 @@ def write_grades(book: Class) -> None:
 def warn_of_due(due: str | None, inputs: ClassInputs, warn: Warn) -> None:
     """Say that `--due` changes no grade if the rubric has no late penalty."""
     if due and inputs.rubric.late is None:
-        warn(
-            f"--due has no effect on grades, because the rubric {inputs.rubric.id} has no [late]: only the days late are shown"
-        )
+        name = inputs.rubric.id
+        warn(f"--due has no effect on grades, because the rubric {name} has no [late]: only the days late are shown")
 
 
 def _reference(folder: Path) -> str:
@@ -148,7 +155,7 @@ def _check_same_class(folder: Path, results: Results, intake: Intake) -> None:
         raise InputError(
             f"{printable_path(folder)} is the gradebook of another class, or a section is missing: "
             f"{counted(len(missing), 'student')} of {len(recorded)} have no submission now "
-            f"({printable(enumerated(missing, _MAX_NAMED))}); name the paths of all sections, or another folder with --gradebook"
+            f"({printable(enumerated(missing, _MAX_NAMED))}); name the paths of all sections, or another --gradebook"
         )
 
 

@@ -1,6 +1,6 @@
 """Give and withdraw marks by command: of one student, of all who submitted nothing, and of a CSV file."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
@@ -9,12 +9,11 @@ from pathlib import Path
 
 from grader.classroom import folder as names
 from grader.classroom.grades import Class, StudentGrade
-from grader.classroom.mark_files import WITHDRAWN, mark_file
+from grader.classroom.mark_files import COLUMNS, SURPLUS, WITHDRAWN, mark_file
 from grader.classroom.mark_import import MarkImport
-from grader.classroom.marks import Key, Mark, append_marks, mark_in, maxima
-from grader.classroom.roster import Student
+from grader.classroom.marks import Key, Mark, append_marks
 from grader.classroom.tables import SIZE_LIMIT
-from grader.classroom.typed_names import criterion_of, find_typed
+from grader.classroom.typed_names import find_typed
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import DEADLINE, TOTAL
@@ -22,7 +21,6 @@ from grader.text import by_name, counted_points, format_points, named, people_te
 from grader.usecases.grade_class import write_grades
 from grader.usecases.terminal import Warn
 
-_NOT_COUNTED = "{} is corrected after grading, by [adjust] in the rubric: its marks do not count"
 _MAX_NAMED = 10
 
 
@@ -36,37 +34,25 @@ class MarkRequest:
     comment: str = ""
     by: str = ""
 
-    def check(self) -> None:
-        """Raise InputError if the request says nothing."""
-        if not self.student or not self.criterion:
-            raise InputError("name a STUDENT and a CRITERION")
-        if not (self.points or self.comment):
-            raise InputError("give POINTS or --comment")
-
 
 def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
     """Append a mark to the file of its grader, and return what counts for the student now. Raises InputError."""
-    request.check()
+    if not (request.student and request.criterion and (request.points or request.comment)):
+        raise InputError("name a STUDENT and a CRITERION, and give POINTS or --comment")
     book = Class(gradebook)
-    advice = f"; {printable_path(gradebook / names.GRADES)} lists all students"
-    students = [book.student(key, book.results.of(key)) for key in book.keys]
-    exact = [one for one in students if one.key == request.student]
-    student = exact[0] if exact else find_typed(students, request.student, advice)
-    key, adjusted = (student.key, request.criterion), _adjusted(book, request)
+    reader, advice = _reader(book), f"; {printable_path(gradebook / names.GRADES)} lists all students"
+    exact = [one for one in reader.students if one.key == request.student]
+    student = exact[0] if exact else find_typed(reader.students, request.student, advice)
+    key = student.key, request.criterion
     before = book.marks.counting.get(key) or book.marks.comments.get(key)
-    append_marks(_file(book, request.by), [_mark(book, key, request)])
+    append_marks(_file(book, request.by), _given(reader, [student.key], request))
     now = Class(gradebook)
     write_grades(now)
-    _warn_of_replaced(before, request, warn)
-    if adjusted:
-        warn(_NOT_COUNTED.format(request.criterion))
-    if request.criterion not in (TOTAL, DEADLINE) and (others := [*_unmarked_members(now, key)]):
-        warn(f"the same submission counts for {people_text(others, _MAX_NAMED)}: mark them as well")
-    text = grade_text(now, now.grade(student.key))
-    if request.criterion == DEADLINE:
-        own = "no deadline of their own" if request.points == WITHDRAWN else f"deadline {request.points}"
-        text = "; ".join(filter(None, (own, now.grade(student.key).late.reason, text)))
-    return f"{printable(f'{key_and_name(student)}: {text}')}\n"
+    for line in _warnings(now, key, request, before):
+        warn(printable(line))
+    grade = now.grade(student.key)
+    late = f"; {grade.late.reason}" if request.criterion == DEADLINE and grade.late.reason else ""
+    return f"{printable(f'{named(student.key, student.name)}: {_grade_text(now, grade)}{late}')}\n"
 
 
 def mark_missing(gradebook: Path, request: MarkRequest) -> str:
@@ -75,23 +61,35 @@ def mark_missing(gradebook: Path, request: MarkRequest) -> str:
         raise InputError(f"write it as --missing {TOTAL} POINTS")
     book = Class(gradebook)
     missing = [one.student.key for one in book if one.graded is None and not (one.is_unclear or one.has_final)]
-    append_marks(_file(book, request.by), [_mark(book, (key, TOTAL), request) for key in missing])
+    append_marks(_file(book, request.by), _given(_reader(book), missing, request))
     write_grades(Class(gradebook))
-    return f"{len(missing)} of {len(book.keys)} submitted nothing, and have {format_points(Decimal(request.points))} points now\n"
+    return f"{len(missing)} of {len(book.keys)} submitted nothing, and have the final mark {request.points} now\n"
 
 
 def import_marks(gradebook: Path, file: Path, by: str) -> str:
     """Append the marks in a CSV file; return how many. Raises InputError, and records none, if a row is wrong."""
-    book = Class(gradebook)
-    digests = {one.student: one.digest for one in book.results.all()}
-    students = [book.student(key, book.results.of(key)) for key in book.keys]
     from grader.classroom.review_items import answers_of
 
-    reader = MarkImport(students, book.rubric, book.marks, digests, answers_of(book))
+    book = Class(gradebook)
+    reader = _reader(book)._replace(answers=answers_of(book))
     new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file), by)
     append_marks(_file(book, by), new)
     write_grades(Class(gradebook))
     return f"{printable_path(file)}: {len(new)} recorded, {same} the same as before\n"
+
+
+def _reader(book: Class) -> MarkImport:
+    graded = {one.student: one for one in book.results.all()}
+    students = [book.student(key, graded.get(key)) for key in book.keys]
+    return MarkImport(students, book.rubric, book.marks, {key: one.digest for key, one in graded.items()})
+
+
+def _given(reader: MarkImport, keys: Iterable[str], request: MarkRequest) -> list[Mark]:
+    """Return the mark of a request for each student, given for the submission as it is now. Raises InputError."""
+    cells = {**dict.fromkeys((*COLUMNS, SURPLUS), ""), "by": request.by, "criterion": request.criterion}
+    cells |= {"points": request.points, "comment": request.comment}
+    marks = [mark for key in keys for mark in reader.marks_in({**cells, "student": key})]
+    return [mark._replace(time=reader.marks.next_time((mark.student, mark.criterion))) for mark in marks]
 
 
 def _file(book: Class, by: str) -> Path:
@@ -101,27 +99,19 @@ def _file(book: Class, by: str) -> Path:
     return mark_file(book.folder / names.MARKS, by)
 
 
-def _mark(book: Class, key: Key, request: MarkRequest) -> Mark:
-    """Return the mark of a request, given for the submission as it is now. Raises InputError."""
-    graded = book.results.of(key[0])
-    if key[1] not in (TOTAL, DEADLINE):
-        criterion_of(book.rubric, key[1])
-        if graded is None:
-            raise InputError(f"{key[0]} has submitted nothing that could be marked: `{TOTAL}` is a final mark")
-    digest = graded.digest if graded is not None and key[1] != DEADLINE else ""
-    values = {"time": "", "by": request.by, "points": request.points, "comment": request.comment, "submission": digest, "": ""}
-    [mark] = mark_in(values, key, maxima(book.rubric)[key[1]], "")
-    return mark._replace(time=book.marks.next_time(key))
-
-
-def _adjusted(book: Class, request: MarkRequest) -> bool:
-    """Return whether the rubric adjusts the criterion; raise InputError where it has no points left."""
-    if request.criterion in (TOTAL, DEADLINE):
-        return False
-    criterion = criterion_of(book.rubric, request.criterion)
-    if criterion.adjustment is not None and not criterion.points and request.points not in ("", WITHDRAWN):
-        raise InputError(_NOT_COUNTED.format(criterion.id))
-    return criterion.adjustment is not None
+def _warnings(book: Class, key: Key, request: MarkRequest, before: Mark | None) -> Iterator[str]:
+    """Yield what a mark replaced, that it does not count, and whom else the same submission counts for."""
+    criterion = key[1]
+    if before is not None:
+        what = "comment" if before.kind == "comment" else "mark"
+        words = f"{before.value}{by_name(before.by)}: {' '.join(before.comment.split())}".strip(": ")
+        yield f"this replaces the {what} of {criterion} in {before.place}: {words}"
+    elif request.points == WITHDRAWN:
+        yield f"there was no mark of {criterion} to withdraw"
+    if any(row.id == criterion and row.adjustment is not None for row in book.rubric.criteria):
+        yield f"{criterion} is corrected after grading, by [adjust] in the rubric: its marks do not count"
+    if criterion not in (TOTAL, DEADLINE) and (others := [*_unmarked_members(book, key)]):
+        yield f"the same submission counts for {people_text(others, _MAX_NAMED)}: mark them as well"
 
 
 def _unmarked_members(book: Class, key: Key) -> Iterator[str]:
@@ -131,34 +121,18 @@ def _unmarked_members(book: Class, key: Key) -> Iterator[str]:
         if other.student != key[0] and own is not None and (other.root, other.paths) == (own.root, own.paths):
             theirs = book.marks.counting.get((other.student, key[1]))
             if (theirs.value if theirs else "") != (mark.value if mark else ""):
-                yield printable(named(other.student, book.student(other.student, other).name))
+                yield named(other.student, book.student(other.student, other).name)
 
 
-def key_and_name(student: Student) -> str:
-    """Return who was found: "12280, Doe, Jane"."""
-    return student.key if student.name in ("", student.key) else f"{student.key}, {student.name}"
-
-
-def _warn_of_replaced(before: Mark | None, request: MarkRequest, warn: Warn) -> None:
-    if before is not None:
-        what = "comment" if before.kind == "comment" else "mark"
-        words = f"{before.value}{by_name(before.by)}" + (f": {' '.join(before.comment.split())}" if before.comment else "")
-        warn(printable(f"this replaces the {what} of {request.criterion} in {before.place}: {words.strip(': ')}"))
-    elif request.points == WITHDRAWN:
-        warn(f"there was no mark of {request.criterion} to withdraw")
-
-
-def grade_text(book: Class, grade: StudentGrade) -> str:
+def _grade_text(book: Class, grade: StudentGrade) -> str:
     """Return what counts: an excuse, a final mark, or the points of the criteria."""
-    report = grade.report
-    criteria = f"{format_points(report.score)} of {format_points(report.max_score)} points" if report is not None else ""
     if grade.is_excused:
         return "excused"
     if grade.final_points is not None:
         whole = sum((row.maximum for row in book.criteria), Decimal(0))
-        more = f"; the criteria give {criteria}" if criteria else ""
-        return f"final mark {format_points(grade.final_points)} of {format_points(whole)} points{more}"
-    if report is None or grade.total is None:
+        return f"final mark {format_points(grade.final_points)} of {format_points(whole)} points"
+    if grade.report is None or grade.total is None:
         return "no submission"
-    late = f"; {format_points(grade.total)} after the late penalty" if grade.late.points else ""
-    return criteria + late + (f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else "")
+    total = f"{format_points(grade.total)} of {format_points(grade.report.max_score)} points"
+    late = f" after the late penalty of {format_points(-grade.late.points)}" if grade.late.points else ""
+    return total + late + (f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else "")

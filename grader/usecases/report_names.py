@@ -1,14 +1,17 @@
-"""The files of a class's reports: a file name for each student that is safe on every system, and their index."""
+"""The files of a class's reports: names that are safe on every system, their index, and the class's page."""
 
-import hashlib
 import re
 import unicodedata
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from grader.classroom.tables import neutral, rows_of_table, write_table
-from grader.errors import InputError
+from grader.classroom.grades import Class
+from grader.classroom.tables import write_table
+from grader.files.reading import sha256_of
+from grader.report.formats import Format
+from grader.text import without_commands
+from grader.usecases.saves import address
 from grader.usecases.writing import save
 
 INDEX = "index.csv"  # the student of each report
@@ -25,36 +28,27 @@ def file_names(keys: Sequence[str]) -> dict[str, str]:
 
     A key that is not a valid name, or that ends like one with a digest, gets its digest appended.
     """
-    plain = {key: _plain(key) for key in keys}
-    counts = Counter(map(_fold, plain.values()))
-    names = {}
-    for key, name in plain.items():
-        is_valid = name == key and counts[_fold(name)] == 1 and not _DIGEST.search(name)
-        digest = "" if is_valid else f"-{hashlib.sha256(key.encode('utf-8', 'surrogateescape')).hexdigest()}"
-        names[key] = name + digest
-    if len(set(map(_fold, names.values()))) < len(names):
-        raise InputError("two students would share a report file; nothing was written")
+    names = {key: _plain(key) for key in keys}
+    counts = Counter(map(_fold, names.values()))
+    for key, name in names.items():
+        if name != key or counts[_fold(name)] > 1 or _DIGEST.search(name):
+            names[key] = f"{name}-{sha256_of(key.encode('utf-8', 'surrogateescape'))}"
     return names
 
 
-def update_index(folder: Path, names: dict[str, str]) -> list[str]:
-    """Record the student of each report, and return the names of earlier reports of students who have no report now.
+def write_index(folder: Path, names: Mapping[str, str]) -> None:
+    """Write which student each report is of. Raises InputError."""
+    save(folder / INDEX, write_table(("report", "id"), sorted((name, key) for key, name in names.items())))
 
-    Raises InputError if the report of another student would be overwritten.
-    """
-    index = folder / INDEX
-    try:
-        before = {row[0]: row[1] for row in rows_of_table(index.read_text(encoding="utf-8"))} if index.exists() else {}
-    except (OSError, ValueError, IndexError):
-        raise InputError(
-            f"cannot read {index}, the list of the students of the reports: remove it, or choose another folder"
-        ) from None
-    rows = {neutral(name): neutral(key) for key, name in names.items()}
-    other = next((name for name, key in rows.items() if before.get(name, key) != key), None)
-    if other is not None:
-        raise InputError(f"{index.parent} has a report of {before[other]} named {other}: choose another folder")
-    save(index, write_table(("report", "id"), sorted({**before, **rows}.items())))
-    return sorted(before.keys() - rows.keys())
+
+def write_class_page(book: Class, folder: Path, pages: Mapping[str, str]) -> None:
+    """Write the class's page into a folder, with links to the pages of students, by their names from there."""
+    from grader.classroom.statistics import statistics
+    from grader.report.pages.class_page import render_class_page
+
+    grades = list(book)
+    links = {key: address(f"{name}.{Format.HTML.ending}") for key, name in pages.items()}
+    save(folder / CLASS_PAGE, without_commands(render_class_page(book, grades, statistics(book, grades), links)))
 
 
 def _fold(name: str) -> str:

@@ -181,13 +181,13 @@ def _workers(rubric: Rubric) -> Iterator[GradeAll]:
         work = partial(mutant_outcomes, rubric.data, str(rubric.path))
 
         def grade_all(mutants: Iterable[Mutant]) -> Iterator[MutantOutcome]:
-            queue = Queue(executor, processors(), work, _refuse_lost)
-            return chain.from_iterable(queue.all(mutants))
+            queue = Queue(executor, processors(), work, lambda *_: None, _refuse_lost)
+            return chain.from_iterable(queue.results(mutants))
 
         yield grade_all
 
 
-def _refuse_lost(mutant: Mutant, error: Exception) -> None:
+def _refuse_lost(mutant: Mutant, error: Exception) -> MutantOutcome:
     raise GraderError(f"the mutant {mutant.id} could not be graded: {error}") from error
 
 

@@ -2,16 +2,17 @@
 
 import atexit
 import io
+import json
 import os
 import re
 import shutil
 import signal
-import sqlite3
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager, redirect_stderr, redirect_stdout, suppress
+from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
 from functools import cache
 from pathlib import Path
 from tempfile import mkdtemp
@@ -98,37 +99,32 @@ def shell_code(code: int) -> int:
     return 128 - code if code < 0 else code
 
 
-def rows(gradebook: Path, query: str, *values: Any) -> list[tuple[Any, ...]]:
-    """Return the rows of a query in a gradebook; none as long as there is no such table."""
-    try:
-        with closing(sqlite3.connect(f"file:{gradebook}?mode=ro", uri=True, timeout=30)) as connection:
-            return connection.execute(query, values).fetchall()
-    except sqlite3.OperationalError:
-        return []
+def lines_of(book: Path, kind: str = "student") -> list[dict[str, Any]]:
+    """Return the whole lines of results, or of runs, in the order of the file; none as long as there is no file."""
+    file = book / "results.jsonl"
+    lines = file.read_bytes().split(b"\n")[:-1] if file.exists() else []  # the last one may be torn
+    return [line for line in map(json.loads, lines) if next(iter(line)) == kind]
 
 
-def verdicts(gradebook: Path) -> dict[str, str]:
+def newest(book: Path) -> dict[str, dict[str, Any]]:
+    """Return the newest result of every student."""
+    return {line["student"]: line for line in lines_of(book)}
+
+
+def verdicts(book: Path) -> dict[str, str]:
     """Return the verdict of every student."""
-    return {str(key): str(verdict) for key, verdict in rows(gradebook, "SELECT key, verdict FROM grade")}
+    return {key: line["verdict"] for key, line in newest(book).items()}
 
 
-def reasons(gradebook: Path) -> dict[str, str]:
+def reasons(book: Path) -> dict[str, str]:
     """Return the reasons of submissions that are not graded."""
-    return {
-        str(key): str(reason) for key, reason in rows(gradebook, "SELECT key, reason FROM grade WHERE reason <> ''")
-    }
+    return {key: line["reason"] for key, line in newest(book).items() if "reason" in line}
 
 
-def duplicates(gradebook: Path) -> list[tuple[Any, ...]]:
-    """Return results that occur more than once."""
-    return rows(gradebook, "SELECT student FROM result GROUP BY student, digest, rubric, version HAVING count(*) > 1")
-
-
-def is_sound(gradebook: Path) -> bool:
-    """Return whether SQLite's integrity check of a gradebook passes."""
-    with closing(sqlite3.connect(gradebook)) as connection:
-        sound: bool = connection.execute("PRAGMA integrity_check").fetchone()[0] == "ok"
-        return sound and not connection.execute("PRAGMA foreign_key_check").fetchall()
+def repeated(book: Path) -> list[str]:
+    """Return the students with the same result twice."""
+    counts = Counter((line["student"], line.get("digest"), line["context"]) for line in lines_of(book))
+    return [student for (student, *_), count in counts.items() if count > 1]
 
 
 def counted(done: Done) -> str:

@@ -16,7 +16,7 @@ ENTRIES = st.dictionaries(TEXT, st.tuples(st.none() | st.sampled_from([0, 1, 2.5
 GRADED = st.builds(
     Graded, TEXT, st.integers(1, 3), st.sampled_from(["graded", "unreadable", "errored"]), TEXT, TEXT, TEXT,
     paths=st.lists(TEXT, max_size=2).map(tuple), is_late=st.booleans(), results=ENTRIES,
-    person=st.dictionaries(st.sampled_from(["name", "canvas"]), TEXT),
+    person=st.dictionaries(st.sampled_from(["name", "canvas"]), TEXT), work=st.just({}), answers=st.dictionaries(TEXT, TEXT),
 )  # fmt: skip
 pytestmark = pytest.mark.usefixtures("unsynced")
 RUN = Run(1, "2026-11-23T15:00:00.000+00:00", "1.0.0", "rubric", "context", {"ann": "3", "ben": None})
@@ -39,9 +39,8 @@ def plain(one: Graded) -> Graded:
 def test_the_newest_line_of_each_student_is_read(tmp_path_factory: pytest.TempPathFactory, lines: list[Graded]) -> None:
     """Results are read as they were written, in the order of the keys."""
     file = tmp_path_factory.mktemp("results") / "results.jsonl"
-    writer = ResultsWriter(file, 0)
-    writer.append(*(one.line for one in lines))
-    writer.close()
+    with ResultsWriter(file, 0) as writer:
+        writer.append(*(one.line for one in lines))
     newest = {one.student: one for one in lines}
     found = Results(file)
     assert list(map(plain, found.all())) == [newest[key] for key in sorted(newest)]
@@ -61,9 +60,8 @@ def test_a_torn_last_line_is_ignored_and_cut(tmp_path: Path) -> None:
         kept = max(number for number, place in enumerate(ends) if place <= end)
         assert found.end == ends[kept]
         assert (len(found.students), len(found.runs)) == (min(kept, 2), int(kept == 3))
-        writer = ResultsWriter(file, found.end)
-        writer.append(Graded("cid", 1, "graded").line)
-        writer.close()
+        with ResultsWriter(file, found.end) as writer:
+            writer.append(Graded("cid", 1, "graded").line)
         assert Results(file).students == [*["ann", "ben"][: min(kept, 2)], "cid"]
 
 

@@ -16,7 +16,7 @@ from statistics import fmean, linear_regression
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
-from tests.classroom.class_runs import HOSTILE, is_sound, rows, session_of, started, without_hints
+from tests.classroom.class_runs import HOSTILE, lines_of, repeated, session_of, started, verdicts, without_hints
 from tests.samples import ROOT
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
@@ -65,13 +65,12 @@ _MAX_ZOMBIE = 30.0  # seconds
 
 
 class Sample(NamedTuple):
-    """What was seen at a moment: bytes of memory, descriptors, processes, bytes of the log, results."""
+    """What was seen at a moment: bytes of memory, descriptors, processes, results."""
 
     seconds: float
     memory: int
     descriptors: int
     processes: int
-    log: int
     results: int
 
 
@@ -131,11 +130,10 @@ class Watch:
         try:
             memory = int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
             descriptors = len(os.listdir(f"/proc/{pid}/fd"))
-            log = Path(f"{self._book}-wal").stat().st_size
+            results = (self._book / "results.jsonl").read_bytes().count(b"\n")
         except (OSError, IndexError):  # it has just ended, or not begun
             return
-        ((results,),) = rows(self._book, "SELECT count(*) FROM submission") or [(0,)]
-        yield Sample(now, memory, descriptors, len(session_of(self._process)), log, results)
+        yield Sample(now, memory, descriptors, len(session_of(self._process)), results)
 
 
 def _zombies(parent: int) -> Iterator[int]:
@@ -156,7 +154,7 @@ def main(arguments: Sequence[str]) -> int:
         top = Path(name)
         began = time.monotonic()
         kinds = make_class(top / "class", count)
-        rubric, book = rubric_in(top / "rubric"), top / "soak.db"
+        rubric, book = rubric_in(top / "rubric"), top / "soak"
         hostile = count - kinds["urdf"]
         print(f"{count} submissions, {hostile} of them hostile, made in {time.monotonic() - began:.0f} s", flush=True)
         command = (
@@ -180,7 +178,7 @@ def main(arguments: Sequence[str]) -> int:
             left = len(session_of(process))
             error = process.stderr.read() if process.stderr is not None else ""
         print(*error.splitlines()[-3:], sep="\n")
-        found = Counter(dict(rows(book, "SELECT verdict, count(*) FROM grade GROUP BY verdict")))
+        found = Counter(verdicts(book).values())
         print(f"exit code {code} after {seconds:.0f} s, {count / seconds:.0f} submissions/s: {dict(found)}")
         faults = [*_growth(watch.samples), *_losses(watch, book, kinds, code, left)]
     print(*(faults or ["nothing grows, and nothing is lost"]), sep="\n")
@@ -206,8 +204,7 @@ def _growth(samples: Sequence[Sample]) -> Iterator[str]:
         if last > first * (1 + most):
             yield f"the {name} grows by {last / first - 1:.0%}"
     print(f"memory at the end, with the summary: {max(sample.memory for sample in samples) / 2**20:.0f} MiB")
-    print(f"processes: at most {max(sample.processes for sample in graded)}; log of the gradebook: at most "
-          f"{max(sample.log for sample in graded) / 2**20:.1f} MiB")  # fmt: skip
+    print(f"processes: at most {max(sample.processes for sample in graded)}")
 
 
 def _losses(watch: Watch, book: Path, kinds: Counter[str], code: int, left: int) -> Iterator[str]:
@@ -219,14 +216,13 @@ def _losses(watch: Watch, book: Path, kinds: Counter[str], code: int, left: int)
         yield f"{left} processes remain"
     if watch.longest_zombie > _MAX_ZOMBIE:
         yield f"a zombie remained for {watch.longest_zombie:.0f} s"
-    ((count,),) = rows(book, "SELECT count(*) FROM grade WHERE result IS NOT NULL")
-    if count != kinds.total():
-        yield f"{kinds.total() - count} submissions have no result"
-    ((good,),) = rows(book, "SELECT count(*) FROM grade WHERE verdict = 'graded'")
-    if good < kinds["urdf"]:
-        yield f"{kinds['urdf'] - good} correct submissions are not graded"
-    if not is_sound(book):
-        yield "the gradebook is damaged"
+    found = Counter(verdicts(book).values())
+    if found.total() != kinds.total():
+        yield f"{kinds.total() - found.total()} submissions have no result"
+    if found["graded"] < kinds["urdf"]:
+        yield f"{kinds['urdf'] - found['graded']} correct submissions are not graded"
+    if repeated(book) or len(lines_of(book, "run")) != 1:
+        yield "a result is there twice, or the run is not"
 
 
 if __name__ == "__main__":

@@ -1,14 +1,14 @@
 """Run one scenario with one fault, and say what does not hold afterwards."""
 
+import json
 import os
 import pickle
+import re
 import shutil
 import signal
-import sqlite3
 import tempfile
-from collections import Counter
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,11 +16,7 @@ from tests.faults.scenarios import Scenario
 from tests.faults.shim import Shim
 
 HANG_TIMEOUT = 120  # seconds
-_BESIDE = ("-wal", "-shm", "-journal")  # files that SQLite leaves after a crash and uses again
-_GRADES = "SELECT key, verdict, score, out_of, pending, final, faults FROM grade ORDER BY key"
-_ENTRIES = """
-SELECT key, criterion, points, comment, kind, grader_name FROM mark JOIN student ON student.id = mark.student
-"""
+_TIME = re.compile(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}[+-]\d\d:\d\d")
 
 
 class Ran(NamedTuple):
@@ -32,16 +28,8 @@ class Ran(NamedTuple):
     counts: dict[str, int]
 
 
-class Book(NamedTuple):
-    """What a gradebook says: the grades, and the entries of marks. `is_sound` is what SQLite says of the file."""
-
-    is_sound: bool
-    grades: tuple[tuple[Any, ...], ...]
-    entries: frozenset[tuple[tuple[Any, ...], int]]
-
-
-_NO_BOOK = Book(True, (), frozenset())
 _CLASS_PAGE = "/index.html"
+RESULTS, _GRADES = "/results.jsonl", "/grades.csv"
 _REMOVED = ("report.json",)  # what `--save` names is removed first: a run that is refused leaves no old report
 
 
@@ -108,36 +96,34 @@ class Bench:
         finally:
             tempfile.tempdir = before
 
-    def state(self) -> dict[str, Any]:
-        """Return what is in the folder: the bytes of each file, or what a gradebook says.
+    def state(self) -> dict[str, bytes]:
+        """Return the bytes of each file in the folder, but for the times of now; of results the whole lines.
 
         The folder for temporary files is the system's: what cannot be removed from it stays there.
         """
-        found: dict[str, Any] = {}
+        found: dict[str, bytes] = {}
         for path in sorted(self.top.rglob("*")):
             name = str(path.relative_to(self.top))
-            if path.is_file() and not name.endswith(_BESIDE) and not name.startswith("tmp/"):
-                found[name] = _book(path) if name.endswith(".db") else path.read_bytes()
-        return found
+            if path.is_file() and path.name != ".lock" and not name.startswith("tmp/"):
+                found[name] = _normal(name, _TIME.sub(b"TIME", path.read_bytes()))
+        return {name: data for name, data in found.items() if data or "/marks/" not in name}
 
 
-def _book(path: Path) -> Book:
-    with closing(sqlite3.connect(path)) as connection:
-        sound = connection.execute("PRAGMA integrity_check").fetchall() == [("ok",)]
-        sound = sound and not connection.execute("PRAGMA foreign_key_check").fetchall()
-        try:
-            grades = connection.execute(_GRADES).fetchall()
-            entries = Counter(connection.execute(_ENTRIES).fetchall())
-        except sqlite3.OperationalError:  # a new gradebook without tables
-            grades, entries = [], Counter()
-    return Book(sound, tuple(grades), frozenset(entries.items()))
+def _normal(name: str, data: bytes) -> bytes:
+    """Return the newest results of a gradebook, its different marks, and other files as they are."""
+    if name.endswith(RESULTS):
+        whole = data.partition(b"\0")[0]  # a power failure leaves holes
+        lines = map(json.loads, whole[: whole.rfind(b"\n") + 1].splitlines())
+        newest = {line.get("student", ""): {**line, "run": 0} for line in lines}
+        return b"".join(json.dumps(newest[key]).encode() + b"\n" for key in sorted(newest))
+    return b"".join(dict.fromkeys(data.splitlines(keepends=True))) if "/marks/" in name else data
 
 
 class Expected(NamedTuple):
     """A scenario without faults: the state before and after it, and what it did."""
 
-    before: dict[str, Any]
-    after: dict[str, Any]
+    before: dict[str, bytes]
+    after: dict[str, bytes]
     ran: Ran
 
 
@@ -148,11 +134,9 @@ def complaints(bench: Bench, scenario: Scenario, expected: Expected, ran: Ran, k
     yield from _of_messages(ran, expected.ran, new)
     is_done = ran.code == expected.ran.code
     yield from _of_files(state, expected, kind, is_done=is_done, has_warned=bool(new))
-    books = ((name, state.get(name), expected.after[name]) for name in expected.after)
-    for name, found, after in books:
-        if isinstance(after, Book):
-            is_whole = is_done and not (scenario.goes_on and new)
-            yield from _of_book(name, found or _NO_BOOK, expected, is_done=is_whole)
+    for name in expected.after:
+        if name.endswith(RESULTS):
+            yield from _of_results(name, state.get(name, b""), expected, is_done=is_done)
     if state == expected.after and (ran.code == expected.ran.code or scenario.goes_on):
         return
     again = bench.run(scenario)
@@ -176,13 +160,14 @@ def _of_messages(ran: Ran, expected: Ran, new: list[str]) -> Iterator[str]:
 
 
 def _of_files(
-    state: dict[str, Any], expected: Expected, kind: str, *, is_done: bool, has_warned: bool
+    state: dict[str, bytes], expected: Expected, kind: str, *, is_done: bool, has_warned: bool
 ) -> Iterator[str]:
     """Yield which files are neither as before nor complete. A complete one may differ if the command said why."""
     before, after = expected.before, expected.after
     for name in sorted(state.keys() | before.keys() | after.keys()):
         found = state.get(name)
-        if isinstance(after.get(name), Book) or found == after.get(name):
+        is_other = has_warned or state.get(name.replace(_GRADES, RESULTS)) != after.get(name.replace(_GRADES, RESULTS))
+        if name.endswith(RESULTS) or found == after.get(name) or (name.endswith(_GRADES) and is_other):
             continue
         if name.endswith(_CLASS_PAGE) and found is not None and found.endswith(b"</html>\n"):
             continue  # a picture of a robot on it may be missing
@@ -193,27 +178,18 @@ def _of_files(
             yield f"{name} {_difference(found, after.get(name))}"
 
 
-def _of_book(name: str, book: Book, expected: Expected, *, is_done: bool) -> Iterator[str]:
-    """Yield what is wrong with a gradebook: marks that are lost or new, students with another grade who are `graded`."""
-    before, after = (state.get(name, _NO_BOOK) for state in (expected.before, expected.after))
-    if not book.is_sound:
-        yield f"{name} is damaged"
-    if book.entries not in ([after.entries] if is_done else [before.entries, after.entries]):
-        yield f"{name} has other marks: {sorted(book.entries ^ after.entries, key=str)}"
-    known = {row[0]: (row, *(old for old in before.grades if old[0] == row[0])) for row in after.grades}
-    for row in book.grades:
-        if row not in known.get(row[0], ()) and row[1] == "graded":
-            yield f"{name}: {row} instead of {known.get(row[0])}"
-    if is_done and {row[0] for row in book.grades} != set(known):
+def _of_results(name: str, data: bytes, expected: Expected, *, is_done: bool) -> Iterator[str]:
+    """Yield what is wrong with results: students who are graded otherwise, or lost."""
+    known = {line for state in (expected.before, expected.after) for line in state.get(name, b"").splitlines()}
+    lines = data.splitlines()
+    yield from (f"{name}: {line!r}" for line in lines if line not in known and b'"verdict": "graded"' in line)
+    if is_done and len(lines) != len(expected.after[name].splitlines()):
         yield f"{name} lacks students"
 
 
-def _difference(found: Any, expected: Any) -> str:
+def _difference(found: bytes | None, expected: bytes | None) -> str:
     """Return how two states of a file differ."""
     if found is None or expected is None:
         return "is not there" if found is None else "should not be there"
-    if isinstance(found, Book) and isinstance(expected, Book):
-        grades = [row for row in found.grades if row not in expected.grades]
-        return f"differs: sound {found.is_sound}, {grades}, {sorted(found.entries ^ expected.entries, key=str)}"
     at = next((at for at, (one, other) in enumerate(zip(found, expected, strict=False)) if one != other), -1)
     return f"differs ({len(found)} of {len(expected)} bytes, from {at}): {found[max(0, at - 30) : at + 60]!r}"

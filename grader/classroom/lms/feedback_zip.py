@@ -10,7 +10,7 @@ submission; LATE is ignored. The student sees the file under the attachment's na
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from pathlib import PurePosixPath
 
 from grader.classroom.roster import Student
@@ -40,44 +40,35 @@ def moodle_names(students: Collection[Student], report: str, numbers: Mapping[st
     return names, without
 
 
-def canvas_names(submissions: Iterable[tuple[Student, tuple[str, ...]]], report: str) -> Names:
+def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], report: str) -> Names:
     """Return the names for students and the paths of their files; a group that has the same files shares one."""
-    groups = defaultdict[tuple[str, ...], list[str]](list)
     names, without, users = dict[str, str](), dict[str, str](), defaultdict[tuple[str, ...], set[str]](set)
     for student, paths in submissions:
-        if paths:
-            groups[paths].append(student.key)
-            users[paths] |= {student.canvas} - {""}
-        else:
-            without[student.key] = "submitted no file in Canvas"
+        users[paths] |= {student.canvas} - {""}
     ending = PurePosixPath(report).suffix
-    for paths, keys in groups.items():
+    for student, paths in submissions:
         files = [PurePosixPath(path).name for path in paths]
         certain = [file for file in files if _is_certain(file, users[paths])]
         fitting = [file for file in certain if PurePosixPath(file).suffix.lower() == ending]
-        fitting = fitting or [file for file in certain if file.lower().endswith(_ARCHIVES)]
-        if fitting:
-            names |= dict.fromkeys(keys, min(fitting))
+        if fitting := fitting or [file for file in certain if file.lower().endswith(_ARCHIVES)]:
+            names[student.key] = min(fitting)
         elif certain:
             why = f"Canvas would show the report as {certain[0]!r}, which is neither an archive nor a {ending} file"
-            without |= dict.fromkeys(keys, why)
+            without[student.key] = why
         else:
-            without |= dict.fromkeys(keys, f"Canvas would find another student, or none, by the name {files[0]!r}")
+            why = f"Canvas would find another student, or none, by the name {files[0]!r}" if files else ""
+            without[student.key] = why or "submitted no file in Canvas"
     return names, without
 
 
 def write_feedback(reports: Mapping[str, bytes], names: Mapping[str, str], report: str) -> tuple[bytes, dict[str, str]]:
     """Return the zip of the reports by key, whose bytes depend on them only, and why a student's is not in it."""
-    contents, without = defaultdict[str, dict[bytes, list[str]]](dict), dict[str, str]()
+    contents = defaultdict[str, set[bytes]](set)
     for key, data in reports.items():
-        contents[names[key]].setdefault(data, []).append(key)
-    files = dict[str, bytes]()
-    for name, found in contents.items():
-        if len(found) > 1:
-            why = "the members of the group have different reports, and Canvas gives one to all of them"
-            without |= dict.fromkeys((key for keys in found.values() for key in keys), why)
-        else:
-            files[name] = _packed(name, report, *found)
+        contents[names[key]].add(data)
+    why = "the members of the group have different reports, and Canvas gives one to all of them"
+    without = {key: why for key in reports if len(contents[names[key]]) > 1}
+    files = {name: _packed(name, report, *found) for name, found in contents.items() if len(found) == 1}
     return zip_of(files), without
 
 

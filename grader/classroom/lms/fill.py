@@ -5,8 +5,8 @@ as a change, and Moodle's worksheets have rounded grades. So rows of students wi
 """
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from decimal import ROUND_FLOOR, Decimal
 from typing import NamedTuple
 
@@ -14,17 +14,16 @@ from grader.classroom.lms.comments import is_own_comment
 from grader.classroom.lms.forms import Form
 from grader.classroom.lms.grade_file import FillOptions, GradeFile, StudentRow, read_grade_file, read_points
 from grader.classroom.lms.owners import AMBIGUOUS, MISSING, UNKNOWN, ClassGrade, Note, match_rows
-from grader.classroom.tables import TableRow, neutral
+from grader.classroom.tables import TableRow
 from grader.errors import InputError
-from grader.text import counted, first_lines, format_points, people_text, printable
+from grader.text import first_lines, format_points, people_text, printable
 
-_OPEN, _EXCUSED, _REFUSED = "without a grade", "excused", "the LMS would refuse the grade"
-_REDUCED, _KEPT = "the LMS would reduce the grade", "kept the comment"
+_OPEN, _EXCUSED, _KEPT = "without a grade", "excused", "kept the comment"
+_REFUSED = "the LMS would refuse the grade"
 _INCOMPLETE = frozenset({_REFUSED, UNKNOWN, MISSING, AMBIGUOUS})
 _NOT_GRADED = frozenset({"", "-", "needs grading"})  # the last in Blackboard
-_NO = frozenset({"no", "nein", "non", "não", "nee"})
 _COMMA = re.compile(r"[0-9],[0-9]{1,2}$")
-_MAX_CHANGES, _MAX_REASONS = 40, 50
+_MAX_CHANGES, _MAX_REASONS, _MAX_NAMED = 40, 50, 3
 
 
 class Filled(NamedTuple):
@@ -35,106 +34,88 @@ class Filled(NamedTuple):
     is_complete: bool
 
 
-@dataclass(slots=True)
-class _Filling:
-    """What was filled so far."""
-
-    form: Form
-    file: GradeFile
-    notes: list[Note]
-    changes: list[str] = field(default_factory=list)
-    filled: int = 0
-    unchanged: int = 0
-
-    def row(self, one: StudentRow, grade: ClassGrade) -> TableRow | None:
-        """Return a row with the grade and the comment; None, with a note, if it cannot be filled."""
-        if why := self._why_not(one.row, grade):
-            self.notes.append(Note(_OPEN, one.who, why))
-            return None
-        new, maximum = self.form.excuse, self.file.maximum
-        if grade.total is None:
-            self.notes.append(Note(_EXCUSED, one.who, f"{new} in the file"))
-        else:
-            new = _points_text(grade.total, like=maximum)
-            if self.form.above and (read_points(new) or 0) > (read_points(maximum) or 0):
-                why = f"{new} points are above the maximum of {maximum}: {self.form.above}"
-                self.notes.append(Note(_REDUCED if self.form.reduces_above else _REFUSED, one.who, why))
-                if not self.form.reduces_above:
-                    return None
-        row = self._with_comment(self._with_grade(one, new), one, neutral(grade.comment))
-        self.filled += row is not one.row
-        self.unchanged += row is one.row
-        return row
-
-    def _why_not(self, row: TableRow, grade: ClassGrade) -> str:
-        """Return why a row gets no grade; empty if it gets one."""
-        old = row.value(self.file.grade).casefold()
-        cells, titles = len(row.cells), len(self.file.table.rows[0].cells)
-        if grade.total is None and not grade.is_excused:
-            return grade.why_open or "has no grade"
-        if cells != titles:
-            return f"the row has {cells} cells and the header {titles}"
-        if row.value(self.file.roles.get("locked")).casefold() in _NO:
-            return f"has a grade that is locked in {self.form.lms}"
-        return "" if grade.is_excused and old == self.form.excuse.casefold() else self.form.no_grade.get(old, "")
-
-    def _with_grade(self, one: StudentRow, new: str) -> TableRow:
-        old = one.row.value(self.file.grade)
-        if old.casefold() == new.casefold() or (read_points(old) is not None and read_points(old) == read_points(new)):
-            return one.row
-        if old.casefold() not in _NOT_GRADED:
-            self.changes.append(f"{one.who}: was {old}, becomes {new}")
-        return self.file.table.changed(one.row, self.file.grade, new)
-
-    def _with_comment(self, row: TableRow, one: StudentRow, new: str) -> TableRow:
-        column = self.file.roles.get("comment")
-        old = row.value(column)
-        if column is None or not new or old == new:
-            return row
-        if old and not is_own_comment(old):
-            self.notes.append(Note(_KEPT, one.who, f"a person wrote or changed it in {self.form.lms}"))
-            return row
-        return self.file.table.changed(row, column, new)
-
-
 def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOptions) -> Filled:
     """Return a grade file with the grades in the column of the lab; raises InputError if it is not such a file."""
     file = read_grade_file(data, form, options)
-    warnings = [*_warnings(file, form, options, grades)]
+    header = file.table.titles[file.roles["grade"]]
+    warnings = _check_maximum(file.maximum, f"{header!r} in {form.lms}", options)
     known = [grade if form.excuse else grade._replace(is_excused=False) for grade in grades]
-    found, notes = match_rows(file.students, known, form.lms)
-    filling, students = _Filling(form, file, notes), {one.row.number: one for one in file.students}
-    rows = list[TableRow]()
+    found, notes = match_rows([*file.students.values()], known, form.lms)
+    rows, changes, filled, unchanged = list[TableRow](), list[str](), 0, 0
     for row in file.table.rows:
-        grade = found.get(row.number)
-        new = filling.row(students[row.number], grade) if grade else None if row.number in students else row
-        rows += [new] if new else []
+        grade, one = found.get(row.number), file.students.get(row.number)
+        new = form.excuse if grade is None or grade.total is None else _points_text(grade.total, like=file.maximum)
+        if one is None:
+            rows.append(row)
+        elif grade is not None and (note := _why_not(file, form, row, grade, new)):
+            notes.append(Note(note[0], one.who, note[1]))
+        elif grade is not None:
+            if grade.total is None:
+                notes.append(Note(_EXCUSED, one.who, f"{new} in the file"))
+            rows.append(_with_grade(file, one, new, changes))
+            if (comment := _with_comment(file, rows[-1], grade.comment)) is None:
+                notes.append(Note(_KEPT, one.who, f"a person wrote or changed it in {form.lms}"))
+            rows[-1] = comment or rows[-1]
+            filled += rows[-1] is not row
+            unchanged += rows[-1] is row
     table = replace(file.table, rows=tuple(rows))
-    if options.only and not form.is_maximum_next:
-        table = table.with_columns([*{*file.roles.values(), file.grade}])
-    lines = [
-        f"column {file.header!r}: {filling.filled} filled in, {filling.unchanged} already the same",
-        *first_lines(filling.changes, _MAX_CHANGES),
-        *([form.overwriting] if filling.changes and form.overwriting else []),
-        *by_reason(notes),
-        *warnings,
-    ]
+    if options.only and "maximum" not in file.roles:
+        table = table.with_columns([*{*file.roles.values()}])
+    count = f"column {header!r}: {filled} filled in, {unchanged} already the same"
+    lines = [count, *first_lines(changes, _MAX_CHANGES), *by_reason(notes), *warnings]
     return Filled(table.encoded(), [*map(printable, lines)], not any(note.kind in _INCOMPLETE for note in notes))
+
+
+def _why_not(file: GradeFile, form: Form, row: TableRow, grade: ClassGrade, new: str) -> tuple[str, str] | None:
+    """Return why a row does not get a grade: the kind of the reason, and the reason."""
+    titles = file.table.titles
+    if grade.total is None and not grade.is_excused:
+        return _OPEN, grade.why_open or "has no grade"
+    if len(row.cells) != len(titles):
+        return _OPEN, f"the row has {len(row.cells)} cells and the header {len(titles)}"
+    for role, words in form.locked.items():
+        cell = row.value(file.roles.get(role))
+        if cell.casefold() in words and cell.casefold() != new.casefold():
+            return _OPEN, f"{titles[file.roles[role]]!r} is {cell!r} in {form.lms}"
+    if form.above and (read_points(new) or 0) > (read_points(file.maximum) or 0):
+        return _REFUSED, f"{new} points are above the maximum of {file.maximum}: {form.above}"
+    return None
+
+
+def _with_grade(file: GradeFile, one: StudentRow, new: str, changes: list[str]) -> TableRow:
+    """Return a row with a grade, and add a line to the changes if it replaces another one."""
+    old = one.row.value(file.roles["grade"])
+    if old.casefold() == new.casefold() or (read_points(old) is not None and read_points(old) == read_points(new)):
+        return one.row
+    if old.casefold() not in _NOT_GRADED:
+        changes.append(f"{one.who}: was {old}, becomes {new}")
+    return file.table.changed(one.row, file.roles["grade"], new)
+
+
+def _with_comment(file: GradeFile, row: TableRow, new: str) -> TableRow | None:
+    """Return a row with a comment; None if there is one of a person."""
+    column = file.roles.get("comment")
+    old = row.value(column)
+    if column is None or not new or old == new:
+        return row
+    return file.table.changed(row, column, new) if not old or is_own_comment(old) else None
 
 
 def participants(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOptions) -> dict[str, str]:
     """Return the students' numbers in a worksheet of Moodle by key; raises InputError if it is none."""
     file = read_grade_file(data, form, options)
-    found, _ = match_rows(file.students, grades, form.lms)
-    return {found[one.row.number].student.key: one.student.moodle for one in file.students if one.row.number in found}
+    found, _ = match_rows([*file.students.values()], grades, form.lms)
+    return {grade.student.key: file.students[number].student.moodle for number, grade in found.items()}
 
 
-def by_reason(notes: Iterable[Note], most: int = 3) -> list[str]:
+def by_reason(notes: Iterable[Note]) -> list[str]:
     """Return a line for each reason: who has it, of several how many and the first of them."""
     names: dict[tuple[str, str], list[str]] = {}
     for note in notes:
         names.setdefault((note.kind, note.why), []).append(note.who)
-    groups = ((*key, f"{len(who)} ({people_text(who, most)})" if who[1:] else who[0]) for key, who in names.items())
+    groups = (
+        (*key, f"{len(who)} ({people_text(who, _MAX_NAMED)})" if who[1:] else who[0]) for key, who in names.items()
+    )
     return first_lines([f"{kind}: {who}: {why}" for kind, why, who in groups], _MAX_REASONS)
 
 
@@ -144,20 +125,11 @@ def _points_text(points: Decimal, like: str) -> str:
     return text.replace(".", ",") if _COMMA.search(like) else text
 
 
-def _warnings(file: GradeFile, form: Form, options: FillOptions, grades: Sequence[ClassGrade]) -> Iterator[str]:
-    """Yield what to know of a file; raises InputError for another maximum: 9.33 of 100 is not 9.33 of 10."""
-    maximum, out_of = read_points(file.maximum), options.out_of
-    if maximum is None and form.is_maximum_next:
-        what = f"no number as the maximum grade after {file.header!r}"
-        raise InputError(f"{options.shown} has {what}: an assignment that is graded by a scale takes no points")
-    if maximum is None:
-        yield f"the file does not state the maximum of {file.header!r} in {form.lms}"
-    elif maximum != out_of and not options.any_maximum:
-        others = f"{format_points(maximum)}, but that of the rubric is {format_points(out_of)}"
+def _check_maximum(text: str, what: str, options: FillOptions) -> list[str]:
+    """Return a warning about an unknown maximum; raises InputError for another one: 9.33 of 100 is not 9.33 of 10."""
+    maximum = read_points(text)
+    if maximum is not None and maximum != options.out_of and not options.any_maximum:
+        others = f"{format_points(maximum)}, but that of the rubric is {format_points(options.out_of)}"
         advice = "change it in the LMS and export again, or pass --any-maximum to write the points unchanged"
-        raise InputError(f"the maximum of {file.header!r} in {form.lms} is {others}: {advice}")
-    if file.others and not options.only:
-        others = counted(file.others, "other assignment")
-        yield f"importing the file resets {others} to the grades at the time of the export, unless you pass --only"
-    if "comment" in form.columns.keys() - file.roles.keys() and any(grade.comment for grade in grades):
-        yield "the file has no known column for comments: name it with --feedback-column"
+        raise InputError(f"the maximum of {what} is {others}: {advice}")
+    return [] if maximum is not None else [f"the file does not state the maximum of {what}"]

@@ -20,9 +20,9 @@ class Form(NamedTuple):
     """A grade file of an LMS: `columns` are the headers of each role in lower case, one of each in `needed` exists.
 
     `grade` matches the header of an assignment, with the groups `title`, and perhaps `number` and `maximum`; else the
-    maximum is in the row that begins with `points_row`, or in the column after the grade. A grade in `no_grade` stays.
-    `above` is what to do about points above the maximum, where these are refused or reduced, `overwriting` about
-    earlier grades.
+    maximum is in the row that begins with `points_row`. With a column `maximum`, the grade is in the column before it.
+    A row keeps its grade if one of its cells is in `locked`, in lower case by role; `above` is what to do about points
+    above the maximum, where these are refused.
     """
 
     lms: str
@@ -31,12 +31,9 @@ class Form(NamedTuple):
     grade: re.Pattern[str]
     clean: Callable[[str], str] = str.strip
     points_row: str = ""
-    is_maximum_next: bool = False
     excuse: str = ""
-    no_grade: Mapping[str, str] = {}
+    locked: Mapping[str, tuple[str, ...]] = {}
     above: str = ""
-    reduces_above: bool = False
-    overwriting: str = ""
     test_student: str = "(?!)"
 
 
@@ -51,17 +48,18 @@ CANVAS = Form(
     clean=lambda text: _GUARD.sub(r"\1", text),
     points_row="Points Possible",
     excuse="EX",
-    no_grade={"ex": "is excused in Canvas", "n/a": "is not assigned this assignment in Canvas"},
+    locked={"grade": ("ex", "n/a")},
     test_student="student, test|test student",
 )  # fmt: skip
 MOODLE = Form(
     "Moodle",
     {  # as the language packs have them (assign.php, assignfeedback_comments.php), as far as they were looked up
-        "moodle": "identifier (Participant 123) | identifier | id | identifiant | identificador | identificativo"
-        " | identificatie",
+        "moodle": "identifier | id | identifiant | identificador | identificativo | identificatie",
+        "name": "full name | vollständiger name | nom complet | nombre completo | nome completo | volledige naam",
+        "email": "email address | e-mail-adresse | adresse de courriel | dirección de correo | indirizzo email"
+        " | endereço de email | e-mailadres",
         "sis": "id number | id-nummer",
         "login": "username",
-        "status": "status | statut | stato | estado",
         "maximum": "maximum grade | bestwertung | note maximale | calificación máxima | valutazione massima"
         " | nota máxima | maximaal cijfer",
         "locked": "grade can be changed | bewertung kann geändert werden | la note peut être modifiée"
@@ -70,12 +68,11 @@ MOODLE = Form(
         "comment": "feedback comments | feedback als kommentar | feedback par commentaires"
         " | comentarios de retroalimentación | commenti | comentários de feedback | feedback",
     },
-    ("moodle",),
+    ("moodle", "maximum"),
     re.compile("(?P<title>.*)", re.DOTALL),
     clean=lambda text: " ".join(html.unescape(_TAG.sub(" ", text)).split()),
-    is_maximum_next=True,
     above="raise the maximum there, or give a final mark",
-    overwriting='tick "Allow updating records that have been modified more recently", or Moodle skips earlier grades',
+    locked={"locked": ("no", "nein", "non", "não", "nee")},
 )
 BLACKBOARD = Form(
     "Blackboard",
@@ -97,7 +94,5 @@ BRIGHTSPACE = Form(
     ("login | sis",),
     re.compile(r"(?P<title>.*?) Points Grade(?: <Numeric MaxPoints:(?P<maximum>[0-9.,]+)[^>]*>)?", re.DOTALL),
     clean=lambda text: text.removeprefix("#"),
-    above='tick "Can Exceed" for the grade item',
-    reduces_above=True,
 )  # fmt: skip
 FORMS = {form.lms.lower(): form for form in (CANVAS, MOODLE, BLACKBOARD, BRIGHTSPACE)}

@@ -4,7 +4,7 @@ import asyncio
 import logging
 import multiprocessing
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError, Executor, Future
 from functools import lru_cache
 from multiprocessing.util import Finalize
@@ -24,11 +24,11 @@ _lock = threading.Lock()  # a Dask worker may have many threads
 class Cluster(Executor):
     """An executor whose tasks run on the workers of a Dask cluster; raises InputError if it cannot be used.
 
-    `root` is the class: every worker has to see it at the same path. If a worker is lost, Dask gives its tasks to
+    `roots` are the class: every worker has to see them at the same paths. If a worker is lost, Dask gives its tasks to
     another one; a task that ends one worker after the other raises WorkerError.
     """
 
-    def __init__(self, address: str, timeout: float, root: Path) -> None:
+    def __init__(self, address: str, timeout: float, roots: Sequence[Path]) -> None:
         try:
             import distributed
         except ImportError:
@@ -47,7 +47,7 @@ class Cluster(Executor):
                 f"there is no Dask scheduler at {address or repr(address)}: {reason} (start one with `dask scheduler`)"
             ) from None
         try:
-            self.workers = self._check_workers(address, root)
+            self.workers = self._check_workers(address, roots)
         except BaseException:
             self._client.close()
             raise
@@ -70,7 +70,7 @@ class Cluster(Executor):
         del wait, cancel_futures
         self._client.close()
 
-    def _check_workers(self, address: str, root: Path) -> int:
+    def _check_workers(self, address: str, roots: Sequence[Path]) -> int:
         """Return how many tasks the workers run at once; raises InputError if one could not grade this class."""
         threads = self._client.nthreads()
         if not threads:
@@ -78,14 +78,14 @@ class Cluster(Executor):
                 f"the Dask cluster at {address} has no workers yet: start one with `dask worker {address}`"
             )
         try:
-            answers = self._client.run(_version_and_access, str(root))
+            answers = self._client.run(_version_and_access, list(map(str, roots)))
         except Exception as error:  # noqa: BLE001  a worker without the grader raises any type
             raise InputError(f"a worker of {address} cannot grade: {type(error).__name__}: {error}") from None
-        for worker, (version, sees_class) in sorted(answers.items()):
+        for worker, (version, hidden) in sorted(answers.items()):
             if version != __version__:
                 raise InputError(f"the worker {worker} has grader {version}, and this is {__version__}")
-            if not sees_class:
-                raise InputError(f"the worker {worker} does not see {printable_path(root)}: share that folder with it")
+            if hidden:
+                raise InputError(f"the worker {worker} does not see {printable_path(Path(hidden))}: share that folder")
         return sum(threads.values())
 
     async def _pass_on(self, task: Any, outer: "Future[Any]") -> None:
@@ -114,9 +114,9 @@ async def _connect_once(address: str) -> None:
     await comm.close()
 
 
-def _version_and_access(root: str) -> tuple[str, bool]:
-    """Return, on a worker, the version of its grader and whether it sees the class."""
-    return __version__, Path(root).exists()
+def _version_and_access(roots: Sequence[str]) -> tuple[str, str]:
+    """Return, on a worker, the version of its grader and the first path of the class that it does not see."""
+    return __version__, next((root for root in roots if not Path(root).exists()), "")
 
 
 def _run_in_process(

@@ -2,11 +2,11 @@
 
 import atexit
 import ctypes
-import itertools
 import os
 import signal
 import sys
 import time
+from types import FrameType
 from typing import Any
 
 from grader.checks.check import About
@@ -27,7 +27,6 @@ _RETURNED: dict[str, Any] = {
 }
 
 ABOUT = {"behaves": About(measure="hostile_checks:measured")}
-_TIMES = itertools.count()  # how often a process has asked before: the second time it tries an edit
 
 
 class Unusual(BaseException):
@@ -89,13 +88,21 @@ def behaves(robot: Configuration) -> Outcome:
             eaten = [bytearray(2**27)]
             while True:
                 eaten.append(bytearray(2**27))
-        case "dies_when_tried" if next(_TIMES):
+        case "dies_when_tried" if _is_tried():
             os.kill(os.getpid(), signal.SIGKILL)
-        case "hangs_when_tried" if next(_TIMES):
+        case "hangs_when_tried" if _is_tried():
             time.sleep(3600)
         case "raises":
             raise RuntimeError("as asked")
     return passed("nothing bad was asked for")
+
+
+def _is_tried() -> bool:
+    """Return whether a search for hints tries an edit."""
+    frame: FrameType | None = sys._getframe()
+    while frame is not None and "hints" not in frame.f_code.co_filename:
+        frame = frame.f_back
+    return frame is not None
 
 
 def without_annotation(robot: Configuration, *, at_least):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN201

@@ -8,17 +8,20 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Grades
+from grader.classroom.grades import Class
+from grader.report.formats import Format, render
+from grader.usecases.class_reports import report_of
 from tests.classroom.class_runs import (
     class_with_roster,
     contents,
     counted,
     grader,
+    lines_of,
     mixed_class,
+    newest,
     report_in_process,
-    rows,
     urdf_class,
+    verdicts,
     without_hints,
 )
 from tests.command_line import GRADER
@@ -30,7 +33,7 @@ REFERENCE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urd
 
 def batch(path: Path, out: Path, *arguments: str, cwd: str = "") -> dict[str, bytes]:
     """Grade a class into a new gradebook and return the JSON reports by key."""
-    book, reports = out.with_suffix(".db"), out.with_suffix(".reports")
+    book, reports = out.with_suffix(".book"), out.with_suffix(".reports")
     done = grader("batch", path, "--gradebook", book, "--jobs", "2", "--reports", reports, *JSON, *arguments, cwd=cwd)
     assert done.returncode == 0, done.stderr
     return reports_of(book, reports)
@@ -40,7 +43,7 @@ def reports_of(book: Path, reports: Path) -> dict[str, bytes]:
     """Return the reports in a folder by the key of their students."""
     from grader.usecases.report_names import file_names
 
-    names = file_names([str(key) for (key,) in rows(book, "SELECT key FROM grade WHERE result IS NOT NULL")])
+    names = file_names(sorted(verdicts(book)))
     found = contents(reports)
     assert set(found) == {f"{name}.json" for name in names.values()}
     return {key: found[f"{name}.json"] for key, name in names.items()}
@@ -78,20 +81,19 @@ def test_a_class_is_graded_like_each_submission_alone(
         assert one == batch(folder, tmp_path / "several", *options, cwd=str(ROOT))
     assert len(one) >= 20
     refused = 0
-    with Gradebook(tmp_path / "one.db") as book:
-        for standing in Grades(book).all():
-            (path,) = standing.files.paths
-            code, alone = report_in_process(folder / path, tmp_path / "alone.json", *options[2:])
-            if code != 2:  # a readable folder may contain only unreadable files
-                assert standing.verdict in ("graded", "unreadable")
-                assert without_other_parts(one[standing.student.key], alone) == json.loads(alone), path
-                statuses = {result["status"] for result in json.loads(alone)["results"]}
-                is_red = not statuses.isdisjoint(("failed", "skipped")) or is_undecided(alone)
-                assert code == int(is_red), path
-            else:
-                assert standing.verdict == "unreadable"
-                assert standing.reason in str(alone).replace(f"{folder}/", "")
-                refused += 1
+    for key, line in newest(tmp_path / "one.book").items():
+        (path,) = line["paths"]
+        code, alone = report_in_process(folder / path, tmp_path / "alone.json", *options[2:])
+        if code != 2:  # a readable folder may contain only unreadable files
+            assert line["verdict"] in ("graded", "unreadable")
+            assert without_other_parts(one[key], alone) == json.loads(alone), path
+            statuses = {result["status"] for result in json.loads(alone)["results"]}
+            is_red = not statuses.isdisjoint(("failed", "skipped")) or is_undecided(alone)
+            assert code == int(is_red), path
+        else:
+            assert line["verdict"] == "unreadable"
+            assert line["reason"] in str(alone).replace(f"{folder}/", "")
+            refused += 1
     assert refused == 0 if name == "samples" else refused > 1
 
 
@@ -132,10 +134,10 @@ def test_a_zip_is_graded_as_its_folder(layout: str, tmp_path: Path) -> None:
     rubric = "--rubric", str(without_hints())
     unpacked = batch(folder, tmp_path / "folder", *rubric)
     assert unpacked == batch(packed, tmp_path / "zip", *rubric)
-    done = grader("batch", packed, "--gradebook", tmp_path / "zip.db", *rubric)
+    done = grader("batch", packed, "--gradebook", tmp_path / "zip.book", *rubric)
     assert counted(done).startswith("0 graded, ")
-    ((closed,),) = rows(tmp_path / "zip.db", "SELECT count(*) FROM grade WHERE digest = ''")
-    done = grader("batch", folder, "--gradebook", tmp_path / "zip.db", *rubric)
+    closed = sum("digest" not in line for line in newest(tmp_path / "zip.book").values())
+    done = grader("batch", folder, "--gradebook", tmp_path / "zip.book", *rubric)
     assert counted(done).startswith(f"{closed} graded, ")
     assert closed < 10
 
@@ -146,18 +148,18 @@ def test_several_files_are_graded_like_a_folder(tmp_path: Path) -> None:
     rubric = "--rubric", str(without_hints())
     reports = batch(folder, tmp_path / "out", *rubric)
     several = 0
-    with Gradebook(tmp_path / "out.db") as book:
-        for standing in Grades(book).all():
-            paths, names = standing.files.paths, standing.files.names
-            # A late penalty is a note in the report.
-            if len(paths) > 1 and standing.verdict == "graded" and not standing.late.days:
-                together = tmp_path / "together" / standing.student.key
-                together.mkdir(parents=True)
-                for path, name in zip(paths, names, strict=True):
-                    shutil.copy(folder / path, together / name)
-                _, alone = report_in_process(together, tmp_path / "alone.json", *rubric)
-                assert alone == reports[standing.student.key]
-                several += 1
+    for key, line in newest(tmp_path / "out.book").items():
+        paths = line["paths"]
+        if (
+            len(paths) > 1 and line["verdict"] == "graded" and not line.get("is_late")
+        ):  # a late penalty is a note in the report
+            together = tmp_path / "together" / key
+            together.mkdir(parents=True)
+            for path, name in zip(paths, line["names"], strict=True):
+                shutil.copy(folder / path, together / name)
+            _, alone = report_in_process(together, tmp_path / "alone.json", *rubric)
+            assert alone == reports[key]
+            several += 1
     assert several > 1
 
 
@@ -182,18 +184,16 @@ def graded(tmp_path: Path) -> Path:
 
 def again(folder: Path, *arguments: str) -> str:
     """Run into the same gradebook again and return the output."""
-    done = grader("batch", folder, "--gradebook", folder.parent / "lab6.db", *arguments)
+    done = grader("batch", folder, "--gradebook", folder.parent / "lab6", *arguments)
     assert done.returncode == 0
     return counted(done)
 
 
-def results(folder: Path) -> dict[str, list[int]]:
-    """Return the results of each student."""
-    found: dict[str, list[int]] = {}
-    for key, result in rows(
-        folder.parent / "lab6.db", "SELECT key, result.id FROM result JOIN student ON student.id = student ORDER BY 2"
-    ):
-        found.setdefault(key, []).append(result)
+def results(folder: Path) -> dict[str, list[str]]:
+    """Return the digests of each student's results."""
+    found: dict[str, list[str]] = {}
+    for line in lines_of(folder.parent / "lab6"):
+        found.setdefault(line["student"], []).append(line["digest"])
     return found
 
 
@@ -244,7 +244,7 @@ def test_exactly_the_changed_submissions_are_graded_again(graded: Path, tmp_path
     changed = {byte.stem, ending.stem, attempt.stem, "more", "fewer", "emptier", "renamed", "zipped"}
     assert {path for path in after if after[path] != before[path]} == changed
     assert all(after[path][:-1] == before[path] for path in changed)
-    assert reports_of(tmp_path / "lab6.db", tmp_path / "reports") == batch(graded, tmp_path / "fresh")
+    assert reports_of(tmp_path / "lab6", tmp_path / "reports") == batch(graded, tmp_path / "fresh")
 
 
 # --- Reports ----------------------------------------------------------------------------------------------------------
@@ -278,34 +278,28 @@ def test_reports_have_safe_names_whatever_students_are_called(tmp_path: Path) ->
 
 
 def test_reports_quote_unchanged_files_only(tmp_path: Path) -> None:
-    """A text report has the quoted line, as `grader grade` has; once the file has changed, only its number."""
-    folder = tmp_path / "class"
-    shutil.copytree(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf", folder / "ann")
-    shutil.copytree(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf", folder / "bea")
-    words = tmp_path / "words"
-    command = ("batch", folder, "--gradebook", tmp_path / "lab6.db", "--reports", words)
-    grader(*command)
+    """A text report has the quoted line, as `grader grade` has; once the file has changed, it has points only."""
+    folder, book, words = tmp_path / "class", tmp_path / "lab6", tmp_path / "words"
+    for name in ("ann", "bea"):
+        shutil.copytree(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf", folder / name)
+    grader("batch", folder, "--gradebook", book, "--reports", words)
     alone = grader("grade", folder / "ann").stdout
     assert (words / "ann.txt").read_text() == alone
     quoted = next(line for line in alone.splitlines() if "<" in line and "xyz" in line)
     (folder / "ann/my_robot.urdf").write_text('<robot name="other"/>\n' * 100)
-    before = rows(tmp_path / "lab6.db", "SELECT max(id) FROM result")
-    from grader.report.formats import Format, render
-    from grader.usecases.class_reports import report_of
-
-    with Gradebook(tmp_path / "lab6.db") as book:
-        standings = Grades(book)
-        texts = {key: render(report_of(standings, standings.find(key)), Format.TERMINAL) for key in ("ann", "bea")}
+    before = (book / "results.jsonl").read_bytes()
+    texts = {key: render(report_of(Class(book), Class(book).grade(key)), Format.TERMINAL) for key in ("ann", "bea")}
     assert quoted not in texts["ann"]
+    assert "The submission has moved or changed" in " ".join(texts["ann"].split())
     assert quoted in texts["bea"]
-    assert rows(tmp_path / "lab6.db", "SELECT max(id) FROM result") == before
+    assert (book / "results.jsonl").read_bytes() == before
 
 
 # --- Safety -----------------------------------------------------------------------------------------------------------
 
 MODULES = (
     "numpy", "lxml", "yaml", "signal", "resource", "multiprocessing", "zlib", "json", "token", "selectors",
-    "pebble", "sqlite3", "rich", "distributed", "pypdf",
+    "pebble", "rich", "distributed", "pypdf",
 )  # fmt: skip
 
 
@@ -315,7 +309,7 @@ def test_nothing_of_a_class_is_imported(tmp_path: Path) -> None:
     mark = tmp_path / "ran"
     for name in MODULES:
         (folder / f"{name}.py").write_text(f"open({str(mark)!r}, 'w').close()\nraise SystemExit\n")
-    done = grader("batch", ".", "--gradebook", "../lab6.db", "--reports", "../reports", cwd=str(folder))
+    done = grader("batch", ".", "--gradebook", "../lab6", "--reports", "../reports", cwd=str(folder))
     assert (done.returncode, counted(done)) == (0, "5 graded, 0 unchanged")
     assert not mark.exists()
     assert GRADER[-2:] == ("-m", "grader")
@@ -324,7 +318,8 @@ def test_nothing_of_a_class_is_imported(tmp_path: Path) -> None:
 def test_awkward_names_are_found_in_the_roster(tmp_path: Path) -> None:
     """A folder with a bidirectional mark, a line break or a tab in its name belongs to the student of that name."""
     unmatched, absent = class_with_roster(tmp_path / "class", tmp_path / "roster.csv", 120)
-    done = grader("batch", tmp_path / "class", "--gradebook", tmp_path / "lab6.db", "--roster", tmp_path / "roster.csv")
+    done = grader("batch", tmp_path / "class", "--gradebook", tmp_path / "lab6", "--roster", tmp_path / "roster.csv")
     assert done.returncode == 0
-    assert [key for (key,) in rows(tmp_path / "lab6.db", "SELECT key FROM grade WHERE is_on_roster = 0")] == unmatched
-    assert rows(tmp_path / "lab6.db", "SELECT count(*) FROM grade WHERE verdict = 'missing'") == [(absent,)]
+    students = {grade.student.key: grade for grade in Class(tmp_path / "lab6")}
+    assert [key for key, grade in students.items() if not grade.student.is_on_roster] == unmatched
+    assert sum(grade.graded is None for grade in students.values()) == absent

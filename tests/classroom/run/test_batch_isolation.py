@@ -14,9 +14,8 @@ from tests.classroom.class_runs import (
     eventually,
     grader,
     hostile_class,
-    is_sound,
+    newest,
     reasons,
-    rows,
     session_of,
     started,
     urdf_class,
@@ -48,7 +47,7 @@ RUBRIC = ("--rubric", HOSTILE_RUBRIC)
 def test_each_misbehaviour_affects_one_submission(tmp_path: Path) -> None:
     """All of them at once among many others: each is errored with its reason, and only these are tried again."""
     folder = hostile_class(tmp_path / "class", *REASONS, *GOOD)
-    book = tmp_path / "lab.db"
+    book = tmp_path / "lab"
     command = ("batch", folder, "--gradebook", book, *RUBRIC, "--timeout", "4", "--jobs", "4")
     done = grader(*command, **WITH_HOSTILE)
     assert done.returncode == 0, done.stderr
@@ -59,8 +58,7 @@ def test_each_misbehaviour_affects_one_submission(tmp_path: Path) -> None:
     for key, reason in REASONS.items():
         allowed = f"{reason}|{SLOW}" if key in ENDED else reason
         assert re.fullmatch(allowed, found[key]), (key, found[key])
-    marks = rows(book, "SELECT DISTINCT score FROM grade WHERE verdict = 'graded'")
-    assert marks == [(30_000,)]
+    assert {sum(entry[0] for entry in newest(book)[key]["results"].values()) for key in GOOD} == {3}
 
     for name in REASONS:  # as their students submit something else
         (folder / f"{name}.urdf").write_text('<robot name="fine"><link name="a"/></robot>')
@@ -69,14 +67,13 @@ def test_each_misbehaviour_affects_one_submission(tmp_path: Path) -> None:
     assert counted(grader(*command, **WITH_HOSTILE)) == (
         f"1 graded (1 errored), {len(GOOD) + len(REASONS) - 1} unchanged"
     )
-    assert is_sound(book)
 
 
 @pytest.mark.exhaustive
 def test_a_class_of_misbehaving_submissions_finishes(tmp_path: Path) -> None:
     """Even if every worker is killed again and again, each submission has its reason."""
     names = [f"{name}-{number}" for name in ("dies", "leaves", "crashes") for number in range(8)]
-    folder, book = hostile_class(tmp_path / "class", *names), tmp_path / "lab.db"
+    folder, book = hostile_class(tmp_path / "class", *names), tmp_path / "lab"
     done = grader("batch", folder, "--gradebook", book, *RUBRIC, "--timeout", "6", "--jobs", "2", **WITH_HOSTILE)
     assert (done.returncode, counted(done)) == (0, "24 graded (24 errored), 0 unchanged")
     assert set(verdicts(book)) == set(names)
@@ -86,7 +83,7 @@ def test_a_class_of_misbehaving_submissions_finishes(tmp_path: Path) -> None:
 def test_no_process_remains(tmp_path: Path) -> None:
     """When the command has finished, all its processes have ended or are ending."""
     folder = urdf_class(tmp_path / "class", 20)
-    with started("batch", folder, "--gradebook", tmp_path / "lab.db", "--jobs", "3") as process:
+    with started("batch", folder, "--gradebook", tmp_path / "lab", "--jobs", "3") as process:
         assert process.wait(HANG_TIMEOUT) == 0
         assert eventually(lambda: not session_of(process))
 
@@ -98,7 +95,7 @@ HANGING = ("hangs", "hangs-2", "hangs_in_c", "fine")
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGKILL, -9), (signal.SIGTERM, -15)])
 def test_no_process_outlives_a_killed_command(number: signal.Signals, code: int, tmp_path: Path) -> None:
     """Not even workers that hang within a submission and never return to the interpreter."""
-    folder, book = hostile_class(tmp_path / "class", *HANGING), tmp_path / "lab.db"
+    folder, book = hostile_class(tmp_path / "class", *HANGING), tmp_path / "lab"
     command = ("batch", folder, "--gradebook", book, *RUBRIC, "--timeout", "3600", "--jobs", "4")
     with started(*command, **WITH_HOSTILE) as process:
         assert eventually(lambda: "fine" in verdicts(book))
@@ -117,10 +114,10 @@ def test_no_process_outlives_a_killed_command(number: signal.Signals, code: int,
 @pytest.mark.exhaustive
 def test_killed_workers_are_replaced(tmp_path: Path) -> None:
     """As when the kernel is short of memory: every submission has a result, and most are graded at once."""
-    folder, book = urdf_class(tmp_path / "class", 600), tmp_path / "lab.db"
+    folder, book = urdf_class(tmp_path / "class", 600), tmp_path / "lab"
     with started("batch", folder, "--gradebook", book, "--jobs", "3") as process:
         for count in (30, 120, 210, 300, 420):
-            assert eventually(lambda at=count: rows(book, "SELECT 1 FROM result LIMIT 1 OFFSET ?", at))  # type: ignore[misc]
+            assert eventually(lambda at=count: len(verdicts(book)) > at)  # type: ignore[misc]
             workers = [pid for pid in session_of(process) if pid > process.pid][2:]
             if workers:
                 os.kill(workers[-1], signal.SIGKILL)

@@ -26,11 +26,11 @@ def refused(*arguments: str | Path) -> str:
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="nothing is closed to root")
 def test_a_read_only_gradebook(folder: Path, tmp_path: Path) -> None:
-    """A file or a folder without write permission is reported."""
-    path = tmp_path / "lab6.db"
+    """A file without write permission is reported."""
+    path = tmp_path / "lab6"
     assert grader("batch", folder, "--gradebook", path).returncode == 0
-    path.chmod(0o400)
-    assert "readonly" in refused("batch", folder, "--gradebook", path, "--force")
+    (path / "results.jsonl").chmod(0o400)
+    assert "results.jsonl: Permission denied" in refused("batch", folder, "--gradebook", path, "--force")
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="nothing is closed to root")
@@ -38,7 +38,7 @@ def test_a_submission_without_read_permission(folder: Path, tmp_path: Path) -> N
     """It is unreadable, the others are graded, and it is graded once it may be read."""
     (folder / "closed").mkdir()
     (folder / "closed").chmod(0)
-    book = tmp_path / "lab6.db"
+    book = tmp_path / "lab6"
     done = grader("batch", folder, "--gradebook", book)
     assert (done.returncode, verdicts(book)["closed"]) == (0, "unreadable")
     (folder / "closed").chmod(0o700)
