@@ -32,8 +32,8 @@ LAYERS = (
 INNER = {
     "classroom": (
         ("lateness", "listing", "results", "settings", "tables"),
-        ("equal_work", "folder", "mark_files", "opening", "roster"),
-        ("lms", "people", "typed_names"),
+        ("equal_work", "mark_files", "opening", "roster"),
+        ("folder", "lms", "people", "typed_names"),
         ("layouts", "marks"),
         ("grades", "grouping", "mark_import"),
         ("changes", "grade_table", "owners", "reopening", "review_items", "team_folders"),
