@@ -7,7 +7,8 @@
 """
 
 import re
-from collections import Counter, defaultdict
+import sys
+from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -35,7 +36,7 @@ PATTERNS = {
     ),
     "moodle": re.compile(  # not if two participants could have chosen it
         r"(?!.*_assignsubmission_.*_assignsubmission_)(?P<name>.+?)(?:_(?P<moodle>[0-9]{1,20}))?"
-        r"_assignsubmission_(?:file|(?P<plugin>[a-z]+))_?(?P<file>.*)",
+        r"_assignsubmission_(?:file(?![a-z])|(?P<plugin>[a-z]+))_?(?P<file>.*)",
         re.DOTALL,
     ),
 }
@@ -62,7 +63,9 @@ class Entry(NamedTuple):
     @property
     def owner(self) -> str:
         """What tells whose it is. Two numbers of Canvas are two readings of a name."""
-        return f"{self.canvas} {self.name}" if " " in self.canvas else self.canvas or self.moodle or f"_{self.name}"
+        if " " in self.canvas:
+            return f"{self.canvas} {self.name}"
+        return self.canvas or (f"/{self.moodle}" if self.moodle else self.name)
 
     @property
     def order(self) -> tuple[int, int, str]:
@@ -75,7 +78,7 @@ class Entry(NamedTuple):
 class ClassFolder:
     """A folder of submissions: its path in the listing (empty or with a slash), its name, and what the user has said.
 
-    `labs` are the names of the lab's own folders. `ignored` and `notes` collect lines for the user.
+    `labs` are the names of the lab's own folders. `ignored` collects lines for the user.
     """
 
     listing: ClassListing
@@ -88,7 +91,6 @@ class ClassFolder:
     assignment: str
     is_explicit: bool
     ignored: list[str]
-    notes: list[str]
 
     @property
     def entries(self) -> list[str]:
@@ -147,19 +149,20 @@ def _moodle(folder: ClassFolder) -> Iterator[Entry]:
 
 def _folders(folder: ClassFolder) -> Iterator[Entry]:
     """Yield each folder, archive and URDF, without the prefix of the assignment in its name."""
-    by_login: dict[str, list[Entry]] = defaultdict(list)
-    for name in (*(f"{name}/" for name in folder.children.folders), *folder.children.files):
-        found = PATTERNS["folders"].fullmatch(name) if name[:-1] not in BUILD_FOLDERS else None
-        if found:
-            by_login[found["login"]].append(_entry(found))
-        else:
-            folder.ignore([name.rstrip("/")])
-    prefix = _prefix([login for login, copies in by_login.items() if copies[0].ending == "/"] or by_login, folder)
-    for login, copies in by_login.items():
-        are_other = all(copy.upload for copy in copies) and not folder.people.knows(_without(prefix, login))
-        for copy in copies:  # Team (1) and Team (2) are two teams
-            name = copy.path.removesuffix(copy.ending) if are_other else login
-            yield copy._replace(path=copy.path.rstrip("/"), name=name, login=_without(prefix, name))
+    parse, own = PATTERNS["folders"].fullmatch, [name for name in folder.children.folders if name not in BUILD_FOLDERS]
+    folder.ignore({*folder.children.folders}.difference(own))
+    folder.ignore(name for name in folder.children.files if not parse(name))
+    names = [*(f"{name}/" for name in own), *filter(parse, folder.children.files)]
+    logins = [found["login"] for found in map(parse, names) if found and found["ending"] == "/"]
+    prefix = _prefix(logins or [found["login"] for found in map(parse, names) if found], folder)
+    numbered = {found["login"] for found in map(parse, names) if found and found["upload"]}
+    others = numbered.difference(found["login"] for found in map(parse, names) if found and not found["upload"])
+    for found in filter(None, map(parse, names)):
+        name, ending = found["login"], sys.intern(found["ending"])
+        if name in others and not folder.people.knows(_without(prefix, name)):
+            name = found.string.removesuffix(ending)  # Team (1) and Team (2) are two teams
+        path = found.string.rstrip("/")
+        yield Entry(path, name, login=_without(prefix, name), upload=found["upload"] or "", ending=ending)
 
 
 def _without(prefix: str, name: str) -> str:

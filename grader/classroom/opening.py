@@ -8,11 +8,9 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.classroom.listing import ClassListing
+from grader.classroom.listing import ClassListing, listing_of
 from grader.documents.evidence_files import EVIDENCE
 from grader.errors import InputError
-from grader.files.class_folder import ClassDirectory
-from grader.files.class_zip import ClassZip
 from grader.files.members import ARCHIVE_ERRORS, error_text
 from grader.files.names import ROBOT_ENDINGS
 from grader.files.opening import with_inner, without_endings
@@ -61,27 +59,19 @@ class OpenedSubmission(NamedTuple):
         )
 
 
-@lru_cache(maxsize=4)
-def is_zip(root: str) -> bool:
-    """Return whether a class is one zip."""
-    return not Path(root).is_dir()
-
-
 def _open(root: str) -> ClassListing:
     """Return a class folder, or a zip that stays open as long as the file is the same."""
-    if not is_zip(root):
-        return ClassDirectory(Path(root))
     try:
         status = os.stat(root)  # noqa: PTH116
     except OSError:
-        return _open_zip(root, ())
-    return _open_zip(root, (status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns))
+        return _opened(root, ())
+    return _opened(root, (status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns))
 
 
-@lru_cache(maxsize=2)
-def _open_zip(root: str, stamp: tuple[int, ...]) -> ClassZip:
+@lru_cache(maxsize=4)
+def _opened(root: str, stamp: tuple[int, ...]) -> ClassListing:
     del stamp
-    return ClassZip(Path(root))
+    return listing_of(Path(root))
 
 
 def open_class_submission(
@@ -111,12 +101,12 @@ def _open_single(source: ClassListing, path: str, max_size: int) -> OpenedSubmis
         name = without_endings(last)
         digest = _digest(name, max_size)
         if (archive := source.archive(path, digest)) is not None:
-            return OpenedSubmission(name, shown, _text(digest), None, archive, max_size)
+            return OpenedSubmission(name, shown, digest.hexdigest(), None, archive, max_size)
     if not last.lower().endswith(ROBOT_ENDINGS) and not _is_robot(source, path):
         raise InputError(f"{last} is neither a URDF nor a folder, an archive or a document")
     data, digest = source.read(path, max_size), _digest(last, max_size)
     digest.update(data)
-    return OpenedSubmission(last.rpartition(".")[0] or last, last, _text(digest), data, None)
+    return OpenedSubmission(last.rpartition(".")[0] or last, last, digest.hexdigest(), data, None)
 
 
 def _is_document(source: ClassListing, path: str) -> bool:
@@ -139,11 +129,6 @@ def _digest(name: str, max_size: int) -> "hashlib._Hash":
     return sha256(repr(name if max_size == URDF_LIMIT else (name, max_size)).encode())
 
 
-def _text(digest: "hashlib._Hash") -> str:
-    """Return a digest as text that begins with a letter, so that no spreadsheet takes it for a number."""
-    return f"d{digest.hexdigest()[:32]}"
-
-
 def _digest_of_tree(name: str, tree: Tree, max_size: int) -> str:
     """Return the hash of all that a submission is read from: its name, its files with their paths, the ignored files.
 
@@ -157,4 +142,4 @@ def _digest_of_tree(name: str, tree: Tree, max_size: int) -> str:
             digest.update(file.read(_MAX_HASHED, first=True))
         except InputError as error:
             digest.update(str(error).encode())
-    return _text(digest)
+    return digest.hexdigest()

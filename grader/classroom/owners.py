@@ -1,9 +1,10 @@
 """Whose each submission of a class is: a student's by an id or a full name, a visitor's, or nobody's for certain."""
 
 import os
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from hashlib import sha256
+from itertools import pairwise
 from typing import NamedTuple
 
 from grader.classroom.grouping import ClassSubmission
@@ -172,11 +173,11 @@ class Owners:
             name = own.name or ("" if given.canvas else given.name)
             own = own._replace(name=name, canvas=own.canvas or given.canvas, moodle=own.moodle or given.moodle)
             found.append(one._replace(student=own))
-        counts = Counter(one.student.key for one in self._visitors)
+        twice = {one for one, other in pairwise(sorted(one.student.key for one in self._visitors)) if one == other}
         taken = {plain(one.key) for one in students}
         for one in self._visitors:
             key, is_chosen = one.student.key, bool(one.student.canvas or one.student.aliases)
-            if counts[key] > 1 or not key.isprintable() or plain(key) in taken:
+            if key in twice or not key.isprintable() or plain(key) in taken:
                 key = _path_key(f"{self.roots[one.root][1]}/{one.paths[0]}" if len(self.roots) > 1 else one.paths[0])
             visitor = one.student._replace(
                 key=key, name="" if is_chosen else one.student.name, aliases=(), is_on_roster=not self._has_roster

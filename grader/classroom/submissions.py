@@ -45,7 +45,7 @@ def read_class(
     for root, (path, (listing, _)) in enumerate(zip(paths, roots, strict=True)):
         top = ClassFolder(
             listing, listing.children(""), "", path.resolve().name, owners.people, rubric_id, labs, assignment,
-            layout != "auto", owners.ignored, owners.notes,
+            layout != "auto", owners.ignored,
         )  # fmt: skip
         folder = inner_class(top)
         chosen = layout_of(folder) if layout == "auto" else layout

@@ -22,7 +22,7 @@ from hypothesis import HealthCheck, seed, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
-from grader.classroom.opening import is_zip, open_class_submission
+from grader.classroom.opening import open_class_submission
 from grader.classroom.roster import Roster, Student
 from grader.classroom.submissions import read_class
 from grader.errors import InputError
@@ -231,7 +231,6 @@ class HostileClass(RuleBasedStateMachine):
 
 def _pack(folder: Path, to: Path) -> None:
     """Pack a class folder as a zip with symlinks; names that a zip cannot hold are omitted."""
-    is_zip.cache_clear()
     with zipfile.ZipFile(to, "w") as archive:
         for path in sorted(folder.rglob("*"), key=str):
             member = zipfile.ZipInfo(path.relative_to(folder).as_posix())

@@ -76,10 +76,8 @@ def test_each_archive_gets_a_report(folder: Path, followed: tuple[str, list[Step
         names = feedback.namelist()
         for name in names:
             data = io.BytesIO(feedback.read(name))
-            if name.endswith(".zip"):
-                found = ZipFile(data).namelist()
-            else:
-                found = tarfile.open(fileobj=data).getnames()
+            with ZipFile(data) if name.endswith(".zip") else tarfile.open(fileobj=data) as archive:
+                found = archive.namelist() if isinstance(archive, ZipFile) else archive.getnames()
             assert found == ["report.html"], name
     numbers = [re.search(r"_(\d+)_\d+_", name) for name in names]
     assert len({number[1] for number in numbers if number}) == len(names) > 60

@@ -6,25 +6,25 @@ import shutil
 from collections.abc import Callable, Iterator, Sequence
 from decimal import Decimal
 from functools import cache, partial
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
-from grader.classroom.intake.roster import entry_from_json, entry_to_json
-from grader.classroom.intake.roster_file import read_roster
-from grader.classroom.lms.filling import FillOptions
-from grader.classroom.lms.grades import LmsGrade
+from grader.classroom.lms.fill import fill
+from grader.classroom.lms.forms import FORMS
+from grader.classroom.lms.grade_file import FillOptions
+from grader.classroom.people import People
+from grader.classroom.roster import read_roster
 from grader.classroom.tables import Table, TableRow, _rows, read_table
 from grader.errors import RubricError
 from grader.grading.grade import grade
 from grader.grading.rubric import read_rubric
 from grader.usecases import local_server
-from grader.usecases.grade_files import FILLERS, preflight_lines
 from grader.usecases.local_server import LocalServer
 from grader.usecases.review_page import ReviewPage
 from grader.usecases.review_session import ReviewSession
 from tests.classroom.gradebooks import ROSTER, batch, lab_text, make_class
-from tests.classroom.lms.enrolled_class import CLASS
-from tests.classroom.lms.test_round_trips import blackboard_file, brightspace_file, canvas_file, moodle_file
+from tests.classroom.lms.lms_class import CLASS, blackboard_file, brightspace_file, canvas_file, moodle_file
 from tests.fuzz.harness import GUARD, check_message, user_errors
 from tests.samples import LAB6, reference
 
@@ -58,21 +58,17 @@ def rubrics() -> Iterator[bytes]:
 
 
 def roster(data: bytes) -> None:
-    """A roster is refused, or has students with different keys, each of whom is found again by it."""
-    path = Path(GUARD.folder, "roster.csv")
-    path.write_bytes(data)
+    """A roster is refused, or has students with different keys, each of whom is found again by it or by nobody else."""
     with user_errors():
-        found = read_roster(path)
+        found = read_roster(data, "roster.csv")
         keys = [student.key for student in found.students]
         assert len({*keys}) == len(keys)
         assert all(keys)
         for note in found.notes:
             check_message(note)
-        for index, entry in enumerate(found.entries):
-            assert entry_from_json(entry_to_json(entry)) == entry
-            assert found.entry(entry.student.key) is entry
-            match = found.match(entry.student)
-            assert match.position in (index, None)
+        people = People(found.students)
+        for index, student in enumerate(found.students):
+            assert people.match(student).only in (index, None)
 
 
 def rosters() -> Iterator[bytes]:
@@ -80,26 +76,25 @@ def rosters() -> Iterator[bytes]:
     yield from (ROSTER.encode(), ROSTER.replace(",", ";").encode("cp1252"), ROSTER.encode("utf-16"))
     yield b"Last name,First name,Group,Section,Due,Extension,Late,Status\nAsh,Ann,team 1,A,2026-09-10,2,no,Submitted - 2 hours late\n"
     yield b"Identifier,Full name,Email address,Status\nParticipant 5001,Ann Ash,a@uni.example,Submitted for grading - 1 day 2 hours late\n"
-    yield canvas_file({one.key: "" for one in _SOME})
+    yield canvas_file({one.student.key: "" for one in _SOME})
 
 
 def lms(data: bytes, name: str) -> None:
     """A file of an LMS is refused, or filled: rows are removed, and of the others only grade and feedback change."""
-    grades = [LmsGrade(one.student, one.total, "<p>Well done.</p>" * (name == "moodle"), "is open") for one in _SOME]
     with user_errors():
         table = read_table(data, "lms.csv")
         assert table.encoded() == data
-        filled = FILLERS[name](data, grades, FillOptions(_OUT_OF, ("small", "A small lab"), shown="lms.csv"))
+        filled = fill(data, _SOME, FORMS[name], FillOptions(_OUT_OF, ("A small lab", "small"), shown="lms.csv"))
         text = filled.data.removeprefix(table.bom).decode(table.encoding)  # as what it was read, whatever is left of it
-        _check_filled(table, _rows(text, table.delimiter, "lms.csv"), filled.preflight.column)
-        for line in preflight_lines(filled.preflight):
+        _check_filled(table, _rows(text, table.delimiter, "lms.csv"))
+        for line in filled.lines:
             assert line.isprintable(), line
 
 
-def _check_filled(before: Table, after: Sequence[TableRow], column: str) -> None:
-    """Assert that the rows are some of those before, in their order; the grade may differ, and one column for feedback."""
-    grade = {index for index, title in enumerate(before.titles) if title == column}
-    assert any(_are_some(before, after, {*grade, other}) for other in (-1, *range(len(before.titles))))
+def _check_filled(before: Table, after: Sequence[TableRow]) -> None:
+    """Assert that the rows are some of those before, in their order; two columns may differ, for grade and feedback."""
+    columns = range(max(len(row.cells) for row in before.rows))
+    assert any(_are_some(before, after, {*two}) for two in [(), *combinations(columns, 1), *combinations(columns, 2)])
 
 
 def _are_some(before: Table, after: Sequence[TableRow], changed: set[int]) -> bool:
@@ -113,10 +108,10 @@ def _without(row: TableRow, changed: set[int]) -> list[str]:
     return ["" if index in changed else cell.raw for index, cell in enumerate(row.cells)]
 
 
-_CELLS = {one.key: ("", "1.00", "")[one.number % 3] for one in _SOME}
+_CELLS = {one.student.key: ("", "1.00", "")[number % 3] for number, one in enumerate(_SOME)}
 LMS_SEEDS: dict[str, Callable[[], list[bytes]]] = {
     "canvas": lambda: [canvas_file(_CELLS), canvas_file(_CELLS, only=True)],
-    "moodle": lambda: [moodle_file(_CELLS, {one.key: "<p>kept</p>" for one in _SOME[:2]})],
+    "moodle": lambda: [moodle_file(_CELLS, {one.student.key: "<p>kept</p>" for one in _SOME[:2]})],
     "blackboard": lambda: [blackboard_file(_CELLS), blackboard_file(_CELLS).decode("utf-16").encode()],
     "brightspace": lambda: [brightspace_file(_CELLS)],
 }
