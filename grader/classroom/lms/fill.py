@@ -6,7 +6,6 @@ as a change, and Moodle's worksheets have rounded grades. So rows of students wi
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from decimal import ROUND_FLOOR, Decimal
 from typing import NamedTuple
 
@@ -58,7 +57,7 @@ def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOpt
             rows[-1] = comment or rows[-1]
             filled += rows[-1] is not row
             unchanged += rows[-1] is row
-    table = replace(file.table, rows=tuple(rows))
+    table = file.table._replace(rows=tuple(rows))
     if options.only and "maximum" not in file.roles:
         table = table.with_columns([*{*file.roles.values()}])
     count = f"column {header!r}: {filled} filled in, {unchanged} already the same"
