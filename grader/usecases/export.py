@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Decimal
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from zipfile import is_zipfile
 
 from grader.classroom import folder as names
@@ -14,13 +15,21 @@ from grader.classroom.lms.fill import by_reason, fill, participants
 from grader.classroom.lms.forms import FORMS
 from grader.classroom.lms.grade_file import FillOptions
 from grader.classroom.lms.owners import ClassGrade, Note
+from grader.classroom.run.pool import processors
 from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.errors import GraderError, InputError
 from grader.files.reading import read_capped
-from grader.report.formats import Format, render
-from grader.text import enumerated, format_points, named, printable, printable_path
+from grader.report.formats import Format
+from grader.text import counted, enumerated, format_points, named, printable, printable_path
 from grader.usecases.class_figures import warn_of_ignored
-from grader.usecases.class_reports import ReportRun, graders_of, refuse_report_folder, report_of, write_reports
+from grader.usecases.class_reports import (
+    ReportRun,
+    graders_of,
+    refuse_report_folder,
+    render_reports,
+    report_of,
+    write_reports,
+)
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import is_same_file, is_stdout, refuse_symlinks, save_bytes
@@ -144,13 +153,18 @@ def _feedback(request: ExportRequest, book: Class, terminal: Terminal) -> bytes:
             numbers = participants(data, known, FORMS["moodle"], _options(request, book))
         names, without = moodle_names([one.student for one in grades.values()], name, numbers)
     else:
-        files = [(one.student, one.graded.paths if one.graded is not None else ()) for one in grades.values()]
-        names, without = canvas_names(files, name)
-    reports = {key: render(report_of(book, grades[key], feedback=True), kind).encode() for key in names}
+        paths = [(one.student, one.graded.paths if one.graded is not None else ()) for one in grades.values()]
+        names, without = canvas_names(paths, name)
+    files = {key: str(number) for number, key in enumerate(names)}
+    with TemporaryDirectory() as folder:
+        run = ReportRun(book.folder, Path(folder), (kind,), is_feedback=True)
+        without |= render_reports(run, files, terminal, processors())
+        written = ((key, Path(folder, f"{file}.{kind.ending}")) for key, file in files.items() if key not in without)
+        reports = {key: path.read_bytes() for key, path in written}
     zipped, left = write_feedback(reports, names, name)
     for line in by_reason(Note("without feedback", key, why) for key, why in {**without, **left}.items()):
         terminal.warn(printable(line))
-    terminal.warn(f"{len(names) - len(left)} reports in {printable_path(request.feedback or Path())}")
+    terminal.warn(f"{counted(len(reports) - len(left), 'report')} in {printable_path(request.feedback or Path())}")
     return zipped
 
 

@@ -17,7 +17,7 @@ from grader.classroom.tables import TableRow
 from grader.errors import InputError
 from grader.text import first_lines, format_points, people_text, printable
 
-_OPEN, _EXCUSED, _KEPT = "without a grade", "excused", "kept the comment"
+_OPEN, _KEPT = "without a grade", "kept the comment"
 _REFUSED = "the LMS would refuse the grade"
 _INCOMPLETE = frozenset({_REFUSED, UNKNOWN, MISSING, AMBIGUOUS})
 _NOT_GRADED = frozenset({"", "-", "needs grading"})  # the last in Blackboard
@@ -49,8 +49,6 @@ def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOpt
         elif grade is not None and (note := _why_not(file, form, row, grade, new)):
             notes.append(Note(note[0], one.who, note[1]))
         elif grade is not None:
-            if grade.total is None:
-                notes.append(Note(_EXCUSED, one.who, f"{new} in the file"))
             rows.append(_with_grade(file, one, new, changes))
             if (comment := _with_comment(file, rows[-1], grade.comment)) is None:
                 notes.append(Note(_KEPT, one.who, f"a person wrote or changed it in {form.lms}"))
