@@ -20,16 +20,10 @@ from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.errors import GraderError, InputError
 from grader.files.reading import read_capped
 from grader.report.formats import Format
-from grader.text import counted, enumerated, format_points, named, printable, printable_path
+from grader.text import counted, enumerated, format_points, printable, printable_path
+from grader.usecases import class_reports
 from grader.usecases.class_figures import warn_of_ignored
-from grader.usecases.class_reports import (
-    ReportRun,
-    graders_of,
-    refuse_report_folder,
-    render_reports,
-    report_of,
-    write_reports,
-)
+from grader.usecases.class_reports import ReportRun
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import is_same_file, is_stdout, refuse_symlinks, save_bytes
@@ -66,8 +60,8 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
     if request.target == "html":
         folder = request.output or book.folder / names.REPORTS
         if request.output is not None:
-            refuse_report_folder(folder, (Format.HTML,), roots)
-        write_reports(ReportRun(book.folder, folder, (Format.HTML,)), terminal)
+            class_reports.refuse_report_folder(folder, (Format.HTML,), roots)
+        class_reports.write_reports(ReportRun(book.folder, folder, (Format.HTML,)), terminal)
         return b"", ExitCode.PASSED
     for path in filter(None, (request.output, request.feedback)):
         refuse_symlinks(path, roots)
@@ -99,11 +93,7 @@ def _data(request: ExportRequest, book: Class, terminal: Terminal) -> tuple[byte
     form = FORMS[request.target]
     grades = [_class_grade(book, one, request, has_comment="comment" in form.columns) for one in book]
     filled = fill(read_capped(request.into, SIZE_LIMIT, advice=""), grades, form, _options(request, book))
-    older = [
-        Note(Reason.OLDER_MARKS, named(one.student.key, one.student.name), ", ".join(one.older))
-        for one in book
-        if one.older
-    ]
+    older = (Note(Reason.OLDER_MARKS, one.student.key, ", ".join(one.older)) for one in book if one.older)
     for line in [*filled.lines, *map(printable, by_reason(older))]:
         terminal.warn(line)
     return filled.data, filled.is_complete
@@ -119,15 +109,15 @@ def _class_grade(book: Class, grade: StudentGrade, request: ExportRequest, *, ha
 
 
 def _comment(book: Class, grade: StudentGrade, total: Decimal) -> str:
-    report = report_of(book, grade, has_hints=False)
+    report = class_reports.report_of(book, grade, has_hints=False)
     lines = [] if grade.has_final else [*lost_points(report.results)]
     if grade.late.points:
         lines.append(f"Late: {format_points(grade.late.points)}. {grade.late.reason}")
     if grade.final is not None and grade.final.comment:
         lines.append(f"Comment: {grade.final.comment}")
-    graders, exported = graders_of(grade, report) or "automatically", total.quantize(Decimal("0.01"), ROUND_FLOOR)
-    points = f"{format_points(exported)} of {format_points(_maximum(book))} points"
-    return comment_html(f"Graded {graders}: {points}.", lines)
+    graders = class_reports.graders_of(grade, report) or "automatically"
+    exported = format_points(total.quantize(Decimal("0.01"), ROUND_FLOOR))
+    return comment_html(f"Graded {graders}: {exported} of {format_points(_maximum(book))} points.", lines)
 
 
 def _maximum(book: Class) -> Decimal:
@@ -158,7 +148,7 @@ def _feedback(request: ExportRequest, book: Class, terminal: Terminal) -> bytes:
     files = {key: str(number) for number, key in enumerate(names)}
     with TemporaryDirectory() as folder:
         run = ReportRun(book.folder, Path(folder), (kind,), is_feedback=True)
-        without |= render_reports(run, files, terminal, processors())
+        without |= class_reports.render_reports(run, files, terminal, processors())
         written = ((key, Path(folder, f"{file}.{kind.ending}")) for key, file in files.items() if key not in without)
         reports = {key: path.read_bytes() for key, path in written}
     zipped, left = write_feedback(reports, names, name)
