@@ -1,9 +1,9 @@
 """Write a report for each student of a class, and the class's page beside reports in HTML."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
+from typing import NamedTuple
 
 from grader.checks.outcome import Outcome, Status
 from grader.classroom import folder as names
@@ -32,8 +32,7 @@ _NOTHING = Outcome("skipped", "not graded, because nothing was submitted")
 _MOVED = "The submission has moved or changed, so this report has no details: run `grader batch` again."
 
 
-@dataclass(frozen=True, slots=True)
-class ReportRun:
+class ReportRun(NamedTuple):
     """The reports to write of a gradebook into a folder; `answers` is the file of the model answers.
 
     `time` is that of the newest run: workers read the gradebook once for it. Feedback always says who graded.
@@ -47,8 +46,7 @@ class ReportRun:
     is_feedback: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class _Task:
+class _Task(NamedTuple):
     """A report to write: the student and the name of the file; without hints if their search was lost."""
 
     key: str
@@ -156,7 +154,7 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
     keys = [one.student.key for one in book if one.graded is not None or one.has_final]
     files = file_names(keys)
     write_index(run.folder, files)
-    lost = render_reports(replace(run, time=book.run.time), files, terminal, jobs or processors(), timeout)
+    lost = render_reports(run._replace(time=book.run.time), files, terminal, jobs or processors(), timeout)
     if Format.HTML in run.formats:
         is_inside = run.folder == run.gradebook / names.REPORTS
         prefix = f"{names.REPORTS}/" * is_inside
@@ -175,7 +173,7 @@ def render_reports(
     lost = dict[str, str]()
 
     def again(task: _Task, _: WorkerError) -> _Task | None:
-        return replace(task, has_hints=False) if task.has_hints else None
+        return task._replace(has_hints=False) if task.has_hints else None
 
     def give_up(task: _Task, error: Exception) -> tuple[str, str]:
         if isinstance(error, InputError | RubricError):
@@ -184,11 +182,12 @@ def render_reports(
         return task.key, str(error) if isinstance(error, WorkerError | MachineError) else fault
 
     with Processes(workers, timeout) as executor, terminal.show_class("writing reports") as show:
-        show(progress := Progress(len(files)))
+        show(Progress(len(files)))
+        done = 0
         tasks = (_Task(key, name) for key, name in files.items())
         for results in results_of(executor, workers, partial(_write_some, run), tasks, again, give_up, _TASK_SIZE):
             lost |= {key: why for key, why in results if why}
-            show(progress := replace(progress, graded=progress.graded + len(results)))
+            show(Progress(len(files), graded=(done := done + len(results))))
     return {key: lost[key] for key in files if key in lost}
 
 
