@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 from grader.classroom.grades import Class
 from grader.classroom.review_items import ReviewFilter
-from grader.usecases.local_server import HOST
-from grader.usecases.review_page import serving
+from grader.usecases.local_server import HOST, LocalServer
+from grader.usecases.review_page import ReviewPage
 from grader.usecases.review_session import ReviewSession
 
 _TIMEOUT = 60.0  # seconds, of a machine that is busy
@@ -70,17 +70,18 @@ class Review(NamedTuple):
 
     def seen(self, path: str) -> dict[str, str]:
         """Return what the page of an item sends back to say what it shows; nothing for an address without an item."""
-        return dict(re.findall(r'"(item|shown)":"(\w+)"', self.get(path).text)) or {"item": "", "shown": ""}
+        return dict(re.findall(r'"(shown)":"(\w+)"', self.get(path).text)) or {"shown": ""}
 
 
 @contextmanager
 def running(gradebook: Path, criterion: str = "", by: str = "Kim", **options: Any) -> Iterator[Review]:
     """Yield a review that runs in another thread."""
-    with serving(ReviewSession(gradebook, ReviewFilter(criterion), by, **options)) as server:
+    session = ReviewSession(gradebook, ReviewFilter(criterion), by, **options)
+    with LocalServer(ReviewPage(session)) as server:
         thread = Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02})
         thread.start()
         try:
-            yield Review(server.url, server.server_port, server.token)
+            yield Review(server.url, server.port, server.token)
         finally:
             server.shutdown()
             thread.join()

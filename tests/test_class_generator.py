@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.gradebook.result import GradingResult
-from grader.classroom.intake.roster_file import read_roster
+from grader.classroom.results import Graded
+from grader.classroom.roster import read_roster
 from grader.classroom.run.worker import ClassContext, Task, grade_all
+from grader.classroom.submissions import read_class
 from grader.grading.grade import grade
 from grader.submission.opening import read_submission
-from tests.classroom.lab6_class import read_class
 from tests.examples import spread
 from tests.samples import LAB6, ROOT
 
@@ -149,18 +149,17 @@ def test_every_mixed_submission_is_opened(layout: str, tmp_path: Path) -> None:
     assert layout == "moodle" or refused >= {"broken-zip", "garbage-zip", "zip-bomb"}
 
 
-def _graded(folder: Path) -> Iterable[tuple[str, GradingResult]]:
+def _graded(folder: Path) -> Iterable[tuple[str, Graded]]:
     """Yield the result of each submission, with the top name of the one that counts."""
-    common = ClassContext(str(folder), LAB6.data, str(LAB6.path))
-    for submission in read_class(folder).submissions():
-        (graded,) = grade_all(common, [Task(submission.student.key, submission.paths, submission.names)])
-        yield submission.paths[0].partition("/")[0], graded
+    common = ClassContext((str(folder),), LAB6.data, str(LAB6.path))
+    for one in read_class([folder], None, rubric_id="lab6").submissions:
+        (graded,) = grade_all(common, [Task(one.student.key, 0, one.paths, one.names)])
+        yield one.paths[0].partition("/")[0], graded
 
 
-def _lost(graded: GradingResult) -> set[str]:
+def _lost(graded: Graded) -> set[str]:
     """Return the criteria of the URDF that failed or were skipped."""
-    not_passed = {LAB6.criteria[position].id: status for position, status, *_ in graded.outcomes}
-    lost = {name for name, status in not_passed.items() if status in ("failed", "skipped", "carried", "adjusted")}
+    lost = {name for name, (_, status, *_) in graded.results.items() if status in ("failed", "skipped")}
     return lost & set(made_up.criteria())
 
 
@@ -171,10 +170,12 @@ def test_the_lists_match_the_class(layout: str, list_name: str, tmp_path: Path) 
     folder = tmp_path / "class"
     written = every(made_up.make_class(folder, MIXED, SEED, "mixed", layout))
     made_up.write_beside(written, MIXED, layout, None, tmp_path / "roster.csv", tmp_path / "lms.csv")
-    intake = read_class(folder, read_roster(tmp_path / list_name))
+    roster = read_roster((tmp_path / list_name).read_bytes(), list_name)
+    intake = read_class([folder], roster, rubric_id="lab6")
     assert intake.layout == layout
-    assert len(intake.unmatched) == 1
-    assert len(intake.absent) == sum(not submission.paths for submission in written)
+    assert len(intake.unmatched) == 1 and not intake.unclear
+    present = {one.student.key for one in intake.submissions}
+    assert sum(one.key not in present for one in roster.students) == sum(not one.paths for one in written)
 
 
 def test_expectations_are_written_beside_the_class(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ class PointsChange(NamedTuple):
 
 
 class Change(NamedTuple):
-    """The changes for one student: the grade as published, None while there is none; the points of criteria; the reasons."""
+    """The published grade of a student, None while there is none, the points of criteria that changed, and why."""
 
     key: str
     name: str
@@ -48,28 +48,27 @@ def snapshot(folder: Path, number: int | None) -> Snapshot:
         totals = {key: None if total is None else str(total) for key, (_, total) in students.items()}
         return Snapshot(book.run._replace(totals=totals), book.results, known)
     results = Results(folder / names.RESULTS, number)
-    run = next((one for one in results.runs if one.run == number), None)
-    if run is None:
+    if not 0 < number <= book.run.run:
         raise InputError(f"{printable_path(folder)} has no run {number}: it has 1 to {book.run.run}")
-    return Snapshot(run, results, known)
+    return Snapshot(results.runs[-1], results, known)
 
 
-def changes(before: Snapshot, after: Snapshot) -> list[Change]:
-    """Return the students for whom something changed, in the order of their keys."""
-    keys = sorted({*before.results.students, *after.results.students, *before.run.totals, *after.run.totals})
-    found = (_change(key, before, after) for key in keys)
-    return [change for change in found if change is not None]
-
-
-def _change(key: str, before: Snapshot, after: Snapshot) -> Change | None:
-    old, new = before.results.of(key), after.results.of(key)
-    totals = [None if (text := one.run.totals.get(key)) is None else Decimal(text) for one in (before, after)]
-    steps = tuple(_steps(old, new)) if old is not None and new is not None else ()
-    why = tuple(_reasons(key, old, new, before, after))
-    if totals[0] != totals[1] and not why:
-        why = ("marks, the roster or the deadline changed",)
-    is_changed = bool(steps or totals[0] != totals[1] or (old is None) != (new is None))
-    return Change(key, after.names.get(key, ""), totals[0], totals[1], steps, why) if is_changed else None
+def changes(before: Snapshot, after: Snapshot) -> Iterator[Change]:
+    """Yield the students for whom something changed, in the order of their keys."""
+    for key in sorted({*before.results.students, *after.results.students, *before.run.totals, *after.run.totals}):
+        old, new = before.results.of(key), after.results.of(key)
+        texts = [one.run.totals.get(key) for one in (before, after)]
+        first, last = (None if text is None else Decimal(text) for text in texts)
+        steps: tuple[PointsChange, ...] = ()
+        why: tuple[str, ...] = ()
+        if old is None or new is None:
+            why = ("no longer there",) if old is not None else ("first submission",) if new is not None else ()
+        else:
+            is_gone = key in before.run.totals and key not in after.run.totals
+            steps, why = tuple(_steps(old, new)), tuple(_reasons(old, new, before.run, after.run, is_gone=is_gone))
+        if steps or first != last or (old is None) != (new is None):
+            others = "it was graded again" if steps else "marks, the roster or the deadline changed"
+            yield Change(key, after.names.get(key, ""), first, last, steps, why or (others,))
 
 
 def _steps(old: Graded, new: Graded) -> Iterator[PointsChange]:
@@ -79,17 +78,16 @@ def _steps(old: Graded, new: Graded) -> Iterator[PointsChange]:
             yield PointsChange(name, *(None if one is None else Decimal(str(one)) for one in points))
 
 
-def _reasons(key: str, old: Graded | None, new: Graded | None, before: Snapshot, after: Snapshot) -> Iterator[str]:
+def _reasons(old: Graded, new: Graded, before: Run, after: Run, *, is_gone: bool) -> Iterator[str]:
     """Yield what may have changed the points of criteria."""
-    if old is None or new is None:
-        yield "first submission" if new is not None else "no longer there"
-        return
+    is_same = (before.rubric, before.version, old.parts) == (after.rubric, after.version, new.parts)
     reasons = (
-        (key in before.run.totals and key not in after.run.totals, "no longer there"),
+        (is_gone, "no longer there"),
         (old.digest != new.digest, "the submission changed"),
-        (before.run.rubric != after.run.rubric, "the rubric changed"),
-        (before.run.version != after.run.version, "the grader changed"),
+        (before.rubric != after.rubric, "the rubric changed"),
+        (before.version != after.version, "the grader changed"),
         (old.parts != new.parts, "graded on other parts"),
+        (is_same and old.context != new.context, "the reference, xacro arguments or limits changed"),
         (old.verdict != new.verdict, f"it was {old.verdict}, and is {new.verdict}"),
     )
     yield from (reason for holds, reason in reasons if holds)

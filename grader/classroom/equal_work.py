@@ -2,11 +2,9 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from functools import reduce
-from itertools import combinations
-from operator import and_
+from itertools import combinations, starmap
 from typing import Any, NamedTuple
 
 from grader.classroom.results import Graded
@@ -16,7 +14,7 @@ from grader.package.package import PYTHON_LIMIT, SETUP, Package
 from grader.robot.normal_form import robot_hash, written_form
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
-from grader.text import counted, enumerated
+from grader.text import enumerated
 
 _MAX_SHARING = 4  # students, or a tenth of the class: what more have in common comes from the handout
 _DIGITS = 16  # of a hash
@@ -24,25 +22,24 @@ _IGNORED = re.compile(rb"^(?:[ \t]*+#.*|(?:Panels|Window Geometry):.*\n(?:[ \t-]
 
 
 class EqualWork(NamedTuple):
-    """Students with `equal` work; `same_file` groups those among them whose URDFs are the same bytes."""
+    """Students with work that is equal, and what of it is: "the same file"."""
 
     students: tuple[str, ...]
-    same_file: tuple[tuple[str, ...], ...] = ()
-    equal: str = "the same robot"
+    equal: str
 
 
 def forms_of(submission: Submission, *, is_handed_out: bool = False) -> dict[str, Any]:
     """Return the hashes of a submission's forms, without what is empty.
 
-    `urdf` is that of the file, `robot` that of its normal form, `written` that of its links, joints and materials as written;
-    `others` are its other elements, a line each; `package` are the hashes of kinds of files of the package.
+    `urdf` is that of the file, `robot` that of its normal form, `written` that of its links, joints and materials as
+    written; `package` are the hashes of kinds of files of the package.
     """
     found: dict[str, Any] = {}
     urdf = submission.urdf
     if isinstance(urdf, Read):
         if urdf.data.strip():
             found |= {"urdf": sha256_of(urdf.data), "robot": robot_hash(urdf.reading)}
-        found["written"], found["others"] = written_form(urdf.reading.elements, is_handed_out=is_handed_out)
+        found["written"] = written_form(urdf.reading.elements, is_handed_out=is_handed_out)
     if submission.package is not None:
         found["package"] = dict(_package_forms(submission.package))
     return {name: form[:_DIGITS] if isinstance(form, str) else form for name, form in found.items() if form}
@@ -69,19 +66,16 @@ def hashes_of(submission: Submission) -> tuple[str, ...]:
 def equal_work(results: Iterable[Graded], handed_out: Iterable[str]) -> list[EqualWork]:
     """Return the groups of students with equal work, without what the course handed out.
 
-    Groups with equal files come first, then the largest; at the end those in which only a part is equal.
+    Those with the same file come first, then those with the same robot, which include them.
     """
     known, works = set(handed_out), [one for one in results if one.work]
     robots = [one for one in works if "urdf" in one.work and known.isdisjoint(map(one.work.get, ("urdf", "robot")))]
-    return [*_same_robots(robots), *_same_parts(works, known)]
-
-
-def _same_robots(works: list[Graded]) -> list[EqualWork]:
-    same = []
-    for group in _groups((one.work.get("robot") or one.work["urdf"], one) for one in works).values():
-        files = _groups((one.work["urdf"], one) for one in group)
-        same.append(EqualWork(_keys(group), tuple(map(_keys, files.values()))))
-    return sorted(same, key=lambda work: (not work.same_file, -len(work.students), work.students))
+    files = _groups((one.work["urdf"], one) for one in robots)
+    same = {_keys(group): "the same file" for group in files.values()}
+    for group in _groups((one.work.get("robot") or one.work["urdf"], one) for one in robots).values():
+        same.setdefault(_keys(group), "the same robot")
+    found = starmap(EqualWork, same.items())
+    return [*sorted(found, key=lambda one: (one.equal, -len(one.students), one)), *_same_parts(works, known)]
 
 
 def _same_parts(works: list[Graded], handed_out: set[str]) -> Iterator[EqualWork]:
@@ -90,7 +84,7 @@ def _same_parts(works: list[Graded], handed_out: set[str]) -> Iterator[EqualWork
     written = ((one.work["written"], one) for one in works if one.work.get("written", "") not in {"", *handed_out})
     for group in _groups(written).values():
         if len(group) <= most and len({one.work.get("robot") for one in group}) > 1:
-            yield EqualWork(_keys(group), equal=f"the same links, joints and materials; {_difference(group)}")
+            yield EqualWork(_keys(group), "the same links, joints and materials")
     files = {one.student: tuple(one.work.get("package", {}).items()) for one in works}
     counts = Counter(file for own in files.values() for file in own)
     rare = {file for file, count in counts.items() if count <= most and file[1] not in handed_out}
@@ -99,16 +93,7 @@ def _same_parts(works: list[Graded], handed_out: set[str]) -> Iterator[EqualWork
     for pair, group in _groups(pairs).items():
         kinds.setdefault(_keys(group), {}).update(dict.fromkeys(kind for kind, _ in pair))
     for keys, same in kinds.items():
-        yield EqualWork(keys, equal=f"the same {enumerated(same)}")
-
-
-def _difference(group: Sequence[Graded]) -> str:
-    """Return how many lines of the other elements are not the same in all: "5 lines of <gazebo> differ"."""
-    lines = [Counter(one.work.get("others", ())) for one in group]
-    apart = [own - reduce(and_, lines) for own in lines]
-    tags = sorted({f"<{line.partition(' ')[2]}>" for own in apart for line in own})
-    count = max(own.total() for own in apart)
-    return f"{counted(count, 'line')} of {enumerated(tags)} {'differs' if count == 1 else 'differ'}"
+        yield EqualWork(keys, f"the same {enumerated(same)}")
 
 
 def _groups(works: Iterable[tuple[Any, Graded]]) -> dict[Any, list[Graded]]:

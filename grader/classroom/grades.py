@@ -1,4 +1,4 @@
-"""The grades of a class, computed from the results, the rubric, the roster and the marks of people: nothing is stored."""
+"""The grades of a class, computed from the results, the rubric, the roster and the marks of people."""
 
 from collections.abc import Iterator
 from datetime import datetime
@@ -32,6 +32,7 @@ class Reason(StrEnum):
 
     FAILED = "the grader failed"
     UNREADABLE = "could not be graded"
+    UNCLEAR = "it is unclear which submission counts"
     MISSING = "nothing was submitted"
     GONE = "no longer in the class folder"
     OUTDATED = "graded with an earlier version of the rubric or the grader"
@@ -44,9 +45,10 @@ class Reason(StrEnum):
 class StudentGrade(NamedTuple):
     """The grade of one student. Without a submission there is no result, and no report.
 
-    `report` has the points with the manual marks; `final` is the mark or excuse of the whole submission; `older` are the criteria
-    (or `total`) that were marked before the submission changed; `is_gone` means that the newest run did not find the submission,
-    `is_outdated` that it was graded by another rubric, version, or on other parts.
+    `report` has the points with the manual marks; `final` is the mark or excuse of the whole submission; `older` are
+    the criteria (or `total`) that were marked before the submission changed; `is_gone` means that the newest run did
+    not find the submission, `is_outdated` that it was graded by another rubric, version, or on other parts, and
+    `is_unclear` that there are possible submissions, of which none was graded.
     """
 
     student: Student
@@ -57,6 +59,7 @@ class StudentGrade(NamedTuple):
     older: tuple[str, ...] = ()
     is_gone: bool = False
     is_outdated: bool = False
+    is_unclear: bool = False
 
     @property
     def is_excused(self) -> bool:
@@ -99,7 +102,8 @@ class StudentGrade(NamedTuple):
         reason = self.graded.reason if self.graded is not None else ""
         reasons = (
             (self.is_excused, "excused"),
-            (self.report is None, "nothing was submitted"),
+            (self.is_unclear, Reason.UNCLEAR.value),
+            (self.report is None, Reason.MISSING.value),
             (self.faults, f"the grader failed: {reason}" if reason else "the grader failed on a criterion"),
             (self._is("unreadable") and self.pending, f"it could not be graded: {reason}"),
             (self.is_gone, "it is no longer in the class folder"),
@@ -124,7 +128,8 @@ class StudentGrade(NamedTuple):
             (not self.has_final and self.faults, Reason.FAILED, reason),
             (is_open and self._is("unreadable"), Reason.UNREADABLE, reason),
             (is_ungraded and not is_open, Reason.MARKED, ""),
-            (not self.has_final and self.graded is None, Reason.MISSING, ""),
+            (not self.has_final and self.is_unclear, Reason.UNCLEAR, ""),
+            (not self.has_final and self.graded is None and not self.is_unclear, Reason.MISSING, ""),
             (self.is_gone, Reason.GONE, ""),
             (not self.has_final and self.is_outdated, Reason.OUTDATED, ""),
             (not self.student.is_on_roster, Reason.NOT_ON_ROSTER, ""),
@@ -193,7 +198,7 @@ class Class:
         whole = (key, TOTAL)
         student, final = self.student(key, graded), self.marks.counting.get(whole) or self.marks.comments.get(whole)
         if graded is None:
-            return StudentGrade(student, None, None, final=final)
+            return StudentGrade(student, None, None, final=final, is_unclear=key in self.run.unclear)
         report, older = self.with_marks(graded.report(self.rubric), graded)
         if final is not None and _is_older(final, graded):
             older = (*older, TOTAL)
@@ -208,11 +213,11 @@ class Class:
         late = lateness(self.rubric, times.extended(own.deadline if own is not None else ""), report.score, self.due)
         is_gone = key not in self.run.totals
         is_outdated = self.is_outdated or graded.context != self.run.context
-        grade = StudentGrade(student, graded, report, late, final, older, is_gone, is_outdated)
+        grade = StudentGrade(student, graded, report, late, final, older, is_gone, is_outdated, key in self.run.unclear)
         return grade._replace(late=Lateness(late.days, reason=late.reason)) if grade.has_final else grade
 
     def with_marks(self, report: Report, graded: Graded) -> tuple[Report, tuple[str, ...]]:
-        """Return a report with the marks and comments, and the criteria that were marked before the submission changed."""
+        """Return a report with marks and comments, and the criteria that were marked before the submission changed."""
         results = {one.criterion.id: one for one in report.results}
         older: list[str] = []
         for row in self.rubric.criteria:

@@ -1,19 +1,21 @@
-"""The downloads of Canvas and Moodle: what the names in them tell of each submission. No submission is opened.
+"""The layouts of a class: what the names in a folder or zip tell of each submission. No submission is opened.
 
+- folders: a folder, archive or URDF for each student, with or without a prefix (GitHub's `lab6-{login}/`).
 - Canvas (canvas-lms, lib/content_zipper.rb): `{name}[_LATE]_{user id}_{upload}_{file}`, `[LATE_]anon_{5 letters}_...`;
   `..._text.html` is a text, `..._link.html` an address; a second `robot.urdf` is saved as `robot-1.urdf`.
 - Moodle (mod/assign/classes/downloader.php): `{full name}_{participant id}_assignsubmission_{plugin}[_{file}]`.
 """
 
 import re
-from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections import Counter, defaultdict
+from collections.abc import Callable, Collection, Iterable, Iterator
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from grader.classroom.listing import Children, ClassListing
+from grader.classroom.listing import ClassListing
 from grader.classroom.people import People
-from grader.classroom.roster import Student
+from grader.files.children import Children
+from grader.files.names import BUILD_FOLDERS
 from grader.text import printable_path
 
 # The files that are submissions. Of two that differ in the ending only, the first of these counts, before it a folder.
@@ -26,34 +28,47 @@ PATTERNS = {
         rf"(?P<ending>/|(?i:{'|'.join(map(re.escape, ENDINGS))}))",
         re.DOTALL,
     ),
-    "canvas": re.compile(
+    "canvas": re.compile(  # the name is before it
         rf"(?:(?<!\A)(?P<late>_LATE)?_(?P<canvas>{_ID})|\A(?:LATE_)?(?P<login>anon_[1-9A-HJ-NP-Za-km-z]{{5}}))"
         rf"(?=_(?:(?P<upload>{_ID})_(?P<file>.+)|(?:text|link)\.(?:html|url))\Z)",
         re.DOTALL,
     ),
-    "moodle": re.compile(
-        r"(?P<name>.+?)(?:_(?P<moodle>[0-9]{1,20}))?_assignsubmission_(?P<plugin>[a-z]+)_?(?P<file>.*)", re.DOTALL
+    "moodle": re.compile(  # not if two participants could have chosen it
+        r"(?!.*_assignsubmission_.*_assignsubmission_)(?P<name>.+?)(?:_(?P<moodle>[0-9]{1,20}))?"
+        r"_assignsubmission_(?:file|(?P<plugin>[a-z]+))_?(?P<file>.*)",
+        re.DOTALL,
     ),
 }
 _NAME_IN_CANVAS = re.compile(r"[^\x00-,./:-@[-^`{-\x7f\s]+")
-_NUMBERED = re.compile(r"(.+?)-[1-9][0-9]?((?:\.[A-Za-z][A-Za-z0-9]*)*(?:\.[A-Za-z0-9]*)?)", re.DOTALL)
+_LAB = re.compile(r"lab-?[0-9]+-")
 # Canvas numbers the uploads of all courses in order: a number far below the others' is part of a student's name.
 _MAX_GROWTH = 1000
-_MAX_FILES = 2_000  # of one participant, if files and an online text have to be put side by side
 
 
-class ClassSubmission(NamedTuple):
-    """The submission of a student: one folder or file, or several files with the student's own `names` of them.
+class Entry(NamedTuple):
+    """A name in a class folder, and what its layout tells; a folder ends in a slash in the layout `folders`."""
 
-    `paths` are relative to the class folder or zip with the index `root`; `submitted` is ISO 8601, empty if unknown.
-    """
+    path: str
+    name: str = ""
+    canvas: str = ""
+    moodle: str = ""
+    login: str = ""
+    upload: str = ""
+    late: str = ""
+    plugin: str = ""
+    file: str = ""
+    ending: str = ""
 
-    student: Student
-    root: int
-    paths: tuple[str, ...]
-    names: tuple[str, ...] = ()
-    is_late: bool = False
-    submitted: str = ""
+    @property
+    def owner(self) -> str:
+        """What tells whose it is. Two numbers of Canvas are two readings of a name."""
+        return f"{self.canvas} {self.name}" if " " in self.canvas else self.canvas or self.moodle or f"_{self.name}"
+
+    @property
+    def order(self) -> tuple[int, int, str]:
+        """The order of copies: by the number, then a folder counts, then the best ending."""
+        rank = 1 if self.ending == "/" else -ENDINGS.index(self.ending.lower()) if self.ending else 0
+        return int(self.upload or 0), rank, self.path
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,9 +95,19 @@ class ClassFolder:
         """The names in it that may be submissions."""
         return [*self.children.folders, *filter(is_submission, self.children.files)]
 
-    def ignore(self, names: Iterable[str], reason: str) -> None:
+    def inside(self, name: str) -> "ClassFolder":
+        """Return a folder in it."""
+        start = f"{self.start}{name}"
+        return replace(self, children=self.listing.children(start), start=f"{start}/", name=name)
+
+    def ignore(self, names: Iterable[str], reason: str = "is not named like a submission") -> None:
         """Say why some names are no submissions; the reason continues a sentence that begins with the name."""
         self.ignored.extend(f"{printable_path(self.start + name)} {reason}" for name in names)
+
+    def list_refused(self) -> None:
+        """Say which names are not read, such as symlinks."""
+        for name, reason in self.children.refused:
+            self.ignore([name], reason)
 
 
 def is_submission(name: str) -> bool:
@@ -90,116 +115,78 @@ def is_submission(name: str) -> bool:
     return name.lower().endswith(ENDINGS)
 
 
-def in_canvas(name: str) -> list[re.Match[str]]:
+def _entry(found: re.Match[str], **known: str) -> Entry:
+    return Entry(found.string, **known | {group: text for group, text in found.groupdict().items() if text})
+
+
+def in_canvas(name: str) -> list[Entry]:
     """Return how a name in Canvas can be read: as team and 7, or team_7 and 101, of team_7_101_555_lab6.zip."""
-    found = PATTERNS["canvas"].finditer(name)
-    possible = [one for one in found if one["login"] or _NAME_IN_CANVAS.fullmatch(name, 0, one.start())]
-    return possible[:1] if possible and possible[0]["login"] else possible
+    found = [_entry(one, name=name[: one.start()], file="text_entry.html") for one in PATTERNS["canvas"].finditer(name)]
+    if found and found[0].login:
+        return [found[0]._replace(name=found[0].login, late="LATE" if name.startswith("LATE") else "")]
+    return [one for one in found if _NAME_IN_CANVAS.fullmatch(one.name)]
 
 
-def canvas(folder: ClassFolder) -> Iterator[ClassSubmission]:
-    """Yield one submission for each user id; a file whose name can be read in several ways is certainly nobody's."""
+def _canvas(folder: ClassFolder) -> Iterator[Entry]:
+    """Yield the names with their user ids: with all possible ones if a name can be read in several ways."""
     readings = {name: in_canvas(name) for name in folder.children.folders + folder.children.files}
-    folder.ignore((name for name, found in readings.items() if not found), "is not named like a submission in Canvas")
-    first = min((upload(one[0]) for one in readings.values() if len(one) == 1 and one[0]["upload"]), default=0)
-    by_owner: dict[tuple[str, ...], list[re.Match[str]]] = defaultdict(list)
-    for name, found in readings.items():
-        possible = [one for one in found if not 0 < upload(one) * _MAX_GROWTH < first] or found
-        users = [one["login"] or one["canvas"] for one in possible]
-        for last in possible[-1:]:
-            by_owner[(*users, name[: last.start()]) if len(users) > 1 else (users[0],)].append(last)
-    for (user, *others), files in by_owner.items():
-        names = sorted({file.string[: file.start()] for file in files})
-        kept = _last_versions(folder, files)
-        student = Student(
-            user if files[0]["login"] else f"{names[0]}_{files[0]['canvas']}",
-            names[0] if len(names) == 1 else "",
-            canvas=user if user.isdecimal() and not others else "",
-            aliases=(user, *others[:-1]) if others else (),
-        )
-        is_late = any(file["late"] or file.string.startswith("LATE_anon_") for file in kept)
-        paths = tuple(folder.start + file.string for file in kept)
-        yield ClassSubmission(student, 0, paths, tuple(map(_own_name, kept)), is_late)
+    folder.ignore(name for name, found in readings.items() if not found)
+    first = min((found[0].order[0] for found in readings.values() if len(found) == 1 and found[0].upload), default=0)
+    for found in readings.values():
+        possible = [one for one in found if not 0 < one.order[0] * _MAX_GROWTH < first] or found
+        yield from (one._replace(canvas=" ".join(it.canvas for it in possible)) for one in possible[-1:])
 
 
-def upload(entry: re.Match[str]) -> int:
-    """Return the number of an upload or copy; 0 if it has none."""
-    return int(entry["upload"] or 0)
+def _moodle(folder: ClassFolder) -> Iterator[Entry]:
+    for name in sorted(folder.children.folders + folder.children.files):
+        if found := PATTERNS["moodle"].fullmatch(name):
+            yield _entry(found)
+        else:
+            folder.ignore([name])
 
 
-def _own_name(file: re.Match[str]) -> str:
-    return file["file"] or "text_entry.html"
+def _folders(folder: ClassFolder) -> Iterator[Entry]:
+    """Yield each folder, archive and URDF, without the prefix of the assignment in its name."""
+    by_login: dict[str, list[Entry]] = defaultdict(list)
+    for name in (*(f"{name}/" for name in folder.children.folders), *folder.children.files):
+        found = PATTERNS["folders"].fullmatch(name) if name[:-1] not in BUILD_FOLDERS else None
+        if found:
+            by_login[found["login"]].append(_entry(found))
+        else:
+            folder.ignore([name.rstrip("/")])
+    prefix = _prefix([login for login, copies in by_login.items() if copies[0].ending == "/"] or by_login, folder)
+    for login, copies in by_login.items():
+        are_other = all(copy.upload for copy in copies) and not folder.people.knows(_without(prefix, login))
+        for copy in copies:  # Team (1) and Team (2) are two teams
+            name = copy.path.removesuffix(copy.ending) if are_other else login
+            yield copy._replace(path=copy.path.rstrip("/"), name=name, login=_without(prefix, name))
 
 
-def _last_versions(folder: ClassFolder, files: Sequence[re.Match[str]]) -> list[re.Match[str]]:
-    """Return the last upload of each file: `robot-1.urdf` is a later `robot.urdf` only if there is a `robot.urdf`."""
-    own = {file["file"] for file in files}
-    last: dict[str, re.Match[str]] = {}
-    for file in sorted(files, key=lambda file: (upload(file), file.string)):
-        numbered = _NUMBERED.fullmatch(file["file"] or "")
-        first = numbered[1] + numbered[2] if numbered else ""
-        name = first if first in own else _own_name(file)
-        if name in last:
-            folder.ignore([last[name].string], f"is an earlier attempt: {printable_path(file.string)} counts")
-        last[name] = file
-    return [file for _, file in sorted(last.items())]
+def _without(prefix: str, name: str) -> str:
+    return name[len(prefix) :] if len(name) > len(prefix) and name.lower().startswith(prefix) else name
 
 
-def in_moodle(name: str) -> re.Match[str] | None:
-    """Return the parts of a name in Moodle; None if two participants could have chosen it."""
-    return PATTERNS["moodle"].fullmatch(name) if name.count("_assignsubmission_") == 1 else None
+def _prefix(names: Collection[str], folder: ClassFolder) -> str:
+    """Return the prefix of the assignment: the rubric's id, `lab9-` of most names, or what precedes the most ids.
 
-
-def moodle(folder: ClassFolder) -> Iterator[ClassSubmission]:
-    """Yield one submission for each participant, or group without a number. Hidden names are the same word."""
-    found = {name: in_moodle(name) for name in sorted(folder.children.folders + folder.children.files)}
-    folder.ignore((name for name, one in found.items() if one is None), "is not named like a submission in Moodle")
-    by_owner: dict[str, list[re.Match[str]]] = defaultdict(list)
-    for one in filter(None, found.values()):
-        by_owner[one["moodle"] or f"_{one['name']}"].append(one)
-    are_hidden = len({one["name"] for one in found.values() if one}) == 1 < len(by_owner)
-    folders = frozenset(folder.children.folders)
-    for files in by_owner.values():
-        name, number = files[0]["name"], files[0]["moodle"] or ""
-        student = Student(f"{name}_{number}" if number else name, "" if are_hidden else name, moodle=number)
-        yield ClassSubmission(student, 0, *_files_in_moodle(folder, files, folders))
-
-
-def _files_in_moodle(
-    folder: ClassFolder, files: Sequence[re.Match[str]], folders: frozenset[str]
-) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return the paths of a participant's files, or of their folder, and their names if these are beside a text.
-
-    A folder with one archive or URDF in it, and nothing else, counts as that file, as in Canvas.
+    One more folder cannot change what the others mean.
     """
-    if len(files) == 1 and files[0].string in folders:  # nearly always
-        top = folder.start + files[0].string
-        inner = folder.listing.children(top, 9)
-        is_file = len(inner.files) == 1 and not (inner.folders or inner.refused) and is_submission(inner.files[0])
-        return (f"{top}/{inner.files[0]}" if is_file else top,), ()
-    named: dict[str, dict[str, str]] = {}
-    for file in sorted(files, key=lambda file: (file["plugin"] != "file", file.string)):
-        top, part = folder.start + file.string, "" if file["plugin"] == "file" else f"{file['plugin']}/"
-        own = {top: part + (file["file"] or file.string)}
-        if file.string in folders:
-            below = files_below(folder.listing, top, _MAX_FILES)
-            own = {path: part + path[len(top) + 1 :] for path in sorted(below)}
-        named[top] = own
-    first = next((top for top, own in named.items() if own), min(named))
-    every = {path: name for own in named.values() for path, name in own.items()}
-    if first not in every and every == named[first]:  # one folder
-        is_file = len(every) == 1 and all(path.rpartition("/")[0] == first and is_submission(path) for path in every)
-        return tuple(every) if is_file else (first,), ()
-    return tuple(every), tuple(every.values())
+    knows, own = folder.people.knows, f"{folder.rubric_id.lower()}-"
+    known = sum(map(knows, names))
+    if known < len(names) and len(own) > 1 and any(_without(own, name) != name for name in names):
+        return own
+    labs = Counter(found[0] for name in names if (found := _LAB.match(name.lower())))
+    dashes = ((name, dash.end()) for name in names for dash in re.finditer("-", name))
+    before = Counter(name[:end].lower() for name, end in dashes if knows(name[end:]))
+    for counts, least in ((labs, len(names) // 2), (before, max(1, known))):
+        prefix, count = max(counts.items(), key=lambda item: (item[1], item[0]), default=("", 0))
+        if known < len(names) and count > least:
+            return prefix
+    return ""
 
 
-def files_below(listing: ClassListing, top: str, most: int = 300) -> Iterator[str]:
-    """Yield the paths of the files below a folder, those in it first; of more than `most` some more than that."""
-    folders, count = [top], 0
-    for here in folders:
-        children = listing.children(here, _MAX_FILES + 1)
-        yield from (f"{here}/{name}" for name in children.files)
-        folders += [f"{here}/{name}" for name in sorted(children.folders)]
-        count += len(children.files)
-        if count + len(folders) > most:
-            break
+READERS: dict[str, Callable[[ClassFolder], Iterator[Entry]]] = {
+    "folders": _folders,
+    "canvas": _canvas,
+    "moodle": _moodle,
+}

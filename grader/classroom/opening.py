@@ -4,20 +4,20 @@ import os
 from collections.abc import Mapping
 from functools import lru_cache
 from hashlib import sha256
-from io import BytesIO
 from pathlib import Path
 from types import MappingProxyType
-from typing import IO, TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
+from grader.classroom.listing import ClassListing
 from grader.documents.evidence_files import EVIDENCE
-from grader.errors import InputError, MachineError
+from grader.errors import InputError
+from grader.files.class_folder import ClassDirectory
 from grader.files.class_zip import ClassZip
-from grader.files.folder import file_at, read_folder
 from grader.files.members import ARCHIVE_ERRORS, error_text
-from grader.files.names import ROBOT_ENDINGS, ignored_part, is_generated
-from grader.files.opening import outer_tree, with_inner, without_endings
-from grader.files.reading import URDF_LIMIT, open_regular, read_capped, read_error
-from grader.files.tree import Tree, make_tree
+from grader.files.names import ROBOT_ENDINGS
+from grader.files.opening import with_inner, without_endings
+from grader.files.reading import URDF_LIMIT
+from grader.files.tree import Tree
 from grader.grading.rubric import Rubric
 from grader.submission.labs import LabFolders
 from grader.submission.opening import read_submission, submission_of
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
 _DOCUMENTS = (*EVIDENCE, ".docx", ".doc", ".odt", ".pages", ".ipynb", ".md", ".txt", ".rst", ".rtf")
 _MAX_HASHED = 64 * 1024 * 1024  # bytes of a file that go into the digest; of a larger file its size does
-_CHUNK = 1024 * 1024
 
 
 class OpenedSubmission(NamedTuple):
@@ -58,52 +57,8 @@ class OpenedSubmission(NamedTuple):
         if self.tree is None:
             return read_submission(self.data or b"", identity=self.name, path=self.shown, opening=opening)
         return submission_of(
-            with_inner(self.tree, LabFolders(rubric.folders).is_lab),
-            self.name,
-            rubric.lab,
-            opening,
-            shown=self.shown,
+            with_inner(self.tree, LabFolders(rubric.folders).is_lab), self.name, rubric.lab, opening, shown=self.shown
         )
-
-
-class _Folder:
-    """A class folder on disk, with the methods of a ClassZip; below it no symlink is followed."""
-
-    def __init__(self, root: Path) -> None:
-        self._root = root
-
-    def is_folder(self, path: str) -> bool:
-        return Path(self._root, path).is_dir()
-
-    def folder(self, path: str) -> Tree:
-        return read_folder(Path(self._root, path), str(self._root))
-
-    def files(self, named: dict[str, str], name: str) -> Tree:
-        """Return some files as one tree with the same ignored files as a folder or archive."""
-        paths = {printable_path(inner): path for path, inner in named.items()}
-        ignored = {inner: part for inner in paths if (part := ignored_part(inner))}
-        files = [
-            file_at(Path(self._root, paths[inner]), inner, str(self._root)) for inner in paths if inner not in ignored
-        ]
-        generated = sorted(inner for inner in ignored if is_generated(inner))
-        return make_tree(name, files, (), generated=generated, unseen=ignored.values() - ignored.keys())
-
-    def read(self, path: str, limit: int) -> bytes:
-        shown = printable_path(path.rpartition("/")[2])
-        return read_capped(Path(self._root, path), limit, shown=shown, top=str(self._root))
-
-    def raw(self, path: str) -> IO[bytes]:
-        return os.fdopen(open_regular(Path(self._root, path), top=str(self._root)), "rb")
-
-    def archive(self, path: str, digest: "hashlib._Hash") -> Tree | None:
-        tree = outer_tree(Path(self._root, path), str(self._root))
-        try:
-            with self.raw(path) if tree is not None else BytesIO() as file:
-                while chunk := file.read(_CHUNK):
-                    digest.update(chunk)
-        except OSError as error:
-            raise read_error(error, printable_path(path)) from None
-        return tree
 
 
 @lru_cache(maxsize=4)
@@ -112,10 +67,10 @@ def is_zip(root: str) -> bool:
     return not Path(root).is_dir()
 
 
-def _open(root: str) -> _Folder | ClassZip:
+def _open(root: str) -> ClassListing:
     """Return a class folder, or a zip that stays open as long as the file is the same."""
     if not is_zip(root):
-        return _Folder(Path(root))
+        return ClassDirectory(Path(root))
     try:
         status = os.stat(root)  # noqa: PTH116
     except OSError:
@@ -146,7 +101,7 @@ def open_class_submission(
     return OpenedSubmission(name, name, _digest_of_tree(name, tree, max_size), None, tree, max_size)
 
 
-def _open_single(source: _Folder | ClassZip, path: str, max_size: int) -> OpenedSubmission:
+def _open_single(source: ClassListing, path: str, max_size: int) -> OpenedSubmission:
     """Open a folder, an archive, or a URDF under any name."""
     last, shown = printable_path(path.rpartition("/")[2]), printable_path(path)
     if source.is_folder(path):
@@ -164,33 +119,19 @@ def _open_single(source: _Folder | ClassZip, path: str, max_size: int) -> Opened
     return OpenedSubmission(last.rpartition(".")[0] or last, last, _text(digest), data, None)
 
 
-def _is_document(source: _Folder | ClassZip, path: str) -> bool:
+def _is_document(source: ClassListing, path: str) -> bool:
     """Return whether a single file may hold answers or evidence, and is no URDF with the ending .txt."""
     is_named = path.lower().endswith(_DOCUMENTS) and not source.is_folder(path)
     return is_named and not (path.lower().endswith(".txt") and _is_robot(source, path))
 
 
-def _is_robot(source: _Folder | ClassZip, path: str) -> bool:
+def _is_robot(source: ClassListing, path: str) -> bool:
     try:
         with source.raw(path) as file:
             return is_robot(file.read(START))
     except ARCHIVE_ERRORS as error:
         shown = printable_path(path.rpartition("/")[2])
         raise InputError(f"cannot read {shown}: {error_text(error, shown)}") from None
-
-
-def unreadable_digest(root: str, paths: tuple[str, ...]) -> str:
-    """Return the digest of files that cannot be opened as a submission; empty if their bytes cannot be read either."""
-    digest = sha256()
-    try:
-        for path in paths:
-            digest.update(repr(path.rpartition("/")[2]).encode())  # which the reason names
-            with _open(root).raw(path) as file:
-                for _ in range(_MAX_HASHED // _CHUNK):
-                    digest.update(file.read(_CHUNK))
-    except (InputError, MachineError, *ARCHIVE_ERRORS):
-        return ""
-    return _text(digest)
 
 
 def _digest(name: str, max_size: int) -> "hashlib._Hash":

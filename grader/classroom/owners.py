@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from hashlib import sha256
 from typing import NamedTuple
 
-from grader.classroom.detection import is_of_course
-from grader.classroom.layouts import PATTERNS, ClassSubmission
+from grader.classroom.grouping import ClassSubmission
+from grader.classroom.layouts import PATTERNS
 from grader.classroom.listing import ClassListing
-from grader.classroom.people import CERTAIN, Match, People
+from grader.classroom.people import CERTAIN, People
 from grader.classroom.roster import Student, plain
 from grader.text import enumerated, first_lines, printable_path
 
@@ -21,17 +21,16 @@ _ANONYMOUS = (
 
 
 class Intake(NamedTuple):
-    """The submissions of a class and its students, both in the order of their keys.
+    """The submissions of a class in the order of their keys, and lines for the user.
 
-    Students without a submission are `absent`, but not those with several possible ones, of which none is graded.
-    `unmatched` says which submissions are certainly nobody's on the roster, and which row of it assigns them; `notes`
-    says what was chosen, `ignored` what in the folders is no submission.
+    `unclear` are the keys of students with possible submissions of which none counts. `unmatched` says which
+    submissions are certainly nobody's on the roster, and which row of it assigns them; `notes` says what was chosen,
+    `ignored` what in the folders is no submission.
     """
 
     layout: str
     submissions: tuple[ClassSubmission, ...]
-    absent: tuple[Student, ...]
-    students: tuple[Student, ...]
+    unclear: frozenset[str]
     unmatched: tuple[str, ...]
     notes: tuple[str, ...]
     ignored: tuple[str, ...]
@@ -48,24 +47,18 @@ class Owners:
         self._unclear: set[int] = set()
         self._visitors: list[ClassSubmission] = []
         self._unmatched: list[str] = []
-        self._is_anonymous, self._shared = False, 0
 
     def find(self, found: Sequence[ClassSubmission]) -> None:
         """Assign all submissions: what a person has assigned decides, then ids and names, then groups."""
-        self._is_anonymous = all(one.student.key.startswith("anon_") for one in found)
-        if not self._has_roster:
-            self._visitors.extend(found)
-            if names := sorted(self._shown(one) for one in found if is_of_course(one.paths[0])):
-                self.notes.append(
-                    f"graded like students', and may be the course's own: {enumerated(names, _MAX_NAMED)}"
-                )
-            return
+        if all(one.student.key.startswith("anon_") for one in found):
+            self.notes.append(_ANONYMOUS)
+            self._unclear.update(range(len(self.people.students)))
         claims: dict[int, list[tuple[int, ClassSubmission]]] = defaultdict(list)
         groups: dict[tuple[int, ...], list[ClassSubmission]] = defaultdict(list)
         others: list[tuple[tuple[int, ...], ClassSubmission]] = []
         taken = self._assigned(found)
-        for one in sorted(found, key=lambda one: (one.student.key, one.root, one.paths)):
-            match = Match(()) if self._is_anonymous else self.people.match(one.student)
+        for one in sorted(found, key=lambda one: (one.student.key, one.root, one.paths)) if self._has_roster else ():
+            match = self.people.match(one.student)
             if one in taken:
                 continue
             if match.is_group:
@@ -74,6 +67,7 @@ class Owners:
                 claims[match.only].append((match.rank, one))
             else:
                 others.append((match.students, one))
+        self._visitors += () if self._has_roster else found
         for index, claimed in claims.items():
             self._decide(index, sorted(claimed, key=lambda claim: claim[0]))
         for members, named in groups.items():
@@ -92,7 +86,7 @@ class Owners:
                 places[place].append(one)
         for index, student in wanted:
             place = _plain_path(student.submission)
-            named = places.get(place) or list(self._submissions_at(place))
+            named = places.get(place) or list(self._at(place))
             if len(named) == 1:
                 self._owned[index] = named[0]
             else:
@@ -101,7 +95,7 @@ class Owners:
                 self.notes.append(f"{student.key} has the submission {place!r} on the roster, which {why}")
         return set(self._owned.values())
 
-    def _submissions_at(self, place: str) -> Iterator[ClassSubmission]:
+    def _at(self, place: str) -> Iterator[ClassSubmission]:
         """Yield what is at a place in the class folders, and no submission by itself."""
         for root, (listing, name) in enumerate(self.roots):
             path = ""
@@ -118,9 +112,6 @@ class Owners:
         return _plain_path(top + (path or one.paths[0]))
 
     def _visit(self, one: ClassSubmission, reason: str) -> None:
-        if is_of_course(one.paths[0]):
-            self.ignored.append(f"{self._shown(one)} is of the course, and not of a student")
-            return
         self._visitors.append(one)
         self._list(one, reason)
 
@@ -140,16 +131,18 @@ class Owners:
         elif not others or (rank <= CERTAIN and others[0][0] > rank):
             self._owned[index] = first
         else:
-            self._reject([one for _, one in claims], f"may belong to {key}", key)
-            self._unclear.add(index)
+            self._reject([one for _, one in claims], f"may belong to {key}", [index], key)
             return
         for _, one in others:
             self._visit(one, f"may belong to {key}, who has another submission")
 
-    def _reject(self, several: Sequence[ClassSubmission], reason: str, student: str = "") -> None:
+    def _reject(
+        self, several: Sequence[ClassSubmission], reason: str, students: Iterable[int], student: str = ""
+    ) -> None:
         names = enumerated([self._shown(one) for one in several], _MAX_NAMED)
         for one in several:
             self._list(one, f"{reason}, and of {names} none is graded", student)
+        self._unclear.update(students)
 
     def _share(self, members: Iterable[int], named: Sequence[ClassSubmission]) -> None:
         """Let the only submission of a group count for each member without another; that of a section for nobody."""
@@ -161,50 +154,39 @@ class Owners:
             elif not without:
                 self._visit(one, "is named like a group whose members all have other submissions")
         if without and len(alone) > 1:
-            self._reject(alone, "is named like a group")
-            self._unclear.update(without)
-        elif alone and without:
-            self._shared += 1
+            self._reject(alone, "is named like a group", without)
+        elif alone:
             self._owned |= dict.fromkeys(without, alone[0]._replace(student=Student("")))  # the ids are one member's
 
     def _holds_students(self, one: ClassSubmission) -> bool:
         """Return whether two students or more have submissions in a folder: it is a section, not a team's work."""
         inner = self.roots[one.root][0].children(one.paths[0], 1000)
-        names = filter(
-            None, map(PATTERNS["folders"].fullmatch, [*(f"{name}/" for name in inner.folders), *inner.files])
-        )
-        return sum(self.people.knows_student(name["login"]) for name in names) > 1
+        found = map(PATTERNS["folders"].fullmatch, [*(f"{name}/" for name in inner.folders), *inner.files])
+        return sum(self.people.knows_student(name["login"]) for name in found if name) > 1
 
     def intake(self, layout: str) -> Intake:
         """Return what was found, with the data of the roster, and the LMS's name and ids where it has none."""
-        students = list(self.people.students)
-        submissions: list[ClassSubmission] = []
+        students, found = self.people.students, list[ClassSubmission]()
         for index, one in self._owned.items():
             own, given = students[index], one.student
             name = own.name or ("" if given.canvas else given.name)
             own = own._replace(name=name, canvas=own.canvas or given.canvas, moodle=own.moodle or given.moodle)
-            is_late = one.is_late if own.is_late is None else own.is_late
-            submissions.append(one._replace(student=own, is_late=is_late, submitted=own.submitted or one.submitted))
-            students[index] = own
-        unclear = range(len(students)) if self._is_anonymous else self._unclear
-        absent = [one for index, one in enumerate(students) if index not in self._owned and index not in unclear]
+            found.append(one._replace(student=own))
         counts = Counter(one.student.key for one in self._visitors)
         taken = {plain(one.key) for one in students}
         for one in self._visitors:
-            key, name = one.student.key, "" if one.student.canvas else one.student.name
+            key, is_chosen = one.student.key, bool(one.student.canvas or one.student.aliases)
             if counts[key] > 1 or not key.isprintable() or plain(key) in taken:
                 key = _path_key(f"{self.roots[one.root][1]}/{one.paths[0]}" if len(self.roots) > 1 else one.paths[0])
-            visitor = one.student._replace(key=key, name=name, aliases=(), is_on_roster=not self._has_roster)
-            submissions.append(one if visitor == one.student else one._replace(student=visitor))
-            students.append(submissions[-1].student)
-        self.notes += [_ANONYMOUS] if self._is_anonymous else []
-        self.notes += [f"group submissions that count for each member: {self._shared}"] if self._shared else []
+            visitor = one.student._replace(
+                key=key, name="" if is_chosen else one.student.name, aliases=(), is_on_roster=not self._has_roster
+            )
+            found.append(one if visitor == one.student else one._replace(student=visitor))
         return Intake(
             layout,
-            tuple(sorted(submissions, key=lambda one: one.student.key)),
-            tuple(absent),
-            tuple(sorted(students, key=lambda one: one.key)),
-            tuple(self._unmatched if not self._is_anonymous else ()),
+            tuple(sorted(found, key=lambda one: one.student.key)),
+            frozenset(students[index].key for index in self._unclear - self._owned.keys()),
+            tuple(self._unmatched),
             tuple(self.notes),
             tuple(first_lines(sorted(self.ignored), _MAX_LINES)),
         )

@@ -1,16 +1,16 @@
 """What was graded: `results.jsonl` of a gradebook, one line a graded submission and one line a run.
 
-A line of a submission comes before that of its run, and the newest of a student counts. The file can be computed again from the
-submissions: without it only the comparison of runs and some seconds are lost. A last line that was not written to its end is
-ignored, and cut before the next one is appended.
+A line of a submission comes before that of its run, and the newest of a student counts. The file can be computed
+again from the submissions: without it only the comparison of runs and some seconds are lost. A last line that was not
+written to its end is ignored, and cut before the next one is appended.
 """
 
 import json
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from json.decoder import scanstring  # type: ignore[attr-defined,unused-ignore]
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, Self
 
 from grader.checks.outcome import Outcome
 from grader.errors import InputError
@@ -32,10 +32,11 @@ _DIGITS = 16  # of a hash
 class Graded(NamedTuple):
     """The result of one submission: where it is, how it went, and what each criterion has.
 
-    `root` is the position of its path in the settings of the class, `paths` are below that. `person` is what the names of the files
-    say of the student. `context` is the hash of all that a result depends on besides the submission. `work` are hashes of the robot and
-    the package in several forms, for equal work; `answers` are the keys of what a person looks at for a criterion: students with the
-    same answer have the same one, and it is empty without an answer. Without a `digest` the submission could not be read at all.
+    `root` is the position of its path in the settings of the class, `paths` are below that. `person` is what the
+    names of the files say of the student. `context` is the hash of all that a result depends on besides the
+    submission. `work` are hashes of the robot and the package in several forms, for equal work; `answers` are the
+    keys of what a person looks at for a criterion: students with the same answer have the same one, and it is empty
+    without an answer. Without a `digest` the submission could not be read at all.
     """
 
     student: str
@@ -75,9 +76,11 @@ class Graded(NamedTuple):
 
 
 class Run(NamedTuple):
-    """A finished run: its number, the time in ISO 8601, and the total of each student who submitted, None while it is open.
+    """A finished run: its number, the time in ISO 8601, and the total of each student who submitted, None while it is
+    open.
 
-    `rubric` is its hash, `context` that of all that results depend on besides the submissions.
+    `rubric` is its hash, `context` that of all that results depend on besides the submissions. `unclear` are the
+    students with possible submissions of which none was graded.
     """
 
     run: int
@@ -86,6 +89,7 @@ class Run(NamedTuple):
     rubric: str
     context: str
     totals: Mapping[str, str | None]
+    unclear: Sequence[str] = ()
 
     @property
     def line(self) -> bytes:
@@ -183,8 +187,8 @@ class Results:
 
 def graded_from(line: bytes) -> Graded:
     """Return the result in a line."""
-    values = {key: tuple(value) if isinstance(value, list) else value for key, value in json.loads(line).items()}
-    return Graded(**values)
+    values = json.loads(line).items()
+    return Graded(**{key: tuple(value) if isinstance(value, list) else value for key, value in values})
 
 
 class ResultsWriter:
@@ -207,7 +211,7 @@ class ResultsWriter:
         except OSError as error:
             raise InputError(f"cannot write {self._shown}: {error.strerror}") from None
 
-    def __enter__(self) -> "ResultsWriter":
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:

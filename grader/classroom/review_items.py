@@ -10,8 +10,8 @@ from grader.classroom.results import Graded, digest_of
 from grader.classroom.roster import Student, plain
 from grader.grading.criterion import TOTAL, Criterion
 
-UNMARKED = "unmarked"
-STATES = {UNMARKED: "unmarked", "marked": "marked", "older": "marked before the submission changed", "": "all"}
+UNMARKED, _OLDER = "unmarked", "older"
+STATES = {UNMARKED: "unmarked", "marked": "marked", _OLDER: "marked before the submission changed", "": "all"}
 
 
 class Member(NamedTuple):
@@ -27,7 +27,17 @@ class Member(NamedTuple):
         """One of STATES."""
         if self.mark is None or self.mark.points is None:
             return UNMARKED
-        return "marked" if self.mark.submission in ("", self.graded.digest) else "older"
+        return "marked" if self.mark.submission in ("", self.graded.digest) else _OLDER
+
+    @property
+    def is_older(self) -> bool:
+        """Whether the mark is for an earlier submission."""
+        return self.state == _OLDER
+
+    @property
+    def order(self) -> tuple[int, str]:
+        """What students are sorted by: it says nothing about the name of an anonymous one."""
+        return self.number or 0, self.student.key
 
 
 class ReviewItem(NamedTuple):
@@ -51,14 +61,10 @@ class ReviewItem(NamedTuple):
         return len(self.members) > 1 and not self.answer
 
     @property
-    def stamp(self) -> str:
-        """A text that tells whether an item is the one that a page shows, without the names of its students."""
-        return digest_of(self.criterion.id, [(one.student.key, one.graded.digest) for one in self.members])
-
-    @property
     def view(self) -> str:
-        """A text that tells whether the marks are those that a page shows."""
-        return digest_of([one.mark and one.mark._replace(place="") for one in self.members])
+        """A text that tells whether the item is as a page shows it, without the names of its students."""
+        shown = ((one.student.key, one.graded.digest, one.mark and one.mark._replace(place="")) for one in self.members)
+        return digest_of(self.criterion.id, [*shown])
 
 
 class ReviewFilter(NamedTuple):
@@ -78,11 +84,6 @@ class ReviewFilter(NamedTuple):
         )
 
 
-def order(one: Member) -> tuple[int, str]:
-    """Return what students are sorted by: it says nothing about the name of an anonymous one."""
-    return one.number or 0, one.student.key
-
-
 def review_items(book: Class, results: Iterable[Graded], *, is_anonymous: bool = False) -> list[ReviewItem]:
     """Return what needs manual grading, and what else has a mark: in the rubric's order, each criterion by student.
 
@@ -90,25 +91,23 @@ def review_items(book: Class, results: Iterable[Graded], *, is_anonymous: bool =
     points. So are students with a final mark or an excuse, and criteria that the rubric adjusts.
     """
     groups: defaultdict[tuple[str, str], list[Member]] = defaultdict(list)
-    numbers = _numbers(book.results.students) if is_anonymous else {}
+    numbers = {key: number for number, key in enumerate(sorted(book.keys, key=digest_of), 1)}  # by no name
     counting, marked = book.marks.counting, defaultdict[str, list[str]](list)
     for key, criterion in counting:
         marked[key].append(criterion)
     for one, answers in _answers(book, results):
-        if TOTAL in marked[one.student]:
-            continue
-        student, number = book.student(one.student, one), numbers.get(one.student)
         overridden = {name: one.digest for name in marked[one.student] if name in one.results}
-        for name, answer in {**overridden, **answers}.items():
+        for name, answer in {**overridden, **answers}.items() if TOTAL not in marked[one.student] else ():
             mark = counting.get((one.student, name)) or book.marks.comments.get((one.student, name))
+            student, number = book.student(one.student, one), numbers[one.student] if is_anonymous else None
             groups[name, answer].append(Member(student, one, mark, number))
     rows = {row.id: row for row in book.rubric.criteria if row.adjustment is None}
     items = [
-        ReviewItem(rows[name], answer, tuple(sorted(members, key=order)))
+        ReviewItem(rows[name], answer, tuple(sorted(members, key=lambda one: one.order)))
         for (name, answer), members in groups.items()
         if name in rows
     ]
-    return sorted(items, key=lambda item: (item.criterion.position, not item.answer, order(item.first)))
+    return sorted(items, key=lambda item: (item.criterion.position, not item.answer, item.first.order))
 
 
 def _answers(book: Class, results: Iterable[Graded]) -> Iterator[tuple[Graded, Mapping[str, str]]]:
@@ -126,8 +125,3 @@ def answers_of(book: Class) -> Mapping[tuple[str, str], Sequence[str]]:
         for criterion, key in answers.items():
             found[criterion, key].append(one.student)
     return found
-
-
-def _numbers(keys: Sequence[str]) -> dict[str, int]:
-    """Return a number for each student, in an order that says nothing about names."""
-    return {key: number for number, key in enumerate(sorted(keys, key=digest_of), 1)}

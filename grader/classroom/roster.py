@@ -2,7 +2,7 @@
 
 import re
 import unicodedata
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from datetime import datetime
 from typing import NamedTuple
 
@@ -45,21 +45,15 @@ _ALIKE = str.maketrans("_-", "  ", "&<>\"`|':\\/")
 _NUMBERED = re.compile(r"(?:[^\W\d_]{4,}\D*)?([0-9]+)")  # Participant 123, in any language
 _PARTICIPANT = re.compile(r"(?i:participant|teilnehmer(?:/?in)?)\s*[0-9]+")
 _DAYS = re.compile(r"([0-9]{1,4}(?:[.,][0-9]{1,4})?)\s*(?:days?)?")
-_YES = re.compile("(?i:yes|y|true|late|x|ja)")
-# The form of a cell, and what is written in it.
+_LATE = {"yes": True, "true": True, "late": True, "no": False, "false": False, "on time": False}
+# The form of a cell, and what to write in it.
 _FORMS = {
-    "canvas": (re.compile("[0-9]+"), "the canvas id, which must be a number"),
-    "moodle": (_NUMBERED, "the participant id, which must be a number (put other ids in a column `id`)"),
-    "email": (re.compile(r"[^@\s]+@[^@\s]+"), "the email address, which needs an @"),
-    "late": (
-        re.compile(rf"{_YES.pattern}|(?i:no|n|false|on time|-|nein)|{_DAYS.pattern}"),
-        "late: write yes, no, or a number of days from 0",
-    ),
-    "group": (
-        re.compile(r"(?!(?i:none|n/a|null|nil|no group)\Z).*\w.*"),
-        "the group: leave the cell empty for a student without a group",
-    ),
-    "submission": (re.compile(r"(?!/|(?:.*/)?\.\.(?:/|\Z)).+"), "the submission: write a path below the class folder"),
+    "canvas": ("[0-9]+", "a number"),
+    "moodle": (_NUMBERED.pattern, "a number (put other ids in a column `id`)"),
+    "email": (r"[^@\s]+@[^@\s]+", "an address with an @"),
+    "late": (rf"{'|'.join(_LATE)}|{_DAYS.pattern}", "yes, no, or a number of days from 0"),
+    "group": (r"(?!(?:none|n/a|null|nil|no group)\Z).*\w.*", "nothing for a student without a group"),
+    "submission": (r"(?!/|(?:.*/)?\.\.(?:/|\Z)).+", "a path below the class folder"),
 }
 _TIMES = {
     "due": "2026-09-01 or 2026-09-01T23:59",
@@ -120,41 +114,38 @@ def read_roster(data: bytes, shown: str) -> Roster:
     if header and _WHO.isdisjoint(fields):
         named = ", ".join(filter(None, header))[:200]
         raise InputError(f"{shown} has no column for an id, login, name or email in its first line, only: {named}")
-    mistakes: list[tuple[int, str]] = []
-    read = list(_by_field(rows, fields, mistakes))
+    read, mistakes, students, notes = (
+        list[tuple[int, dict[str, str]]](),
+        list[str](),
+        list[tuple[int, Student]](),
+        list[str](),
+    )
+    for line, cells in rows:
+        if len(cells) < len(fields) or any(cells[len(fields) :]):
+            count = f"{counted(len(cells), 'cell')}, but the first line has {len(fields)}"
+            mistakes.append(f"line {line} of {shown} has {count}")
+        else:  # of several columns for a field the first that is not empty
+            filled = {field: cell for field, cell in reversed([*zip(fields, cells, strict=False)]) if cell}
+            read.append((line, dict.fromkeys(_TITLES, "") | filled))
     has_columns = {"student", "id"} <= set(map(folded, header)) and not {"sis", "login"}.isdisjoint(fields)
     if has_columns and any(row["id"].isdecimal() for _, row in read):  # Canvas: rows of points above the students
         read = [(line, row) for line, row in read if row["id"] and row["name"].casefold() not in _TEST_STUDENT]
         for _, row in read:
             row["canvas"] = row["canvas"] or row["id"]
-    students: list[tuple[int, Student]] = []
-    notes: list[str] = []
     for line, row in read:
-        mistakes += ((line, text) for text in _normalise(row))
-        if (student := _student(row)) is None:
-            mistakes.append((line, "has no id, login, name or email address: add one of them"))
-            continue
+        wrong = [*_normalise(row)]
+        student = _student(row)
+        if not student.key:
+            wrong.append("has no id, login, name or email address: add one of them")
+        mistakes += (f"line {line} of {shown} {text}" for text in wrong)
         students.append((line, student))
         if student.is_late and student.days_late is None and not row["late"] and _days_of(row["status"]) is None:
             late = f"{row['status']!r} does not say clearly how late the submission is, and counts as late"
             notes.append(f"line {line} of {shown}: {late}: add a column `late` with `no` or a number of days")
-    lines = [f"line {line} of {shown} {text}" for line, text in sorted(mistakes, key=lambda mistake: mistake[0])]
-    lines += _duplicates(students, shown)
-    if lines or not students:
-        raise InputError("\n".join(first_lines(lines or [f"{shown} has no students"], _MAX_MISTAKES)))
+    mistakes += _duplicates(students, shown)
+    if mistakes or not students:
+        raise InputError("\n".join(first_lines(mistakes or [f"{shown} has no students"], _MAX_MISTAKES)))
     return Roster(tuple(student for _, student in students), tuple(first_lines(notes, _MAX_MISTAKES)))
-
-
-def _by_field(
-    rows: Iterable[tuple[int, list[str]]], fields: Sequence[str], mistakes: list[tuple[int, str]]
-) -> Iterator[tuple[int, dict[str, str]]]:
-    """Yield the line of each row, and its first cell of each field that is not empty."""
-    for line, cells in rows:
-        if len(cells) < len(fields) or any(cells[len(fields) :]):
-            mistakes.append((line, f"has {counted(len(cells), 'cell')}, but the first line has {len(fields)}"))
-            continue
-        filled = {field: cell for field, cell in reversed([*zip(fields, cells, strict=False)]) if cell}
-        yield line, dict.fromkeys(_TITLES, "") | filled
 
 
 def _normalise(row: dict[str, str]) -> Iterator[str]:
@@ -164,41 +155,37 @@ def _normalise(row: dict[str, str]) -> Iterator[str]:
     """
     if _PARTICIPANT.fullmatch(row["id"]):
         row["moodle"], row["id"] = row["moodle"] or row["id"], ""
-    is_of_moodle = _NUMBERED.fullmatch(row["identifier"]) and not row["github"]
-    field = "moodle" if is_of_moodle else "id"
+    field = "moodle" if _NUMBERED.fullmatch(row["identifier"]) and not row["github"] else "id"
     row[field] = row[field] or row["identifier"]
     for field, (pattern, meant) in _FORMS.items():
-        if row[field] and not pattern.fullmatch(row[field]):
-            yield f"has {row[field]!r} for {meant}"
+        if row[field] and not re.fullmatch(pattern, row[field], re.IGNORECASE):
+            yield f"has {row[field]!r} for {_UNIQUE.get(field, field)}: write {meant}"
             row[field] = ""
-    for field, form in _TIMES.items():
+    for field, meant in _TIMES.items():
         text, time = row[field], iso_time(row[field])
         if text and not time and (field != "extension" or not _DAYS.fullmatch(text)):
-            why = ", which does not exist" if re.match(r"\d{4}-\d\d?-\d\d?(?!\d)", text) else ""
-            yield f"has {text!r} for {field}{why}: write {form}"
+            yield f"has {text!r} for {field}: write {meant}"
             text = ""
         row[field] = time or text
     if row["due"] and iso_time(row["extension"]):
         yield f"has both {row['due']!r} for due and {row['extension']!r} for extension: write one date"
 
 
-def _student(row: dict[str, str]) -> Student | None:
-    """Return the student in a row with values as they should be; None if it identifies none."""
+def _student(row: dict[str, str]) -> Student:
+    """Return the student in a row with values as they should be; without a key if it identifies none."""
     own, canvas, moodle = row["id"], row["canvas"], re.sub(r"\D", "", row["moodle"])
     login, sis = row["login"] or row["github"], row["sis"] or ("" if row["id"] == canvas else row["id"])
     name = row["name"] or f"{row['first']} {row['last']}".strip()
-    if not (key := own or row["sis"] or login or row["email"] or name or canvas or moodle):
-        return None
     extension, days_late = _days(row["extension"]), _days(row["late"])
     due, days = row["due"] or (row["extension"] if extension is None else ""), extension or 0.0
-    is_late = days_late > 0 if days_late is not None else bool(_YES.fullmatch(row["late"])) if row["late"] else None
+    is_late = days_late > 0 if days_late is not None else _LATE.get(row["late"].casefold())
     if moodle and not (row["late"] or row["submitted"]) and (status := _days_of(row["status"])) != 0:
         is_late = status is None or bool(due) or status > days  # Moodle knows neither this extension nor the deadline
         days_late = None if status is None or due else max(0.0, status - days)
-    aliases = (row["github"],) if row["github"] not in ("", login) else ()
     return Student(
-        printable_path(key), name, row["email"], login, sis, canvas, moodle, aliases, row["group"], row["section"], due,
-        row["submitted"], days, is_late, days_late, row["submission"].strip("/"),
+        printable_path(own or row["sis"] or login or row["email"] or name or canvas or moodle), name, row["email"],
+        login, sis, canvas, moodle, (row["github"],) if row["github"] not in ("", login) else (), row["group"],
+        row["section"], due, row["submitted"], days, is_late, days_late, row["submission"].strip("/"),
     )  # fmt: skip
 
 
@@ -217,17 +204,17 @@ def _days_of(status: str) -> float | None:
     return 0.0
 
 
-def _duplicates(students: Sequence[tuple[int, Student]], shown: str) -> list[str]:
-    """Return a message for each student with an id or address that another student has."""
-    found: dict[int, str] = {}
-    for field, title in _UNIQUE.items():
-        first: dict[str, int] = {}
-        for line, student in students:
-            value: str = getattr(student, field)
-            same = first.setdefault(value if field == "key" else value.casefold(), line)
-            if value and same != line:
-                found.setdefault(line, f"{shown} has the {title} {value} twice, in lines {same} and {line}")
-    return [found[line] for line in sorted(found)]
+def _duplicates(students: Sequence[tuple[int, Student]], shown: str) -> Iterator[str]:
+    """Yield a message for each student with an id or address that another student has."""
+    first: dict[tuple[str, str], int] = {}
+    for line, student in students:
+        ids = {title: str(getattr(student, field)) for field, title in _UNIQUE.items() if getattr(student, field)}
+        lines = {
+            title: first.setdefault((title, word if title == "id" else word.casefold()), line)
+            for title, word in ids.items()
+        }
+        for title in [title for title in ids if lines[title] != line][:1]:
+            yield f"{shown} has the {title} {ids[title]} twice, in lines {lines[title]} and {line}"
 
 
 def iso_time(text: str) -> str:

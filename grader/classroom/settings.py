@@ -23,9 +23,9 @@ _ARGUMENTS = "arguments"
 class ClassSettings:
     """The inputs and settings of a class. Paths are relative to the gradebook; `due` is ISO 8601, empty for none.
 
-    `max_size` is in bytes. `rubric` is the copy of the rubric. The hashes are those of the copies as they were made, empty
-    without one; another hash of the file means that somebody edited the copy. `handed_out` are hashes of work that the course
-    handed out, which is no equal work.
+    `max_size` is in bytes. `rubric` is the copy of the rubric. The hashes are those of the copies as they were made,
+    empty without one; another hash of the file means that somebody edited the copy. `handed_out` are hashes of work
+    that the course handed out, which is no equal work.
     """
 
     submissions: tuple[str, ...] = ()
@@ -41,8 +41,8 @@ class ClassSettings:
     arguments: Mapping[str, str] = field(default_factory=dict)
 
     def roots(self, folder: Path) -> tuple[Path, ...]:
-        """Return the paths of the submissions."""
-        return tuple(folder / path for path in self.submissions)
+        """Return the real paths of the submissions."""
+        return tuple((folder / path).resolve() for path in self.submissions)
 
     def with_roots(self, folder: Path, paths: tuple[Path, ...]) -> "ClassSettings":
         """Return the settings with other submissions, relative to the gradebook where that is possible."""

@@ -1,7 +1,7 @@
 """Statistics of a class: the grades as they are published, each criterion, the most common mistakes, the sections."""
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from statistics import median
 from typing import NamedTuple
@@ -13,68 +13,58 @@ from grader.grading.criterion import Criterion
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
 
-TENTHS = 10
-_MAX_MISTAKES = 20
+COUNTS = ("passed", "failed", "skipped", "pending", "errored", "carried", "marked")
+_TENTHS, _MAX_MISTAKES = 10, 20
 
 
 class Summary(NamedTuple):
-    """The grades of some students: their number, mean, median, lowest and highest; None without a grade."""
+    """The grades of some students: their number, mean, median, lowest and highest."""
 
     students: int
-    mean: Decimal | None = None
-    median: Decimal | None = None
-    lowest: Decimal | None = None
-    highest: Decimal | None = None
+    mean: Decimal
+    median: Decimal
+    lowest: Decimal
+    highest: Decimal
 
 
 class CriterionFigures(NamedTuple):
-    """The results of a criterion: students by status, those with a mark, and the mean share of its points; None if all are open."""
+    """The students by each of COUNTS, and the mean share of the points that they earned; None if all are open."""
 
     criterion: Criterion
-    passed: int
-    failed: int
-    skipped: int
-    pending: int
-    errored: int
-    carried: int
-    marked: int
+    counts: Counter[str]
     share: float | None
 
 
 class Mistake(NamedTuple):
     """A mistake that several students made in a criterion."""
 
-    criterion: Criterion
+    criterion: str
     message: str
-    students: tuple[str, ...]
-
-
-class Attention(NamedTuple):
-    """The students for whom a person is needed for one reason, each with details."""
-
-    reason: Reason
-    students: tuple[tuple[str, str], ...]
+    students: Sequence[str]
 
 
 class ClassStatistics(NamedTuple):
-    """The figures of a class. Visitors who are not on the roster count nowhere but in `attention`.
+    """The figures of a class. Visitors who are not on the roster, and what has gone, are in `attention` only.
 
-    A grade counts if it is a final mark, or that of a graded submission, after marks, adjustments and the late penalty; points that
-    still need manual grading are not in it yet, and `open` is the number of such grades. `tenths` are the keys of the students in each
-    tenth of the maximum, which itself is in the last one.
+    A grade counts if it is a final mark, or that of a graded submission, after marks, adjustments and the late penalty;
+    points that still need manual grading are not in it yet, and `open` is the number of such grades. `tenths` are the
+    keys of the students in each tenth of the maximum, which itself is in the last one. `attention` are those for whom a
+    person is needed, each with details; `names` are those of all students by key.
     """
 
     rubric: Rubric
+    maximum: Decimal
     statuses: dict[str, int]
-    all: Summary
+    all: Summary | None
     open: int
     late: int
-    tenths: tuple[tuple[str, ...], ...]
-    criteria: tuple[CriterionFigures, ...]
-    mistakes: tuple[Mistake, ...]
+    tenths: Sequence[Sequence[str]]
+    criteria: Sequence[CriterionFigures]
+    mistakes: Sequence[Mistake]
     sections: dict[str, Summary]
-    attention: tuple[Attention, ...]
-    equal: tuple[EqualWork, ...]
+    attention: dict[Reason, list[tuple[str, str]]]
+    equal: Sequence[EqualWork]
+    names: dict[str, str]
 
 
 def counts(grade: StudentGrade) -> bool:
@@ -84,62 +74,67 @@ def counts(grade: StudentGrade) -> bool:
     return is_in and grade.student.is_on_roster
 
 
+def losses(grade: StudentGrade) -> list[tuple[Decimal, str]]:
+    """Return the points that a student lost by mistakes or marks, and the criterion, the most points first."""
+    results = grade.report.results if grade.report is not None and not grade.has_final else ()
+    lost = ((row.criterion.maximum - row.points, row.criterion.id) for row in results if row.is_lost or row.manual_mark)
+    return sorted(((points, name) for points, name in lost if points > 0), key=lambda one: (-one[0], one[1]))
+
+
 def statistics(book: Class, grades: Iterable[StudentGrade]) -> ClassStatistics:
     """Return the statistics of the grades of a class."""
+    every = list(grades)
+    enrolled = [one for one in every if one.student.is_on_roster and (one.has_final or not one.is_gone)]
+    counted = [one for one in enrolled if counts(one)]
+    totals = {one.student.key: one.total or Decimal(0) for one in counted}
     most = sum((row.maximum for row in book.criteria), Decimal(0))
-    totals: dict[str, Decimal] = {}
     sections: defaultdict[str, list[Decimal]] = defaultdict(list)
-    statuses, tenths = Counter[str](), [list[str]() for _ in range(TENTHS)]
-    found: dict[str, Counter[str]] = {row.id: Counter() for row in book.criteria}
-    earned: defaultdict[str, Decimal] = defaultdict(Decimal)
-    mistakes: defaultdict[tuple[str, str], list[str]] = defaultdict(list)
-    attention: defaultdict[Reason, list[tuple[str, str]]] = defaultdict(list)
-    late = still_open = 0
-    for grade in grades:
-        key = grade.student.key
-        for reason, detail in grade.concerns:
-            attention[reason].append((key, detail))
-        if not grade.student.is_on_roster:
-            continue
-        statuses[status_of(grade)] += 1
-        late += grade.late.days > 0
-        if not counts(grade) or grade.total is None:
-            continue
-        still_open += bool(grade.why_open)
-        totals[key] = grade.total
-        tenths[max(0, min(TENTHS - 1, int(grade.total * TENTHS // (most or 1))))].append(key)
-        sections[grade.student.section].append(grade.total)
-        for result in grade.report.results if grade.report is not None else ():
-            name = result.criterion.id
-            if name not in found:  # marked, in a part that is not graded
-                continue
-            found[name].update(_of(result))
-            earned[name] += result.points
-            if result.is_lost and result.manual_mark is None and result.outcome.message:
-                mistakes[name, result.outcome.message].append(key)
-    common = sorted(mistakes.items(), key=lambda item: (-len(item[1]), item[0]))
-    by_id = {row.id: row for row in book.rubric.criteria}
+    for one in counted:
+        sections[one.student.section].append(totals[one.student.key])
+    tenths = [list[str]() for _ in range(_TENTHS)]
+    for key, total in totals.items():
+        tenths[max(0, min(_TENTHS - 1, int(total * _TENTHS // (most or 1))))].append(key)
+    attention: dict[Reason, list[tuple[str, str]]] = {reason: [] for reason in Reason}
+    for one in every:
+        for reason, detail in one.concerns:
+            attention[reason].append((one.student.key, detail))
+    present = [one.graded for one in every if one.graded is not None and not one.is_gone]
     return ClassStatistics(
         book.rubric,
-        dict(sorted(statuses.items())),
-        summary_of(totals.values()),
-        still_open,
-        late,
-        tuple(map(tuple, tenths)),
-        tuple(_figures(row, found[row.id], earned[row.id]) for row in book.criteria),
-        tuple(Mistake(by_id[name], message, tuple(keys)) for (name, message), keys in common[:_MAX_MISTAKES]),
-        {name: summary_of(values) for name, values in sorted(sections.items())} if len(sections) > 1 else {},
-        tuple(Attention(reason, tuple(attention[reason])) for reason in Reason if reason in attention),
-        tuple(equal_work((one for one in book.results.all() if one.student in book.run.totals), book.settings.handed_out)),
+        most,
+        dict(sorted(Counter(map(status_of, enrolled)).items())),
+        _summary(totals.values()) if totals else None,
+        sum(bool(one.why_open) for one in counted),
+        sum(one.late.days > 0 and not one.has_final for one in enrolled),
+        tenths,
+        *_results(book, counted),
+        {name: _summary(values) for name, values in sorted(sections.items())} if len(sections) > 1 else {},
+        {reason: those for reason, those in attention.items() if those},
+        equal_work(present, book.settings.handed_out),
+        {one.student.key: one.student.name for one in every},
     )
 
 
-def summary_of(values: Iterable[Decimal]) -> Summary:
-    """Return the figures of some grades."""
+def _summary(values: Iterable[Decimal]) -> Summary:
     found = sorted(values)
-    if not found:
-        return Summary(0)
-    return Summary(len(found), sum(found) / len(found), median(found), found[0], found[-1])
+    return Summary(len(found), sum(found, Decimal(0)) / len(found), median(found), found[0], found[-1])
+
+
+def _results(book: Class, grades: Iterable[StudentGrade]) -> tuple[list[CriterionFigures], list[Mistake]]:
+    """Return the figures of the criteria, and the most common mistakes."""
+    found = defaultdict[str, Counter[str]](Counter)
+    earned, mistakes = defaultdict[str, Decimal](Decimal), defaultdict[tuple[str, str], list[str]](list)
+    for grade in grades:
+        for result in grade.report.results if grade.report is not None else ():
+            name = result.criterion.id
+            found[name].update(_of(result))
+            earned[name] += result.points
+            is_mistake = result.is_lost and result.manual_mark is None and not result.criterion.bonus
+            if is_mistake and result.outcome.message:
+                mistakes[name, result.outcome.message].append(grade.student.key)
+    common = sorted(mistakes.items(), key=lambda item: (-len(item[1]), item[0]))[:_MAX_MISTAKES]
+    rows = [CriterionFigures(row, found[row.id], _share(row, found[row.id], earned[row.id])) for row in book.criteria]
+    return rows, [Mistake(name, message, keys) for (name, message), keys in common]
 
 
 def _of(result: Result) -> list[str]:
@@ -152,8 +147,8 @@ def _of(result: Result) -> list[str]:
     return [status] if status in ("pending", "errored") else [status, "decided"]
 
 
-def _figures(row: Criterion, found: Counter[str], earned: Decimal) -> CriterionFigures:
-    worth, decided = row.points, found["decided"]
-    share = None if not decided else float(earned / worth / decided) if worth else found["passed"] / decided
-    counts = [found[name] for name in ("passed", "failed", "skipped", "pending", "errored", "carried", "marked")]
-    return CriterionFigures(row, *counts, share)
+def _share(row: Criterion, found: Counter[str], earned: Decimal) -> float | None:
+    decided = found["decided"]
+    if not decided:
+        return None
+    return float(earned / row.points / decided) if row.points else found["passed"] / decided

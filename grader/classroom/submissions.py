@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from grader.classroom.detection import LAYOUTS, downloads_in, inner_class, is_of_course, layout_of, submissions_in
-from grader.classroom.layouts import ClassFolder, ClassSubmission
+from grader.classroom.detection import LAYOUTS, inner_class, layout_of, submissions_in
+from grader.classroom.grouping import ClassSubmission
+from grader.classroom.layouts import ClassFolder
 from grader.classroom.listing import listing_of
 from grader.classroom.owners import Intake, Owners
 from grader.classroom.people import People
@@ -48,37 +49,23 @@ def read_class(
         )  # fmt: skip
         folder = inner_class(top)
         chosen = layout_of(folder) if layout == "auto" else layout
-        _refuse(path, folder, chosen)
-        submissions = submissions_in(folder, chosen)
-        if not submissions:
+        _check(path, folder, chosen)
+        count = len(found)
+        found += (one._replace(root=root) if root else one for one in submissions_in(folder, chosen))
+        if len(found) == count:
             example = "".join(f": {line}" for line in sorted(owners.ignored)[:1])
             advice = f" (without --layout {layout} the layout is detected)" if layout != "auto" else ""
             raise InputError(f"there is no submission in {printable_path(path)}{example}{advice}")
-        found += (one._replace(root=root) for one in submissions)
         layouts[chosen] = None
     owners.find(found)
     return owners.intake(" and ".join(layouts))
 
 
-def _refuse(path: Path, folder: ClassFolder, layout: str) -> None:
-    """Raise InputError for a folder that is empty or no class, or does not fit what the user has named."""
+def _check(path: Path, folder: ClassFolder, layout: str) -> None:
+    """Raise InputError for a folder that is no class, or does not fit what the user has named."""
     shown = printable_path(path)
-    if not any(folder.children):
-        raise InputError(f"{shown} is empty: name the folder that holds the class's submissions")
     if folder.assignment and layout != "nbgrader":
-        raise InputError(
-            f"--assignment is only for the layout nbgrader, and {shown} has the layout {layout}: remove it, or add"
-            " --layout nbgrader"
-        )
+        raise InputError(f"--assignment is only for the layout nbgrader, and {shown} has the layout {layout}")
     if layout == "folders" and not folder.is_explicit and "package.xml" in folder.children.files:
-        raise InputError(
-            f"{shown} is one submission and not a class: it contains a package.xml "
-            f"(grade it with `grader grade {shell_quoted(path)}`)"
-        )
-    downloads = downloads_in(folder) if layout == "folders" and not folder.is_explicit else []
-    for name in downloads:
-        what, command = "a download of a whole class", f"grade it with `grader batch {shell_quoted(path / name)}`"
-        if len(downloads) == sum(not is_of_course(entry) for entry in folder.entries):
-            advice = f"{command}; if it is the submission of one student, add --layout folders"
-            raise InputError(f"{shown}/{printable_path(name)} is {what}: {advice}")
-        folder.notes.append(f"{printable_path(name)} is graded as one submission; if it is {what}, {command}")
+        advice = f"grade it with `grader grade {shell_quoted(path)}`"
+        raise InputError(f"{shown} is one submission and not a class: it contains a package.xml ({advice})")

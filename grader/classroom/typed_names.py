@@ -1,16 +1,15 @@
 """What a grader types: a student, a criterion, points.
 
-A student is found by id, login, address, number, full name, or some words of a name. The search never chooses
-between several students: a manual mark must not go to the wrong one.
+The search never chooses between several students: a manual mark must not go to the wrong one.
 """
 
 import re
-import unicodedata
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from decimal import Context, Decimal
 from functools import lru_cache
 from typing import Any, TypeVar
 
+from grader.classroom.roster import plain
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
@@ -22,10 +21,6 @@ S = TypeVar("S")  # a Student
 _FINEST = Decimal("0.0001")  # points, as in rubrics
 _MAX_LISTED = 10
 _NUMBER = re.compile(r"\s*[+-]?(?=[.,]?[0-9])[0-9]{0,40}(?:[.,][0-9]{0,40})?(?:[eE][+-]?[0-9]{1,9})?\s*")
-_WORD = re.compile(r"[^\s\-_,]+")  # of a name: Ash-Birch is two
-_IGNORED = str.maketrans("", "", "&<>\"`|':\\/\u200e\u200f")  # an LMS removes them from names; marks of direction
-_LETTERS = str.maketrans({"ø": "o", "ł": "l", "đ": "d", "ð": "d", "þ": "th", "æ": "ae", "œ": "oe", "ı": "i"})
-_UMLAUTS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ø": "oe", "å": "aa"})
 
 
 class NotCountedError(InputError):
@@ -33,23 +28,25 @@ class NotCountedError(InputError):
 
 
 def find_typed(students: Sequence[S], name: str, advice: str) -> S:
-    """Return the only student whom a typed name may mean.
+    """Return the only student whom a typed name may mean: an id, login, address or number, or some words of the name.
 
     Raises InputError: if several students match, it lists them; else similar names; else it ends with `advice`.
     """
     everyone = _clues(tuple(students))
-    word, wanted = same_case(name), _words(name)
-    found: list[S] = [one for one, ids, words in everyone if word in ids or (wanted and wanted <= words)]
+    word = plain(name)
+    found: list[Any] = [one for one, ids, words in everyone if word and (word in ids or words.issuperset(word.split()))]
     if len(found) == 1:
-        return found[0]
+        only: S = found[0]
+        return only
     if found:
-        raise InputError(f"{name!r} is ambiguous: it may be {_listed(found)}; use one of these ids")
-    changed = as_number(name, tuple(one.key for one, *_ in everyone))
-    ways = [without_accents(word) for word in wanted]  # Muller and Mueller are similar to Müller
-    similar = [one for one, _, words in everyone if one.key in changed or (ways and _has_all(words, ways))]
-    guess = f"; did you mean {'one of ' * (len(similar) > 1)}{_listed(similar)}?" if similar else ""
+        shown = [f"{one.key!r} ({printable(one.name)})" if one.name else repr(one.key) for one in found]
+        raise InputError(
+            f"{name!r} is ambiguous: it may be {enumerated(shown, _MAX_LISTED, 'or')}; use one of these ids"
+        )
+    changed = enumerated([*map(repr, as_number(name, tuple(one.key for one, *_ in everyone)))], _MAX_LISTED, "or")
     some = {word for one, *_ in everyone for word in (one.key, one.login, one.name)}
-    raise InputError(f"there is no student {name!r} in the gradebook{guess or did_you_mean(name, some) or advice}")
+    guess = f"; did you mean {changed}?" if changed else did_you_mean(name, some) or advice
+    raise InputError(f"there is no student {name!r} in the gradebook{guess}")
 
 
 @lru_cache(maxsize=1)  # a file of marks names many
@@ -58,40 +55,9 @@ def _clues(students: tuple[Any, ...]) -> list[tuple[Any, set[str], set[str]]]:
     clues = []
     for one in students:
         words = (one.key, one.login, one.sis, one.canvas, one.moodle, one.email, one.email.partition("@")[0])
-        ids = {same_case(word) for word in (*words, *getattr(one, "aliases", ())) if word}
-        clues.append((one, ids, _words(one.name or one.key)))
+        ids = {plain(word) for word in (*words, *getattr(one, "aliases", ())) if word}
+        clues.append((one, ids, {*plain(one.name or one.key).split()}))
     return clues
-
-
-def _has_all(words: Iterable[str], wanted: Iterable[Sequence[str]]) -> bool:
-    known = {way for word in words for way in without_accents(word)}
-    return not any(map(known.isdisjoint, wanted))
-
-
-def _listed(students: Sequence[Any]) -> str:
-    """Return the ids and names of students, at most _MAX_LISTED."""
-    shown = [f"{one.key!r} ({printable(one.name)})" if one.name else repr(one.key) for one in students[:_MAX_LISTED]]
-    more = len(students) - len(shown)
-    return ", ".join(shown) + (f" and {more} more" if more else "")
-
-
-def same_case(word: str) -> str:
-    """Normalise an id or a word: compatible characters, case, spaces and the encoding of accents."""
-    return " ".join(unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", word).casefold()).split())
-
-
-def _words(name: str) -> set[str]:
-    return {*_WORD.findall(same_case(name).translate(_IGNORED))}
-
-
-def without_accents(word: str) -> tuple[str, ...]:
-    """Return a normalised word without accents, and with an umlaut as two letters: muller and mueller."""
-    composed = unicodedata.normalize("NFC", word)
-    written_out = (composed.translate(_LETTERS), composed.translate(_UMLAUTS).translate(_LETTERS))
-    return tuple(
-        "".join(letter for letter in unicodedata.normalize("NFKD", text) if not unicodedata.combining(letter))
-        for text in written_out
-    )
 
 
 def known(noun: str, cell: str, names: Mapping[str, Any]) -> str:

@@ -5,12 +5,15 @@ import weakref
 from bisect import bisect_left
 from contextlib import AbstractContextManager
 from dataclasses import replace
+from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.archive import read_archive, tree_of
+from grader.files.children import Children, is_litter
 from grader.files.members import ARCHIVE_ERRORS, NOT_REGULAR, ArchiveMember, error_text, safe_path, zip_members
 from grader.files.names import ARCHIVES
 from grader.files.opening import NOT_AN_ARCHIVE, archive_kind
@@ -20,7 +23,9 @@ from grader.text import printable_path
 if TYPE_CHECKING:
     import hashlib
 
+MAX_FOLDERS = 200_000
 _MAX_MEMBERS = 200_000
+_MAX_DEPTH = 20  # folders: names below do not tell whose a file is
 _IN_MEMORY = 16 * 1024 * 1024
 _CHUNK = 1024 * 1024
 
@@ -48,6 +53,31 @@ class ClassZip:
         except ARCHIVE_ERRORS as error:
             raise FileError(self._shown, f"cannot be read as an archive: {error_text(error, self._shown)}") from None
         self._names = sorted(self.members)
+
+    def children(self, folder: str, limit: int | None = None) -> Children:
+        """Return the names in a folder, at most `limit`."""
+        found = Children([], [], [])
+        for name, kind in islice(self._folders.get(folder, {}).items(), limit):
+            if kind in ("folder", "file"):
+                (found.folders if kind == "folder" else found.files).append(name)
+            else:
+                found.refused.append((name, kind))
+        return found
+
+    def has(self, path: str) -> bool:
+        """Return whether there is a file or folder."""
+        return path in self._folders or path in self.members
+
+    @cached_property
+    def _folders(self) -> dict[str, dict[str, str]]:
+        """The kinds of the children of each folder, by their names."""
+        outside = "has a path that leads out of the archive, and was not read"
+        folders: dict[str, dict[str, str]] = {"": dict.fromkeys(self.outside, outside)}
+        for path, member in self.members.items():
+            _add(path.split("/"), member.kind, folders)
+            if len(folders) > MAX_FOLDERS:
+                raise InputError(f"{self._shown} contains more than {MAX_FOLDERS} folders, the limit")
+        return folders
 
     def folder(self, path: str) -> Tree:
         """Return the files below a folder."""
@@ -123,3 +153,19 @@ def _copy_archive(member: ArchiveMember, to: IO[bytes], digest: "hashlib._Hash")
             to.write(chunk)
             chunk = content.read(_CHUNK)
     return kind
+
+
+def _add(names: list[str], kind: str, folders: dict[str, dict[str, str]]) -> None:
+    """Add a member to the folders around it."""
+    folder = ""
+    for index, name in enumerate(names[:_MAX_DEPTH]):
+        if is_litter(name):
+            return
+        child = f"{folder}/{name}" if folder else name
+        if index + 1 < len(names) or kind == "folder":
+            folders[folder][name] = "folder"
+            folders.setdefault(child, {})
+        else:
+            what = "is a symlink in an archive, and was not followed" if kind == "link" else "file"
+            folders[folder].setdefault(name, what)
+        folder = child

@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
 from operator import itemgetter
-from typing import Any
 
 from rich.console import Console
 from rich.text import Text
@@ -28,12 +27,9 @@ from grader.report.json_data import (
     to_json,
 )
 from grader.report.order import alike
-from grader.text import counted, enumerated, format_points, named, printable, signed_points
+from grader.text import counted, enumerated, first_lines, format_points, named, printable, signed_points
 
 _MAX_NAMED, _MAX_LINES = 3, 12
-Steps = tuple[PointsChange, ...]
-
-
 _RUN = Record(
     {
         "run": COUNT,
@@ -45,13 +41,7 @@ _RUN = Record(
 _SPAN = each(nullable(POINTS), "before after")
 _STEP = Record({"id": (TEXT, "criterion"), **_SPAN})
 _CHANGE = Record(
-    {
-        "id": (TEXT, "key"),
-        "name": TEXT,
-        **_SPAN,
-        "reasons": (array(TEXT), "why"),
-        "criteria": (Many(_STEP), "steps"),
-    }
+    {"id": (TEXT, "key"), "name": TEXT, **_SPAN, "reasons": (array(TEXT), "why"), "criteria": (Many(_STEP), "steps")}
 )
 DIFF = Record(  # of the two runs, and the changes
     {
@@ -63,70 +53,43 @@ DIFF = Record(  # of the two runs, and the changes
 )
 
 
-def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Console) -> None:
-    """Print the two runs, and whose grade changed, by how much, in which criteria, and why.
-
-    Students with the same reason are listed together.
-    """
-    before, after = (f"run {run.run} of {time_text(run.time)}" for run in runs)
-    wrapped(console, Text(printable(f"From {before} to {after}"), style="dim"), 0)
-    if not changes:
-        wrapped(console, Text("nothing changed"), 0)
-    for why, found in sorted(alike(changes, lambda change: change.why), key=_size):
-        reason = "; ".join(why) or "unknown reason: please report it"
-        console.print()
-        wrapped(console, Text(printable(f"{reason} ({counted(len(found), 'student')})"), style="bold"), 0)
-        for steps, some in sorted(alike(found, lambda change: change.steps), key=_size):
-            _show_students(steps, some, console)
-
-
-def _size(group: tuple[Any, Sequence[Change]]) -> int:
-    """Return the key by which the largest group is first; groups of one size are in the order of their students."""
-    return -len(group[1])
-
-
-def _show_students(steps: Steps, changes: Sequence[Change], console: Console) -> None:
-    """Print students with the same changes: for one student the name first, for several the changes first."""
-    lines = [Text(printable(line)) for line in _lines(steps)]
-    totals = [f"{named(change.key, change.name)}: {_total(change)}" for change in changes]
-    students = [Text(printable(total), style="bold") for total in totals]
-    first, then = (students, lines) if len(changes) == 1 or not steps else (lines, students)
-    for text in first:
-        wrapped(console, text, 2)
-    for text in then:
-        wrapped(console, text, 4)
-
-
 def render_changes_json(changes: Sequence[Change], runs: tuple[Run, Run]) -> str:
     """Return the changes as JSON, schema grader/diff/v1."""
     return to_json(DIFF.data((*runs, changes)))
 
 
-def _total(change: Change) -> str:
-    """Return the totals before and after."""
-    if change.before != change.after or change.before is None:
-        return _span(change.before, change.after)
-    return f"{format_points(change.before)} as before"
+def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Console) -> None:
+    """Print the two runs, and whose grade changed, by how much, in which criteria, and why.
+
+    Students with the same reason and the same changes of criteria are listed together.
+    """
+    before, after = (f"run {run.run} of {time_text(run.time)}" for run in runs)
+    wrapped(console, Text(printable(f"From {before} to {after}"), style="dim"), 0)
+    if not changes:
+        wrapped(console, Text("nothing changed"), 0)
+    for why, found in sorted(alike(changes, lambda change: change.why), key=lambda group: -len(group[1])):
+        console.print()
+        heading = f"{'; '.join(why)} ({counted(len(found), 'student')})"
+        wrapped(console, Text(printable(heading), style="bold"), 0)
+        for steps, some in sorted(alike(found, lambda change: change.steps), key=lambda group: -len(group[1])):
+            for line in first_lines([*_lines(steps)], _MAX_LINES):
+                wrapped(console, Text(printable(line)), 2)
+            for one in some:
+                total = f"{named(one.key, one.name)}: {_span(one.before, one.after, 'not final')}"
+                wrapped(console, Text(printable(total), style="bold"), 4)
 
 
 def _lines(steps: Sequence[PointsChange]) -> Iterator[str]:
-    """Yield a line for each criterion, or one for many with the same change, and how many more there are."""
-    lines: list[tuple[str, int]] = []
+    """Yield a line for the criteria with the same change."""
     for span, some in alike(steps, lambda step: (step.before, step.after)):
-        names = [step.criterion for step in some]
-        if len(names) <= _MAX_NAMED:
-            lines += [(f"{name}: {_span(*span)}", 1) for name in names]
-        else:
-            lines.append((f"{enumerated(names, _MAX_NAMED)}: {_span(*span)} each", len(names)))
-    yield from (line for line, _ in lines[:_MAX_LINES])
-    if len(lines) > _MAX_LINES:
-        yield f"... and {sum(count for _, count in lines[_MAX_LINES:])} more"
+        names = enumerated([step.criterion for step in some], _MAX_NAMED)
+        yield f"{names}: {_span(*span)}{' each' * (len(some) > 1)}"
 
 
-def _span(before: Decimal | None, after: Decimal | None) -> str:
-    difference = "" if before is None or after is None else f" ({signed_points(after - before)})"
-    return f"{_points(before)} to {_points(after)}{difference}"
-
-
-def _points(points: Decimal | None) -> str:
-    return "none" if points is None else format_points(points)
+def _span(before: Decimal | None, after: Decimal | None, nothing: str = "none") -> str:
+    """Return points before and after: "50 to 60 (+10)"."""
+    first, last = (nothing if points is None else format_points(points) for points in (before, after))
+    if first == last:
+        return f"{first}, as before"
+    words = f"{first} to {last}"
+    return words if before is None or after is None else f"{words} ({signed_points(after - before)})"

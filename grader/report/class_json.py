@@ -1,12 +1,16 @@
 """A class as JSON, schema grader/class/v1."""
 
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from functools import partial
+from operator import itemgetter
+from types import SimpleNamespace
 
 from grader import __version__
 from grader.classroom.grade_table import status_of
 from grader.classroom.grades import Class, StudentGrade
 from grader.classroom.run.progress import Progress
-from grader.classroom.statistics import ClassStatistics, statistics
+from grader.classroom.statistics import COUNTS, CriterionFigures, statistics
+from grader.grading.report import Result
 from grader.report.json_data import (
     COUNT,
     FLAG,
@@ -25,26 +29,32 @@ from grader.report.json_data import (
     mapping,
     nullable,
     record,
-    rounded,
     schema_key,
     to_json,
 )
 
 _STATUSES = ("errored", "excused", "graded", "missing", "unreadable")
 _SUMMARY = Record({"students": TOTAL, **each(nullable(POINTS), "mean median lowest highest")})
+_NO_GRADES = {**dict.fromkeys(_SUMMARY.keys), "students": 0}
+
+
+def _count(name: str, row: CriterionFigures) -> int:
+    return row.counts[name]
+
+
 _CRITERION = Record(
     {
         "id": (TEXT, "criterion.id"),
         "max_points": (POINTS, "criterion.points"),
-        **each(TOTAL, "passed failed skipped pending errored carried marked"),
+        **{name: (TOTAL, partial(_count, name)) for name in COUNTS},
         "share": nullable(POINTS),
     }
 )
-_MISTAKE = Record({"criterion": (TEXT, "criterion.id"), "message": TEXT, "students": array(TEXT)})
+_MISTAKE = Record({**each(TEXT, "criterion message"), "students": array(TEXT)})
 _STATISTICS = Record(
     {
         "counts": (record(dict.fromkeys(_STATUSES, COUNT), optional=_STATUSES), "statuses"),
-        "grades": (_SUMMARY, "all"),
+        "grades": (_SUMMARY.schema, lambda found: _SUMMARY.data(found.all) if found.all else _NO_GRADES),
         **each(TOTAL, "open late"),
         "tenths": (array(TOTAL), lambda found: [len(keys) for keys in found.tenths]),
         "criteria": Many(_CRITERION),
@@ -55,16 +65,9 @@ _STATISTICS = Record(
         ),
     }
 )
-_EQUAL = Record({"students": array(TEXT), "same_file": array(array(TEXT)), "equal": TEXT})
-_ATTENTION = Record(
-    {
-        "reason": TEXT,
-        "students": (
-            array(record({"id": TEXT, "detail": TEXT})),
-            lambda group: [{"id": key, "detail": detail} for key, detail in group.students],
-        ),
-    }
-)
+_EQUAL = Record({"students": array(TEXT), "equal": TEXT})
+_CONCERN = Record({"id": (TEXT, itemgetter(0)), "detail": (TEXT, itemgetter(1))})
+_ATTENTION = Record({"reason": (TEXT, itemgetter(0)), "students": (Many(_CONCERN), itemgetter(1))})
 
 
 def _of_report(name: str) -> Key:
@@ -72,8 +75,8 @@ def _of_report(name: str) -> Key:
     return nullable(POINTS), lambda one: exact(getattr(one.report, name)) if one.report is not None else None
 
 
-def _count(one: StudentGrade) -> int:
-    return sum(row.manual_mark is not None for row in one.report.results) if one.report is not None else 0
+def _results(one: StudentGrade) -> Sequence[Result]:
+    return one.report.results if one.report is not None else ()
 
 
 _STUDENT = Record(
@@ -90,11 +93,8 @@ _STUDENT = Record(
         "final_mark": (nullable(POINTS), "final_points"),
         "is_excused": FLAG,
         "not_final_because": (TEXT, "why_open"),
-        "carried": (
-            array(TEXT),
-            lambda one: [row.criterion.id for row in one.report.results if row.carried] if one.report is not None else [],
-        ),
-        "manual_marks": (TOTAL, _count),
+        "carried": (array(TEXT), lambda one: [row.criterion.id for row in _results(one) if row.carried]),
+        "manual_marks": (TOTAL, lambda one: sum(row.manual_mark is not None for row in _results(one))),
         "marked_before": (array(TEXT), "older"),
         "paths": (array(TEXT), lambda one: list(one.graded.paths) if one.graded is not None else []),
         "submission": (TEXT, lambda one: one.graded.digest if one.graded is not None else ""),
@@ -102,25 +102,16 @@ _STUDENT = Record(
 )
 
 
-class _Report(NamedTuple):
-    """What is said of a class; `run` counts what a batch has just done."""
-
-    book: Class
-    statistics: ClassStatistics
-    students: list[StudentGrade]
-    run: Progress | None
-
-
 CLASS = Record(
     {
         **schema_key("grader/class/v1"),
         "grader": (GRADER, lambda _: {"version": __version__}),
-        "rubric": (RUBRIC, "book.rubric"),
+        "rubric": (RUBRIC, "statistics.rubric"),
         "run": Record(each(TOTAL, "total graded unchanged errored")),
-        "max_score": (POINTS, lambda report: rounded(sum(row.maximum for row in report.book.criteria))),
+        "max_score": (POINTS, "statistics.maximum"),
         "statistics": _STATISTICS,
         "equal": (Many(_EQUAL), "statistics.equal"),
-        "attention": (Many(_ATTENTION), "statistics.attention"),
+        "attention": (Many(_ATTENTION), lambda report: report.statistics.attention.items()),
         "ignored_marks": (array(TEXT), "book.marks.ignored"),
         "students": Many(_STUDENT),
     },
@@ -131,5 +122,5 @@ CLASS = Record(
 def render_class_json(book: Class, done: Progress | None = None) -> str:
     """Return the statistics and all current grades."""
     students = list(book)
-    data: Any = CLASS.data(_Report(book, statistics(book, students), students, done))
-    return to_json(data)
+    report = SimpleNamespace(book=book, statistics=statistics(book, students), students=students, run=done)
+    return to_json(CLASS.data(report))

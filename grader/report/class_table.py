@@ -2,7 +2,7 @@
 
 from array import array
 from collections import defaultdict
-from collections.abc import Iterator
+from decimal import Decimal
 from statistics import fmean, median
 
 from rich.console import Console
@@ -10,14 +10,14 @@ from rich.table import Table
 from rich.text import Text
 
 from grader.classroom.grades import Reason, StudentGrade
-from grader.classroom.statistics import counts
+from grader.classroom.statistics import counts, losses
 from grader.grading.rubric import Rubric
+from grader.report.class_summary import attention_line, means
 from grader.report.console import wrapped
-from grader.text import counted, format_points, people_text, printable
+from grader.text import counted, format_points, printable
 
 _MAX_ROWS = 40
 _MAX_COSTS = 3  # criteria named in a row
-_MAX_NAMED = 12  # students named for a reason
 
 
 class ClassTable:
@@ -28,8 +28,7 @@ class ClassTable:
         self.rows: list[tuple[str, str, str, str]] = []  # the student, the total, what cost most, what is open
         self.count = 0
         self._totals = array("d")
-        self._concerns: defaultdict[Reason, list[str]] = defaultdict(list)
-        self._counts: defaultdict[Reason, int] = defaultdict(int)
+        self._concerns: defaultdict[Reason, list[tuple[str, str]]] = defaultdict(list)
 
     def add(self, grade: StudentGrade) -> None:
         """Add the next student."""
@@ -38,13 +37,11 @@ class ClassTable:
         if self.verbose or len(self.rows) < _MAX_ROWS:
             is_ungraded = grade.graded is not None and grade.graded.verdict != "graded" and not grade.total
             total = "–" if grade.total is None or (is_ungraded and grade.why_open) else format_points(grade.total)
-            self.rows.append((name, total, ", ".join(_costs(grade)), _open(grade)))
+            self.rows.append((name, total, _costs(grade), _open(grade)))
         if grade.total is not None and counts(grade):
             self._totals.append(float(grade.total))
         for reason, detail in grade.concerns:
-            self._counts[reason] += 1
-            if self.verbose or len(self._concerns[reason]) < _MAX_NAMED:
-                self._concerns[reason].append(f"{name} ({detail})" if detail else name)
+            self._concerns[reason].append((name, detail))
 
     def print(self, console: Console) -> None:
         """Print the table. Text of submissions is never interpreted as markup or control codes."""
@@ -62,27 +59,18 @@ class ClassTable:
         console.print()
         if self._totals:
             who = counted(len(self._totals), "student")
-            console.print(Text(f"Mean {fmean(self._totals):.1f}, median {median(self._totals):.1f} ({who})"))
-        for line in self._attention():
-            wrapped(console, Text(printable(line)), 2)
-
-    def _attention(self) -> Iterator[str]:
-        for reason in Reason:
-            if count := self._counts[reason]:
-                yield f"{str(reason)[0].upper()}{reason[1:]} ({count}): {people_text(self._concerns[reason], _MAX_NAMED)}"
+            console.print(Text(f"{means(fmean(self._totals), median(self._totals)).capitalize()} ({who})"))
+        for reason in filter(self._concerns.get, Reason):
+            wrapped(console, Text(printable(attention_line(reason, self._concerns[reason], verbose=self.verbose))), 2)
 
 
-def _costs(grade: StudentGrade) -> Iterator[str]:
-    """Yield the criteria that cost most, with their points, and the late penalty."""
-    if grade.has_final or grade.report is None:
-        return
-    lost = [(row.criterion.points - row.points, row.criterion.id) for row in grade.report.results if row.is_lost or row.manual_mark]
-    costs = sorted((-points, name) for points, name in lost if points > 0)
-    yield from (f"{name} {format_points(points)}" for points, name in costs[:_MAX_COSTS])
-    if len(costs) > _MAX_COSTS:
-        yield f"{len(costs) - _MAX_COSTS} more {format_points(sum(points for points, _ in costs[_MAX_COSTS:]))}"
-    if grade.late.points:
-        yield f"late {format_points(grade.late.points)}"
+def _costs(grade: StudentGrade) -> str:
+    """Return the criteria that cost most, with their points, and the late penalty."""
+    costs = losses(grade)
+    words = [f"{name} {format_points(-points)}" for points, name in costs[:_MAX_COSTS]]
+    if rest := costs[_MAX_COSTS:]:
+        words.append(f"{len(rest)} more {format_points(sum((-points for points, _ in rest), Decimal(0)))}")
+    return ", ".join([*words, *([f"late {format_points(grade.late.points)}"] if grade.late.points else [])])
 
 
 def _open(grade: StudentGrade) -> str:
@@ -92,4 +80,6 @@ def _open(grade: StudentGrade) -> str:
     if grade.graded is None:
         return "nothing submitted"
     words = {"errored": "the grader failed", "unreadable": "could not be graded"}
-    return words.get(grade.graded.verdict) or (f"{format_points(grade.pending)} points" if grade.pending else grade.why_open)
+    return words.get(grade.graded.verdict) or (
+        f"{format_points(grade.pending)} points" if grade.pending else grade.why_open
+    )

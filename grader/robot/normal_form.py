@@ -12,7 +12,6 @@ from grader.robot.reader import Reading
 from grader.xml.parsing import Element
 
 _MODEL = ("link", "joint", "material")
-_SHORT, _MAX_LINES = 8, 1000  # digits of the hash of a line, lines of a robot
 _NAMES = ("name", "material_name")  # of materials: nothing outside of the file refers to them
 
 
@@ -41,17 +40,15 @@ def robot_hash(reading: Reading) -> str:
     return _hash((problems, normal_form(reading.robot), _extensions(reading.elements)))
 
 
-def written_form(root: Element | None, *, is_handed_out: bool = False) -> tuple[str, list[str]]:
-    """Return the hash of the links, joints and materials as they are written, and each line of the other elements.
+def written_form(root: Element | None, *, is_handed_out: bool = False) -> str:
+    """Return the hash of the links, joints and materials as they are written.
 
-    Comments and white space do not count; names, order and the spelling of numbers do. A line is an element in a
-    `<gazebo>`, for example: a hash and this tag. Without any the hash is empty: `robot_hash` says who has the same.
+    Comments and white space do not count; names, order and the spelling of numbers do. Without other elements, such as
+    `<gazebo>`, the hash is empty: `robot_hash` says who has the same.
     """
     children = list(root) if root is not None else []
-    others = (child for child in children if child.tag not in _MODEL)
-    lines = [f"{_hash(line)[:_SHORT]} {child.tag}" for child in others for line in _content(child)]
-    model = [_content(child) for child in children if child.tag in _MODEL] if lines or is_handed_out else []
-    return _hash(model) if model else "", lines[:_MAX_LINES]
+    model = [_content(child) for child in children if child.tag in _MODEL]
+    return _hash(model) if model and (is_handed_out or len(model) < len(children)) else ""
 
 
 def _hash(content: object) -> str:

@@ -1,4 +1,4 @@
-"""The statistics of a class, and what changed in its grades."""
+"""The statistics of a class on a terminal and as JSON, and what changed in its grades."""
 
 from functools import partial
 from pathlib import Path
@@ -33,7 +33,7 @@ def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *,
         return render_class_json(book)
     from grader.report.class_summary import render_class
 
-    return draw(partial(render_class, book, statistics(book, book), verbose=verbose), terminal.screen())
+    return draw(partial(render_class, statistics(book, book), verbose=verbose), terminal.screen())
 
 
 def compare(books: tuple[Path, ...], before: int | None, after: int | None, kind: OutputFormat, screen: Screen) -> str:
@@ -48,7 +48,7 @@ def compare(books: tuple[Path, ...], before: int | None, after: int | None, kind
         raise InputError(f"{books[0]} has one run: grade the class again, and compare then")
     earlier = before if before is not None or len(books) > 1 else (after or newest) - 1
     old, new = snapshot(books[0], earlier), snapshot(books[-1], after)
-    found, runs = changes(old, new), (old.run, new.run)
+    found, runs = [*changes(old, new)], (old.run, new.run)
     if kind is OutputFormat.JSON:
         return render_changes_json(found, runs)
     return draw(partial(render_changes, found, runs), screen)

@@ -12,7 +12,7 @@ from grader.classroom.reopening import reopened
 from grader.classroom.results import Graded
 from grader.classroom.run.pool import Processes, WorkerError, processors
 from grader.classroom.run.progress import Progress
-from grader.classroom.run.queue import results_of
+from grader.classroom.run.queue import Queue
 from grader.classroom.run.worker import undecided_report
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
 from grader.grading.grade import grade as grade_submission
@@ -185,7 +185,8 @@ def render_reports(
         show(Progress(len(files)))
         done = 0
         tasks = (_Task(key, name) for key, name in files.items())
-        for results in results_of(executor, workers, partial(_write_some, run), tasks, again, give_up, _TASK_SIZE):
+        queue = Queue(executor, workers, partial(_write_some, run), again, give_up, _TASK_SIZE)
+        for results in queue.results(tasks):
             lost |= {key: why for key, why in results if why}
             show(Progress(len(files), graded=(done := done + len(results))))
     return {key: lost[key] for key in files if key in lost}

@@ -140,7 +140,7 @@ def open_one(path: str, rubric: "Rubric", opening: "Opening | None" = None, opti
     if submission.students:
         from grader.usecases.several_students import refusal  # late: few submissions are several
 
-        raise refusal(path, submission.students, rubric, options)
+        raise refusal(path, submission.students, options)
     return submission
 
 

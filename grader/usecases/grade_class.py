@@ -95,7 +95,7 @@ def _grade(
         done = _batch(request, inputs, Batch(results, writer, shared, context), intake, terminal)
         time = datetime.now(UTC).isoformat(timespec="milliseconds")
         present = dict.fromkeys(one.student.key for one in intake.submissions)
-        run = Run(results.next_run, time, __version__, rubric.sha256, context, present)
+        run = Run(results.next_run, time, __version__, rubric.sha256, context, present, sorted(intake.unclear))
         book, table = Class(folder, run=run), ClassTable(rubric, verbose=request.verbose)
         totals: dict[str, str | None] = {}
 
@@ -136,9 +136,8 @@ def write_grades(book: Class) -> None:
 def warn_of_due(due: str | None, inputs: ClassInputs, warn: Warn) -> None:
     """Say that `--due` changes no grade if the rubric has no late penalty."""
     if due and inputs.rubric.late is None:
-        warn(
-            f"--due has no effect on grades, because the rubric {inputs.rubric.id} has no [late]: only the days late are shown"
-        )
+        name = inputs.rubric.id
+        warn(f"--due has no effect on grades, because the rubric {name} has no [late]: only the days late are shown")
 
 
 def _reference(folder: Path) -> str:
@@ -150,13 +149,13 @@ def _reference(folder: Path) -> str:
 def _check_same_class(folder: Path, results: Results, intake: Intake) -> None:
     """Raise InputError if most of the students who submitted in the last run are missing, or the roster fits nobody."""
     recorded = results.runs[-1].totals if results.runs else {}
-    here = {one.student.key for one in intake.submissions}
+    here = intake.unclear | {one.student.key for one in intake.submissions}
     missing = sorted(recorded.keys() - here)
     if 2 * len(missing) > len(recorded):
         raise InputError(
             f"{printable_path(folder)} is the gradebook of another class, or a section is missing: "
             f"{counted(len(missing), 'student')} of {len(recorded)} have no submission now "
-            f"({printable(enumerated(missing, _MAX_NAMED))}); name the paths of all sections, or another folder with --gradebook"
+            f"({printable(enumerated(missing, _MAX_NAMED))}); name the paths of all sections, or another --gradebook"
         )
 
 

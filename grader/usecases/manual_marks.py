@@ -56,11 +56,11 @@ def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
 
 
 def mark_missing(gradebook: Path, request: MarkRequest) -> str:
-    """Give all who submitted nothing, and have no final mark, one; return how many. Raises InputError."""
+    """Give all who certainly submitted nothing, and have no final mark, one; return how many. Raises InputError."""
     if request.criterion != TOTAL or not request.points or request.points == WITHDRAWN:
         raise InputError(f"write it as --missing {TOTAL} POINTS")
     book = Class(gradebook)
-    missing = [one.student.key for one in book if one.graded is None and not one.has_final]
+    missing = [one.student.key for one in book if one.graded is None and not (one.is_unclear or one.has_final)]
     append_marks(_file(book, request.by), _given(_reader(book), missing, request))
     write_grades(Class(gradebook))
     return f"{len(missing)} of {len(book.keys)} submitted nothing, and have the final mark {request.points} now\n"

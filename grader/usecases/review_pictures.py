@@ -4,6 +4,7 @@ A person fills in the sheet, a CSV file, and `grader mark --import` records it.
 """
 
 import os
+from collections.abc import Sequence
 from functools import lru_cache
 from itertools import starmap
 from pathlib import Path
@@ -11,7 +12,7 @@ from pathlib import Path
 from grader.checks.outcome import Outcome
 from grader.classroom.grades import Class
 from grader.classroom.reopening import reopened
-from grader.classroom.review_items import ReviewItem, order
+from grader.classroom.review_items import ReviewItem
 from grader.classroom.tables import write_table
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import InputError
@@ -41,18 +42,23 @@ def _graded_again(book: Class, key: str) -> tuple[Submission, Report]:
     return submission, grade(book.rubric, submission, book.settings.parts, is_one_of_class=True)
 
 
+@lru_cache(maxsize=2)  # a page asks for its pictures one by one
+def _opened(book: Class, key: str, criterion: str) -> tuple[Result, Sequence[EmbeddedPicture | NotShown]]:
+    submission, report = _graded_again(book, key)
+    result = next((one for one in report.results if one.criterion.id == criterion), None)
+    if result is None:
+        raise InputError("this criterion is no longer graded for this student")
+    return result, pictures_of(result, submission) if may_have_pictures(result) else ()
+
+
 def open_item(book: Class, item: ReviewItem) -> OpenedItem:
     """Return what a person looks at for an item. Raises InputError if its submission has moved or changed."""
     if item.is_empty_group:
         return OpenedItem(Result(item.criterion, Outcome("pending", "")))
-    submission, report = _graded_again(book, item.first.student.key)
-    result = next((one for one in report.results if one.criterion.id == item.criterion.id), None)
-    if result is None:
-        raise InputError("this criterion is no longer graded for this student")
-    found = pictures_of(result, submission) if may_have_pictures(result) else ()
+    result, found = _opened(book, item.first.student.key, item.criterion.id)
     if item.first.number is not None:
         return OpenedItem(result, [*starmap(_anonymous, enumerate(found, 1))])
-    root = book.settings.roots(book.folder)[item.first.graded.root].resolve()
+    root = book.settings.roots(book.folder)[item.first.graded.root]
     return OpenedItem(result, found, files_text(item, result, root))
 
 
@@ -68,7 +74,7 @@ def write_sheet(session: ReviewSession, file: Path) -> str:
     if os.path.lexists(file):
         raise InputError(f"{printable_path(file)} exists, perhaps with marks in it: name another file for --sheet")
     items = [session.item_at(position) for position in session.listed]
-    by_student = sorted(range(len(items)), key=lambda at: order(items[at].first))  # a submission is read once
+    by_student = sorted(range(len(items)), key=lambda at: items[at].first.order)  # a submission is read once
     texts = {at: _text(session.book, items[at]) for at in by_student}
     rows = ((one.criterion.id, one.answer, "", "", texts[at], _students(one)) for at, one in enumerate(items))
     save(file, write_table(SHEET_COLUMNS, rows), session.book.settings.roots(session.folder), _PRIVATE)

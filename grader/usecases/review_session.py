@@ -1,6 +1,5 @@
 """A review: one person goes through the items of a class. Each mark is saved immediately."""
 
-from collections import Counter, defaultdict
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -11,16 +10,14 @@ from grader.classroom.marks import Key, Mark, append_marks, mark_in, read_marks
 from grader.classroom.review_items import Member, ReviewFilter, ReviewItem, review_items
 from grader.classroom.roster import plain
 from grader.classroom.settings import CLASS_FILE
-from grader.classroom.typed_names import criterion_of, find_typed
+from grader.classroom.typed_names import criterion_of
 from grader.errors import InputError
 from grader.grading.answers import load_with_answers
-from grader.grading.criterion import Criterion
 from grader.text import enumerated, printable_path
 
 CONFIRMED = "!"  # ends what the page sends to replace marks that it was asked about
-_MAX_COMMENTS, _MAX_NAMED = 9, 5  # of comments one key each
+_MAX_NAMED = 5
 _GONE = "this answer has changed, or its students have final marks: go to the next item"
-_CHANGED = "Not saved: this item has changed since it was shown. Look at it again."
 
 
 class ReviewSession:
@@ -43,8 +40,7 @@ class ReviewSession:
         self.file = mark_file(folder / names.MARKS, by)
         self.own, self.position = dict[Key, Mark](), 0
         self._kept = set[Key]()  # marked since the filter was chosen: these stay in the list
-        self._comments = defaultdict[str, list[str]](list)  # of each criterion, in the order of their keys
-        self._places: dict[tuple[str, str], None] = {}  # a criterion and an answer
+        self.places: tuple[tuple[str, str], ...] = ()  # a criterion and an answer
         self._read: tuple[object, object] = None, None  # the stamps of the files
         self.refresh()
         rubric = load_with_answers(str(folder / self.book.settings.rubric), answers)
@@ -56,21 +52,19 @@ class ReviewSession:
 
     def refresh(self) -> None:
         """Read the gradebook again if it has changed. Raises InputError."""
-        files = [self.folder / name for name in (names.RESULTS, CLASS_FILE, names.ROSTER)]
-        inputs = _stamps((*files, *(self.folder / names.RUBRIC).rglob("*.toml")))
-        marks = _stamps((self.folder / names.MARKS).glob("*"))
-        if (inputs, marks) == self._read:
+        inputs, marks = (names.RESULTS, CLASS_FILE, names.ROSTER, f"{names.RUBRIC}/**/*.toml"), (f"{names.MARKS}/*",)
+        read = _stamps(self.folder, inputs), _stamps(self.folder, marks)
+        if read == self._read:
             return
-        if inputs != self._read[0]:
+        if read[0] != self._read[0]:
             self.book = Class(self.folder)
             self._results = [one._replace(work={}) for one in self.book.results.all()]
         else:
             self.book.marks = read_marks(self.folder / names.MARKS, self.book.keys, self.book.rubric)
         items = review_items(self.book, self._results, is_anonymous=self.is_anonymous)
         self.items = {(item.criterion.id, item.answer): item for item in items}
-        self._places |= dict.fromkeys(self.items)
-        self.places = tuple(self._places)
-        self._read = inputs, marks
+        self.places = tuple(dict.fromkeys((*self.places, *self.items)))
+        self._read = read
 
     @property
     def left(self) -> int:
@@ -96,9 +90,9 @@ class ReviewSession:
         """Return the position of the next item that is shown, beyond the last one at the end."""
         return next((at for at in self.listed if at > position), len(self.places))
 
-    def back(self) -> None:
-        """Go to the previous item that is shown, if there is one."""
-        self.position = max((at for at in self.listed if at < self.position), default=self.position)
+    def previous(self, position: int) -> int:
+        """Return the position of the previous item that is shown, the same position if there is none."""
+        return max((at for at in self.listed if at < position), default=position)
 
     def show_only(self, wanted: ReviewFilter) -> None:
         """Show the items that a filter lets through, from the first one. Raises InputError."""
@@ -111,43 +105,22 @@ class ReviewSession:
         self._kept.clear()
         self.position = self.following(-1)
 
-    def find(self, name: str) -> None:
-        """Go to an item of a student: of the current criterion if possible, one with an answer. Raises InputError."""
-        members = {one.student.key: one for item in self.items.values() for one in item.members}
-        if self.is_anonymous:
-            keys = [key for key, one in members.items() if str(one.number) == name]
-        else:
-            keys = [find_typed([one.student for one in members.values()], name, "").key]
-        here = self.places[min(self.position, len(self.places) - 1)][0]
-        shown = ((at, self.item_at(at)) for at in self.listed)
-        theirs = [(at, item) for at, item in shown if {*keys} & {one.student.key for one in item.members}]
-        if not theirs:
-            raise InputError(f"nothing of {name!r} is shown: choose other items above")
-        self.position = min((item.criterion.id != here, not item.answer, at) for at, item in theirs)[2]
-
-    def comments(self, criterion: Criterion) -> list[str]:
-        """Return earlier comments on a criterion. A comment keeps its position during the review, which is its key."""
-        known, choices = self._comments[criterion.id], criterion.choices
-        given = Counter(mark.comment for (_, name), mark in self.book.marks.newest.items() if name == criterion.id)
-        new = [text for text, _ in given.most_common() if text and text not in known and text not in choices]
-        known += new[: _MAX_COMMENTS - len(known)]
-        return known
-
-    def mark(self, points: str, comment: str, stamp: str, shown: str) -> list[Mark]:
+    def mark(self, points: str, comment: str, shown: str) -> list[Mark] | None:
         """Append a mark for each student of the current item; `-` as points withdraws marks.
 
-        `stamp` and `shown` say which item and marks the person saw. Returns the marks that it would replace and that
-        were not shown, or are another person's; nothing is saved then, unless `shown` confirms it. Raises InputError.
+        `shown` is the item's view that the person saw: without effect, returns None if it is another one. Returns the
+        marks of others that would be replaced; nothing is saved then, unless `shown` ends with CONFIRMED. Raises
+        InputError.
         """
         item = self.item_at(self.position)
         self._check_rows()
-        if stamp != item.stamp:
-            raise InputError(_CHANGED)
+        if shown.removesuffix(CONFIRMED) != item.view:
+            return None
         new = [self._new_mark(one, item, points, comment) for one in item.members]
         replaced = [one.mark for one in item.members if one.mark is not None and one.mark.points is not None]
-        is_asked = shown != item.view or any(mark.by != self.by for mark in replaced)
-        if replaced and is_asked and shown != item.view + CONFIRMED:
-            return replaced
+        others = [mark for mark in replaced if mark.by != self.by]
+        if others and not shown.endswith(CONFIRMED):
+            return others
         append_marks(self.file, new)
         given = {(mark.student, mark.criterion): mark for mark in new}
         self.own |= given
@@ -183,6 +156,6 @@ class ReviewSession:
         return [answers] * self._lacks_answers + [loss] * is_open_in_libreoffice(self.file)
 
 
-def _stamps(files: Iterable[Path]) -> list[tuple[str, str]]:
-    found = ((path, path.stat()) for path in files if path.exists())
-    return [(str(path), f"{status.st_ino} {status.st_size} {status.st_mtime_ns}") for path, status in found]
+def _stamps(folder: Path, patterns: Iterable[str]) -> list[tuple[Path, int, int, int]]:
+    found = ((path, path.stat()) for pattern in patterns for path in folder.glob(pattern))
+    return [(path, status.st_ino, status.st_size, status.st_mtime_ns) for path, status in found]

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError
-from grader.submission.labs import MAX_WRAPPERS, LabFolders
+from grader.submission.labs import MAX_WRAPPERS
 from grader.text import counted, first_lines, printable_path, shell_quoted
 
 if TYPE_CHECKING:
@@ -19,12 +19,17 @@ def refuse_class(path: str, rubric: "Rubric", options: str) -> None:
     """Raise InputError, with the command for the class, if a path is a whole class as an LMS or nbgrader gives it."""
     if not _may_be_class(path):
         return
-    from grader.classroom.intake.detection import find_download  # late: few submissions look like a class
+    from grader.classroom.layouts import is_submission  # late: few submissions look like a class
+    from grader.classroom.submissions import read_class
 
-    found = find_download(Path(path), rubric.id)
-    if found is not None:
+    try:
+        found = read_class([Path(path)], None, rubric_id=rubric.id)
+    except (InputError, OSError, ValueError):
+        return
+    certain = [one for one in found.submissions if found.layout != "canvas" or any(map(is_submission, one.paths))]
+    if found.layout in _LMS and len(certain) > 1:  # a student may have pictures with names as in Canvas
         what = f"{printable_path(path)} is a download of {_LMS[found.layout]} with"
-        raise InputError(f"{_head(what, found.students)}\n{_for_all(shell_quoted(path), rubric, options)}")
+        raise InputError(f"{_head(what, len(found.submissions))}\n{_for_all(shell_quoted(path), options)}")
 
 
 def _may_be_class(path: str) -> bool:
@@ -49,11 +54,11 @@ def _head(what: str, students: int) -> str:
     return f"{what} the submissions of {counted(students, 'student')}: nothing was graded"
 
 
-def _for_all(path: str, rubric: "Rubric", options: str) -> str:
-    return f"to grade all: grader batch {path} --gradebook {shell_quoted(f'{rubric.id}.db')}{options}"
+def _for_all(path: str, options: str) -> str:
+    return f"to grade all: grader batch {path}{options}"
 
 
-def refusal(path: str, students: tuple[str, ...], rubric: "Rubric", options: str) -> InputError:
+def refusal(path: str, students: tuple[str, ...], options: str) -> InputError:
     """Return the error for a path that contains the submissions of several students, in these folders.
 
     `options` are those of the command that choose the rubric and its parts, as a shell reads them.
@@ -66,7 +71,5 @@ def refusal(path: str, students: tuple[str, ...], rubric: "Rubric", options: str
     each = [f"to grade one: grader grade {shell_quoted(start / student)}{options}" for student in students]
     lines += first_lines(each, _MAX_LISTED)
     common = Path(os.path.commonpath([str(Path(student).parent) for student in students]))
-    if LabFolders(rubric.folders).is_lab(common.name):  # the layout searches for the lab's folder
-        common = common.parent
-    for_all = _for_all(f"{shell_quoted(start / common)} --layout teams", rubric, options)
+    for_all = _for_all(f"{shell_quoted(start / common)} --layout folders", options)
     return InputError("\n".join((*lines, for_all)))

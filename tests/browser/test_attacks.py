@@ -85,9 +85,9 @@ def test_pages_of_files(visit: Visit, attacked: AttackedClass, tmp_path: Path) -
 
 
 def test_pages_of_a_review(visit: Visit, attacked: AttackedClass) -> None:
-    """The page of each item, the report beside it, and the page at the end."""
+    """The page of each item, and the page at the end."""
     with running(attacked.book) as review:
         count = int(review.get("1").text.partition(" of ")[2].partition("<")[0].split(":")[0])
         assert count > len(ATTACKS)
-        pages = [*map(str, range(1, count + 1)), "1/report", "end"]
+        pages = [*map(str, range(1, count + 1)), "end"]
         assert {page: wrong for page in pages if (wrong := visit(review.url + page))} == {}

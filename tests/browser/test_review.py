@@ -2,7 +2,6 @@
 
 import re
 import shutil
-from collections import Counter
 from collections.abc import Callable, Iterator
 from decimal import Decimal
 from pathlib import Path
@@ -13,7 +12,6 @@ import pytest
 from grader.classroom.tables import spelt_out
 from tests.browser.conftest import OpenPage
 from tests.checks.submissions import png
-from tests.classroom.desk_class import ANSWERS, PICTURES, STUDENTS, make_desk_class
 from tests.classroom.gradebooks import batch, grader, lab_text, write_submission
 from tests.review_server import Review, marks_in, rows_of, running
 
@@ -115,16 +113,15 @@ def press(page: "Page", keys: str, then: str = "") -> None:
 
 
 def test_ten_items_by_keys_alone(open_page: Open, review: Review, book: Path) -> None:
-    """All are in the file: typed points, all, half, none, comments, an earlier comment, back, another mark, a withdrawn one."""
+    """All are in the file: typed points, all, half, none, comments, back, another mark, a withdrawn one."""
     page = open_page(review.url).page
     press(page, "'3.5' c 'the roots are missing' Enter", "2")
     press(page, "f Enter", "3")
     press(page, "h c 'half of it' Enter", "4")
-    press(page, "0 Escape 2 Enter", "5")
-    assert page.locator(".comments button").all_inner_texts() == ["1 the roots are missing", "2 half of it"]
+    press(page, "0 Enter", "5")
     press(page, "n", "6")
     press(page, "b", "5")
-    press(page, "4 Escape 1 Escape 2 Enter", "6")
+    press(page, "4 Enter", "6")
     press(page, "1 Enter", "7")
     press(page, "b", "6")
     assert "1 point by Kim" in page.locator(".marked").inner_text()
@@ -139,9 +136,8 @@ def test_ten_items_by_keys_alone(open_page: Open, review: Review, book: Path) ->
     assert rows_of(book) == ["3.5", "4", "2", "0", "4", "1", "0.5", "1", "-", "1", "1", "0"]
     assert marks_in(book) == [
         ("ash", "essay", "3.5", "the roots are missing"), ("ash", "picture", "0.5", ""), ("birch", "essay", "4", ""),
-        ("cedar", "essay", "2", "half of it"), ("cedar", "picture", "1", ""), ("dogwood", "essay", "0", "half of it"),
-        ("dogwood", "picture", "1", ""), ("elm", "essay", "4", "the roots are missing half of it"),
-        ("elm", "picture", "0", "a script"),
+        ("cedar", "essay", "2", "half of it"), ("cedar", "picture", "1", ""), ("dogwood", "essay", "0", ""),
+        ("dogwood", "picture", "1", ""), ("elm", "essay", "4", ""), ("elm", "picture", "0", "a script"),
     ]  # fmt: skip
     press(page, "b", "10")
     page.go_back()
@@ -189,9 +185,6 @@ def test_hostile_text_stays_text(open_page: Open, hostile: Path) -> None:
                 assert (line if number < 3 else line.replace("/", "|")) in text
             assert len(page.locator("figure").all()) == (0 if number < 3 else 4)
             assert page.locator("#comment").input_value() == comments[number - 1]
-            press(page, "Escape 1 Escape 2")
-            both = comments[:2] if number < 3 else comments[2:]
-            assert all(comment in page.locator("#comment").input_value() for comment in both)
             assert page.locator(".marked").inner_text().count("document.title") == comments[number - 1].count(
                 "document.title"
             )
@@ -205,6 +198,9 @@ def test_somebody_else_marks_meanwhile(open_page: Open, review: Review, book: Pa
         done = grader("mark", key, "essay", "1", "--by", "Lee", "--comment", "<b>seen</b>", "--gradebook", book)
         assert done.returncode == 0
         press(page, "4 Enter")
+        page.wait_for_function("() => document.getElementById('error').textContent.includes('has changed')")
+        assert (page.locator("#points").input_value(), page.locator(".marked").count()) == ("4", 1)
+        press(page, "Enter")
         page.wait_for_selector("#newer:visible")
         assert "1 point by Lee at 20" in page.locator("#newer").inner_text()
         assert page.locator("#newer-text").inner_text().endswith(": <b>seen</b>")
@@ -248,8 +244,7 @@ def test_the_page_fits(open_page: Open, review: Review) -> None:
         assert page.evaluate(unnamed) == 0
 
 
-@pytest.mark.parametrize("delay", [10, 40])
-def test_fast_typing_saves_every_mark_where_it_belongs(open_page: Open, delay: int, tmp_path: Path) -> None:
+def test_fast_typing_saves_every_mark_where_it_belongs(open_page: Open, tmp_path: Path) -> None:
     """200 items at 10 ms a key, without a look at the page: each item has its own points, and none is lost."""
     top = tmp_path / "fast"
     for number in range(200):
@@ -258,7 +253,7 @@ def test_fast_typing_saves_every_mark_where_it_belongs(open_page: Open, delay: i
     wanted = [Decimal(number % 41) / 10 for number in range(200)]
     with running(book, "essay") as review:
         page = open_page(review.url).page
-        page.keyboard.type("".join(f"{points}\n" for points in wanted), delay=delay)
+        page.keyboard.type("".join(f"{points}\n" for points in wanted), delay=10)
         page.wait_for_url("**/end")
     assert [(key, float(points)) for key, _, points, _ in marks_in(book)] == [
         (f"s{number:03}", float(points)) for number, points in enumerate(wanted)
@@ -287,8 +282,8 @@ def test_keys_after_a_refused_mark_are_discarded(open_page: Open, review: Review
 def test_an_item_that_has_changed_is_not_marked(open_page: Open, review: Review, book: Path) -> None:
     """A mark of a page that shows another state of the submission is refused, and the page shows the new one."""
     page = open_page(review.url).page
-    item = review.seen("1")["item"]
-    page.route("**/1", lambda route: route.continue_(post_data=str(route.request.post_data).replace(item, "0")))
+    shown = review.seen("1")["shown"]
+    page.route("**/1", lambda route: route.continue_(post_data=str(route.request.post_data or "").replace(shown, "0")))
     press(page, "2 Enter")
     page.wait_for_function(
         "() => document.getElementById('error').textContent.startsWith('Not saved: this item has changed')"
@@ -297,32 +292,8 @@ def test_an_item_that_has_changed_is_not_marked(open_page: Open, review: Review,
     assert marks_in(book) == []
 
 
-@pytest.mark.slow
-def test_a_class_by_keys_alone(open_page: Open, tmp_path: Path) -> None:
-    """121 students, 40 with answers: equal answers are one item, those without are three, and each mark is two keys."""
-    make_desk_class(tmp_path)
-    done = grader("batch", tmp_path / "class", "--gradebook", tmp_path / "book", "--roster", tmp_path / "roster.csv")
-    assert done.returncode == 0, done.stderr
-    pressed = 0
-    with running(tmp_path / "book") as review:
-        page = open_page(review.url).page
-        while not page.url.endswith("/end"):
-            is_empty = page.locator("strong:has-text('No ')").count()
-            here = page.url
-            press(page, f"{'0' if is_empty else 'f'} Enter")
-            page.wait_for_function("here => location.href !== here", arg=here)
-            pressed += 2
-    given = Counter((criterion, points) for _, criterion, points, _ in marks_in(tmp_path / "book"))
-    assert given == {
-        ("answer-floating-link", "0"): STUDENTS - ANSWERS, ("answer-floating-link", "4"): ANSWERS,
-        ("answer-launch-nodes", "0"): STUDENTS - ANSWERS, ("answer-launch-nodes", "4"): ANSWERS,
-        ("evidence-webcam", "0"): STUDENTS - PICTURES, ("evidence-webcam", "2"): PICTURES,
-    }  # fmt: skip
-    assert pressed < 0.25 * 2 * 3 * STUDENTS
-
-
 def test_deductions(open_page: Open, chosen: Path) -> None:
-    """A key gives the points and the comment, and takes both back; free comments stay; digits after Esc are comments."""
+    """A key gives the points and the comment, and takes both back; free comments stay."""
     with running(chosen, "essay") as review:
         page = open_page(review.url).page
         press(page, "c 'see me' Alt+1 Alt+2")
@@ -336,30 +307,15 @@ def test_deductions(open_page: Open, chosen: Path) -> None:
         press(page, "p 2")
         assert page.locator("[data-choice][aria-pressed=true]").all_inner_texts() == ["Alt+1 no reason (-2)"]
         press(page, "Enter", "2")
-        press(page, "Escape 1 1 2 Enter")
-        page.wait_for_function("() => document.getElementById('error').textContent.includes('Enter the points')")
-        assert page.locator("#comment").input_value() == "no reason; see me"
     assert marks_in(chosen) == [("ash", "essay", "2", "no reason; see me")]
 
 
-def test_filters_students_and_the_report(open_page: Open, review: Review) -> None:
-    """A list shows one question, `/` goes to a student, `v` shows the report, which cannot reach the review."""
-    opened = open_page(review.url)
-    page = opened.page
+def test_filters(open_page: Open, review: Review) -> None:
+    """A list shows one question."""
+    page = open_page(review.url).page
     page.locator("[data-filter=criterion]").select_option("picture")
     page.wait_for_url("**/6")
     assert page.locator(".place").inner_text().strip() == "1 of 5"
-    press(page, "Escape / 'elm' Enter", "10")
-    press(page, "Escape / 'nobody' Enter")
-    page.wait_for_function("() => document.getElementById('error').textContent.includes('no student')")
-    press(page, "v")
-    report = page.frame_locator("#report iframe")
-    report.locator("h1").wait_for()
-    frame = page.frame(url=re.compile("/report$"))
-    assert frame is not None
-    assert frame.evaluate("fetch('10', {method: 'POST'}).then(() => 'sent', () => 'refused')") == "refused"
-    assert "Content Security Policy" in opened.messages.pop()
-    opened.messages.clear()
 
 
 def test_one_column_below_900_pixels(open_page: Open, review: Review) -> None:

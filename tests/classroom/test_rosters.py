@@ -32,6 +32,12 @@ def test_a_roster_is_read(row: dict[str, Any]) -> None:
     assert lines_of(bytes.fromhex(row["hex"]) if "hex" in row else row["text"].encode()) == row["found"]
 
 
+def test_of_many_mistakes_the_first_are_listed() -> None:
+    """Twenty lines are shown, the others are counted."""
+    lines = lines_of(b"id,late\n" + b"".join(b"%d,maybe\n" % number for number in range(50)))
+    assert len(lines) == 21 and lines[-1] == "error: ... and 30 more"
+
+
 @given(st.binary(max_size=300))
 def test_any_bytes_give_a_roster_or_lines(data: bytes) -> None:
     """Any bytes are read, or refused with a line for each mistake."""

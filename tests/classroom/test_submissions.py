@@ -16,7 +16,7 @@ from grader.classroom.people import letters
 from grader.classroom.roster import Roster, Student, read_roster
 from grader.classroom.submissions import Intake, read_class
 from grader.errors import InputError
-from tests.classroom.hostile_submissions import try_classes
+from tests.classroom.hostile_classes import try_classes
 from tests.examples import examples
 from tests.work import limited_work
 
@@ -50,7 +50,7 @@ def read_row(row: dict[str, Any], top: Path) -> Intake:
 
 
 def lines_of(intake: Intake) -> list[str]:
-    """Return what was found: the layout, a line a submission, who is absent, and the lines for the user."""
+    """Return what was found: the layout, a line a submission, whose is unclear, and the lines for the user."""
     lines = [intake.layout]
     for one in intake.submissions:
         names = one.names or [path.rpartition("/")[2] for path in one.paths]
@@ -61,7 +61,7 @@ def lines_of(intake: Intake) -> list[str]:
         more = [*(["late"] if one.is_late else []), one.submitted, f"root {one.root}" if one.root else ""]
         who = one.student.key if one.student.is_on_roster else f"{one.student.key} (visitor)"
         lines.append(f"{who} <- {' | '.join([paths, *filter(None, more)])}")
-    lines += [f"absent: {one.key}" for one in intake.absent]
+    lines += [f"unclear: {key}" for key in sorted(intake.unclear)]
     for title in ("unmatched", "notes", "ignored"):
         lines += [f"{title}: {line}" for line in getattr(intake, title)]
     return lines
@@ -175,7 +175,7 @@ def test_symlinks_in_a_zip_are_not_followed(tmp_path: Path) -> None:
     assert [line.split()[0] for line in found.ignored] == ["../cal.zip", "ann.zip"]
 
 
-@pytest.mark.parametrize("limit", ["grader.files.class_zip._MAX_MEMBERS", "grader.classroom.listing.MAX_FOLDERS"])
+@pytest.mark.parametrize("limit", ["grader.files.class_zip._MAX_MEMBERS", "grader.files.class_zip.MAX_FOLDERS"])
 def test_a_zip_of_too_many_members_is_refused(limit: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The numbers of members and of folders are bounded."""
     monkeypatch.setattr(limit, 3)
@@ -202,5 +202,5 @@ def test_a_large_class_takes_linear_work(tmp_path: Path) -> None:
 
 
 def test_students_cannot_affect_others() -> None:
-    """Nobody takes another's submission: a short run of `python -m tests.classroom.hostile_submissions`."""
+    """Nobody takes another's submission: a short run of `python -m tests.classroom.hostile_classes`."""
     try_classes(40)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.students import Student
+from grader.classroom.roster import Student
 from grader.classroom.typed_names import as_number, find_typed, number_in, read_points
 from grader.errors import InputError
 
@@ -23,43 +23,16 @@ ADVICE = "; advice"
 @pytest.mark.parametrize(
     ("student", "names"),
     [
-        (
-            ASH,
-            [
-                "Ann Marie Ash",
-                "Ash, Ann Marie",
-                "Ash, Ann",
-                "ann ash",
-                "ASH",
-                "Marie",
-                "aash",
-                "AASH",
-                "101",
-                "ann.ash",
-            ],
-        ),
-        (
-            BIRCH,
-            [
-                "Jörg Birch-Müller",
-                "Müller, Jörg",
-                "MÜLLER",
-                "jörg",
-                "birch",
-                "jm@Example.org",
-                "JM",
-                "77",
-                "Jörg  müller",
-            ],
-        ),
-        (CEDAR, ["cedar", "Ann Cedar", "S3", "cedar ann"]),
-        (DOGWOOD, ["strauss", "Strauß", "søren", "müller-S4"]),
-        (ELM, ["bea", "elm bea"]),
+        (ASH, "Ann Marie Ash; Ash, Ann Marie; Ash, Ann; ann ash; ASH; Marie; aash; AASH; 101; ann.ash"),
+        (BIRCH, "Jörg Birch-Müller; Müller, Jörg; MÜLLER; jörg; birch; jm@Example.org; JM; 77; Jörg  müller"),
+        (CEDAR, "cedar; Ann Cedar; S3; cedar ann"),
+        (DOGWOOD, "strauss; Strauß; søren; müller-S4"),
+        (ELM, "bea; elm bea; elm bea_104"),
     ],
 )
-def test_the_only_student_who_fits(student: Student, names: list[str]) -> None:
+def test_the_only_student_who_fits(student: Student, names: str) -> None:
     """By id, login, address, number, and any words of the name, in any case and however accents are encoded."""
-    for name in names:
+    for name in names.split("; "):
         for form in ("NFC", "NFD"):
             assert find_typed(CLASS, unicodedata.normalize(form, name), ADVICE) == student, name
 
@@ -67,22 +40,20 @@ def test_the_only_student_who_fits(student: Student, names: list[str]) -> None:
 @pytest.mark.parametrize(
     ("name", "why"),
     [
-        ("Ann", "'Ann' is ambiguous: it may be 's1' (Ash, Ann Marie), 's3' (Ann Cedar); use one of these ids"),
-        ("Muller", "there is no student 'Muller' in the gradebook; did you mean 's2' (Jörg Birch-Müller)?"),
+        ("Ann", "'Ann' is ambiguous: it may be 's1' (Ash, Ann Marie) or 's3' (Ann Cedar); use one of these ids"),
         (
-            "mueller, jorg",
-            "there is no student 'mueller, jorg' in the gradebook; did you mean 's2' (Jörg Birch-Müller)?",
+            "Jorg Birch-Muller",
+            "there is no student 'Jorg Birch-Muller' in the gradebook; did you mean 'Jörg Birch-Müller'?",
         ),
-        ("Soren", "there is no student 'Soren' in the gradebook; did you mean 's4' (Søren Strauß)?"),
-        ("Soeren", "there is no student 'Soeren' in the gradebook; did you mean 's4' (Søren Strauß)?"),
         ("Cedr", "there is no student 'Cedr' in the gradebook; did you mean 'cedar'?"),
         ("Zelkova", "there is no student 'Zelkova' in the gradebook; advice"),
         ("", "there is no student '' in the gradebook; advice"),
         (",", "there is no student ',' in the gradebook; advice"),
+        ("-", "there is no student '-' in the gradebook; advice"),
     ],
 )
 def test_who_is_not_found(name: str, why: str) -> None:
-    """Several who fit are listed; without accents nobody fits, but those who would are suggested."""
+    """Several who fit are listed; without accents nobody fits, but a name that is close is suggested."""
     with pytest.raises(InputError) as caught:
         find_typed(CLASS, name, ADVICE)
     assert str(caught.value) == why
@@ -90,20 +61,15 @@ def test_who_is_not_found(name: str, why: str) -> None:
 
 def test_an_identifier_of_one_and_the_name_of_another() -> None:
     """A login that is the surname of another student finds neither."""
-    with pytest.raises(InputError, match=r"it may be 's2' \(Jörg Birch-Müller\), 's9' \(Zoe Zelkova\)"):
+    with pytest.raises(InputError, match=r"it may be 's2' \(Jörg Birch-Müller\) or 's9' \(Zoe Zelkova\)"):
         find_typed((*CLASS, Student("s9", "Zoe Zelkova", login="birch")), "birch", ADVICE)
 
 
-@pytest.mark.parametrize(
-    ("typed", "start"), [("Müller", "'Müller' is ambiguous: it may be"), ("Muller", "did you mean one of")]
-)
-def test_at_most_ten_are_listed(typed: str, start: str) -> None:
+def test_at_most_ten_are_listed() -> None:
     """The others are counted."""
     many = [Student(f"s{number:02}", f"Kim{number} Müller") for number in range(13)]
-    with pytest.raises(InputError) as caught:
-        find_typed(many, typed, ADVICE)
-    assert f"{start} 's00' (Kim0 Müller), 's01' (Kim1 Müller)" in str(caught.value)
-    assert "'s09' (Kim9 Müller) and 3 more" in str(caught.value)
+    with pytest.raises(InputError, match=r"it may be 's00' \(Kim0 Müller\), .*'s09' \(Kim9 Müller\).* 3 more; use one"):
+        find_typed(many, "Müller", ADVICE)
 
 
 @given(st.text() | st.decimals(-1, 5, places=4).map(str))

@@ -1,4 +1,4 @@
-"""grader stats: a class at a glance, for people at any terminal and for programs."""
+"""grader stats and diff: data that their schemas describe, one definition of grade, and what is refused."""
 
 import json
 from pathlib import Path
@@ -7,115 +7,63 @@ from typing import Any
 import jsonschema
 import pytest
 
-from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.run_writer import save_student
-from grader.classroom.gradebook.stored import Enrolment
-from grader.classroom.students import Student
-from tests.classroom.gradebooks import graded_as, grader, lab, record_run, refusal
+from tests.classroom.gradebooks import batch, grader, make_class, refusal, write_submission
 
 
-def stats(path: Path, *more: object, **variables: str) -> str:
-    """Return the output for a gradebook."""
-    done = grader("stats", "--gradebook", path, *more, **variables)
+def as_json(schema: str, *command: object) -> dict[str, Any]:
+    """Return what a command prints as JSON, valid under its schema."""
+    done = grader(*command, "--format", "json")
     assert (done.returncode, done.stderr) == (0, "")
-    return done.stdout
+    data: dict[str, Any] = json.loads(done.stdout)
+    jsonschema.validate(data, json.loads(grader("schema", schema).stdout))
+    return data
 
 
-def as_json(path: Path) -> dict[str, Any]:
-    """Return the same as JSON, valid under its schema."""
-    data = json.loads(stats(path, "--format", "json"))
-    jsonschema.validate(data, json.loads(grader("schema", "class").stdout))
-    return dict(data)
+@pytest.fixture
+def book(tmp_path: Path) -> Path:
+    """Return the gradebook of a class of five, of whom two are late and one has submitted nothing."""
+    make_class(tmp_path, late="percent_per_day = 10")
+    roster = "id,name,section,late\nanna,Anna Ek,A,2\nben,Ben Oh,A,\ncleo,,B,\ndora,,B,\nemil,,B,1\n"
+    (tmp_path / "roster.csv").write_text(roster)
+    assert batch(tmp_path).returncode == 0
+    return tmp_path / "book"
 
 
-def test_an_empty_gradebook(tmp_path: Path) -> None:
-    """A gradebook without results is reported in a line."""
-    book = tmp_path / "book.db"
-    Gradebook(book, create=True).close()
-    why = f"nothing has been graded into {book} yet: run `grader batch PATH --gradebook {book}`"
-    assert refusal(grader("stats", "--gradebook", book)) == why
+def test_a_grade_is_what_is_published(book: Path) -> None:
+    """In mean, bars, sections and late ones: with marks and penalties; without excuses, the missing and visitors."""
+    write_submission(book.parent / "class" / "visitor")
+    for words in (("anna", "essay", "4"), ("ben", "total", "11"), ("emil", "total", "excused"), ("dora", "total", "1")):
+        assert grader("mark", *words, "--gradebook", book).returncode == 0
+    assert batch(book.parent).returncode == 0
+    data = as_json("class", "stats", "--gradebook", book)
+    found = data["statistics"]
+    totals = {one["id"]: one["total"] for one in data["students"]}
+    assert totals == {"anna": 7.8, "ben": 11, "cleo": 0, "dora": 1, "emil": None, "visitor": 6}
+    assert found["grades"] == {"students": 3, "mean": 6.6, "median": 7.8, "lowest": 1, "highest": 11}
+    assert (found["late"], found["open"], found["tenths"]) == (1, 1, [1, 0, 0, 0, 0, 0, 0, 1, 0, 1])
+    assert found["counts"] == {"excused": 1, "graded": 2, "missing": 1, "unreadable": 1}
+    assert {name: one["mean"] for name, one in found["sections"].items()} == {"A": 9.4, "B": 1}
+    assert [one["id"] for group in data["attention"] for one in group["students"]] == ["cleo", "visitor"]
 
 
-@pytest.mark.parametrize("signs", [{}, {"anna": "pps?f"}, {"anna": "?!p!?"}])
-def test_few_or_none(signs: dict[str, str], tmp_path: Path) -> None:
-    """A run without submissions, of one student, and with only unreadable submissions."""
-    rubric = lab()
-    with Gradebook(tmp_path / "book.db", create=True) as book:
-        record_run(book, rubric, [graded_as(rubric, key, row) for key, row in signs.items()])
-    text = stats(tmp_path / "book.db")
-    data = as_json(tmp_path / "book.db")
-    assert len(data["students"]) == len(signs)
-    grades = (
-        "Grades out of 11 (scaled up from the points that need no manual grading): mean 8.6, standard deviation 0.0"
-    )
-    assert (grades in " ".join(text.split())) == ("pps?f" in signs.values())
-    assert ("no students" in text) == (not signs)
-    assert grader("export", "csv", "--gradebook", tmp_path / "book.db").stdout.count("\n") == 1 + len(signs)
+def test_a_class_without_a_grade(tmp_path: Path) -> None:
+    """One unreadable submission: no mean, and no bars."""
+    make_class(tmp_path)
+    (tmp_path / "class").rename(tmp_path / "all")
+    (tmp_path / "class").mkdir()
+    (tmp_path / "class" / "cleo.zip").write_bytes(b"PK\x03\x04 broken")
+    assert batch(tmp_path).returncode == 0
+    assert as_json("class", "stats", "--gradebook", tmp_path / "book")["statistics"]["grades"]["mean"] is None
+    assert "mean" not in grader("stats", "--gradebook", tmp_path / "book").stdout
 
 
-def sections(path: Path) -> None:
-    """Write a gradebook with the sections A (two graded, one late) and B (one graded, one missing), and a student without a section."""
-    rubric = lab("due = 2026-09-10T12:00:00Z\npercent_per_day = 10")
-    enrolled = {
-        "ash": ("A", "ppppp", 0),
-        "birch": ("A", "pfspp", 2),
-        "cedar": ("B", "pppff", 0),
-        "fir": ("", "ffff?", 0),
-    }
-    with Gradebook(path, create=True) as book:
-        run = record_run(book, rubric, [graded_as(rubric, key, signs) for key, (_, signs, _) in enrolled.items()])
-        assert run == 1
-        with book.transaction():
-            for key, (section, _, late) in {**enrolled, "elm": ("B", "", 0)}.items():
-                enrolment = Enrolment(1, days_late=late, section=section, marker="Kim" if section == "A" else "Lee")
-                save_student(book, Student(key), enrolment)
-
-
-def test_sections_side_by_side(tmp_path: Path) -> None:
-    """Students, grades, lateness, and the criteria that differ most between named sections."""
-    sections(tmp_path / "book.db")
-    lines = stats(tmp_path / "book.db", "--compare", "section").splitlines()
-    assert lines[:5] == [
-        "Grades out of 11 (scaled up from the points that need no manual grading)",
-        "section       students  graded  mean  median  late  late penalty",
-        "(no section)         1       1   0.0     0.0     0             0",
-        "A                    2       2   9.5     9.5     1           2.2",
-        "B                    2       1   6.0     6.0     0             0",
-    ]
-    assert lines[8:] == [
-        "Criteria that differ most: mean share of the points earned",
-        "  essay (4): (no section) 0%, A 100%, B 0%",
-        "  picture (1): A 100%, B 0%",
-        "  box (2.5): (no section) 0%, A 50%, B 100%",
-        "  tall (0.5): (no section) 0%, A 50%, B 100%",
-    ]
-
-
-@pytest.mark.parametrize("entry", ["3", "--excused"])
-def test_final_marks_and_excuses_are_not_late(tmp_path: Path, entry: str) -> None:
-    """They lose nothing, so neither the class nor its sections count them."""
-    book = tmp_path / "book.db"
-    sections(book)
-    assert "1 submission late: 2.2 points lost" in grader("stats", "--gradebook", book).stdout
-    assert grader("mark", "birch", "total", entry, "--gradebook", book).returncode == 0
-    assert " late: " not in grader("stats", "--gradebook", book).stdout
-    (section,) = (line for line in stats(book, "--compare", "section").splitlines() if line.startswith("A "))
-    assert section.split()[-2:] == ["0", "0"]
-
-
-def test_sections_in_json(tmp_path: Path) -> None:
-    """The comparison is added to the data of the class, which are otherwise the same."""
-    sections(tmp_path / "book.db")
-    book = ("--gradebook", tmp_path / "book.db", "--format", "json")
-    plain, data = (json.loads(grader("stats", *more, *book).stdout) for more in ((), ("--compare", "marker")))
-    jsonschema.validate(data, json.loads(grader("schema", "class").stdout))
-    comparison = data.pop("comparison")
-    assert data == plain
-    assert comparison["by"] == "marker"
-    assert [(group["name"], group["students"], group["graded"], group["mean"]) for group in comparison["groups"]] == [
-        ("Kim", 2, 2, 9.5),
-        ("Lee", 3, 2, 3),
-    ]
-    assert comparison["groups"][0]["late_points"] == 2.2
-    assert comparison["groups"][0]["shares"]["box"] == 0.5
-    assert comparison["differing"][0] == "essay"
+def test_differences(book: Path) -> None:
+    """Of two gradebooks; a gradebook of one run has none, and one without a run has no statistics."""
+    assert "has one run" in refusal(grader("diff", book))
+    older = book.rename(book.parent / "older")
+    (book.parent / "class" / "anna" / "robot.urdf").unlink()
+    assert batch(book.parent).returncode == 0
+    [change] = as_json("diff", "diff", older, book)["students"]
+    assert (change["id"], change["reasons"][0]) == ("anna", "the submission changed")
+    (book / "results.jsonl").unlink()
+    assert refusal(grader("stats", "--gradebook", book)).startswith("nothing is graded yet in ")

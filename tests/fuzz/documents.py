@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from grader.classroom.intake.reading import read_class
+from grader.classroom.submissions import read_class
 from grader.documents.answers import find_answer
 from grader.documents.collection import DocumentCollection
 from grader.documents.document import Document, made_of
@@ -72,8 +72,8 @@ def class_zip(data: bytes) -> None:
     path = Path(GUARD.folder, "class.zip")
     path.write_bytes(data)
     with user_errors():
-        intake = read_class(path, None, "auto", "", "lab6", ("lab6",))
-        keys = [submission.student.key for submission in intake.submissions()]
+        intake = read_class([path], None, "auto", "", "lab6", ("lab6",))
+        keys = [submission.student.key for submission in intake.submissions]
         assert len({*keys}) == len(keys)
         assert all(keys)
         for note in intake.notes:

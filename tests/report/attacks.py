@@ -34,7 +34,7 @@ def make_attacked_class(top: Path) -> AttackedClass:
     with (top / "marks.csv").open("w", encoding="utf-8", newline="") as file:
         marks = [[row[0], "lidar-frame", "1", row[1]] for row in rows[1:]]
         csv.writer(file).writerows([["student", "criterion", "points", "comment"], *marks])
-    book, pages = top / "book.db", top / "pages"
+    book, pages = top / "book", top / "pages"
     for command in (
         ("batch", top / "class", "--gradebook", book, "--roster", top / "roster.csv"),
         ("mark", "--import", top / "marks.csv", "--by", ATTACKS[0], "--gradebook", book),

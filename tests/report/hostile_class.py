@@ -3,7 +3,7 @@
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
-from tests.classroom.class_runs import grader
+from tests.classroom.gradebooks import grader
 from tests.samples import ROOT
 
 LIDAR = (ROOT / "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
@@ -35,7 +35,7 @@ def export_hostile_class(top: Path) -> Path:
         rows.append(",".join('"' + value.replace('"', '""') + '"' for value in (file_name(text), text)))
     (top / "class" / file_name(f"z{CORPUS[1]}.zip")).write_bytes(b"no zip")
     (top / "roster.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
-    book = top / "g.db"
+    book = top / "book"
     done = grader("batch", top / "class", "--gradebook", book, "--roster", top / "roster.csv", "--jobs", "2")
     assert done.returncode == 0, done.stderr
     for text in CORPUS[:2]:

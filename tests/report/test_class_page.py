@@ -1,20 +1,16 @@
-"""The class's page keeps its structure, whatever students are called and write."""
+"""The class's page keeps its structure, whatever students are called and write, and says what `stats` says."""
 
-from dataclasses import replace
+import json
 from pathlib import Path
-from random import Random
 from urllib.parse import unquote
 
-from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Grades
-from grader.classroom.gradebook.run_writer import save_student
-from grader.classroom.gradebook.stored import Enrolment
-from grader.classroom.gradebook.summary import summary_of
-from grader.classroom.students import Student
-from grader.grading.rubric import load_rubric
-from grader.report.pages.class_page import render_class_page
+import pytest
+
+from grader.classroom.grades import Class
+from grader.report.class_summary import percent
 from grader.text import without_commands
-from tests.classroom.gradebooks import graded_as, lab, record_run
+from grader.usecases.class_figures import write_class_page
+from tests.classroom.gradebooks import batch, grader, lab_text, write_submission
 from tests.report.class_pages import ClassPageReader
 from tests.report.hostile_class import CORPUS, export_hostile_class
 
@@ -24,6 +20,12 @@ ELEMENTS = {
     "summary", "table", "thead", "tbody", "tr", "th", "td", "form", "label", "input", "button", "svg", "g", "path", "rect",
     "text", "desc",
 }  # fmt: skip
+
+
+@pytest.mark.parametrize(("share", "words"), [(0, "0%"), (0.001, "1%"), (0.5, "50%"), (0.999, "99%"), (1, "100%")])
+def test_a_share_is_not_rounded_to_all_or_none(share: float, words: str) -> None:
+    """Only all are 100 %, and only none 0 %."""
+    assert percent(share) == words
 
 
 def test_text_of_students_stays_text(tmp_path: Path) -> None:
@@ -42,19 +44,35 @@ def test_text_of_students_stays_text(tmp_path: Path) -> None:
         assert "\n::error" not in file.read_text(encoding="utf-8")
 
 
-def test_a_thousand_students_of_lab6_take_half_a_megabyte(tmp_path: Path) -> None:
-    """With names, ids, links, late penalties, and mistakes in every criterion."""
-    dice = Random(1).random
-    rubric = replace(load_rubric("lab6"), late=lab("percent_per_day = 10\n").late)
-    keys = [f"student{number:06}" for number in range(1000)]
-    with Gradebook(tmp_path / "book.db", create=True) as book:
-        signs = ["".join("f" if dice() < 0.2 else "p" for _ in rubric.criteria[:-3]) + "???" for _ in range(40)]
-        record_run(book, rubric, [graded_as(rubric, key, signs[number % 40]) for number, key in enumerate(keys)])
-        with book.transaction():
-            for number, key in enumerate(keys):
-                name = f"Fernández-García {number}, María José"
-                save_student(book, Student(key, name), Enrolment(number, days_late=number % 3))
-        grades = Grades(book)
-        text = render_class_page(summary_of(grades, with_fixes=True), grades, {key: f"{key}.html" for key in keys}, {})
-    assert text.count("María José</a>") >= 1000
-    assert len(text.encode()) <= 500_000
+def test_the_page_says_what_stats_says(tmp_path: Path) -> None:
+    """A thousand students in four teams: the same words and numbers, as many behind each, in half a megabyte."""
+    for number, size in enumerate(("1 1 1", "1 1 2", "1 1 1", "1 1 3")):
+        write_submission(tmp_path / "class" / f"team{number}", size)
+    name = "Fernández-García {0}, María José"
+    rows = [f'student{at:06},"{name.format(at)}",team{at % 4},{"AB"[at % 2]},{at % 3}' for at in range(1000)]
+    (tmp_path / "roster.csv").write_text("\n".join(("id,name,team,section,late", *rows)))
+    (tmp_path / "small.toml").write_text(lab_text("percent_per_day = 10"))
+    assert batch(tmp_path).returncode == 0
+    book = tmp_path / "book"
+    write_class_page(Class(book), tmp_path, {f"student{at:06}": f"reports/student{at:06}" for at in range(1000)})
+    page, printed = ClassPageReader(tmp_path / "index.html"), grader("stats", "--gradebook", book).stdout
+    statistics = json.loads(grader("stats", "--gradebook", book, "--format", "json").stdout)["statistics"]
+    lines = page.texts("//p[@class='counts']")
+    assert printed.splitlines()[1 : 1 + len(lines)] == lines
+    assert [line.split()[0] for line in lines] == ["1000", "Grades", "1000", "Section", "Section"]
+    assert [int(count) for count in page.texts("//span[@class='bar-count']")] == statistics["tenths"]
+    assert [len(page.members(f"grade-{tenth}")) for tenth in range(10)] == statistics["tenths"]
+    assert sum(statistics["tenths"]) == len(page.members("filter-graded")) == 1000
+    assert [len(page.members(f"filter-{words}")) for words in ("section A", "late")] == [500, 666]
+    criteria = {row["criterion"].split()[0]: row for row in page.table("criteria")}
+    for row in statistics["criteria"]:
+        shown = criteria[row["id"]]
+        assert (shown["passed"], shown["lost"]) == (str(row["passed"]), str(row["failed"] + row["skipped"]))
+        assert f"{row['id']} {shown['points']} {shown['passed']} {row['failed']}" in " ".join(printed.split())
+    mistakes = page.texts("//section[@id='mistakes']//li")
+    assert mistakes == [
+        f"{len(one['students'])} {one['criterion']}: {one['message']}" for one in statistics["mistakes"]
+    ]
+    assert [len(page.members(f"mistake-{at}")) for at in range(2)] == [250, 250]
+    assert (tmp_path / "index.html").stat().st_size <= 500_000
+    assert page.links()[0] == "reports/student000000.html"

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from grader.checks.outcome import Outcome, Status
 from grader.classroom.equal_work import forms_of, hashes_of
-from grader.classroom.opening import open_class_submission, unreadable_digest
+from grader.classroom.opening import open_class_submission
 from grader.classroom.results import Graded, answers_of, digest_of, entries_of
 from grader.classroom.run.pool import NO_MEMORY
 from grader.errors import InputError, MachineError
@@ -28,7 +28,8 @@ _MAX_NAMED = 10  # students in a message
 class ClassContext(NamedTuple):
     """What all tasks of a run share: the class folders or zips, the rubric's file, the limits and arguments.
 
-    `max_size` are the bytes of a URDF, `parts` the ids of those to grade, all without any; `arguments` are those of xacro.
+    `max_size` are the bytes of a URDF, `parts` the ids of those to grade, all without any; `arguments` are those of
+    xacro.
     """
 
     roots: tuple[str, ...]
@@ -71,11 +72,10 @@ def _grade_one(context: ClassContext, task: Task) -> Graded:
             raise InputError(students_refusal(submission))  # noqa: TRY301  it is handled like files that cannot be read
         report = grade(rubric, submission, context.parts, is_one_of_class=True)
     except InputError as error:
-        read = result.digest or unreadable_digest(root, task.paths)
-        result = result._replace(digest=result.digest or (digest_of(read) if read else ""))
-        if result.digest and result.digest == task.graded:
-            return result
-        return undecided(context, result._replace(verdict="unreadable", reason=str(error)))
+        result = result._replace(digest=result.digest or digest_of(str(error)))
+        if result.digest != task.graded:
+            result = undecided(context, result._replace(verdict="unreadable", reason=str(error)))
+        return result
     except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of the grader affects only this submission
         if isinstance(error, MemoryError) and not task.no_documents:
             return _grade_one(context, task._replace(no_documents=NO_MEMORY))

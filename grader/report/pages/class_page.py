@@ -1,14 +1,15 @@
 """The class's page: statistics, and a table of students with links, which shows those behind each figure."""
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+import unicodedata
+from collections import defaultdict
+from collections.abc import Collection, Mapping, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
 from grader import __version__
 from grader.classroom.grade_table import status_of
 from grader.classroom.grades import Class, StudentGrade
-from grader.classroom.statistics import ClassStatistics, CriterionFigures
-from grader.classroom.typed_names import without_accents
+from grader.classroom.statistics import ClassStatistics, losses
 from grader.report import class_summary as words
 from grader.report.pages.shell import Assets, render_page
 from grader.text import counted, enumerated, format_points, printable
@@ -44,53 +45,59 @@ def render_class_page(
 ) -> str:
     """Return the class's page; `links` are the addresses of students' pages by key, relative to this page."""
     rows = sorted((_row(grade, links) for grade in grades), key=_by_family_name)
-    groups = {name: group for name, group in _groups(grades, found) if group.keys}
+    groups = {name: group for name, group in _groups(grades, found).items() if group.keys}
+    most = max(map(len, found.tenths))
     values = {
         "version": __version__,
         "title": found.rubric.title,
         "rubric": found.rubric,
-        "lines": [words.counts_line(found), *words.grade_lines(found), *words.section_lines(found)],
-        "bars": _bars(found),
-        "out_of": format_points(words.maximum_of(found)),
+        "lines": [*words.head_lines(found)],
+        "bars": [
+            (f"grade-{tenth}", words.span(found, tenth), len(keys), round(100 * len(keys) / most))
+            for tenth, keys in enumerate(found.tenths if most else ())
+        ],
+        "out_of": format_points(found.maximum),
         "criteria": _criteria(found),
         "criteria_note": words.SHARE_NOTE,
-        "mistakes": [(one.criterion.id, one.message, len(one.students)) for one in found.mistakes],
-        "equal": [(work.students, words.what_is_same(work, book)) for work in found.equal],
+        "mistakes": [(one.criterion, one.message, len(one.students)) for one in found.mistakes],
+        "equal": found.equal,
         "equal_note": words.EQUAL_NOTE,
-        "attention": [(str(one.reason), one.students[:_MAX_ATTENTION], len(one.students)) for one in found.attention],
+        "attention": [(str(reason), those[:_MAX_ATTENTION], len(those)) for reason, those in found.attention.items()],
         "ignored": book.marks.ignored,
         "people": {row.key: row for row in rows},
         "rows": rows,
         "columns": _columns(rows, found),
         "groups": groups,
     }
-    return render_page("class.html", values, _data(rows, groups), Assets("class.css", "class.js"))
+    return render_page("class.html", values, {"groups": _numbers(rows, groups)}, Assets("class.css", "class.js"))
 
 
 def _row(grade: StudentGrade, links: Mapping[str, str]) -> Row:
-    student, late = grade.student, grade.late
+    student, late, lost = grade.student, grade.late, [name for _, name in losses(grade)]
     penalty = f", {format_points(late.points)}" if late.points else ""
-    status = status_of(grade)
-    report = grade.report if not grade.has_final else None
-    lost = [one for one in report.results if one.points < one.criterion.maximum and not one.is_open] if report else []
-    costliest = sorted(lost, key=lambda one: one.points - one.criterion.maximum)
     return Row(
         student.key,
         student.name or student.key,
         links.get(student.key, ""),
         student.section,
-        f"{status}, final mark" if grade.final_points is not None else status,
+        status_of(grade) + ", final mark" * (grade.final_points is not None),
         "" if grade.total is None else format_points(grade.total),
         format_points(grade.pending) if grade.pending else "",
-        f"{counted(late.days, 'day')}{penalty}" if late.days else "",
-        enumerated([one.criterion.id for one in costliest], _MAX_LOST) if costliest else "",
+        f"{counted(late.days, 'day')}{penalty}" if late.days and not grade.has_final else "",
+        enumerated(lost, _MAX_LOST) if lost else "",
     )
 
 
 def _by_family_name(row: Row) -> tuple[str, str, str]:
     """Return the family name, which is before a comma or the last word, then the name and the key."""
     family = row.name.partition(",")[0] if "," in row.name else (row.name.split() or [""])[-1]
-    return without_accents(family.casefold())[0], without_accents(row.name.casefold())[0], row.key
+    return _letters(family), _letters(row.name), row.key
+
+
+def _letters(name: str) -> str:
+    """Return a name without accents, so that Öz is not after Zed."""
+    apart = unicodedata.normalize("NFKD", name.casefold())
+    return "".join(letter for letter in apart if not unicodedata.combining(letter))
 
 
 def _columns(rows: Sequence[Row], found: ClassStatistics) -> list[tuple[str, str, str]]:
@@ -99,87 +106,65 @@ def _columns(rows: Sequence[Row], found: ClassStatistics) -> list[tuple[str, str
         ("key", "id" if any(row.name != row.key for row in rows) else "", ""),
         ("section", "section", ""),
         ("status", "status", ""),
-        ("grade", f"grade of {format_points(words.maximum_of(found))}", "number"),
+        ("grade", f"grade of {format_points(found.maximum)}", "number"),
         ("open", "needs manual grading", "number"),
-        ("late", "late", ""),
+        ("late", "late", "text"),
         ("lost", "lost points in", "text"),
     )
     return [column for column in columns if column[1] and any(getattr(row, column[0]) for row in rows)]
 
 
-_STATES: tuple[tuple[str, str, Callable[[StudentGrade], bool]], ...] = (
-    ("attention", "need a person", lambda one: any(one.concerns)),
-    ("pending", "need manual grading", lambda one: bool(one.pending)),
-    ("late", "late", lambda one: bool(one.late.days)),
-    ("final", "a final mark", lambda one: one.final_points is not None),
-)
+def _groups(grades: Sequence[StudentGrade], found: ClassStatistics) -> dict[str, Group]:
+    """Return the groups of students on the page by the id that its buttons use; those at the top are filters."""
+    keys, lost = defaultdict[tuple[int, str], list[str]](list), defaultdict[str, list[str]](list)
+    has_sections = len({one.student.section for one in grades}) > 1
+    for one in grades:
+        labels = (
+            (status_of(one), True),
+            (f"section {one.student.section or '(none)'}", has_sections),
+            ("need a person", any(one.concerns)),
+            ("need manual grading", one.pending),
+            ("late", one.late.days and not one.has_final),
+            ("a final mark", one.final_points is not None),
+        )
+        for place in ((at, label) for at, (label, is_in) in enumerate(labels) if is_in):
+            keys[place].append(one.student.key)
+        for _, name in losses(one):
+            lost[name].append(one.student.key)
+    filters = {f"filter-{label}": Group(label, those, label) for (_, label), those in sorted(keys.items())}
+    tenths = {f"grade-{at}": Group(f"a grade of {words.span(found, at)}", of) for at, of in enumerate(found.tenths)}
+    rows = (row.criterion for row in found.criteria)
+    criteria = {f"criterion-{row.id}": Group(f"lost points in {row.id}", lost[row.id], row.id) for row in rows}
+    mistakes = {
+        f"mistake-{at}": Group(f"{one.criterion}: {one.message}", one.students) for at, one in enumerate(found.mistakes)
+    }
+    same = {f"same-{at}": Group("equal work", work.students) for at, work in enumerate(found.equal)}
+    return {**filters, **tenths, **criteria, **mistakes, **same}
 
 
-def _groups(grades: Sequence[StudentGrade], found: ClassStatistics) -> Iterator[tuple[str, Group]]:
-    """Yield the groups of students on the page, each with the id that its buttons use."""
-    for status in sorted({status_of(one) for one in grades}):
-        yield f"status-{status}", Group(status, [one.student.key for one in grades if status_of(one) == status])
-    for section in sorted({one.student.section for one in grades}):
-        keys = [one.student.key for one in grades if one.student.section == section]
-        yield f"section-{section}", Group(f"section {section or '(none)'}", keys)
-    for name, label, is_in in _STATES:
-        yield name, Group(label, [one.student.key for one in grades if is_in(one)], label)
-    for tenth, keys in enumerate(found.tenths):
-        yield f"grade-{tenth}", Group(f"a grade of {words.span(found, tenth)}", keys)
-    lost = _lost(grades)
-    for row in found.criteria:
-        yield f"criterion-{row.criterion.position}", Group(f"lost points in {row.criterion.id}", lost[row.criterion.id], row.criterion.id)
-    for number, mistake in enumerate(found.mistakes):
-        yield f"mistake-{number}", Group(f"{mistake.criterion.id}: {mistake.message}", mistake.students)
-    for number, work in enumerate(found.equal):
-        yield f"same-{number}", Group("equal work", work.students)
-
-
-def _lost(grades: Sequence[StudentGrade]) -> Mapping[str, list[str]]:
-    """Return who lost points in each criterion."""
-    lost: dict[str, list[str]] = {}
-    for grade in grades:
-        for one in grade.report.results if grade.report is not None else ():
-            found = lost.setdefault(one.criterion.id, [])
-            if not one.is_open and one.points < one.criterion.maximum:
-                found.append(grade.student.key)
-    return lost
-
-
-def _data(rows: Sequence[Row], groups: Mapping[str, Group]) -> dict[str, Any]:
-    """Return the data of the script: for each group its label, its search word, and the numbers of its rows.
+def _numbers(rows: Sequence[Row], groups: Mapping[str, Group]) -> dict[str, Any]:
+    """Return for each group its label, its search word, and the numbers of its rows.
 
     Of each number but the first, it is the difference to the one before: a large class has many of them.
     """
-    numbers = {row.key: number for number, row in enumerate(rows)}
-    return {
-        "groups": {
-            name: [printable(label), word, [after - before for before, after in pairwise((0, *shown))]]
-            for name, (label, keys, word) in groups.items()
-            for shown in [sorted(numbers[key] for key in keys if key in numbers)]
-        }
-    }
-
-
-def _bars(found: ClassStatistics) -> list[dict[str, Any]]:
-    most = max(map(len, found.tenths))
-    return [
-        {"group": f"grade-{tenth}", "span": words.span(found, tenth), "count": len(keys), "height": round(100 * len(keys) / most)}
-        for tenth, keys in enumerate(found.tenths if most else ())
-    ]
+    numbers, found = {row.key: number for number, row in enumerate(rows)}, {}
+    for name, (label, keys, word) in groups.items():
+        shown = sorted(numbers[key] for key in keys if key in numbers)
+        found[name] = [printable(label), word, [after - before for before, after in pairwise((0, *shown))]]
+    return found
 
 
 def _criteria(found: ClassStatistics) -> list[dict[str, Any]]:
     """Return the rows of the criteria, the hardest first."""
     asked = sorted(found.criteria, key=lambda row: (2.0 if row.share is None else row.share, -row.criterion.points))
-    return [_criterion(row) for row in asked if row.share is not None or row.pending]
-
-
-def _criterion(row: CriterionFigures) -> dict[str, Any]:
-    return {
-        "row": row,
-        "group": f"criterion-{row.criterion.position}",
-        "points": format_points(row.criterion.points),
-        "share": words.percent(row.share) if row.share is not None else "",
-        "width": round(100 * (row.share or 0)),
-    }
+    return [
+        {
+            "row": row,
+            "group": f"criterion-{row.criterion.id}",
+            "points": format_points(row.criterion.points),
+            "share": words.percent(row.share) if row.share is not None else "",
+            "width": round(100 * (row.share or 0)),
+        }
+        for row in asked
+        if row.share is not None or row.counts["pending"]
+    ]

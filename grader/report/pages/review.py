@@ -26,15 +26,13 @@ _DECIMALS = Decimal("0.0001")
 class Place(NamedTuple):
     """The number of an item among those that are shown, from 1, and its address.
 
-    `filters` are the lists to filter by: the name of each, its label, its values with their words, and the value that
-    is chosen. `students` are the keys and names to find one by.
+    `filters` are the lists to filter by: the name of each, its label, its values with their words, the chosen value.
     """
 
     number: int
     total: int
     address: str
     filters: Sequence[tuple[str, str, Mapping[str, str], str]]
-    students: Sequence[tuple[str, str]]
 
 
 class OpenedItem(NamedTuple):
@@ -45,19 +43,17 @@ class OpenedItem(NamedTuple):
     paths: Sequence[str] = ()
 
 
-def item_page(item: ReviewItem, opened: OpenedItem, criterion: Criterion, comments: Sequence[str], place: Place) -> str:
-    """Return the page of an item with earlier comments. `criterion` has the model answer.
+def item_page(item: ReviewItem, opened: OpenedItem, criterion: Criterion, place: Place) -> str:
+    """Return the page of an item. `criterion` has the model answer.
 
     The addresses of the pictures are ADDRESS/picture/1 and so on.
     """
-    mark, members = item.first.mark, [who(one) for one in item.members]
-    is_alone, shown = len(members) == 1, [*enumerate(opened.pictures, 1)]
-    together = members[0] if is_alone else f"{len(members)} students"
+    mark, members, is_alone = item.first.mark, [who(one) for one in item.members], len(item.members) == 1
+    together, shown = members[0] if is_alone else f"{len(members)} students", [*enumerate(opened.pictures, 1)]
     values = {
         "title": f"{place.number} of {place.total}: {together}, {criterion.title}",
         "place": place,
         "who": together,
-        "first": members[0],
         "together": "The same answer" if item.answer else NO_ANSWER,
         "members": [] if is_alone else members,
         "criterion": criterion,
@@ -68,27 +64,18 @@ def item_page(item: ReviewItem, opened: OpenedItem, criterion: Criterion, commen
         "places": opened.paths,
         "pictures": [(f"{place.address}/picture/{at}", one) for at, one in shown if isinstance(one, EmbeddedPicture)],
         "not_shown": [one for _, one in shown if isinstance(one, NotShown)],
-        "report": f"{place.address}/report" if has_report(item) else "",
-        "marked": marked_text(item),
+        "marked": mark_text(mark) + ", before the submission changed" * item.first.is_older if mark is not None else "",
         "buttons": _buttons(criterion),
         "choices": [f"{text} ({format_points(points)})" for text, points in criterion.choices.items()],
-        "comments": [" ".join(comment.split()) for comment in comments],
     }
     data = {
         "shown": item.view,
-        "item": item.stamp,
         "points": mark.value if mark is not None else "",
         "comment": mark.comment if mark is not None else "",
-        "comments": [*comments],
         "choices": [[text, float(points)] for text, points in criterion.choices.items()],
         "maximum": float(criterion.points),
     }
     return _page("review.html", values, data)
-
-
-def has_report(item: ReviewItem) -> bool:
-    """Return whether the student's page may be shown: it has the name."""
-    return item.first.number is None and not item.is_empty_group
 
 
 def end_page(marked: int, left: int, place: Place, gradebook: str) -> str:
@@ -111,14 +98,13 @@ def error_page(message: str, following: str) -> str:
 
 
 def _page(template: str, values: dict[str, Any], data: dict[str, Any]) -> str:
-    shared = {"version": __version__, **values}
-    return render_page(template, shared, data, Assets("review.css", "review.js", sources=_SOURCES))
+    assets = Assets("review.css", "review.js", sources=_SOURCES)
+    return render_page(template, {"version": __version__, **values}, data, assets)
 
 
 def _buttons(criterion: Criterion) -> list[tuple[str, str]]:
     """Return the points that have a button, and the name of each."""
-    half = criterion.points / 2
-    named = {Decimal(0): "none", half: "half", criterion.points: "all"}
+    named = {Decimal(0): "none", criterion.points / 2: "half", criterion.points: "all"}
     return [(format_points(value), name) for value, name in named.items() if value == value.quantize(_DECIMALS)]
 
 
@@ -135,19 +121,12 @@ def message_text(item: ReviewItem, result: Result) -> str:
     return printable(question if result.outcome.status == "pending" else f"the check: {result.outcome.status}")
 
 
-def marked_text(item: ReviewItem) -> str:
-    """Return the mark or comment that counts, and whether it is for an earlier submission; empty without one."""
-    older = ", before the submission changed" if item.first.state == "older" else ""
-    return f"{mark_text(item.first.mark)}{older}" if item.first.mark is not None else ""
-
-
 def mark_text(mark: Mark) -> str:
-    """Return a mark in one printable line: points, name, time, comment."""
+    """Return a mark or comment in one printable line: points, name, time, comment."""
     points = counted_points(mark.points) if mark.points is not None else mark.kind
     time = f"at {time_text(datetime.fromisoformat(mark.time))}" if mark.time else f"in {mark.place}"
     words = f"{points} by {mark.by or 'an unnamed person'} {time}"
-    comment = " ".join(mark.comment.split())
-    return printable(f"{words}: {comment}" if comment else words)
+    return printable(": ".join(filter(None, [words, " ".join(mark.comment.split())])))
 
 
 def files_text(item: ReviewItem, result: Result, root: Path) -> list[str]:

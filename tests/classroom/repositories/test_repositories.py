@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from tests.classroom.class_runs import Done, grader, reasons, without_hints
+from tests.classroom.class_runs import Done, grader, without_hints
 from tests.classroom.repositories.contents import robot
 from tests.classroom.repositories.table import ROWS, Row, Work
 from tests.classroom.repositories.writing import write_class
@@ -44,22 +44,11 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> Class:
         csv.writer(file).writerows([("id", "login", "name", "group"), *_roster()])
     rubric = without_hints()
     for layout in ("folders", "teams"):
-        found.gradebooks[layout] = top / f"{layout}.db"
-        options = (
-            "--rubric",
-            rubric,
-            "--layout",
-            layout,
-            "--roster",
-            top / "roster.csv",
-            "--jobs",
-            "2",
-            "--report-format",
-            "json",
-        )
+        found.gradebooks[layout] = top / f"{layout}-grades"
         found.runs[layout] = grader(
-            "batch", found.folder, "--gradebook", top / f"{layout}.db", "--reports", top / layout, *options
-        )
+            "batch", found.folder, "--gradebook", top / f"{layout}-grades", "--rubric", rubric, "--layout", layout,
+            "--roster", top / "roster.csv", "--jobs", "2", "--report-format", "json", "--reports", top / layout,
+        )  # fmt: skip
         assert found.runs[layout].returncode == 0, found.runs[layout].stderr
         found.reports[layout] = {path.stem: json.loads(path.read_text()) for path in (top / layout).glob("*.json")}
     return found
@@ -94,6 +83,11 @@ def _report(path: Path, *more: str) -> Report:
     done = run(("grade", path, "--hints", "none", "--format", "json", *more))
     assert done.stdout, done.stderr
     return dict(json.loads(done.stdout))
+
+
+def _reason(gradebook: Path, student: str) -> str:
+    lines = map(json.loads, (gradebook / "results.jsonl").read_text().splitlines())
+    return next(str(line["reason"]) for line in lines if line.get("student") == student)
 
 
 def _statuses(report: Report, part: str) -> dict[str, str]:
@@ -162,7 +156,7 @@ def test_several_students(row: Row, graded: Class) -> None:
         assert f"grader grade {graded.folder / row.name / folder}\n" in done.stderr.decode()
     for folder in row.works:
         student = _student(row, folder)
-        reason = reasons(graded.gradebooks["folders"])[student]
+        reason = _reason(graded.gradebooks["folders"], student)
         assert all(each in reason for each in row.works) and "left unassigned" in reason
         assert {result["status"] for result in graded.reports["folders"][student]["results"]} == {"pending"}
 

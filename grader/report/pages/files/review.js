@@ -1,8 +1,8 @@
 "use strict";
 {
   const find = (id) => document.getElementById(id);
-  let data, form, points, comment, error, newer, large, picture, help, finder, pictures, buttons;  // of the page that is shown
-  let shown, busy = false, leaving = "", current = 0, showsReport = false;
+  let data, form, points, comment, error, newer, large, picture, help, pictures, buttons;  // of the page that is shown
+  let shown, busy = false, leaving = "", current = 0;
   let typed = [];  // the keys that were pressed while no item was shown: they are for the next one
 
   const say = (text, isBusy = false) => { error.textContent = text; error.classList.toggle("busy", isBusy); };
@@ -22,7 +22,7 @@
     say("Saving ...", true);
     find("main").inert = true;
     try {
-      const mark = { points: points?.value, comment: comment?.value, shown, item: data.item };
+      const mark = { points: points?.value, comment: comment?.value, shown };
       const sent = { do: action, ...(action === "mark" ? mark : more) };
       const headers = { "Content-Type": "application/json" };
       const answer = await (await fetch(location.pathname, { method: "POST", headers, body: JSON.stringify(sent) })).json();
@@ -68,8 +68,7 @@
   /** Insert a key into the field that has the focus, as the browser does. */
   function insertKey(key) {
     const field = document.activeElement;
-    if (field === find("student") && key === "Enter") find("find-form").requestSubmit();
-    if (![points, comment, find("student")].includes(field)) return;
+    if (![points, comment].includes(field)) return;
     const [start, end] = [field.selectionStart, field.selectionEnd];
     if (key === "Backspace") field.setRangeText("", start === end ? Math.max(0, start - 1) : start, end, "end");
     else if ([...key].length === 1) field.setRangeText(key, start, end, "end");
@@ -77,7 +76,6 @@
 
   function askToKeep(answer) {
     find("newer-text").textContent = answer.newer;
-    newer.dataset.shown = answer.shown;
     newer.hidden = false;
     say(typed.length ? "What was typed after it is discarded." : "");
     typed = [];
@@ -85,20 +83,13 @@
   }
 
   function keep() { discard(); send("next"); }
-  function replace() { shown = newer.dataset.shown; newer.hidden = true; send("mark"); }
+  function replace() { shown = `${data.shown}!`; newer.hidden = true; send("mark"); }
   function discard() { points.value = data.points; comment.value = data.comment; }
 
   function setPoints(button) {
     if (!button) return;
     points.value = button.dataset.points;
     points.focus();
-  }
-
-  function insert(number) {
-    const text = data.comments[number - 1];
-    if (text === undefined) return;
-    if (!comment.value.includes(text)) comment.value += (comment.value && !comment.value.endsWith(" ") ? " " : "") + text;
-    comment.blur();  // the next digit is another comment
   }
 
   const parts = () => comment.value.split(/(\s*[;\n]\s*)/);  // with what separates them
@@ -127,7 +118,6 @@
     for (const frame of details.querySelectorAll("iframe[data-src]")) {
       if (details.open && !frame.src) frame.src = frame.dataset.src;
     }
-    if (details.id === "report") showsReport = details.open;
   }
 
   function toggle(selector) {
@@ -136,8 +126,6 @@
     details.open = !details.open;
     details.scrollIntoView({ block: "nearest" });
   }
-
-  function findStudent() { if (finder) { finder.showModal(); find("student").select(); } }
 
   function enlarge(number) {
     if (!pictures.length) return;
@@ -159,11 +147,11 @@
   const keys = {
     n: () => send("next"), s: () => send("next"), b: () => send("back"), z: zoom,
     f: () => setPoints(buttons.at(-1)), h: () => setPoints(buttons.find((button) => button.dataset.name === "half")),
-    v: () => toggle("#report"), d: () => toggle(".document:not(#report)"), "/": findStudent,
+    d: () => toggle(".document"),
     c: () => comment.focus(), p: () => points.select(), "?": () => help.showModal(),
     k: () => { if (!newer.hidden) keep(); }, r: () => { if (!newer.hidden) replace(); },
   };
-  const keysOfEnd = { b: keys.b, "/": findStudent };
+  const keysOfEnd = { b: keys.b };
 
   function onKey(event) {
     if (event.ctrlKey || event.metaKey || event.isComposing || (event.altKey && !isChoice(event))) return;
@@ -178,7 +166,6 @@
   function act(event, target) {
     const isOther = event.key.length === 1 && event.key > "~" && event.code.startsWith("Key");  // a layout without Latin letters
     const key = isOther ? event.code.slice(3).toLowerCase() : event.key.length === 1 ? event.key.toLowerCase() : event.key;
-    if (finder?.open) return false;
     if (event.altKey) {
       if (form && !help.open && !large.open && !event.repeat) choose(Number(event.code.slice(-1)));
       return true;
@@ -198,14 +185,14 @@
       if (!event.repeat) send("mark");
       return true;
     }
-    if (target === comment || target instanceof HTMLSelectElement || (target === points && key === "/")) return false;
+    if (target === comment || target instanceof HTMLSelectElement) return false;
     const action = (form ? keys : keysOfEnd)[key];
     if (action) {
       if (!event.repeat) action();
       return true;
     }
-    if (form && !isField && /^[0-9]$/.test(key)) {
-      key === "0" ? setPoints(buttons[0]) : insert(Number(key));
+    if (form && !isField && key === "0") {
+      setPoints(buttons[0]);
       return true;
     }
     return target === points && /^[a-z]$/.test(key);
@@ -215,7 +202,7 @@
   function start() {
     data = JSON.parse(find("data").textContent);
     [form, points, comment, error, newer] = ["form", "points", "comment", "error", "newer"].map(find);
-    [large, picture, help, finder] = ["large", "large-picture", "help", "find"].map(find);
+    [large, picture, help] = ["large", "large-picture", "help"].map(find);
     pictures = [...document.querySelectorAll("[data-picture]")];
     buttons = [...document.querySelectorAll("[data-points]")];
     [shown, leaving, current] = [data.shown, "", 0];
@@ -223,8 +210,6 @@
     const filters = [...document.querySelectorAll("[data-filter]")];
     const wanted = () => Object.fromEntries([["criterion", ""], ["section", ""], ["state", ""], ...filters.map((list) => [list.dataset.filter, list.value])]);
     for (const list of filters) list.addEventListener("change", () => send("filter", wanted()));
-    find("find-button")?.addEventListener("click", findStudent);
-    find("find-form")?.addEventListener("submit", () => send("find", { student: find("student").value }));
     if (!form) return;
     points.value = data.points;
     comment.value = data.comment;
@@ -233,12 +218,10 @@
     for (const button of document.querySelectorAll("[data-choice]")) button.addEventListener("click", () => choose(button.dataset.choice));
     for (const details of document.querySelectorAll(".document")) {
       details.addEventListener("toggle", () => loadFrame(details));
-      if (details.id === "report") details.open = showsReport;
       loadFrame(details);
     }
     comment.addEventListener("input", showChosen);
     showChosen();
-    for (const button of document.querySelectorAll("[data-comment]")) button.addEventListener("click", () => insert(Number(button.dataset.comment)));
     pictures.forEach((button, number) => button.addEventListener("click", () => enlarge(number)));
     large.addEventListener("click", zoom);
     find("keep").addEventListener("click", keep);
