@@ -38,4 +38,4 @@ def _grade_ten(folder: Path) -> None:
     folder.mkdir()
     for number in range(10):
         (folder / f"student-{number}.urdf").write_bytes(URDF.read_bytes())
-    assert run(("batch", folder, "--gradebook", folder.with_suffix(".db"), "--jobs", "1")).returncode == 0
+    assert run(("batch", folder, "--gradebook", folder.with_suffix(".book"), "--jobs", "1")).returncode == 0

@@ -12,7 +12,7 @@ from json.decoder import scanstring  # type: ignore[attr-defined,unused-ignore]
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, Self
 
-from grader.checks.outcome import Outcome
+from grader.checks.outcome import Outcome, Status
 from grader.errors import InputError
 from grader.files.reading import sha256_of
 from grader.grading.graded_submission import GradedSubmission
@@ -22,7 +22,7 @@ from grader.grading.rubric import Rubric
 from grader.text import cut, printable_path
 
 Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
-Entry = tuple[float | None, str, str, str]  # points, status, the mistake in words, the criterion that carries it
+Entry = tuple[float | None, Status, str, str]  # points, status, the mistake in words, the criterion that carries it
 _START = '{"student":"'
 _RUN = b'{"run":'
 _MAX_CAUSE = 200  # characters
@@ -69,9 +69,8 @@ class Graded(NamedTuple):
         unread = self.reason if self.verdict == "unreadable" else ""
         submission = GradedSubmission(self.student, path=self.paths[0] if self.paths else None, unread=unread)
         rows = ((row, self.results.get(row.id)) for row in rubric.criteria)
-        results = (
-            Result(row, Outcome(entry[1], entry[2]), carried=entry[3]) for row, entry in rows if entry is not None
-        )  # type: ignore[arg-type]
+        found = ((row, entry) for row, entry in rows if entry is not None)
+        results = (Result(row, Outcome(status, words), carried=by) for row, (_, status, words, by) in found)
         return Report(submission, rubric, self.parts, without_gifts(results, submission))
 
 
@@ -135,7 +134,7 @@ class Results:
         self._places: dict[str, int] = {}  # a hundred thousand students fit into memory, but not all of their results
         for place, line in self._lines():
             if line.startswith(_RUN):
-                self.runs.append(Run(**json.loads(line)))
+                self.runs.append(Run(**_values(line)))
                 if self.runs[-1].run == until:
                     break
             elif line.startswith(_START.encode()):
@@ -187,8 +186,11 @@ class Results:
 
 def graded_from(line: bytes) -> Graded:
     """Return the result in a line."""
-    values = json.loads(line).items()
-    return Graded(**{key: tuple(value) if isinstance(value, list) else value for key, value in values})
+    return Graded(**_values(line))
+
+
+def _values(line: bytes) -> dict[str, Any]:
+    return {key: tuple(value) if isinstance(value, list) else value for key, value in json.loads(line).items()}
 
 
 class ResultsWriter:

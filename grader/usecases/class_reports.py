@@ -5,7 +5,7 @@ from functools import lru_cache, partial
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.checks.outcome import Outcome, Status
+from grader.checks.outcome import Outcome
 from grader.classroom import folder as names
 from grader.classroom.grades import Class, StudentGrade
 from grader.classroom.reopening import reopened
@@ -77,10 +77,11 @@ def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True, feedb
 
 def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
     """Return the report on a submission as it was graded, with its details if it is still there."""
-    if graded.verdict != "graded":
-        status: Status = "errored" if graded.verdict == "errored" else "pending"
-        return undecided_report(book.rubric, graded.student, graded.reason, status, graded.parts)
+    if graded.verdict == "errored":
+        return graded.report(book.rubric)
     submission = reopened(book, graded)
+    if submission is None and graded.verdict == "unreadable":
+        return undecided_report(book.rubric, graded.student, graded.reason, "pending", graded.parts)
     if submission is None:
         return graded.report(book.rubric)._replace(notes=(_MOVED,))
     report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
