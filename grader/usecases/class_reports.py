@@ -29,7 +29,9 @@ from grader.usecases.writing import make_folder, refuse_symlinks, save
 _TASK_SIZE = 4  # reports
 _SECONDS = 60.0  # in which hints are searched, and a few reports written
 _NOTHING = Outcome("skipped", "not graded, because nothing was submitted")
-_MOVED = "The submission has moved or changed, so this report has no details: run `grader batch` again."
+_MOVED = (
+    "The submission has moved or changed since it was graded, so this report has no details: run `grader batch` again."
+)
 
 
 class ReportRun(NamedTuple):
