@@ -32,7 +32,7 @@ def read_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], Rows]:
     """Return a CSV file, the titles of its columns, and its rows; raises InputError if two columns have one title."""
     table = read_table(data, shown, is_from_person=True)
     (_, header), *rows = [*numbered_rows(table)] or [(1, TableRow(1, (), ""))]
-    titles = tuple(_title(cell.value) for cell in header.cells)
+    titles = tuple(map(_title, header.values))
     if twice := [title for title, count in Counter(filter(None, titles)).items() if count > 1]:
         raise InputError(f"{shown} has two columns {twice[0]!r}")
     return table, titles, [(line, _values(titles, row)) for line, row in rows]
@@ -43,7 +43,7 @@ def _title(value: str) -> str:
 
 
 def _values(titles: Sequence[str], row: TableRow) -> dict[str, str]:
-    cells = [unprotected(_unix(cell.value)) for cell in row.cells]
+    cells = [unprotected(_unix(value)) for value in row.values]
     untitled = [cell for title, cell in zip(titles, cells, strict=False) if not title] + cells[len(titles) :]
     return {**dict(zip(titles, cells, strict=False)), SURPLUS: " ".join(untitled).strip()}
 
@@ -62,7 +62,7 @@ def whole_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], Rows]:
     if titles and not ({"student", "criterion"} <= {*titles} and {"points", "comment"} & {*titles}):
         raise InputError(f"the first line of {shown} must name the columns {enumerated(COLUMNS)}")
     last = table.rows[-1] if table.rows else None
-    if last is None or last.end or not any(cell.value.strip() for cell in last.cells):
+    if last is None or last.end or not any(value.strip() for value in last.values):
         return table, titles, rows
     title = (*titles, *([SURPLUS] * len(last.cells)))[len(last.cells) - 1]
     is_cut = len(last.cells) < len(titles) or title in COLUMNS[:-1] or table.encoding == "windows-1252"

@@ -14,8 +14,8 @@ import csv
 import io
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
 from decimal import Decimal
+from typing import NamedTuple
 
 from grader.errors import InputError
 from grader.files.reading import capped
@@ -26,33 +26,33 @@ ROW_LIMIT = 100_000
 CELL_LIMIT = 1_000_000
 DELIMITERS = ",;\t"
 _AS_TEXT = re.compile(r'\A="(.*)"\Z', re.DOTALL)  # keeps a spreadsheet from reading a text as a number
+# Possessive, so that an open quote fails in one pass. After a closing quote csv continues with plain text.
+_QUOTED = re.compile(r'"(?:[^"]++|"")*+"')
 _SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")  # the first bytes of .xlsx and .ods, and of .xls
 _BOMS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
 
 
-@dataclass(frozen=True, slots=True)
-class Cell:
-    """One cell: `raw` as in the file, with its quotes, and its value."""
+class TableRow(NamedTuple):
+    """One row: `number` counts from 1, the cells are as in the file, `end` is the line break after them.
 
-    raw: str
-    value: str
-
-
-@dataclass(frozen=True, slots=True)
-class TableRow:
-    """One row: `number` counts from 1, `end` is the line break after it. A blank line has no cells."""
+    A blank line has no cells.
+    """
 
     number: int
-    cells: tuple[Cell, ...]
+    cells: tuple[str, ...]
     end: str
+
+    @property
+    def values(self) -> list[str]:
+        """The values of the cells, without quotes."""
+        return [_value(cell) for cell in self.cells]
 
     def value(self, column: int | None) -> str:
         """Return the stripped value in a column; empty if the row is shorter or the column is None."""
-        return self.cells[column].value.strip() if column is not None and column < len(self.cells) else ""
+        return _value(self.cells[column]).strip() if column is not None and column < len(self.cells) else ""
 
 
-@dataclass(frozen=True, slots=True)
-class Table:
+class Table(NamedTuple):
     """A CSV file: its rows, and what is needed to write them back unchanged."""
 
     rows: tuple[TableRow, ...]
@@ -63,24 +63,24 @@ class Table:
     @property
     def titles(self) -> tuple[str, ...]:
         """The cells of the first row, without surrounding spaces."""
-        return tuple(cell.value.strip() for cell in self.rows[0].cells) if self.rows else ()
+        return tuple(value.strip() for value in self.rows[0].values) if self.rows else ()
 
     def encoded(self) -> bytes:
         """Return the file's bytes. A character that the encoding lacks becomes an HTML character reference."""
-        text = "".join(self.delimiter.join(cell.raw for cell in row.cells) + row.end for row in self.rows)
+        text = "".join(self.delimiter.join(row.cells) + row.end for row in self.rows)
         return self.bom + text.encode(self.encoding, "xmlcharrefreplace")
 
     def with_columns(self, columns: Sequence[int]) -> "Table":
         """Return the table with some of its columns, in their order; the cells and line breaks are unchanged."""
         kept = sorted(columns)
-        rows = (replace(row, cells=tuple(row.cells[i] for i in kept if i < len(row.cells))) for row in self.rows)
-        return replace(self, rows=tuple(rows))
+        rows = (row._replace(cells=tuple(row.cells[i] for i in kept if i < len(row.cells))) for row in self.rows)
+        return self._replace(rows=tuple(rows))
 
     def changed(self, row: TableRow, column: int, value: str) -> TableRow:
         """Return a row with another value in one cell, quoted if the old one was, or if necessary."""
-        quoted = row.cells[column].raw.startswith('"') or re.search(rf'[{self.delimiter};\t"\r\n]|^\s|\s$', value)
+        quoted = row.cells[column].startswith('"') or re.search(rf'[{self.delimiter};\t"\r\n]|^\s|\s$', value)
         raw = '"' + value.replace('"', '""') + '"' if quoted else value
-        return replace(row, cells=(*row.cells[:column], Cell(raw, value), *row.cells[column + 1 :]))
+        return row._replace(cells=(*row.cells[:column], raw, *row.cells[column + 1 :]))
 
 
 def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Table:
@@ -105,16 +105,16 @@ def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Tabl
 def rows_with_lines(data: bytes, shown: str) -> Iterator[tuple[int, list[str]]]:
     """Yield the line where each row of a person's file begins, unless it is empty, and its cells, spaces normalised."""
     for line, row in numbered_rows(read_table(data, shown, is_from_person=True)):
-        yield line, [" ".join(_AS_TEXT.sub(r"\1", cell.value.strip()).split()) for cell in row.cells]
+        yield line, [" ".join(_AS_TEXT.sub(r"\1", value.strip()).split()) for value in row.values]
 
 
 def numbered_rows(table: Table) -> Iterator[tuple[int, TableRow]]:
     """Yield the line where each row begins, and the row, unless it is empty or says what the separator is to Excel."""
     line = 1
     for row in table.rows:
-        if any(cell.raw and cell.value.strip() for cell in row.cells) and row.value(0) != "sep=":
+        if any(value.strip() for value in row.values) and row.value(0) != "sep=":
             yield line, row
-        line += 1 + sum(len(cell.raw.splitlines()) - 1 for cell in row.cells if cell.raw[:1] == '"')
+        line += 1 + sum(len(cell.splitlines()) - 1 for cell in row.cells if cell[:1] == '"')
 
 
 def _decode(data: bytes, shown: str) -> tuple[bytes, str, str]:
@@ -127,28 +127,29 @@ def _decode(data: bytes, shown: str) -> tuple[bytes, str, str]:
     raise InputError(f"{shown} is not text in {encoding or 'UTF-8 or Windows-1252'}: export it again, as CSV in UTF-8")
 
 
+def _value(cell: str) -> str:
+    found = _QUOTED.match(cell)
+    return cell if found is None else found[0][1:-1].replace('""', '"') + cell[found.end() :]
+
+
 def _rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
-    # Possessive, so that an open quote fails in one pass. After a closing quote csv continues with plain text.
-    cell = rf'(?:"((?:[^"]++|"")*+)"([^{delimiter}\r\n]*+)|(?!")[^{delimiter}\r\n]*+)'
-    pattern = re.compile(rf"({cell})({delimiter}|\r\n|\r|\n|\Z)")
+    pattern = re.compile(rf'((?:{_QUOTED.pattern}|(?!"))[^{delimiter}\r\n]*+)({delimiter}|\r\n|\r|\n|\Z)')
     at, count = 0, 0
     rows: list[TableRow] = []
-    cells: list[Cell] = []
+    cells: list[str] = []
     while at < len(text) or cells:  # a text that ends after a delimiter has one more empty cell
         if not cells and len(rows) >= ROW_LIMIT:
             raise InputError(f"{shown} has more than {ROW_LIMIT} rows, the limit")
         found = pattern.match(text, at)
         if found is None:
             raise InputError(f"{shown} is not a CSV file: a quotation mark in row {len(rows) + 1} is never closed")
-        raw, inner, rest, end = found.groups()
-        cells.append(Cell(raw, raw if inner is None else inner.replace('""', '"') + rest))
+        cells.append(found[1])
         count += 1
         if count > CELL_LIMIT:
             raise InputError(f"{shown} has more than {CELL_LIMIT} cells, the limit")
         at = found.end()
-        if end != delimiter:
-            is_blank = len(cells) == 1 and not cells[0].raw
-            rows.append(TableRow(len(rows) + 1, () if is_blank else tuple(cells), end))
+        if found[2] != delimiter:
+            rows.append(TableRow(len(rows) + 1, () if cells == [""] else tuple(cells), found[2]))
             cells = []
     return tuple(rows)
 

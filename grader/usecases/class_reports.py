@@ -1,9 +1,9 @@
 """Write a report for each student of a class, and the class's page beside reports in HTML."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
 from functools import lru_cache, partial
 from pathlib import Path
+from typing import NamedTuple
 
 from grader.checks.outcome import Outcome
 from grader.classroom import folder as names
@@ -29,14 +29,15 @@ from grader.usecases.writing import make_folder, refuse_symlinks, save
 _TASK_SIZE = 4  # reports
 _SECONDS = 60.0  # in which hints are searched, and a few reports written
 _NOTHING = Outcome("skipped", "not graded, because nothing was submitted")
-_MOVED = "The submission has moved or changed, so this report has no details: run `grader batch` again."
+_MOVED = (
+    "The submission has moved or changed since it was graded, so this report has no details: run `grader batch` again."
+)
 
 
-@dataclass(frozen=True, slots=True)
-class ReportRun:
+class ReportRun(NamedTuple):
     """The reports to write of a gradebook into a folder; `answers` is the file of the model answers.
 
-    `time` is that of the newest run: workers read the gradebook once for it.
+    `time` is that of the newest run: workers read the gradebook once for it. Feedback always says who graded.
     """
 
     gradebook: Path
@@ -44,10 +45,10 @@ class ReportRun:
     formats: tuple[Format, ...]
     answers: Path | None = None
     time: str = ""
+    is_feedback: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class _Task:
+class _Task(NamedTuple):
     """A report to write: the student and the name of the file; without hints if their search was lost."""
 
     key: str
@@ -156,8 +157,7 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
     keys = [one.student.key for one in book if one.graded is not None or one.has_final]
     files = file_names(keys)
     write_index(run.folder, files)
-    with Processes(jobs or processors(), timeout) as executor:
-        lost = _render_all(replace(run, time=book.run.time), files, terminal, executor, jobs or processors())
+    lost = render_reports(run._replace(time=book.run.time), files, terminal, jobs or processors(), timeout)
     if Format.HTML in run.formats:
         is_inside = run.folder == run.gradebook / names.REPORTS
         prefix = f"{names.REPORTS}/" * is_inside
@@ -169,14 +169,14 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
         terminal.warn(printable(f"no report for {key}: {why}"))
 
 
-def _render_all(
-    run: ReportRun, files: dict[str, str], terminal: Terminal, executor: Processes, workers: int
+def render_reports(
+    run: ReportRun, files: Mapping[str, str], terminal: Terminal, workers: int, timeout: float = _SECONDS
 ) -> dict[str, str]:
-    """Write the reports of students, by their file names; return who has none, and why."""
+    """Write the reports of students, by their file names; return who has none, and why. Raises as `write_reports`."""
     lost = dict[str, str]()
 
     def again(task: _Task, _: WorkerError) -> _Task | None:
-        return replace(task, has_hints=False) if task.has_hints else None
+        return task._replace(has_hints=False) if task.has_hints else None
 
     def give_up(task: _Task, error: Exception) -> tuple[str, str]:
         if isinstance(error, InputError | RubricError):
@@ -184,13 +184,14 @@ def _render_all(
         fault = f"the grader itself failed: {type(error).__name__}: {error}"
         return task.key, str(error) if isinstance(error, WorkerError | MachineError) else fault
 
-    with terminal.show_class("writing reports") as show:
-        show(progress := Progress(len(files)))
+    with Processes(workers, timeout) as executor, terminal.show_class("writing reports") as show:
+        show(Progress(len(files)))
+        done = 0
         tasks = (_Task(key, name) for key, name in files.items())
         queue = Queue(executor, workers, partial(_write_some, run), again, give_up, _TASK_SIZE)
         for results in queue.results(tasks):
             lost |= {key: why for key, why in results if why}
-            show(progress := replace(progress, graded=progress.graded + len(results)))
+            show(Progress(len(files), graded=(done := done + len(results))))
     return {key: lost[key] for key in files if key in lost}
 
 
@@ -198,7 +199,7 @@ def _write_some(run: ReportRun, tasks: Sequence[_Task]) -> list[tuple[str, str]]
     """Write the reports of some students; return the students."""
     book = _class(run)
     for task in tasks:
-        report = report_of(book, book.grade(task.key), has_hints=task.has_hints)
+        report = report_of(book, book.grade(task.key), has_hints=task.has_hints, feedback=run.is_feedback)
         picture = address(f"{task.name}.{Format.SVG.ending}") if Format.SVG in run.formats else ""
         for kind in run.formats:
             save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind, picture=picture))

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Decimal
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from zipfile import is_zipfile
 
 from grader.classroom import folder as names
@@ -14,13 +15,15 @@ from grader.classroom.lms.fill import by_reason, fill, participants
 from grader.classroom.lms.forms import FORMS
 from grader.classroom.lms.grade_file import FillOptions
 from grader.classroom.lms.owners import ClassGrade, Note
+from grader.classroom.run.pool import processors
 from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.errors import GraderError, InputError
 from grader.files.reading import read_capped
-from grader.report.formats import Format, render
-from grader.text import enumerated, format_points, named, printable, printable_path
+from grader.report.formats import Format
+from grader.text import counted, enumerated, format_points, printable, printable_path
+from grader.usecases import class_reports
 from grader.usecases.class_figures import warn_of_ignored
-from grader.usecases.class_reports import ReportRun, graders_of, refuse_report_folder, report_of, write_reports
+from grader.usecases.class_reports import ReportRun
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import is_same_file, is_stdout, refuse_symlinks, save_bytes
@@ -57,8 +60,8 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
     if request.target == "html":
         folder = request.output or book.folder / names.REPORTS
         if request.output is not None:
-            refuse_report_folder(folder, (Format.HTML,), roots)
-        write_reports(ReportRun(book.folder, folder, (Format.HTML,)), terminal)
+            class_reports.refuse_report_folder(folder, (Format.HTML,), roots)
+        class_reports.write_reports(ReportRun(book.folder, folder, (Format.HTML,)), terminal)
         return b"", ExitCode.PASSED
     for path in filter(None, (request.output, request.feedback)):
         refuse_symlinks(path, roots)
@@ -90,11 +93,7 @@ def _data(request: ExportRequest, book: Class, terminal: Terminal) -> tuple[byte
     form = FORMS[request.target]
     grades = [_class_grade(book, one, request, has_comment="comment" in form.columns) for one in book]
     filled = fill(read_capped(request.into, SIZE_LIMIT, advice=""), grades, form, _options(request, book))
-    older = [
-        Note(Reason.OLDER_MARKS, named(one.student.key, one.student.name), ", ".join(one.older))
-        for one in book
-        if one.older
-    ]
+    older = (Note(Reason.OLDER_MARKS, one.student.key, ", ".join(one.older)) for one in book if one.older)
     for line in [*filled.lines, *map(printable, by_reason(older))]:
         terminal.warn(line)
     return filled.data, filled.is_complete
@@ -110,15 +109,15 @@ def _class_grade(book: Class, grade: StudentGrade, request: ExportRequest, *, ha
 
 
 def _comment(book: Class, grade: StudentGrade, total: Decimal) -> str:
-    report = report_of(book, grade, has_hints=False)
+    report = class_reports.report_of(book, grade, has_hints=False)
     lines = [] if grade.has_final else [*lost_points(report.results)]
     if grade.late.points:
         lines.append(f"Late: {format_points(grade.late.points)}. {grade.late.reason}")
     if grade.final is not None and grade.final.comment:
         lines.append(f"Comment: {grade.final.comment}")
-    graders, exported = graders_of(grade, report) or "automatically", total.quantize(Decimal("0.01"), ROUND_FLOOR)
-    points = f"{format_points(exported)} of {format_points(_maximum(book))} points"
-    return comment_html(f"Graded {graders}: {points}.", lines)
+    graders = class_reports.graders_of(grade, report) or "automatically"
+    exported = format_points(total.quantize(Decimal("0.01"), ROUND_FLOOR))
+    return comment_html(f"Graded {graders}: {exported} of {format_points(_maximum(book))} points.", lines)
 
 
 def _maximum(book: Class) -> Decimal:
@@ -144,13 +143,18 @@ def _feedback(request: ExportRequest, book: Class, terminal: Terminal) -> bytes:
             numbers = participants(data, known, FORMS["moodle"], _options(request, book))
         names, without = moodle_names([one.student for one in grades.values()], name, numbers)
     else:
-        files = [(one.student, one.graded.paths if one.graded is not None else ()) for one in grades.values()]
-        names, without = canvas_names(files, name)
-    reports = {key: render(report_of(book, grades[key], feedback=True), kind).encode() for key in names}
+        paths = [(one.student, one.graded.paths if one.graded is not None else ()) for one in grades.values()]
+        names, without = canvas_names(paths, name)
+    files = {key: str(number) for number, key in enumerate(names)}
+    with TemporaryDirectory() as folder:
+        run = ReportRun(book.folder, Path(folder), (kind,), is_feedback=True)
+        without |= class_reports.render_reports(run, files, terminal, processors())
+        written = ((key, Path(folder, f"{file}.{kind.ending}")) for key, file in files.items() if key not in without)
+        reports = {key: path.read_bytes() for key, path in written}
     zipped, left = write_feedback(reports, names, name)
     for line in by_reason(Note("without feedback", key, why) for key, why in {**without, **left}.items()):
         terminal.warn(printable(line))
-    terminal.warn(f"{len(names) - len(left)} reports in {printable_path(request.feedback or Path())}")
+    terminal.warn(f"{counted(len(reports) - len(left), 'report')} in {printable_path(request.feedback or Path())}")
     return zipped
 
 

@@ -8,7 +8,6 @@ from tests.command_line import clean_environment, run_with_input
 from tests.samples import ROOT
 
 POINTS = {"loads": "3", "box": "2.5", "tall": "0.5", "essay": "4", "picture": "1"}
-PENDING = ("essay", "picture")
 _TOLERANCE = "tolerance = 0.001"
 _CRITERIA = {
     "loads": 'part = "robot"\ncheck = "urdf_loads"',

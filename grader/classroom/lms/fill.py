@@ -6,7 +6,6 @@ as a change, and Moodle's worksheets have rounded grades. So rows of students wi
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from decimal import ROUND_FLOOR, Decimal
 from typing import NamedTuple
 
@@ -18,7 +17,7 @@ from grader.classroom.tables import TableRow
 from grader.errors import InputError
 from grader.text import first_lines, format_points, people_text, printable
 
-_OPEN, _EXCUSED, _KEPT = "without a grade", "excused", "kept the comment"
+_OPEN, _KEPT = "without a grade", "kept the comment"
 _REFUSED = "the LMS would refuse the grade"
 _INCOMPLETE = frozenset({_REFUSED, UNKNOWN, MISSING, AMBIGUOUS})
 _NOT_GRADED = frozenset({"", "-", "needs grading"})  # the last in Blackboard
@@ -50,15 +49,13 @@ def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOpt
         elif grade is not None and (note := _why_not(file, form, row, grade, new)):
             notes.append(Note(note[0], one.who, note[1]))
         elif grade is not None:
-            if grade.total is None:
-                notes.append(Note(_EXCUSED, one.who, f"{new} in the file"))
             rows.append(_with_grade(file, one, new, changes))
             if (comment := _with_comment(file, rows[-1], grade.comment)) is None:
                 notes.append(Note(_KEPT, one.who, f"a person wrote or changed it in {form.lms}"))
             rows[-1] = comment or rows[-1]
             filled += rows[-1] is not row
             unchanged += rows[-1] is row
-    table = replace(file.table, rows=tuple(rows))
+    table = file.table._replace(rows=tuple(rows))
     if options.only and "maximum" not in file.roles:
         table = table.with_columns([*{*file.roles.values()}])
     count = f"column {header!r}: {filled} filled in, {unchanged} already the same"

@@ -42,21 +42,20 @@ def match_rows(
     ours = [_clues(grade.student, lms) for grade in grades]
     grades_of, rows_of = _fitting(theirs, ours), _fitting(ours, theirs)
     names = [named(grade.student.key, grade.student.name) for grade in grades]
-    found, notes, left = dict[int, ClassGrade](), list[Note](), dict(enumerate(grades))
+    found, notes, claimed = dict[int, ClassGrade](), list[Note](), set[int]()
     for index, row in enumerate(rows):
         some = [at for at in grades_of[index] if len(grades_of[index]) > 1 or index in rows_of[at]]
-        could = people_text([names[at] for at in some], _MAX_NAMED)
+        claimed.update(some)
         if [rows_of[at] for at in some] == [[index]]:
             found[row.row.number] = grades[some[0]]
         elif some:
+            could = people_text([names[at] for at in some], _MAX_NAMED)
             why = f"could be {could}" if some[1:] else f"{could} could be this row or another one"
             notes.append(Note(AMBIGUOUS, row.who, why))
         elif not row.is_test:
             notes.append(Note(UNKNOWN, row.who, "no student of the class matches this id, address or name"))
-        for at in some:
-            left.pop(at, None)
-    for at, grade in left.items():
-        if grade.total is not None or grade.is_excused:
+    for at, grade in enumerate(grades):
+        if at not in claimed and (grade.total is not None or grade.is_excused):
             what = "is excused" if grade.is_excused else "has a grade"
             notes.append(Note(MISSING, names[at], f"{what}, but no row in the file"))
     return found, notes
@@ -64,9 +63,9 @@ def match_rows(
 
 def _clues(student: Student, lms: str) -> _Clues:
     """Return what identifies a student; without a place on the roster the id in the LMS alone, for names are chosen."""
-    ids = (student.key, student.login, student.sis, student.email) if student.is_on_roster else ()
-    names = (student.name,) if student.is_on_roster else ()
-    kinds = ((getattr(student, lms.lower(), ""),), ids, names)
+    kinds: list[Sequence[str]] = [(getattr(student, lms.lower(), ""),), (), ()]
+    if student.is_on_roster:
+        kinds[1:] = (student.key, student.login, student.sis, student.email), (student.name,)
     return tuple(frozenset(map(plain, words)) - {""} for words in kinds)
 
 
