@@ -9,7 +9,7 @@ import pytest
 from grader.classroom.grades import Class
 from grader.report.class_summary import percent
 from grader.text import without_commands
-from grader.usecases.class_figures import write_class_page
+from grader.usecases.report_names import write_class_page
 from tests.classroom.gradebooks import batch, grader, lab_text, write_submission
 from tests.report.class_pages import ClassPageReader
 from tests.report.hostile_class import CORPUS, export_hostile_class
