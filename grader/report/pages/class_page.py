@@ -15,6 +15,7 @@ from grader.text import counted, enumerated, format_points, printable
 
 _MAX_ATTENTION = 100  # students for one reason
 _MAX_LOST = 2  # criteria in a row
+_LETTERS = str.maketrans({"ł": "l", "ø": "o", "đ": "d", "æ": "ae", "œ": "oe", "ı": "i"})  # have no accents
 
 
 class Row(NamedTuple):
@@ -98,7 +99,7 @@ def _by_family_name(row: Row) -> tuple[str, str, str]:
 
 def _letters(name: str) -> str:
     """Return a name without accents, so that Öz is not after Zed."""
-    apart = unicodedata.normalize("NFKD", name.casefold())
+    apart = unicodedata.normalize("NFKD", name.casefold().translate(_LETTERS))
     return "".join(letter for letter in apart if not unicodedata.combining(letter))
 
 
