@@ -33,9 +33,7 @@ def check_gradebook(folder: Path) -> None:
     if folder.is_file():
         with suppress(OSError), folder.open("rb") as file:
             if file.read(len(_SQLITE)) == _SQLITE:
-                raise InputError(
-                    f"{shown} is a gradebook of an earlier version: grade the class again with `grader batch`, into a folder"
-                )
+                raise InputError(f"{shown} is a gradebook of an earlier version: grade the class again, into a folder")
         raise InputError(f"{shown} is a file: a gradebook is a folder")
     if not folder.is_dir():
         raise InputError(

@@ -1,4 +1,4 @@
-"""The grades of a class, computed from the results, the rubric, the roster and the marks of people: nothing is stored."""
+"""The grades of a class, computed from the results, the rubric, the roster and the marks of people."""
 
 from collections.abc import Iterator
 from datetime import datetime
@@ -45,10 +45,10 @@ class Reason(StrEnum):
 class StudentGrade(NamedTuple):
     """The grade of one student. Without a submission there is no result, and no report.
 
-    `report` has the points with the manual marks; `final` is the mark or excuse of the whole submission; `older` are the criteria
-    (or `total`) that were marked before the submission changed; `is_gone` means that the newest run did not find the submission,
-    `is_outdated` that it was graded by another rubric, version, or on other parts, and `is_unclear` that there are possible
-    submissions, of which none was graded.
+    `report` has the points with the manual marks; `final` is the mark or excuse of the whole submission; `older` are
+    the criteria (or `total`) that were marked before the submission changed; `is_gone` means that the newest run did
+    not find the submission, `is_outdated` that it was graded by another rubric, version, or on other parts, and
+    `is_unclear` that there are possible submissions, of which none was graded.
     """
 
     student: Student
@@ -217,7 +217,7 @@ class Class:
         return grade._replace(late=Lateness(late.days, reason=late.reason)) if grade.has_final else grade
 
     def with_marks(self, report: Report, graded: Graded) -> tuple[Report, tuple[str, ...]]:
-        """Return a report with the marks and comments, and the criteria that were marked before the submission changed."""
+        """Return a report with marks and comments, and the criteria that were marked before the submission changed."""
         results = {one.criterion.id: one for one in report.results}
         older: list[str] = []
         for row in self.rubric.criteria:

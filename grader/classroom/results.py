@@ -1,8 +1,8 @@
 """What was graded: `results.jsonl` of a gradebook, one line a graded submission and one line a run.
 
-A line of a submission comes before that of its run, and the newest of a student counts. The file can be computed again from the
-submissions: without it only the comparison of runs and some seconds are lost. A last line that was not written to its end is
-ignored, and cut before the next one is appended.
+A line of a submission comes before that of its run, and the newest of a student counts. The file can be computed
+again from the submissions: without it only the comparison of runs and some seconds are lost. A last line that was not
+written to its end is ignored, and cut before the next one is appended.
 """
 
 import json
@@ -10,9 +10,9 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from json.decoder import scanstring  # type: ignore[attr-defined,unused-ignore]
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, Self
 
-from grader.checks.outcome import Outcome
+from grader.checks.outcome import Outcome, Status
 from grader.errors import InputError
 from grader.files.reading import sha256_of
 from grader.grading.graded_submission import GradedSubmission
@@ -22,7 +22,7 @@ from grader.grading.rubric import Rubric
 from grader.text import cut, printable_path
 
 Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
-Entry = tuple[float | None, str, str, str]  # points, status, the mistake in words, the criterion that carries it
+Entry = tuple[float | None, Status, str, str]  # points, status, the mistake in words, the criterion that carries it
 _START = '{"student":"'
 _RUN = b'{"run":'
 _MAX_CAUSE = 200  # characters
@@ -32,10 +32,11 @@ _DIGITS = 16  # of a hash
 class Graded(NamedTuple):
     """The result of one submission: where it is, how it went, and what each criterion has.
 
-    `root` is the position of its path in the settings of the class, `paths` are below that. `person` is what the names of the files
-    say of the student. `context` is the hash of all that a result depends on besides the submission. `work` are hashes of the robot and
-    the package in several forms, for equal work; `answers` are the keys of what a person looks at for a criterion: students with the
-    same answer have the same one, and it is empty without an answer. Without a `digest` the submission could not be read at all.
+    `root` is the position of its path in the settings of the class, `paths` are below that. `person` is what the
+    names of the files say of the student. `context` is the hash of all that a result depends on besides the
+    submission. `work` are hashes of the robot and the package in several forms, for equal work; `answers` are the
+    keys of what a person looks at for a criterion: students with the same answer have the same one, and it is empty
+    without an answer. Without a `digest` the submission could not be read at all.
     """
 
     student: str
@@ -68,17 +69,17 @@ class Graded(NamedTuple):
         unread = self.reason if self.verdict == "unreadable" else ""
         submission = GradedSubmission(self.student, path=self.paths[0] if self.paths else None, unread=unread)
         rows = ((row, self.results.get(row.id)) for row in rubric.criteria)
-        results = (
-            Result(row, Outcome(entry[1], entry[2]), carried=entry[3]) for row, entry in rows if entry is not None
-        )  # type: ignore[arg-type]
+        found = ((row, entry) for row, entry in rows if entry is not None)
+        results = (Result(row, Outcome(status, words), carried=by) for row, (_, status, words, by) in found)
         return Report(submission, rubric, self.parts, without_gifts(results, submission))
 
 
 class Run(NamedTuple):
-    """A finished run: its number, the time in ISO 8601, and the total of each student who submitted, None while it is open.
+    """A finished run: its number, the time in ISO 8601, and the total of each student who submitted, None while it is
+    open.
 
-    `rubric` is its hash, `context` that of all that results depend on besides the submissions. `unclear` are the students with
-    possible submissions of which none was graded.
+    `rubric` is its hash, `context` that of all that results depend on besides the submissions. `unclear` are the
+    students with possible submissions of which none was graded.
     """
 
     run: int
@@ -133,7 +134,7 @@ class Results:
         self._places: dict[str, int] = {}  # a hundred thousand students fit into memory, but not all of their results
         for place, line in self._lines():
             if line.startswith(_RUN):
-                self.runs.append(Run(**json.loads(line)))
+                self.runs.append(Run(**_values(line)))
                 if self.runs[-1].run == until:
                     break
             elif line.startswith(_START.encode()):
@@ -185,8 +186,11 @@ class Results:
 
 def graded_from(line: bytes) -> Graded:
     """Return the result in a line."""
-    values = {key: tuple(value) if isinstance(value, list) else value for key, value in json.loads(line).items()}
-    return Graded(**values)
+    return Graded(**_values(line))
+
+
+def _values(line: bytes) -> dict[str, Any]:
+    return {key: tuple(value) if isinstance(value, list) else value for key, value in json.loads(line).items()}
 
 
 class ResultsWriter:
@@ -209,7 +213,7 @@ class ResultsWriter:
         except OSError as error:
             raise InputError(f"cannot write {self._shown}: {error.strerror}") from None
 
-    def __enter__(self) -> "ResultsWriter":
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:

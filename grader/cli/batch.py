@@ -62,9 +62,9 @@ def batch(
 ) -> str:
     """Grade a class into a gradebook, in parallel.
 
-    A gradebook is a folder of plain files: grades.csv has the grades, marks/ what people give. Rerun the command to resume, or to
-    grade new and changed submissions: it needs no PATH and no option again. Submissions are isolated: a crash or timeout affects only
-    its own submission. Exits 0 when every submission has a result, whatever the grades.
+    A gradebook is a folder of plain files: grades.csv has the grades, marks/ what people give. Rerun the command to
+    resume, or to grade new and changed submissions: it needs no PATH and no option again. Submissions are isolated: a
+    crash or timeout affects only its own submission. Exits 0 when every submission has a result, whatever the grades.
 
     Examples:
 
@@ -76,7 +76,7 @@ def batch(
 
       Resubmissions, a rubric fix, an interruption: rerun the same command.
 
-      Late submissions: [late] in the rubric, --due, grader mark STUDENT deadline, or columns due and extension in the roster.
+      Late submissions: [late] in the rubric, --due, grader mark STUDENT deadline, columns due and extension.
 
       Unmatched submissions: add the row that the message prints to the roster, and rerun.
 

@@ -140,7 +140,7 @@ def keep_inputs(inputs: ClassInputs, options: ClassOptions, warn: Warn) -> Class
 
 
 def _copy_rubric(folder: Path, rubric: Rubric) -> str:
-    """Copy a rubric and its reference into a gradebook, where they stand to each other as before; return where it is."""
+    """Copy a rubric and its reference into a gradebook, placed to each other as before; return where it is."""
     target, own = folder / names.RUBRIC, rubric.path.resolve()
     files = [file for file in files_of(str(rubric.path)) if file.name != rubric.answers and file.exists()]
     near = [file.resolve() for file in files if not Path(rubric.reference).is_absolute() or file == rubric.path]

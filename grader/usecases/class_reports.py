@@ -5,14 +5,14 @@ from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 from pathlib import Path
 
-from grader.checks.outcome import Outcome, Status
+from grader.checks.outcome import Outcome
 from grader.classroom import folder as names
 from grader.classroom.grades import Class, StudentGrade
 from grader.classroom.reopening import reopened
 from grader.classroom.results import Graded
 from grader.classroom.run.pool import Processes, WorkerError, processors
 from grader.classroom.run.progress import Progress
-from grader.classroom.run.queue import results_of
+from grader.classroom.run.queue import Queue
 from grader.classroom.run.worker import undecided_report
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
 from grader.grading.grade import grade as grade_submission
@@ -78,10 +78,11 @@ def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True, feedb
 
 def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
     """Return the report on a submission as it was graded, with its details if it is still there."""
-    if graded.verdict != "graded":
-        status: Status = "errored" if graded.verdict == "errored" else "pending"
-        return undecided_report(book.rubric, graded.student, graded.reason, status, graded.parts)
+    if graded.verdict == "errored":
+        return graded.report(book.rubric)
     submission = reopened(book, graded)
+    if submission is None and graded.verdict == "unreadable":
+        return undecided_report(book.rubric, graded.student, graded.reason, "pending", graded.parts)
     if submission is None:
         return graded.report(book.rubric)._replace(notes=(_MOVED,))
     report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
@@ -186,7 +187,8 @@ def _render_all(
     with terminal.show_class("writing reports") as show:
         show(progress := Progress(len(files)))
         tasks = (_Task(key, name) for key, name in files.items())
-        for results in results_of(executor, workers, partial(_write_some, run), tasks, again, give_up, _TASK_SIZE):
+        queue = Queue(executor, workers, partial(_write_some, run), again, give_up, _TASK_SIZE)
+        for results in queue.results(tasks):
             lost |= {key: why for key, why in results if why}
             show(progress := replace(progress, graded=progress.graded + len(results)))
     return {key: lost[key] for key in files if key in lost}

@@ -136,9 +136,8 @@ def write_grades(book: Class) -> None:
 def warn_of_due(due: str | None, inputs: ClassInputs, warn: Warn) -> None:
     """Say that `--due` changes no grade if the rubric has no late penalty."""
     if due and inputs.rubric.late is None:
-        warn(
-            f"--due has no effect on grades, because the rubric {inputs.rubric.id} has no [late]: only the days late are shown"
-        )
+        name = inputs.rubric.id
+        warn(f"--due has no effect on grades, because the rubric {name} has no [late]: only the days late are shown")
 
 
 def _reference(folder: Path) -> str:
@@ -156,7 +155,7 @@ def _check_same_class(folder: Path, results: Results, intake: Intake) -> None:
         raise InputError(
             f"{printable_path(folder)} is the gradebook of another class, or a section is missing: "
             f"{counted(len(missing), 'student')} of {len(recorded)} have no submission now "
-            f"({printable(enumerated(missing, _MAX_NAMED))}); name the paths of all sections, or another folder with --gradebook"
+            f"({printable(enumerated(missing, _MAX_NAMED))}); name the paths of all sections, or another --gradebook"
         )
 
 

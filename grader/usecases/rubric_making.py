@@ -16,7 +16,7 @@ from grader.checks.measures.fact import Omission, Solution
 from grader.checks.tree import urdf_loads
 from grader.classroom.run.pool import Processes, processors
 from grader.classroom.run.progress import Progress
-from grader.classroom.run.queue import results_of
+from grader.classroom.run.queue import Queue
 from grader.errors import GraderError, InputError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.rubric import Rubric
@@ -181,8 +181,8 @@ def _workers(rubric: Rubric) -> Iterator[GradeAll]:
         work = partial(mutant_outcomes, rubric.data, str(rubric.path))
 
         def grade_all(mutants: Iterable[Mutant]) -> Iterator[MutantOutcome]:
-            found = results_of(executor, processors(), work, mutants, lambda *_: None, _refuse_lost)
-            return chain.from_iterable(found)
+            queue = Queue(executor, processors(), work, lambda *_: None, _refuse_lost)
+            return chain.from_iterable(queue.results(mutants))
 
         yield grade_all
 

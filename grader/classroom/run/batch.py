@@ -7,7 +7,7 @@ from functools import partial
 from grader.classroom.results import Graded, Results, ResultsWriter
 from grader.classroom.run.pool import WorkerError
 from grader.classroom.run.progress import Progress
-from grader.classroom.run.queue import results_of
+from grader.classroom.run.queue import Queue
 from grader.classroom.run.worker import ClassContext, Task, grade_all, undecided
 from grader.classroom.submissions import ClassSubmission
 
@@ -38,7 +38,8 @@ class Batch:
         self.progress = Progress(len(submissions))
         show(self.progress)  # before the first result
         tasks = (self._task(one, force=force) for one in submissions)
-        for results in results_of(executor, workers, partial(grade_all, self._shared), tasks, _again, self._lost):
+        queue = Queue(executor, workers, partial(grade_all, self._shared), _again, self._lost)
+        for results in queue.results(tasks):
             self._writer.append(*map(self._line, results))
             for result in results:
                 self.progress = self.progress.with_result(result.verdict)

@@ -85,7 +85,7 @@ class Cluster(Executor):
             if version != __version__:
                 raise InputError(f"the worker {worker} has grader {version}, and this is {__version__}")
             if hidden:
-                raise InputError(f"the worker {worker} does not see {printable_path(hidden)}: share that folder with it")
+                raise InputError(f"the worker {worker} does not see {printable_path(Path(hidden))}: share that folder")
         return sum(threads.values())
 
     async def _pass_on(self, task: Any, outer: "Future[Any]") -> None:

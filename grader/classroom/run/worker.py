@@ -28,7 +28,8 @@ _MAX_NAMED = 10  # students in a message
 class ClassContext(NamedTuple):
     """What all tasks of a run share: the class folders or zips, the rubric's file, the limits and arguments.
 
-    `max_size` are the bytes of a URDF, `parts` the ids of those to grade, all without any; `arguments` are those of xacro.
+    `max_size` are the bytes of a URDF, `parts` the ids of those to grade, all without any; `arguments` are those of
+    xacro.
     """
 
     roots: tuple[str, ...]
@@ -72,9 +73,9 @@ def _grade_one(context: ClassContext, task: Task) -> Graded:
         report = grade(rubric, submission, context.parts, is_one_of_class=True)
     except InputError as error:
         result = result._replace(digest=result.digest or digest_of(str(error)))
-        if result.digest == task.graded:
-            return result
-        return undecided(context, result._replace(verdict="unreadable", reason=str(error)))
+        if result.digest != task.graded:
+            result = undecided(context, result._replace(verdict="unreadable", reason=str(error)))
+        return result
     except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of the grader affects only this submission
         if isinstance(error, MemoryError) and not task.no_documents:
             return _grade_one(context, task._replace(no_documents=NO_MEMORY))
