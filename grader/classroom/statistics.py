@@ -29,7 +29,7 @@ class Summary(NamedTuple):
 
 
 class CriterionFigures(NamedTuple):
-    """The students by each of COUNTS, and the mean share of the points that they earned; None if all are open."""
+    """The students by each of COUNTS, and the mean share of the points that they earned; None if open or adjusted."""
 
     criterion: Criterion
     counts: Counter[str]
@@ -156,6 +156,6 @@ def _of(result: Result) -> list[str]:
 
 def _share(row: Criterion, found: Counter[str], earned: Decimal) -> float | None:
     decided = found["decided"]
-    if not decided:
+    if not decided or row.adjustment is not None:
         return None
     return float(earned / row.points / decided) if row.points else found["passed"] / decided
