@@ -19,7 +19,7 @@ TOP = """\
 `files/` is what Canvas gives with *Download Submissions*, and `roster.csv` has the names. From the folder of the checkout:
 
 ```sh
-grader batch submissions/class/files --roster submissions/class/roster.csv --due 2026-11-20T23:59+01:00 --gradebook class.db
+grader batch submissions/class/files --roster submissions/class/roster.csv --due 2026-11-20T23:59+01:00
 ```
 
 [Grade a class](../../docs/grade-a-class.md) says what follows. All names are invented; all files here are written from

@@ -28,23 +28,6 @@ LAYERS = (
     ("cli", "api"),
     ("__main__",),
 )
-# The layers inside a package that is large enough to have its own.
-INNER = {
-    "classroom": (
-        ("students", "listing", "opening"),
-        ("matching", "tables"),
-        ("typed_names", "roster"),
-        ("people",),
-        ("layouts",),
-        ("course_layouts",),
-        ("detection",),
-        ("owners",),
-        ("submissions",),
-        ("intake", "lms"),
-        ("gradebook",),
-        ("run", "review"),
-    ),
-}
 # The packages that may import a library: each has one concern.
 LIBRARIES = {
     "typer": {"cli"},
@@ -57,8 +40,7 @@ LIBRARIES = {
     "docx": {"documents"},
     "pypdf": {"documents"},
     "numpy": {"robot"},
-    "tomllib": {"grading", "bundle", "package"},
-    "sqlite3": {"classroom"},
+    "tomllib": {"grading", "bundle", "package", "classroom"},
     "pebble": {"classroom"},
     "distributed": {"classroom"},
     "csv": {"classroom"},
@@ -102,10 +84,7 @@ def points_down(module: str, imported: str) -> bool:
         return not first or first[0] in LIBRARIES.get(top, {first[0]})
     if not second or second[0] != first[0]:
         return not second or height(LAYERS, second[0]) < height(LAYERS, first[0])
-    if first[0] not in INNER or len(first) == 1 or second[1] == first[1]:
-        return True
-    inner = INNER[first[0]]
-    return height(inner, second[1]) < height(inner, first[1])
+    return True
 
 
 def test_imports_point_down() -> None:

@@ -180,7 +180,7 @@ def test_a_class(installed: Path, lab: Path) -> None:
     answers = ROOT / "rubrics/lab6/answers.toml"
     for name in ("ash", "birch"):
         shutil.copytree(ROOT / "submissions/lab6/reference", lab / "class" / name)
-    book = ("--gradebook", "lab6.db")
+    book = ("--gradebook", "lab6")
     done = do((installed, "batch", "class", *book, "--answers", answers), lab)
     assert done.returncode == 0, done.stderr
     assert do((installed, "mark", "ash", "answer-floating-link", "4", *book), lab).returncode == 0

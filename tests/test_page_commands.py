@@ -23,7 +23,7 @@ OTHER_FILES = {  # what only these pages presume, and what it is
 }
 ELSEWHERE = {  # beginnings of command lines that are run by another test, or not by any
     "grader batch submissions/class/files": "test_submissions.py",
-    "grader batch submissions --gradebook lab6.db --roster canvas.csv": "classroom/test_walkthrough.py",
+    "grader batch submissions --roster canvas.csv": "classroom/test_walkthrough.py",
     'grader mark "Anik Tagrigri"': "classroom/test_walkthrough.py",
     "grader mark namargri000100": "classroom/test_walkthrough.py",
     "grader mark 100099": "classroom/test_walkthrough.py",
@@ -68,10 +68,10 @@ def presumed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     shutil.make_archive(str(folder / "submissions"), "zip", folder / "submissions")
     for _ in range(2):  # `diff` compares two runs
         done = run_with_input(
-            ("batch", "submissions", "--gradebook", "lab6.db", "--roster", "roster.csv", "--force"), b"", folder=folder
+            ("batch", "submissions", "--roster", "roster.csv", "--force"), b"", folder=folder
         )
         assert done.returncode == 0, done.stderr
-    shutil.copy(folder / "lab6.db", folder / "lab6-lee.db")
+    shutil.copytree(folder / "lab6-grades", folder / "lab6-monday")
     return folder
 
 

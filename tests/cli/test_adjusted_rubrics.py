@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from tests.classroom.gradebooks import batch, grader, lab_text, urdf, write_submission
+from tests.report.class_pages import ClassPageReader
 
 
 def adjusted(text: str, name: str, action: str) -> str:
@@ -33,7 +34,7 @@ def result(data: Any, name: str) -> Any:
 
 def students(top: Path) -> dict[str, Any]:
     """Return the current grades by student."""
-    done = grader("export", "json", "--gradebook", top / "book")
+    done = grader("stats", "--gradebook", top / "book", "--format", "json")
     return {student["id"]: student for student in json.loads(done.stdout)["students"]}
 
 
@@ -100,9 +101,11 @@ def test_a_part_that_was_not_submitted_stays_not_graded(top: Path) -> None:
 
 
 def test_review_does_not_ask(top: Path) -> None:
-    """An adjusted question is not in the queue."""
+    """An adjusted question is no item."""
     batch(top, rubric=rubric(top, adjusted(adjusted(lab_text(), "essay", "drop"), "picture", "full")))
-    assert grader("review", "--gradebook", top / "book").stdout == "nothing needs manual grading\n"
+    sheet = top / "sheet.csv"
+    assert grader("review", "--gradebook", top / "book", "--sheet", sheet).returncode == 0
+    assert "essay" not in sheet.read_text() and "picture" not in sheet.read_text()
 
 
 def test_statistics(top: Path) -> None:
@@ -110,17 +113,29 @@ def test_statistics(top: Path) -> None:
     text = with_bonus(adjusted(adjusted(lab_text(), "essay", "full"), "picture", "drop"), "box")
     text = text.replace('requires = ["box"]', "")
     batch(top, rubric=rubric(top, text))
-    data = json.loads(grader("stats", "--gradebook", top / "book", "--format", "json").stdout)
-    assert data["max_score"] == 7.5
-    found = data["statistics"]
-    assert (found["grades"]["highest"], found["grades"]["lowest"]) == (10, 7)
-    assert found["tenths"] == [0, 0, 0, 0, 0, 0, 0, 0, 0, 3]
-    shares = {row["id"]: row["share"] for row in found["criteria"]}
-    assert (shares["essay"], shares["picture"]) == (None, None)
+    data = json.loads(grader("stats", "--gradebook", top / "book", "--format", "json").stdout)["statistics"]
+    assert (data["grades"]["highest"], data["grades"]["lowest"]) == (10, 7)
+    assert data["tenths"] == [0, 0, 0, 0, 0, 0, 0, 0, 0, 3]
+    rows = {row["id"]: row for row in data["criteria"]}
     shown = grader("stats", "--gradebook", top / "book").stdout
-    assert "box (bonus)" in shown
     assert "box: 'base' shows" not in shown  # extra credit that was not earned is no common mistake
     assert "tall: the bottom of 'base'" in shown
+
+
+def test_final_marks_and_excuses_are_counted_in_words(top: Path) -> None:
+    """How many students have one, also without a submission."""
+    for key, points in (("anna", "excused"), ("dora", 0), ("emil", 10)):
+        assert grader("mark", key, "total", points, "--gradebook", top / "book").returncode == 0
+    data = json.loads(grader("stats", "--gradebook", top / "book", "--format", "json").stdout)["statistics"]
+    assert (data["counts"], data["grades"]["students"]) == ({"excused": 1, "graded": 2, "missing": 1, "unreadable": 1}, 3)
+    assert sum(data["tenths"]) == 3
+    assert grader("export", "html", "--gradebook", top / "book", "--output", top / "pages").returncode == 0
+    page = ClassPageReader(top / "pages" / "index.html")
+    assert [row["grade"] for row in page.table("students")] == ["excused", "6", "10", "0", "0"]
+    assert [row["status"] for row in page.table("students") if "final" in row["status"]] == [
+        "graded; final mark instead of 3 points",
+        "without a submission; final mark",
+    ]
 
 
 # --- Late penalties, rubrics, bundles --------------------------------------------------------------------------------------

@@ -40,20 +40,20 @@ def test_no_report_of_grade_or_batch_contains_one(graded_class: Path, tmp_path: 
     assert done.returncode == 0, done.stderr
     formats = [file_format for file_format in Format if file_format.needs != "identity"]
     expected = [part for kind in formats for part in ("--report-format", kind)]
-    graded = batch(top, "--reports", out / "reports", *expected, "--csv", out / "csv")
+    graded = batch(top, "--reports", out / "reports", *expected)
     assert graded.returncode == 0, graded.stderr
     output = [done.stdout, done.stderr, graded.stdout, graded.stderr]
     for arguments in (
         ("explain", "essay", "--rubric", rubric),
         ("rubric", "show", rubric),
-        ("export", "json", "--gradebook", top / "book.db"),
-        ("export", "csv", "--gradebook", top / "book.db"),
-        ("stats", "--gradebook", top / "book.db", "--format", "json"),
+        ("stats", "--gradebook", top / "book"),
+        ("export", "csv", "--gradebook", top / "book"),
+        ("stats", "--gradebook", top / "book", "--format", "json"),
     ):
         shown = grader(*arguments)
         assert shown.returncode == 0, shown.stderr
         output.append(shown.stdout + shown.stderr)
-    files = [path.read_text(encoding="utf-8") for path in out.rglob("*") if path.is_file()]
+    files = [path.read_text(encoding="utf-8") for path in (*out.rglob("*"), *(top / "book").glob("*.*")) if path.is_file()]
     assert len(files) > 2 * len(Format)
     assert any("The roots of " in text for text in files)  # what the student has answered
     assert all("of the roots" not in text for text in (*files, *output))

@@ -53,7 +53,7 @@ def test_a_record_keeps_evidence(tmp_path: Path) -> None:
     """A class report names the same evidence as `grade`."""
     (tmp_path / "class/Ash").mkdir(parents=True)
     (tmp_path / "class/Ash/report.docx").write_bytes(docx("Task 1: Step 8", PICTURE))
-    reports = ("--gradebook", tmp_path / "lab.db", "--reports", tmp_path / "reports", "--report-format", "json")
+    reports = ("--gradebook", tmp_path / "lab", "--reports", tmp_path / "reports", "--report-format", "json")
     assert grader("batch", tmp_path / "class", *reports).returncode == 0
     report, same = (
         json.loads(text)

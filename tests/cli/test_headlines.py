@@ -56,19 +56,19 @@ def assert_headlines(found: Mapping[Format, str], expected: str, how: str, score
 def test_a_final_mark_is_the_headline(top: Path) -> None:
     """In all formats; a grade without a person and without a penalty is the score, without another key."""
     assert_headlines(reports(top, "anna"), "6 / 11", "", 6, None)
-    assert grader("mark", "anna", "total", "3.5", "--gradebook", top / "book.db").returncode == 0
+    assert grader("mark", "anna", "total", "3.5", "--gradebook", top / "book").returncode == 0
     expected = {"points": 3.5, "late": 0, "final": True}
     found = reports(top, "anna")
     assert_headlines(found, "3.5 / 11", "Final mark, instead of 6 automatic points.", 6, expected)
     assert "5 points need manual grading" not in found[Format.MARKDOWN]
-    assert grader("mark", "dora", "total", "2", "--gradebook", top / "book.db").returncode == 0
+    assert grader("mark", "dora", "total", "2", "--gradebook", top / "book").returncode == 0
     expected = {"points": 2, "late": 0, "final": True}
     assert_headlines(reports(top, "dora"), "2 / 11", "Final mark, instead of 0 automatic points.", 0, expected)
 
 
 def test_manual_marks_are_in_the_headline(top: Path) -> None:
     """Manual marks count in the headline, and the line below it separates them from the automatic points."""
-    assert grader("mark", "anna", "essay", "3", "--gradebook", top / "book.db").returncode == 0
+    assert grader("mark", "anna", "essay", "3", "--gradebook", top / "book").returncode == 0
     expected = {"points": 9, "late": 0, "final": False}
     found = reports(top, "anna")
     assert_headlines(found, "9 / 11", "Points: 6 automatic + 3 manual.", 9, expected)
@@ -96,7 +96,7 @@ def test_the_late_penalty_is_in_the_headline(top: Path) -> None:
 
 def test_an_excused_student_has_no_points_in_the_headline(top: Path) -> None:
     """The headline of an excused student has no points, whatever the criteria give."""
-    assert grader("mark", "anna", "total", "--excused", "--gradebook", top / "book.db").returncode == 0
+    assert grader("mark", "anna", "total", "excused", "--gradebook", top / "book").returncode == 0
     expected = {"points": None, "late": 0, "final": False}
     assert_headlines(reports(top, "anna"), "Excused", "Excused; the criteria give 6 automatic points.", 6, expected)
 
@@ -104,20 +104,20 @@ def test_an_excused_student_has_no_points_in_the_headline(top: Path) -> None:
 @pytest.mark.parametrize("kind", [Format.MARKDOWN, Format.HTML])
 def test_feedback_and_pages_have_the_same_headline(top: Path, kind: Format) -> None:
     """The zip for an LMS, and the student's page of `export html`."""
-    assert grader("mark", "anna", "total", "3.5", "--gradebook", top / "book.db").returncode == 0
+    assert grader("mark", "anna", "total", "3.5", "--gradebook", top / "book").returncode == 0
     worksheet = top / "sheet.csv"
     worksheet.write_text(
         "Identifier,Full name,Email address,Status,Grade,Maximum Grade\nParticipant 7,Anna Ek,anna@example.org,,,11\n"
     )
     done = grader(
-        "export", "moodle", "--gradebook", top / "book.db", "--into", worksheet, "--output", top / "up.csv",
+        "export", "moodle", "--gradebook", top / "book", "--into", worksheet, "--output", top / "up.csv",
         "--feedback", top / "feedback.zip", "--feedback-format", kind,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     with zipfile.ZipFile(top / "feedback.zip") as archive:
         (text,) = (archive.read(name).decode() for name in archive.namelist())
     assert headline(kind, " ".join(text.split())) == "3.5 / 11"
-    assert grader("export", "html", "--gradebook", top / "book.db", "--output", top / "pages").returncode == 0
+    assert grader("export", "html", "--gradebook", top / "book", "--output", top / "pages").returncode == 0
     page = " ".join((top / "pages" / "anna.html").read_text("utf-8").split())
     assert headline(Format.HTML, page) == "3.5 / 11"
 
@@ -133,7 +133,7 @@ def test_points_that_need_manual_grading_are_a_dash(top: Path) -> None:
     worksheet = "Identifier,Full name,Email address,Grade,Maximum Grade,Feedback comments\nParticipant 7,Anna Ek,anna@example.org,,11,\n"
     (top / "sheet.csv").write_text(worksheet)
     done = grader(
-        "export", "moodle", "--gradebook", top / "book.db", "--into", top / "sheet.csv", "--output", top / "up.csv", "--pending-as-zero",
+        "export", "moodle", "--gradebook", top / "book", "--into", top / "sheet.csv", "--output", top / "up.csv", "--pending-as-zero",
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert "<li>About essay: – of 4." in (top / "up.csv").read_text("utf-8")

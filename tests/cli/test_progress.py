@@ -52,7 +52,7 @@ def test_the_total_is_known_from_the_start(tmp_path: Path) -> None:
         "--rubric",
         tmp_path / "small.toml",
         "--gradebook",
-        tmp_path / "book.db",
+        tmp_path / "book",
         "--reports",
         tmp_path / "reports",
     )

@@ -45,7 +45,7 @@ def test_reports_of_a_class_show_the_pictures_beside_them(tmp_path: Path) -> Non
         (tmp_path / "class" / name).mkdir(parents=True)
         (tmp_path / "class" / name / "my_robot.urdf").write_bytes(BURIED.read_bytes())
     formats = ("--report-format", "markdown", "--report-format", "svg", "--reports", tmp_path / "reports")
-    run(("batch", tmp_path / "class", "--gradebook", tmp_path / "book.db", *formats))
+    run(("batch", tmp_path / "class", "--gradebook", tmp_path / "book", *formats))
     found = sorted((tmp_path / "reports").glob("*.md"))
     assert [file.parent / unquote(image(file)) for file in found] == [file.with_suffix(".svg") for file in found]
     assert len(found) == 2

@@ -42,10 +42,10 @@ def lab(tmp_path: Path) -> Path:
 
 def test_a_class(lab: Path) -> None:
     """Workers compare with the reference, too."""
-    rubric, book = ("--rubric", lab / "arm.toml"), ("--gradebook", lab / "book.db")
-    done = run(("batch", lab / "class", *rubric, *book, "--jobs", "2", "--csv", lab / "grades.csv"))
+    rubric, book = ("--rubric", lab / "arm.toml"), ("--gradebook", lab / "book")
+    done = run(("batch", lab / "class", *rubric, *book, "--jobs", "2"))
     assert done.returncode == 0, done
-    with (lab / "grades.csv").open(encoding="utf-8", newline="") as file:
+    with (lab / "book/grades.csv").open(encoding="utf-8", newline="") as file:
         assert {row["id"]: row["moves"] for row in DictReader(file)} == {"ash": "4", "birch": "0"}
 
 

@@ -177,12 +177,10 @@ def test_a_class_is_graded_with_its_reference(tmp_path: Path) -> None:
         "--rubric",
         rubric_of("industrial").path,
         "--gradebook",
-        tmp_path / "marks.db",
-        "--csv",
-        tmp_path / "marks.csv",
+        tmp_path / "marks",
     ]
     done = run(["batch", tmp_path / "class", *words, "--jobs", "2"])
     assert done.returncode == 0, done.stderr.decode()
-    with (tmp_path / "marks.csv").open(newline="") as file:
+    with (tmp_path / "marks/grades.csv").open(newline="") as file:
         marks = {row["id"]: float(row["score"]) for row in csv.DictReader(file)}
     assert marks == expected

@@ -54,7 +54,7 @@ def test_a_class_has_the_page_of_a_robot_with_a_loop(tmp_path: Path) -> None:
     folder = tmp_path / "class/Ada Lee_7_assignsubmission_file"
     folder.mkdir(parents=True)
     (folder / "r.urdf").write_text(robot(dict.fromkeys(("base_link", "lidar", "w"), True), LOOP))
-    gradebook = ("--gradebook", tmp_path / "g.db")
+    gradebook = ("--gradebook", tmp_path / "g")
     done = run(["batch", folder.parent, *gradebook, "--reports", tmp_path / "reports", "--report-format", "html"])
     assert (done.returncode, len([*(tmp_path / "reports").glob("*7*.html")])) == (0, 1), done.stderr
     done = run(["export", "html", *gradebook, "--output", tmp_path / "pages"])
