@@ -10,8 +10,8 @@ from grader.classroom.results import Graded, digest_of
 from grader.classroom.roster import Student, plain
 from grader.grading.criterion import TOTAL, Criterion
 
-UNMARKED, _OLDER = "unmarked", "older"
-STATES = {UNMARKED: "unmarked", "marked": "marked", _OLDER: "marked before the submission changed", "": "all"}
+UNMARKED, OLDER = "unmarked", "older"
+STATES = {UNMARKED: "unmarked", "marked": "marked", OLDER: "marked before the submission changed", "": "all"}
 
 
 class Member(NamedTuple):
@@ -27,12 +27,7 @@ class Member(NamedTuple):
         """One of STATES."""
         if self.mark is None or self.mark.points is None:
             return UNMARKED
-        return "marked" if self.mark.submission in ("", self.graded.digest) else _OLDER
-
-    @property
-    def is_older(self) -> bool:
-        """Whether the mark is for an earlier submission."""
-        return self.state == _OLDER
+        return "marked" if self.mark.submission in ("", self.graded.digest) else OLDER
 
     @property
     def order(self) -> tuple[int, str]:

@@ -12,6 +12,7 @@ from grader.classroom.grades import Class, Reason, StudentGrade
 from grader.grading.criterion import Criterion
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
+from grader.text import format_points
 
 COUNTS = ("passed", "failed", "skipped", "pending", "errored", "carried", "marked")
 _TENTHS, _MAX_MISTAKES = 10, 20
@@ -28,7 +29,7 @@ class Summary(NamedTuple):
 
 
 class CriterionFigures(NamedTuple):
-    """The students by each of COUNTS, and the mean share of the points that they earned; None if all are open."""
+    """The students by each of COUNTS, and the mean share of the points that they earned; None if open or adjusted."""
 
     criterion: Criterion
     counts: Counter[str]
@@ -72,6 +73,12 @@ def counts(grade: StudentGrade) -> bool:
     is_graded = grade.graded is not None and grade.graded.verdict == "graded"
     is_in = (is_graded and not (grade.is_gone or grade.is_excused)) or grade.published is not None
     return is_in and grade.student.is_on_roster
+
+
+def total_text(grade: StudentGrade) -> str:
+    """Return the grade, empty where there is none or nothing could be graded."""
+    is_ungraded = grade.graded is not None and grade.graded.verdict != "graded" and not grade.total
+    return "" if grade.total is None or (is_ungraded and grade.why_open) else format_points(grade.total)
 
 
 def losses(grade: StudentGrade) -> list[tuple[Decimal, str]]:
@@ -149,6 +156,6 @@ def _of(result: Result) -> list[str]:
 
 def _share(row: Criterion, found: Counter[str], earned: Decimal) -> float | None:
     decided = found["decided"]
-    if not decided:
+    if not decided or row.adjustment is not None:
         return None
     return float(earned / row.points / decided) if row.points else found["passed"] / decided

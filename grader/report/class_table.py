@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from grader.classroom.grades import Reason, StudentGrade
-from grader.classroom.statistics import counts, losses
+from grader.classroom.statistics import counts, losses, total_text
 from grader.grading.rubric import Rubric
 from grader.report.class_summary import attention_line, means
 from grader.report.console import wrapped
@@ -35,9 +35,7 @@ class ClassTable:
         self.count += 1
         name = grade.student.name or grade.student.key
         if self.verbose or len(self.rows) < _MAX_ROWS:
-            is_ungraded = grade.graded is not None and grade.graded.verdict != "graded" and not grade.total
-            total = "–" if grade.total is None or (is_ungraded and grade.why_open) else format_points(grade.total)
-            self.rows.append((name, total, _costs(grade), _open(grade)))
+            self.rows.append((name, total_text(grade) or "–", _costs(grade), _open(grade)))
         if grade.total is not None and counts(grade):
             self._totals.append(float(grade.total))
         for reason, detail in grade.concerns:

@@ -1,7 +1,6 @@
 """Read the class's page back: its figures, its lists, its table of students."""
 
 import json
-from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +13,7 @@ class ClassPageReader:
     def __init__(self, file: Path) -> None:
         self.root: Any = read_page(file.read_text(encoding="utf-8"))
         (data,) = self.root.xpath("//script[@id='data']")
-        groups = json.loads(data.text)["groups"]
-        self.groups = {name: (label, word, [*accumulate(steps)]) for name, (label, word, steps) in groups.items()}
+        self.groups = json.loads(data.text)["groups"]
 
     def texts(self, path: str) -> list[str]:
         """Return the text of the elements at an XPath, without line breaks."""

@@ -3,19 +3,19 @@
 import unicodedata
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 from grader import __version__
 from grader.classroom.grade_table import status_of
 from grader.classroom.grades import Class, StudentGrade
-from grader.classroom.statistics import ClassStatistics, losses
+from grader.classroom.statistics import ClassStatistics, losses, total_text
 from grader.report import class_summary as words
 from grader.report.pages.shell import Assets, render_page
 from grader.text import counted, enumerated, format_points, printable
 
 _MAX_ATTENTION = 100  # students for one reason
 _MAX_LOST = 2  # criteria in a row
+_LETTERS = str.maketrans({"ł": "l", "ø": "o", "đ": "d", "æ": "ae", "œ": "oe", "ı": "i"})  # have no accents
 
 
 class Row(NamedTuple):
@@ -46,7 +46,10 @@ def render_class_page(
     """Return the class's page; `links` are the addresses of students' pages by key, relative to this page."""
     rows = sorted((_row(grade, links) for grade in grades), key=_by_family_name)
     groups = {name: group for name, group in _groups(grades, found).items() if group.keys}
-    most = max(map(len, found.tenths))
+    most, numbers = max(map(len, found.tenths)), {row.key: number for number, row in enumerate(rows)}
+    shown = {
+        name: [printable(label), word, [numbers[key] for key in keys]] for name, (label, keys, word) in groups.items()
+    }
     values = {
         "version": __version__,
         "title": found.rubric.title,
@@ -69,7 +72,7 @@ def render_class_page(
         "columns": _columns(rows, found),
         "groups": groups,
     }
-    return render_page("class.html", values, {"groups": _numbers(rows, groups)}, Assets("class.css", "class.js"))
+    return render_page("class.html", values, {"groups": shown}, Assets("class.css", "class.js"))
 
 
 def _row(grade: StudentGrade, links: Mapping[str, str]) -> Row:
@@ -81,7 +84,7 @@ def _row(grade: StudentGrade, links: Mapping[str, str]) -> Row:
         links.get(student.key, ""),
         student.section,
         status_of(grade) + ", final mark" * (grade.final_points is not None),
-        "" if grade.total is None else format_points(grade.total),
+        total_text(grade),
         format_points(grade.pending) if grade.pending else "",
         f"{counted(late.days, 'day')}{penalty}" if late.days and not grade.has_final else "",
         enumerated(lost, _MAX_LOST) if lost else "",
@@ -96,7 +99,7 @@ def _by_family_name(row: Row) -> tuple[str, str, str]:
 
 def _letters(name: str) -> str:
     """Return a name without accents, so that Öz is not after Zed."""
-    apart = unicodedata.normalize("NFKD", name.casefold())
+    apart = unicodedata.normalize("NFKD", name.casefold().translate(_LETTERS))
     return "".join(letter for letter in apart if not unicodedata.combining(letter))
 
 
@@ -140,18 +143,6 @@ def _groups(grades: Sequence[StudentGrade], found: ClassStatistics) -> dict[str,
     }
     same = {f"same-{at}": Group("equal work", work.students) for at, work in enumerate(found.equal)}
     return {**filters, **tenths, **criteria, **mistakes, **same}
-
-
-def _numbers(rows: Sequence[Row], groups: Mapping[str, Group]) -> dict[str, Any]:
-    """Return for each group its label, its search word, and the numbers of its rows.
-
-    Of each number but the first, it is the difference to the one before: a large class has many of them.
-    """
-    numbers, found = {row.key: number for number, row in enumerate(rows)}, {}
-    for name, (label, keys, word) in groups.items():
-        shown = sorted(numbers[key] for key in keys if key in numbers)
-        found[name] = [printable(label), word, [after - before for before, after in pairwise((0, *shown))]]
-    return found
 
 
 def _criteria(found: ClassStatistics) -> list[dict[str, Any]]:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from grader import __version__
 from grader.classroom.lateness import time_text
 from grader.classroom.marks import Mark
-from grader.classroom.review_items import UNMARKED, Member, ReviewItem
+from grader.classroom.review_items import OLDER, UNMARKED, Member, ReviewItem
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.grading.criterion import Criterion
 from grader.grading.pictures import evidence_files
@@ -64,7 +64,9 @@ def item_page(item: ReviewItem, opened: OpenedItem, criterion: Criterion, place:
         "places": opened.paths,
         "pictures": [(f"{place.address}/picture/{at}", one) for at, one in shown if isinstance(one, EmbeddedPicture)],
         "not_shown": [one for _, one in shown if isinstance(one, NotShown)],
-        "marked": mark_text(mark) + ", before the submission changed" * item.first.is_older if mark is not None else "",
+        "marked": mark_text(mark) + ", before the submission changed" * (item.first.state == OLDER)
+        if mark is not None
+        else "",
         "buttons": _buttons(criterion),
         "choices": [f"{text} ({format_points(points)})" for text, points in criterion.choices.items()],
     }

@@ -2,10 +2,6 @@
 // The table of students: sort, search, filter by group. The state is in the address, so that "back" restores it.
 (() => {
   const { groups } = JSON.parse(document.getElementById("data").textContent);
-  for (const group of Object.values(groups)) {
-    let row = 0;
-    group[2] = group[2].map((more) => (row += more));
-  }
   const place = document.getElementById("class");
   if (!place) return;
   const find = document.getElementById("find"), shown = document.getElementById("shown");
