@@ -17,6 +17,6 @@ def reopened(book: Class, graded: Graded) -> Submission | None:
         opened = open_class_submission(root, graded.paths, graded.names, graded.student, book.settings.max_size)
         if digest_of(opened.digest) != graded.digest:
             return None
-        return opened.submission(book.rubric, arguments=book.settings.arguments)
+        return opened.submission(book.rubric, graded.no_documents, book.settings.arguments)
     except InputError:
         return None

@@ -36,7 +36,8 @@ class Graded(NamedTuple):
     names of the files say of the student. `context` is the hash of all that a result depends on besides the
     submission. `work` are hashes of the robot and the package in several forms, for equal work; `answers` are the
     keys of what a person looks at for a criterion: students with the same answer have the same one, and it is empty
-    without an answer. Without a `digest` the submission could not be read at all.
+    without an answer. `no_documents` says why its documents were not read. Without a `digest` the submission could
+    not be read at all.
     """
 
     student: str
@@ -55,6 +56,7 @@ class Graded(NamedTuple):
     results: Mapping[str, Entry] = {}
     work: Mapping[str, Any] = {}
     answers: Mapping[str, str] = {}
+    no_documents: str = ""
 
     @property
     def line(self) -> bytes:
@@ -67,10 +69,11 @@ class Graded(NamedTuple):
     def report(self, rubric: Rubric) -> Report:
         """Return the points, under the rubric that it was graded by: outcomes without places, values and hints."""
         unread = self.reason if self.verdict == "unreadable" else ""
-        submission = GradedSubmission(self.student, path=self.paths[0] if self.paths else None, unread=unread)
+        submission = GradedSubmission(self.student, unread=unread)
+        why = f"{unread}; needs manual grading" if unread else self.reason
         rows = ((row, self.results.get(row.id)) for row in rubric.criteria)
         found = ((row, entry) for row, entry in rows if entry is not None)
-        results = (Result(row, Outcome(status, words), carried=by) for row, (_, status, words, by) in found)
+        results = (Result(row, Outcome(status, words or why), carried=by) for row, (_, status, words, by) in found)
         return Report(submission, rubric, self.parts, without_gifts(results, submission))
 
 

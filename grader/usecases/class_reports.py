@@ -13,7 +13,6 @@ from grader.classroom.results import Graded
 from grader.classroom.run.pool import Processes, WorkerError, processors
 from grader.classroom.run.progress import Progress
 from grader.classroom.run.queue import Queue
-from grader.classroom.run.worker import undecided_report
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
 from grader.grading.grade import grade as grade_submission
 from grader.grading.graded_submission import Grade, GradedSubmission
@@ -82,10 +81,8 @@ def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
     if graded.verdict == "errored":
         return graded.report(book.rubric)
     submission = reopened(book, graded)
-    if submission is None and graded.verdict == "unreadable":
-        return undecided_report(book.rubric, graded.student, graded.reason, "pending", graded.parts)
     if submission is None:
-        return graded.report(book.rubric)._replace(notes=(_MOVED,))
+        return graded.report(book.rubric)._replace(notes=(_MOVED,) * (graded.verdict == "graded"))
     report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
     if not has_hints or book.rubric.hints == "none" or not report.has_failures:
         return report

@@ -6,7 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.checks.outcome import Outcome, Status
+from grader.checks.outcome import Status
 from grader.classroom.equal_work import forms_of, hashes_of
 from grader.classroom.opening import open_class_submission
 from grader.classroom.results import Graded, answers_of, digest_of, entries_of
@@ -15,8 +15,6 @@ from grader.errors import InputError, MachineError
 from grader.files.names import ARCHIVES
 from grader.files.reading import URDF_LIMIT
 from grader.grading.grade import grade
-from grader.grading.graded_submission import GradedSubmission
-from grader.grading.report import Report, Result, without_gifts
 from grader.grading.rubric import Rubric, read_rubric
 from grader.submission.submission import Submission
 from grader.submission.urdf import Absent, Unreadable
@@ -61,7 +59,7 @@ def grade_all(context: ClassContext, tasks: Sequence[Task]) -> list[Graded]:
 
 def _grade_one(context: ClassContext, task: Task) -> Graded:
     rubric, root = rubric_from(context.rubric, context.rubric_path), context.roots[task.root]
-    result = Graded(task.key, 0, "unchanged")
+    result = Graded(task.key, 0, "unchanged", no_documents=task.no_documents)
     try:
         opened = open_class_submission(root, task.paths, task.names, task.key, context.max_size)
         result = result._replace(digest=digest_of(opened.digest))
@@ -97,17 +95,9 @@ def undecided(context: ClassContext, result: Graded) -> Graded:
     """Return the result of a submission that could not be graded: every criterion is undecided."""
     rubric = rubric_from(context.rubric, context.rubric_path)
     status: Status = "errored" if result.verdict == "errored" else "pending"
-    report = undecided_report(rubric, result.student, result.reason, status, context.parts)
-    return result._replace(parts=report.parts, results=entries_of(report))
-
-
-def undecided_report(rubric: Rubric, name: str, reason: str, status: Status, parts: tuple[str, ...]) -> Report:
-    """Return a report in which every criterion is undecided, and says why."""
-    message = reason if status == "errored" else f"{reason}; needs manual grading"
-    chosen = tuple(part.id for part in rubric.parts if not parts or part.id in parts)
-    submission = GradedSubmission(name, unread=reason if status == "pending" else "")
-    rows = (Result(row, Outcome(status, message)) for row in rubric.criteria if row.part in chosen)
-    return Report(submission, rubric, chosen, without_gifts(rows, submission))
+    parts = tuple(part.id for part in rubric.parts if not context.parts or part.id in context.parts)
+    results = {row.id: (None, status, "", "") for row in rubric.criteria if row.part in parts}
+    return result._replace(parts=parts, results=results)
 
 
 def reference_hashes(data: bytes, path: str) -> tuple[str, ...]:
