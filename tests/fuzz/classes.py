@@ -8,7 +8,6 @@ from decimal import Decimal
 from functools import cache, partial
 from itertools import combinations
 from pathlib import Path
-from typing import Any
 
 from grader.classroom.lms.fill import fill
 from grader.classroom.lms.forms import FORMS
