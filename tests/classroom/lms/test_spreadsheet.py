@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.tables import protected, spelt_out, unprotected, write_table
+from grader.classroom.tables import CellValue, protected, spelt_out, unprotected, write_table
 
 TRIGGERS = tuple("=+-@＝＋－＠")
 
@@ -35,7 +35,7 @@ def test_plain_text_stays(text: str) -> None:
 
 def test_numbers_stay_numbers() -> None:
     """Points, negative ones too, have no apostrophe and no exponent; None is an empty cell; controls are escaped."""
-    rows = [
+    rows: list[list[CellValue]] = [
         ["Ann", Decimal("58.5000")],
         ["Bob", Decimal(-5)],
         ["Cem", Decimal("1E+2")],
