@@ -43,10 +43,10 @@ def _row(grade: StudentGrade, criteria: Iterable[str], is_exported: bool) -> lis
         numbers = [report.score, report.max_score, grade.pending, grade.late.days, grade.late.points]
         results = {row.criterion.id: row.points for row in report.results if not _is_undecided(row)}
     points = {name: results.get(name) for name in criteria}
-    old = {
-        name: "" if value is None else format_points(value) for name, value in {**points, TOTAL: grade.total}.items()
-    }
-    exported = [exported_cell(old)] * is_exported
+    exported: list[CellValue] = []
+    if is_exported:
+        old = {**points, TOTAL: grade.total}
+        exported = [exported_cell({name: "" if one is None else format_points(one) for name, one in old.items()})]
     digest = grade.graded.digest if grade.graded is not None else None
     head: list[CellValue] = [student.key, student.name, student.email, student.section, status_of(grade)]
     return [*head, *numbers, grade.total, grade.why_open, *points.values(), *exported, digest]
