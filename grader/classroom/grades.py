@@ -158,7 +158,7 @@ class Class:
         """
         names.check_gradebook(folder)
         self.folder, self.settings = folder, read_settings(folder)
-        rubric = (folder / self.settings.rubric).absolute()  # whose folder is of no use to students
+        rubric = folder / self.settings.rubric
         self.rubric = load_rubric(rubric) if answers is None else load_with_answers(str(rubric), answers)
         self.roster = read_class_roster(folder)
         self.results = Results(folder / names.RESULTS, until)

@@ -59,6 +59,12 @@ class ClassInputs:
         return tuple(path.resolve() for path in self.settings.roots(self.folder))
 
     @property
+    def near_roots(self) -> tuple[Path, ...]:
+        """The same, relative to the current folder if they are in it."""
+        here = Path.cwd()
+        return tuple(root.relative_to(here) if root.is_relative_to(here) else root for root in self.roots)
+
+    @property
     def deadline(self) -> datetime | None:
         """The deadline of the class."""
         return read_time(self.settings.due) if self.settings.due else None

@@ -206,4 +206,4 @@ def _write_some(run: ReportRun, tasks: Sequence[_Task]) -> list[tuple[str, str]]
 @lru_cache(maxsize=1)
 def _class(run: ReportRun) -> Class:
     """Return the class of a run, in a worker."""
-    return Class(run.gradebook, answers=run.answers)
+    return Class(run.gradebook.absolute(), answers=run.answers)  # no report names a rubric by its place in a gradebook

@@ -63,7 +63,9 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
     if request.reports is not None:
         refuse_report_folder(request.reports, request.report_format, inputs.roots)
-    intake = read_class(inputs.roots, inputs.roster, settings.layout, settings.assignment, rubric.id, rubric.folders)
+    intake = read_class(
+        inputs.near_roots, inputs.roster, settings.layout, settings.assignment, rubric.id, rubric.folders
+    )
     _warn_of_intake(intake, terminal.warn)
     refuse_symlinks(folder, inputs.roots)
     names.make_gradebook(folder)
