@@ -154,7 +154,7 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
     keys = [one.student.key for one in book if one.graded is not None or one.has_final]
     files = file_names(keys)
     write_index(run.folder, files)
-    lost = render_reports(run._replace(time=book.run.time), files, terminal, jobs or processors(), timeout)
+    lost = render_reports(run._replace(time=book.run.time), files, terminal, jobs, timeout)
     if Format.HTML in run.formats:
         is_inside = run.folder == run.gradebook / names.REPORTS
         prefix = f"{names.REPORTS}/" * is_inside
@@ -167,10 +167,10 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
 
 
 def render_reports(
-    run: ReportRun, files: Mapping[str, str], terminal: Terminal, workers: int, timeout: float = _SECONDS
+    run: ReportRun, files: Mapping[str, str], terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS
 ) -> dict[str, str]:
     """Write the reports of students, by their file names; return who has none, and why. Raises as `write_reports`."""
-    lost = dict[str, str]()
+    lost, workers = dict[str, str](), jobs or processors()
 
     def again(task: _Task, _: WorkerError) -> _Task | None:
         return task._replace(has_hints=False) if task.has_hints else None

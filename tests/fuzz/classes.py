@@ -9,9 +9,8 @@ from functools import cache, partial
 from itertools import combinations
 from pathlib import Path
 
-from grader.classroom.lms.fill import fill
+from grader.classroom.lms.fill import FillOptions, fill
 from grader.classroom.lms.forms import FORMS
-from grader.classroom.lms.grade_file import FillOptions
 from grader.classroom.people import People
 from grader.classroom.roster import read_roster
 from grader.classroom.tables import Table, TableRow, _rows, read_table

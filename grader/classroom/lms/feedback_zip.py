@@ -24,19 +24,18 @@ _NOT_UTF8 = re.compile(r"[\ud800-\udfff]")  # no name that Canvas has given, and
 _ARCHIVES = (".zip", ".tar.gz", ".tgz")
 
 
-def moodle_names(students: Collection[Student], report: str, numbers: Mapping[str, str] | None = None) -> Names:
-    """Return the paths of files called `report`; the participant numbers are those of a worksheet, or the students'."""
-    why = "matches no row of the worksheet, or several"
-    if numbers is None:
-        numbers = {student.key: student.moodle for student in students}
-        why = "has no participant number: pass the grading worksheet with --into"
-    names, without, counts = dict[str, str](), dict[str, str](), Counter(numbers.values())
+def moodle_names(students: Collection[Student], report: str) -> Names:
+    """Return the paths of files called `report`, by the participant numbers of students."""
+    names, without, counts = dict[str, str](), dict[str, str](), Counter(student.moodle for student in students)
     for student in students:
-        number = numbers.get(student.key, "")
-        if number and counts[number] == 1:
-            names[student.key] = f"{_moodle_folder(student, number)}/{report}"
+        if student.moodle and counts[student.moodle] == 1:
+            names[student.key] = f"{_moodle_folder(student)}/{report}"
+        elif student.moodle:
+            without[student.key] = f"another student has participant number {student.moodle}, too"
         else:
-            without[student.key] = f"another student has participant number {number}, too" if number else why
+            without[student.key] = (
+                "has no participant number: pass the grading worksheet, with a row of it, with --into"
+            )
     return names, without
 
 
@@ -72,11 +71,11 @@ def write_feedback(reports: Mapping[str, bytes], names: Mapping[str, str], repor
     return zip_of(files), without
 
 
-def _moodle_folder(student: Student, number: str) -> str:
+def _moodle_folder(student: Student) -> str:
     """Return the folder of a student, with the letters, digits and spaces of the name: an underscore ends it."""
     letters = (letter if letter.isalnum() or letter in "-'" else " " for letter in student.name or student.key)
     words = "".join(letters).split()
-    return f"{' '.join(words)[:_MAX_NAME].strip() or 'Participant'}_{number}_assignfeedback_file_"
+    return f"{' '.join(words)[:_MAX_NAME].strip() or 'Participant'}_{student.moodle}_assignfeedback_file_"
 
 
 def _is_certain(file: str, users: Collection[str]) -> bool:
