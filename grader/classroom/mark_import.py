@@ -8,8 +8,8 @@ changed a cell: the column `exported` has what the cells were, and `submission` 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from grader.classroom.mark_files import COLUMNS, read_rows
-from grader.classroom.marks import Cells, Key, Mark, Marks, collect, mark_in, maxima
+from grader.classroom.mark_files import COLUMNS, WITHDRAWN, Cells, read_rows
+from grader.classroom.marks import Key, Mark, Marks, collect, mark_in, maxima
 from grader.classroom.typed_names import as_number, criterion_of, find_typed, known, number_in
 from grader.errors import InputError
 from grader.grading.criterion import DEADLINE, TOTAL
@@ -36,17 +36,15 @@ class MarkImport(NamedTuple):
         has_marks = "criterion" in titles and {"student", "answer"} & {*titles} and {"points", "comment"} & {*titles}
         if not (has_marks or {"id", "exported"} <= {*titles}):
             raise InputError(f"the first line of {shown} must name the columns {enumerated(COLUMNS[2:6])}")
-        cells = ((f"{shown}:{line}", {**dict.fromkeys(COLUMNS, ""), **values}) for line, values in rows)
         mistakes: list[str] = []
-        found = collect(cells, self.marks_in, mistakes, mistakes).newest
+        found = collect(rows, self.marks_in, mistakes, mistakes).newest
         new = {key: mark for key, mark in found.items() if not self._is_same(key, mark)}
         marks = [mark._replace(by=mark.by or by, time=self.marks.next_time(key)) for key, mark in new.items()]
         return marks, len(found) - len(new)
 
     def _is_same(self, key: Key, mark: Mark) -> bool:
-        nothing = Mark("", "", *key, kind="withdrawn")
-        before = self.marks.counting.get(key) or self.marks.comments.get(key, nothing)
-        is_current = mark.kind == "comment" or before.submission in ("", mark.submission)
+        before = self.marks.counting.get(key) or self.marks.comments.get(key) or Mark("", "", *key, WITHDRAWN)
+        is_current = not mark.value or before.submission in ("", mark.submission)
         return is_current and (before.value, before.comment) == (mark.value or before.value, mark.comment)
 
     def marks_in(self, row: Cells, place: str = "") -> Iterator[Mark]:
@@ -59,9 +57,8 @@ class MarkImport(NamedTuple):
                 raise InputError(f"{student} has submitted nothing that could be marked: `{TOTAL}` is a final mark")
             digest = row["submission"] or ("" if criterion == DEADLINE else self.digests.get(student, ""))
             cells = {**row, "points": points, "comment": comment, "submission": digest, "time": ""}
-            yield from mark_in(
-                cells, key, most[criterion if is_final else criterion_of(self.rubric, criterion).id], place
-            )
+            name = criterion if is_final else criterion_of(self.rubric, criterion).id
+            yield mark_in(cells, key, most[name], place)
 
     def _entries(self, row: Cells) -> Iterator[tuple[Key, str, str]]:
         """Yield the student and criterion of each mark in a row, the points as text, and the comment."""

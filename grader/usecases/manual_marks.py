@@ -103,7 +103,7 @@ def _warnings(book: Class, key: Key, request: MarkRequest, before: Mark | None) 
     """Yield what a mark replaced, that it does not count, and whom else the same submission counts for."""
     criterion = key[1]
     if before is not None:
-        what = "comment" if before.kind == "comment" else "mark"
+        what = "mark" if before.value else "comment"
         words = f"{before.value}{by_name(before.by)}: {' '.join(before.comment.split())}".strip(": ")
         yield f"this replaces the {what} of {criterion} in {before.place}: {words}"
     elif request.points == WITHDRAWN:

@@ -2,7 +2,6 @@
 
 import tomllib
 from collections.abc import Mapping
-from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -76,7 +75,7 @@ def test_only_changed_cells_of_an_export_are_marks(
 def test_a_new_mark_counts_though_a_clock_was_ahead(tmp_path: Path) -> None:
     """Its time is later than that of the newest one."""
     folder = tmp_path / "marks"
-    append_marks(folder / "kim.csv", [Mark("2999-12-31T23:59:59.999+00:00", "Kim", "anna", "essay", Decimal(1))])
+    append_marks(folder / "kim.csv", [Mark("2999-12-31T23:59:59.999+00:00", "Kim", "anna", "essay", "1")])
     rows = b"student,criterion,points\nanna,essay,2\n"
     append_marks(folder / "lee.csv", importing(read(folder)).read(rows, "marks.csv", "Lee")[0])
     assert said(read(folder).counting["anna", "essay"]) == "2 Lee"
