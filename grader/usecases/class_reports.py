@@ -20,7 +20,7 @@ from grader.grading.hints.hinting import hinted
 from grader.grading.report import Report, Result
 from grader.report.formats import Format, render
 from grader.text import by_name, counted, counted_points, enumerated, format_points, printable, printable_path
-from grader.usecases.report_names import CLASS_PAGE, INDEX, file_names, write_class_page, write_index
+from grader.usecases.report_names import file_names, write_class_page
 from grader.usecases.saves import address
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import make_folder, refuse_symlinks, save
@@ -36,7 +36,7 @@ _MOVED = (
 class ReportRun(NamedTuple):
     """The reports to write of a gradebook into a folder; `answers` is the file of the model answers.
 
-    `time` is that of the newest run: workers read the gradebook once for it. Feedback always says who graded.
+    `time` is that of the newest run: workers read the gradebook once for it.
     """
 
     gradebook: Path
@@ -44,7 +44,6 @@ class ReportRun(NamedTuple):
     formats: tuple[Format, ...]
     answers: Path | None = None
     time: str = ""
-    is_feedback: bool = False
 
 
 class _Task(NamedTuple):
@@ -55,12 +54,11 @@ class _Task(NamedTuple):
     has_hints: bool = True
 
 
-def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True, feedback: bool = False) -> Report:
+def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True) -> Report:
     """Return the report on a student's submission, with the marks, the grade and notes.
 
-    There is a note for a final mark, an excuse, a comment and a late penalty. Another one says who graded if a person
-    did, and always in `feedback`. Without notes, the report is the same as that of `grader grade`. A submission that
-    has changed since has its points only.
+    There is a note for a final mark, an excuse, a comment, a late penalty, and who graded if a person did. Without
+    notes, the report is the same as that of `grader grade`. A submission that has changed since has its points only.
     """
     if grade.graded is not None:
         report = book.with_marks(_again(book, grade.graded, has_hints=has_hints), grade.graded)[0]
@@ -71,9 +69,9 @@ def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True, feedb
     is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
     if grade.is_excused or (is_changed and grade.total is not None):
         counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final_points is not None)
-    graders = graders_of(grade, report, feedback=feedback)
-    notes = (*_whole(grade), *([f"Graded {graders}."] if graders else []), *_late(grade))
-    return report._replace(notes=(*report.notes, *notes), grade=counting)
+    graders = graders_of(grade, report)
+    by = f"Graded {graders}." if "manually" in graders else ""
+    return report._replace(notes=(*report.notes, *filter(None, (_whole(grade), by, _late(grade)))), grade=counting)
 
 
 def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
@@ -92,42 +90,38 @@ def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
         return report
 
 
-def _whole(grade: StudentGrade) -> list[str]:
+def _whole(grade: StudentGrade) -> str:
     """Return the sentence about the mark, the excuse or the comment of the whole submission."""
     mark = grade.final
     if mark is None:
-        return []
+        return ""
     words = " ".join(mark.comment.split())
     by, comment = by_name(mark.by), f" {words}" if words else ""
     if mark.points is not None:
         points = counted_points(mark.points)
-        return [f"Final mark: {points}, given{by or ' manually'} instead of the sum of the criteria.{comment}"]
-    return [f"Excused{by}.{comment}" if grade.is_excused else f"Comment{by}:{comment}"]
+        return f"Final mark: {points}, given{by or ' manually'} instead of the sum of the criteria.{comment}"
+    return f"Excused{by}.{comment}" if grade.is_excused else f"Comment{by}:{comment}"
 
 
-def graders_of(grade: StudentGrade, report: Report, *, feedback: bool = True) -> str:
-    """Return who graded, the checks or people; empty if nothing is graded, or only by checks and not for `feedback`."""
+def graders_of(grade: StudentGrade, report: Report) -> str:
+    """Return who graded: `automatically`, `manually by` people, or both; empty if nothing is graded."""
     people = {row.manual_mark.by for row in report.results if row.manual_mark is not None}
-    decided = [row for row in report.results if row.manual_mark is None and not row.is_open]
-    is_automatic = bool(decided) and grade.graded is not None
+    is_automatic = grade.graded is not None and any(not (row.manual_mark or row.is_open) for row in report.results)
     if grade.final_points is not None and grade.final is not None:
         people, is_automatic = {grade.final.by}, False
-    if not people:
-        return "automatically" * (feedback and is_automatic)
-    manually = f"manually{by_name(enumerated(sorted(filter(None, people))))}"
-    return f"automatically, and {manually}" if is_automatic else manually
+    manually = f"manually{by_name(enumerated(sorted(filter(None, people))))}" if people else ""
+    return ", and ".join(filter(None, ("automatically" * is_automatic, manually)))
 
 
-def _late(grade: StudentGrade) -> list[str]:
-    if not grade.late.reason:
-        return []
-    penalty = format_points(-grade.late.points)
-    total = format_points(grade.total) if grade.total is not None else ""
-    more = f": the late penalty is {penalty} points, the grade is {total}" if grade.late.points else ""
-    return [f"{grade.late.reason}{more}"]
+def _late(grade: StudentGrade) -> str:
+    """Return the sentence about a late submission."""
+    if not grade.late.points or grade.total is None:
+        return grade.late.reason
+    penalty, total = format_points(-grade.late.points), format_points(grade.total)
+    return f"{grade.late.reason}: the late penalty is {penalty} points, the grade is {total}"
 
 
-def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: Sequence[Path]) -> None:
+def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
     """Raise InputError if reports cannot be written to a folder, or the next run would read it as a submission."""
     shown = printable_path(folder)
     refuse_symlinks(folder, submissions)
@@ -139,9 +133,6 @@ def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: S
                 f"cannot write files to {shown}: the next run would take them for a submission; "
                 "choose a folder outside of the class folder"
             )
-    if Format.HTML in formats and (folder / CLASS_PAGE).exists() and not (folder / INDEX).exists():
-        page = printable_path(folder / CLASS_PAGE)
-        raise InputError(f"cannot write {page}: it exists, and grader did not write it; choose another folder")
 
 
 def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS) -> None:
@@ -153,7 +144,6 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
     book = Class(run.gradebook)
     keys = [one.student.key for one in book if one.graded is not None or one.has_final]
     files = file_names(keys)
-    write_index(run.folder, files)
     lost = render_reports(run._replace(time=book.run.time), files, terminal, jobs, timeout)
     if Format.HTML in run.formats:
         is_inside = run.folder == run.gradebook / names.REPORTS
@@ -196,7 +186,7 @@ def _write_some(run: ReportRun, tasks: Sequence[_Task]) -> list[tuple[str, str]]
     """Write the reports of some students; return the students."""
     book = _class(run)
     for task in tasks:
-        report = report_of(book, book.grade(task.key), has_hints=task.has_hints, feedback=run.is_feedback)
+        report = report_of(book, book.grade(task.key), has_hints=task.has_hints)
         picture = address(f"{task.name}.{Format.SVG.ending}") if Format.SVG in run.formats else ""
         for kind in run.formats:
             save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind, picture=picture))

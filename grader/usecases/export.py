@@ -59,7 +59,7 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
     if request.target == "html":
         folder = request.output or book.folder / names.REPORTS
         if request.output is not None:
-            class_reports.refuse_report_folder(folder, (Format.HTML,), roots)
+            class_reports.refuse_report_folder(folder, roots)
         class_reports.write_reports(ReportRun(book.folder, folder, (Format.HTML,)), terminal)
         return b"", ExitCode.PASSED
     for path in filter(None, (request.output, request.feedback)):
@@ -141,7 +141,7 @@ def _feedback(request: ExportRequest, book: Class, rows: Mapping[str, Student], 
         paths, without = canvas_names(submitted, name)
     files = {key: str(number) for number, key in enumerate(paths)}
     with TemporaryDirectory() as folder:
-        run = ReportRun(book.folder, Path(folder), (kind,), is_feedback=True)
+        run = ReportRun(book.folder, Path(folder), (kind,))
         without |= class_reports.render_reports(run, files, terminal)
         written = ((key, Path(folder, f"{file}.{kind.ending}")) for key, file in files.items() if key not in without)
         reports = {key: path.read_bytes() for key, path in written}

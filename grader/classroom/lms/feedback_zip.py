@@ -34,7 +34,7 @@ def moodle_names(students: Collection[Student], report: str) -> Names:
             without[student.key] = f"another student has participant number {student.moodle}, too"
         else:
             without[student.key] = (
-                "has no participant number: pass the grading worksheet, with a row of it, with --into"
+                "has no participant number, and no row of a grading worksheet (--into)"
             )
     return names, without
 

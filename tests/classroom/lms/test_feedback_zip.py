@@ -51,7 +51,7 @@ def test_participants() -> None:
     names, without = moodle_names(students, "r.html")
     assert names == {"a": "Ann_1_assignfeedback_file_/r.html"}
     assert without["b"] == without["c"] == "another student has participant number 2, too"
-    assert without["d"] == "has no participant number: pass the grading worksheet, with a row of it, with --into"
+    assert without["d"] == "has no participant number, and no row of a grading worksheet (--into)"
 
 
 def test_the_zip_depends_on_the_reports_only() -> None:
