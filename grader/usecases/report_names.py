@@ -46,4 +46,3 @@ def write_class_page(book: Class, folder: Path, pages: Mapping[str, str]) -> Non
     grades = list(book)
     links = {key: address(f"{name}.{Format.HTML.ending}") for key, name in pages.items()}
     save(folder / CLASS_PAGE, without_commands(render_class_page(book, grades, statistics(book, grades), links)))
-

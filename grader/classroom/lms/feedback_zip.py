@@ -33,9 +33,7 @@ def moodle_names(students: Collection[Student], report: str) -> Names:
         elif student.moodle:
             without[student.key] = f"another student has participant number {student.moodle}, too"
         else:
-            without[student.key] = (
-                "has no participant number, and no row of a grading worksheet (--into)"
-            )
+            without[student.key] = "has no participant number, and no row of a grading worksheet (--into)"
     return names, without
 
 
@@ -45,18 +43,13 @@ def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], repor
     for student, paths in submissions:
         users[paths] |= {student.canvas} - {""}
     ending = PurePosixPath(report).suffix
+    why = f"submitted no {ending} file or archive by whose name Canvas finds the student"
     for student, paths in submissions:
-        files = [PurePosixPath(path).name for path in paths]
-        certain = [file for file in files if _is_certain(file, users[paths])]
-        fitting = [file for file in certain if PurePosixPath(file).suffix.lower() == ending]
-        if fitting := fitting or [file for file in certain if file.lower().endswith(_ARCHIVES)]:
-            names[student.key] = min(fitting)
-        elif certain:
-            why = f"Canvas would show the report as {certain[0]!r}, which is neither an archive nor a {ending} file"
-            without[student.key] = why
+        files = [PurePosixPath(path).name for path in paths if path.lower().endswith((ending, *_ARCHIVES))]
+        if certain := [file for file in files if _is_certain(file, users[paths])]:
+            names[student.key] = min(certain, key=lambda file: (not file.lower().endswith(ending), file))
         else:
-            why = f"Canvas would find another student, or none, by the name {files[0]!r}" if files else ""
-            without[student.key] = why or "submitted no file in Canvas"
+            without[student.key] = why
     return names, without
 
 
