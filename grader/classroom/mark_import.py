@@ -96,10 +96,5 @@ class MarkImport(NamedTuple):
             yield student, criterion, new, now.comment if now is not None else ""
 
 
-def exported_cell(values: Cells) -> str:
-    """Return the cell of the column `exported`: the values of criteria, as they are in their columns."""
-    return " ".join(f"{criterion}={value}" for criterion, value in values.items())
-
-
 def _are_equal(text: str, other: str) -> bool:
     return text == other or (number_in(text) is not None and number_in(text) == number_in(other))
