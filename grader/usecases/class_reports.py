@@ -1,6 +1,6 @@
 """Write a report for each student of a class, and the class's page beside reports in HTML."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import NamedTuple
@@ -69,9 +69,30 @@ def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True) -> Re
     is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
     if grade.is_excused or (is_changed and grade.total is not None):
         counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final_points is not None)
-    graders = graders_of(grade, report)
-    by = f"Graded {graders}." if "manually" in graders else ""
-    return report._replace(notes=(*report.notes, *filter(None, (_whole(grade), by, _late(grade)))), grade=counting)
+    return report._replace(notes=(*report.notes, *notes_of(grade, report)), grade=counting)
+
+
+def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
+    """Yield the sentences about the mark, the excuse or the comment of the whole submission, graders, and lateness."""
+    mark, late = grade.final, grade.late
+    people = {row.manual_mark.by for row in report.results if row.manual_mark is not None}
+    if mark is not None:
+        by, what = by_name(mark.by), f"Comment{by_name(mark.by)}:"
+        if grade.is_excused:
+            what = f"Excused{by}."
+        elif mark.points is not None:
+            points = counted_points(mark.points)
+            what = f"Final mark: {points}, given{by or ' manually'} instead of the sum of the criteria."
+        yield " ".join((what, *mark.comment.split()))
+    if people and not grade.has_final:
+        is_automatic = any(not (row.manual_mark or row.is_open) for row in report.results)
+        names = by_name(enumerated(sorted(filter(None, people))))
+        yield f"Graded {'automatically, and ' * is_automatic}manually{names}."
+    if late.points and grade.total is not None:
+        points, total = format_points(-late.points), format_points(grade.total)
+        yield f"{late.reason}: the late penalty is {points} points, the grade is {total}"
+    elif late.reason:
+        yield late.reason
 
 
 def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
@@ -88,37 +109,6 @@ def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
         return hinted(report, submission, book.rubric.hints).report
     except (Exception, OutOfTime):  # noqa: BLE001  a fault of the search must not cost the report
         return report
-
-
-def _whole(grade: StudentGrade) -> str:
-    """Return the sentence about the mark, the excuse or the comment of the whole submission."""
-    mark = grade.final
-    if mark is None:
-        return ""
-    words = " ".join(mark.comment.split())
-    by, comment = by_name(mark.by), f" {words}" if words else ""
-    if mark.points is not None:
-        points = counted_points(mark.points)
-        return f"Final mark: {points}, given{by or ' manually'} instead of the sum of the criteria.{comment}"
-    return f"Excused{by}.{comment}" if grade.is_excused else f"Comment{by}:{comment}"
-
-
-def graders_of(grade: StudentGrade, report: Report) -> str:
-    """Return who graded: `automatically`, `manually by` people, or both; empty if nothing is graded."""
-    people = {row.manual_mark.by for row in report.results if row.manual_mark is not None}
-    is_automatic = grade.graded is not None and any(not (row.manual_mark or row.is_open) for row in report.results)
-    if grade.final_points is not None and grade.final is not None:
-        people, is_automatic = {grade.final.by}, False
-    manually = f"manually{by_name(enumerated(sorted(filter(None, people))))}" if people else ""
-    return ", and ".join(filter(None, ("automatically" * is_automatic, manually)))
-
-
-def _late(grade: StudentGrade) -> str:
-    """Return the sentence about a late submission."""
-    if not grade.late.points or grade.total is None:
-        return grade.late.reason
-    penalty, total = format_points(-grade.late.points), format_points(grade.total)
-    return f"{grade.late.reason}: the late penalty is {penalty} points, the grade is {total}"
 
 
 def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:

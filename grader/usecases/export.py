@@ -112,14 +112,10 @@ def _class_grade(book: Class, grade: StudentGrade, request: ExportRequest, *, ha
 
 def _comment(book: Class, grade: StudentGrade, total: Decimal) -> str:
     report = class_reports.report_of(book, grade, has_hints=False)
-    lines = [] if grade.has_final else [*lost_points(report.results)]
-    if grade.late.points:
-        lines.append(f"Late: {format_points(grade.late.points)}. {grade.late.reason}")
-    if grade.final is not None and grade.final.comment:
-        lines.append(f"Comment: {grade.final.comment}")
-    graders = class_reports.graders_of(grade, report) or "automatically"
+    lost = () if grade.has_final else lost_points(report.results)
     exported = format_points(total.quantize(Decimal("0.01"), ROUND_FLOOR))
-    return comment_html(f"Graded {graders}: {exported} of {format_points(_maximum(book))} points.", lines)
+    opening = f"Grade: {exported} of {format_points(_maximum(book))} points."
+    return comment_html(opening, [*lost, *class_reports.notes_of(grade, report)])
 
 
 def _maximum(book: Class) -> Decimal:

@@ -16,7 +16,7 @@ from grader.text import cut, format_points
 
 LIMIT = 4_000  # characters
 _MAX_LINE = 700
-_OPENING = "Graded "
+_OPENING = "Grade"
 _MARK = re.compile(r"<!-- grader ([0-9a-f]{12}) -->")
 _TAG = re.compile(r"<[^>]*+>")
 
@@ -37,7 +37,7 @@ def lost_points(results: Iterable[Result]) -> Iterator[str]:
 
 
 def comment_html(opening: str, lines: Iterable[str]) -> str:
-    """Return a comment in one line of at most LIMIT characters: `opening`, which begins with Graded, then the lines."""
+    """Return a comment in one line of at most LIMIT characters: `opening`, which begins with Grade, then the lines."""
     first = f"<p>{_escape(opening)}</p>"
     items = [f"<li>{_escape(line)}</li>" for line in lines]
     room = LIMIT - len(first) - 100  # for the list's tags, the mark, and the line that counts the rest
