@@ -119,18 +119,13 @@ def _encoded(data: bytes, rows: Sequence[Mapping[str, str]], shown: str) -> byte
     end = (table.rows[0].end if table.rows else "") or "\n"
     text = end if table.rows and not table.rows[-1].end else ""
     text += "" if titles else table.delimiter.join(COLUMNS) + end
-    points = " ".join(row.get("points", "") for _, row in old)
+    points = " ".join(row["points"] for _, row in old)
     has_comma = bool(re.search(r"\d,\d", points) or (table.delimiter == ";" and not re.search(r"\d\.\d", points)))
     for row in rows:
-        texts = {**row, "points": row["points"].replace(".", ",") if has_comma else row["points"]}
-        text += table.delimiter.join(_cell(texts.get(title, ""), table.delimiter) for title in titles or COLUMNS) + end
+        texts = {name: value if value == WITHDRAWN else protected(_unix(value)) for name, value in row.items()}
+        texts["points"] = texts["points"].replace(".", ",") if has_comma else texts["points"]
+        text += table.delimiter.join(table.cell(texts.get(title, "")) for title in titles or COLUMNS) + end
     return text.encode(table.encoding, "xmlcharrefreplace")
-
-
-def _cell(text: str, delimiter: str) -> str:
-    """Return a cell that no spreadsheet runs, in quotes if necessary."""
-    safe = text if text == WITHDRAWN else protected(_unix(text))
-    return '"' + safe.replace('"', '""') + '"' if re.search(rf'[{delimiter};\t"\r\n]', safe) else safe
 
 
 def mark_file(folder: Path, by: str) -> Path:

@@ -83,9 +83,13 @@ class Table(NamedTuple):
 
     def changed(self, row: TableRow, column: int, value: str) -> TableRow:
         """Return a row with another value in one cell, quoted if the old one was, or if necessary."""
-        quoted = row.cells[column].startswith('"') or re.search(rf'[{self.delimiter};\t"\r\n]|^\s|\s$', value)
-        raw = '"' + value.replace('"', '""') + '"' if quoted else value
-        return row._replace(cells=(*row.cells[:column], raw, *row.cells[column + 1 :]))
+        new = self.cell(value, is_quoted=row.cells[column].startswith('"'))
+        return row._replace(cells=(*row.cells[:column], new, *row.cells[column + 1 :]))
+
+    def cell(self, value: str, *, is_quoted: bool = False) -> str:
+        """Return a cell with a value, quoted if necessary."""
+        is_quoted = is_quoted or re.search(rf'[{self.delimiter};\t"\r\n]|^\s|\s$', value) is not None
+        return '"' + value.replace('"', '""') + '"' if is_quoted else value
 
 
 def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Table:

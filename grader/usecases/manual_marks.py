@@ -108,13 +108,10 @@ def _unmarked_members(book: Class, key: Key) -> Iterator[str]:
 
 def _grade_text(book: Class, grade: StudentGrade) -> str:
     """Return what counts: an excuse, a final mark, or the points of the criteria."""
-    if grade.is_excused:
-        return "excused"
-    if grade.final_points is not None:
-        whole = sum((row.maximum for row in book.criteria), Decimal(0))
-        return f"final mark {format_points(grade.final_points)} of {format_points(whole)} points"
-    if grade.report is None or grade.total is None:
-        return "no submission"
-    total = f"{format_points(grade.total)} of {format_points(grade.report.max_score)} points"
+    if grade.total is None:
+        return "excused" if grade.is_excused else "no submission"
+    whole = sum((row.maximum for row in book.criteria), Decimal(0))
+    final = "final mark " if grade.has_final else ""
     late = f" after the late penalty of {format_points(-grade.late.points)}" if grade.late.points else ""
-    return total + late + (f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else "")
+    pending = f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else ""
+    return f"{final}{format_points(grade.total)} of {format_points(whole)} points{late}{pending}"

@@ -103,7 +103,7 @@ def _are_some(before: Table, after: Sequence[TableRow], changed: set[int]) -> bo
 
 
 def _without(row: TableRow, changed: set[int]) -> list[str]:
-    return ["" if index in changed else cell.raw for index, cell in enumerate(row.cells)]
+    return ["" if index in changed else cell for index, cell in enumerate(row.cells)]
 
 
 _CELLS = {one.student.key: ("", "1.00", "")[number % 3] for number, one in enumerate(_SOME)}

@@ -195,13 +195,8 @@ def _read(data: bytes, form: Form, options: FillOptions) -> _GradeFile:
 def _choose(columns: Mapping[int, re.Match[str]], form: Form, options: FillOptions) -> int:
     """Return the column that is named, else the one whose title is most like the title or the id of the lab."""
     wanted = options.column.strip()
-    if wanted:
-        parts = {at: found.groupdict() | {"maximum": ""} for at, found in columns.items()}
-        ranks = {at: [wanted == found[0], wanted in parts[at].values()] for at, found in columns.items()}
-    elif "maximum" in form.columns:
-        ranks = {at: [True] for at in columns}
-    else:
-        ranks = {at: _likeness(found["title"], options.names) for at, found in columns.items()}
+    is_any = "maximum" in form.columns and not wanted
+    ranks = {at: [True] if is_any else _likeness(found, wanted, options.names) for at, found in columns.items()}
     best = max(ranks.values(), default=[])
     found = [at for at, rank in ranks.items() if rank == best and any(rank)]
     if len(found) == 1:
@@ -212,9 +207,14 @@ def _choose(columns: Mapping[int, re.Match[str]], form: Form, options: FillOptio
     raise InputError(f"{options.shown} has {'several columns' if found else 'no column'} {what}; {advice}")
 
 
-def _likeness(title: str, names: Sequence[str]) -> list[bool]:
-    """Return whether a title is, or contains, each of some names, in this order; last, whether it is part of one."""
-    own, known = _words(title), [_words(name) for name in names]
+def _likeness(found: re.Match[str], wanted: str, names: Sequence[str]) -> list[bool]:
+    """Return whether a column is the wanted one: by its header, or by its title or number.
+
+    Of none, whether its title is, or contains, each of some names, in this order; last, whether it is part of one.
+    """
+    if wanted:
+        return [wanted == found[0], wanted in (found["title"], found.groupdict().get("number"))]
+    own, known = _words(found["title"]), [_words(name) for name in names]
     tests = (test for name in known for test in (own.replace(" ", "") == name.replace(" ", ""), name in own))
     return [*tests, any(own in name for name in known)]
 
