@@ -137,7 +137,7 @@ def _rows(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, Cells]]:
         shown = printable_path(Path(folder.name, path.name))
         try:
             data = read_capped(path, SIZE_LIMIT, shown=shown, top=str(path.parent), advice="")
-            yield from whole_rows(data, shown)[2]
+            yield from (row for row in whole_rows(data, shown)[2] if any(map(row[1].get, COLUMNS)))
         except InputError as error:
             mistakes.append(str(error))
 
