@@ -7,6 +7,7 @@ innermost part of the grader in it, or whose modules are being loaded.
 import argparse
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -78,14 +79,16 @@ def case(name: str, folder: Path) -> Counter[str]:
         from grader.classroom.run.worker import ClassContext, Task, grade_all
         from grader.grading.rubric import load_rubric
 
-        rubric, tasks = load_rubric("lab6"), [Task(path.stem, (path.name,)) for path in sorted(folder.iterdir())]
-        work = partial(grade_all, ClassContext(str(folder), rubric.data, str(rubric.path)))
+        rubric, tasks = load_rubric("lab6"), [Task(path.stem, 0, (path.name,)) for path in sorted(folder.iterdir())]
+        work = partial(grade_all, ClassContext((str(folder),), rubric.data, str(rubric.path)))
         work(tasks[:30])
         return sampled(lambda: [work(tasks) for _ in range(3)])
     if name == "cold":
         return sampled(lambda: command("grade", str(URDF)))
     jobs = "1" if name == "batch-1" else "2"
-    return sampled(lambda: command("batch", str(folder), "--gradebook", str(folder.with_suffix(".db")), "--jobs", jobs))
+    return sampled(
+        lambda: command("batch", str(folder), "--gradebook", str(folder.with_suffix(".book")), "--jobs", jobs)
+    )
 
 
 CASES = ("cold", *_WARM, "worker", "batch-1", "batch-2")
@@ -109,7 +112,7 @@ def main() -> None:
         for name in given.cases or CASES:
             seen: Counter[str] = Counter()
             for _ in range(_ROUNDS.get(name.partition("-")[0], 1)):
-                folder.with_suffix(".db").unlink(missing_ok=True)
+                shutil.rmtree(folder.with_suffix(".book"), ignore_errors=True)
                 words = (sys.executable, "-P", __file__, name, "--folder", folder)
                 environment = {**os.environ, "PYTHONPATH": f"{given.root}{os.pathsep}{Path(__file__).parent}"}
                 done = subprocess.run(words, check=True, capture_output=True, text=True, env=environment)

@@ -32,6 +32,13 @@ _READERS = {
 _LOOP = 'for f in "$1"/*.urdf; do "$0" "$f" >/dev/null || exit 1; done; echo all'
 
 
+def forget(book: Path) -> None:
+    """Remove a gradebook, which was a file in earlier versions."""
+    if book.is_dir():
+        shutil.rmtree(book)
+    book.unlink(missing_ok=True)
+
+
 class Row(NamedTuple):
     """A figure: what is compared, the ratio, and its goal (a number, with `<` or `>`)."""
 
@@ -91,8 +98,8 @@ class Bench:
 
     def batch(self, count: int, *options: str | Path, book: Path | None = None, word: str = "graded") -> Command:
         """Return the grading of a class, into a new gradebook by default."""
-        path = book or self.top / "book.db"
-        prepare = (lambda: path.unlink(missing_ok=True)) if book is None else bool
+        path = book or self.top / "book"
+        prepare = (lambda: forget(path)) if book is None else bool
         return self.grader("batch", self.class_of(count), "--gradebook", path, *options, word=word, prepare=prepare)
 
     @cached_property
@@ -179,7 +186,7 @@ def hints(bench: Bench) -> Iterator[Row]:
 
 def batch(bench: Bench) -> Iterator[Row]:
     """Compare `batch` of 600 URDFs with a shell loop over check_urdf, and with itself in other ways."""
-    count, done = 600, bench.top / "done.db"
+    count, done = 600, bench.top / "done"
     bench.batch(count, book=done).seconds()
     times = bench.compare(
         two=bench.batch(count, "--jobs", "2"),
@@ -196,6 +203,16 @@ def batch(bench: Bench) -> Iterator[Row]:
     yield Row("two workers, times as fast as one", ratio(times["one"], times["two"]), "> 1.9")
     yield Row("the unchanged class again, times as fast", ratio(times["two"], times["again"]), "> 20")
     yield Row("`batch --reports` against without", ratio(times["reports"], times["two"]), "< 2")
+
+
+def a_thousand(bench: Bench) -> Iterator[Row]:
+    """Compare `batch` of 1,000 URDFs with `--against`, and time what follows it."""
+    book = bench.top / "thousand"
+    bench.batch(1_000, book=book).seconds()
+    bench.compare(a_thousand=bench.batch(1_000, "--jobs", "2"))
+    for name, words in (("export", ("export", "csv")), ("stats", ("stats",))):
+        times = in_turn({name: bench.grader(*words, "--gradebook", book).seconds}, bench.rounds)
+        yield Row(f"`{' '.join(words)}` of 1,000", min(times[name]), "< 0.5", " s")
 
 
 def rubric_test(bench: Bench) -> Iterator[Row]:
@@ -305,7 +322,7 @@ def _check_urdf() -> Path:
 
 _LIBRARIES = {"LD_LIBRARY_PATH": str(_check_urdf().parent.parent / "lib")}
 FIGURES: dict[str, Callable[[Bench], Iterator[Row]]] = {
-    "cold": cold, "readers": readers, "warm": warm, "hints": hints, "batch": batch, "rubric-test": rubric_test,
+    "cold": cold, "readers": readers, "warm": warm, "hints": hints, "batch": batch, "a-thousand": a_thousand, "rubric-test": rubric_test,
     "memory": memory, "growth": growth,
 }  # fmt: skip
 

@@ -2,12 +2,13 @@
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 from grader.classroom.mark_files import lock
 from grader.classroom.settings import CLASS_FILE
 from grader.errors import InputError
+from grader.files.reading import read_start
 from grader.text import printable_path, shell_quoted
 
 RESULTS, ROSTER, RUBRIC, MARKS, GRADES, REPORTS, PAGE = (
@@ -30,10 +31,9 @@ def is_gradebook(folder: Path) -> bool:
 def check_gradebook(folder: Path) -> None:
     """Raise InputError if a path is no gradebook."""
     shown = printable_path(folder)
-    if folder.is_file():
-        with suppress(OSError), folder.open("rb") as file:
-            if file.read(len(_SQLITE)) == _SQLITE:
-                raise InputError(f"{shown} is a gradebook of an earlier version: grade the class again, into a folder")
+    if folder.is_file() and read_start(folder, len(_SQLITE)) == _SQLITE:
+        raise InputError(f"{shown} is a gradebook of an earlier version: grade the class again, into a folder")
+    if folder.exists() and not folder.is_dir():
         raise InputError(f"{shown} is a file: a gradebook is a folder")
     if not folder.is_dir():
         raise InputError(

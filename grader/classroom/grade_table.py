@@ -42,7 +42,7 @@ def _row(grade: StudentGrade, criteria: Iterable[str], is_exported: bool) -> lis
     if report is not None:
         numbers = [report.score, report.max_score, grade.pending, grade.late.days, grade.late.points]
         points |= {row.criterion.id: row.points for row in report.results if not _is_undecided(row)}
-    exported = [exported_cell({**points, TOTAL: grade.total})] * is_exported
+    exported = [exported_cell({**points, TOTAL: grade.total})] if is_exported else []
     digest = grade.graded.digest if grade.graded is not None else None
     head: list[CellValue] = [student.key, student.name, student.email, student.section, status_of(grade)]
     return [*head, *numbers, grade.total, grade.why_open, *points.values(), *exported, digest]

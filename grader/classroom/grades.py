@@ -1,11 +1,13 @@
 """The grades of a class, computed from the results, the rubric, the roster and the marks of people."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from datetime import datetime
 from decimal import Decimal
 from enum import StrEnum
+from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from grader import __version__
 from grader.checks.outcome import Outcome
@@ -24,6 +26,7 @@ from grader.grading.report import ManualComment, ManualMark, Report, Result
 from grader.grading.rubric import load_rubric
 from grader.text import counted_points, printable_path
 
+_ON_TIME = Lateness()
 _NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
 
 
@@ -42,7 +45,8 @@ class Reason(StrEnum):
     MARKED = "could not be graded, and was marked manually"
 
 
-class StudentGrade(NamedTuple):
+@dataclass(frozen=True)
+class StudentGrade:
     """The grade of one student. Without a submission there is no result, and no report.
 
     `report` has the points with the manual marks; `final` is the mark or excuse of the whole submission; `older` are
@@ -54,7 +58,7 @@ class StudentGrade(NamedTuple):
     student: Student
     graded: Graded | None
     report: Report | None
-    late: Lateness = Lateness()
+    late: Lateness = _ON_TIME
     final: Mark | None = None
     older: tuple[str, ...] = ()
     is_gone: bool = False
@@ -76,25 +80,25 @@ class StudentGrade(NamedTuple):
         """Whether a person has decided the whole grade: then there is no late penalty."""
         return self.is_excused or self.final_points is not None
 
-    @property
+    @cached_property
     def total(self) -> Decimal | None:
         """The final mark, else the points after the late penalty; None for an excuse, and without a submission."""
         if self.has_final or self.report is None:
             return self.final_points
         return self.report.score + self.late.points
 
-    @property
+    @cached_property
     def pending(self) -> Decimal:
         """The points that still need manual grading and can change the grade."""
         return self.report.pending if self.report is not None and not self.has_final else Decimal(0)
 
-    @property
+    @cached_property
     def faults(self) -> int:
         """The number of criteria on which the grader failed, and that nobody has marked."""
         rows = self.report.results if self.report is not None else ()
         return sum(row.outcome.status == "errored" and row.manual_mark is None and not row.is_adjusted for row in rows)
 
-    @property
+    @cached_property
     def why_open(self) -> str:
         """Why this grade must not be published yet; empty if it is final."""
         if self.final_points is not None:
@@ -154,7 +158,7 @@ class Class:
         """
         names.check_gradebook(folder)
         self.folder, self.settings = folder, read_settings(folder)
-        rubric = folder / self.settings.rubric
+        rubric = (folder / self.settings.rubric).absolute()  # whose folder is of no use to students
         self.rubric = load_rubric(rubric) if answers is None else load_with_answers(str(rubric), answers)
         self.roster = read_class_roster(folder)
         self.results = Results(folder / names.RESULTS, until)
@@ -214,7 +218,7 @@ class Class:
         is_gone = key not in self.run.totals
         is_outdated = self.is_outdated or graded.context != self.run.context
         grade = StudentGrade(student, graded, report, late, final, older, is_gone, is_outdated, key in self.run.unclear)
-        return grade._replace(late=Lateness(late.days, reason=late.reason)) if grade.has_final else grade
+        return replace(grade, late=Lateness(late.days, reason=late.reason)) if grade.has_final else grade
 
     def with_marks(self, report: Report, graded: Graded) -> tuple[Report, tuple[str, ...]]:
         """Return a report with marks and comments, and the criteria that were marked before the submission changed."""

@@ -1,11 +1,9 @@
 """Open one submission of a class folder or zip: the same submission that `grader grade` would see, and its digest."""
 
 import os
-from collections.abc import Mapping
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
-from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.classroom.listing import ClassListing, listing_of
@@ -20,7 +18,7 @@ from grader.grading.rubric import Rubric
 from grader.submission.labs import LabFolders
 from grader.submission.opening import read_submission, submission_of
 from grader.submission.robots import START, is_robot
-from grader.submission.submission import Opening, Submission
+from grader.submission.submission import DEFAULTS, Opening, Submission
 from grader.text import printable_path
 
 if TYPE_CHECKING:
@@ -44,14 +42,9 @@ class OpenedSubmission(NamedTuple):
     tree: Tree | None
     max_size: int = URDF_LIMIT
 
-    def submission(
-        self, rubric: Rubric, no_documents: str = "", arguments: Mapping[str, str] = MappingProxyType({})
-    ) -> Submission:
-        """Return the submission; raises InputError if it is empty.
-
-        `no_documents` says why documents are not read; `arguments` are those of xacro.
-        """
-        opening = Opening(self.max_size, arguments, no_documents)
+    def submission(self, rubric: Rubric, opening: Opening = DEFAULTS) -> Submission:
+        """Return the submission; raises InputError if it is empty."""
+        opening = opening._replace(max_size=self.max_size)
         if self.tree is None:
             return read_submission(self.data or b"", identity=self.name, path=self.shown, opening=opening)
         return submission_of(

@@ -4,7 +4,7 @@ from grader.classroom.grades import Class
 from grader.classroom.opening import open_class_submission
 from grader.classroom.results import Graded, digest_of
 from grader.errors import InputError
-from grader.submission.submission import Submission
+from grader.submission.submission import Opening, Submission
 
 
 def reopened(book: Class, graded: Graded) -> Submission | None:
@@ -17,6 +17,7 @@ def reopened(book: Class, graded: Graded) -> Submission | None:
         opened = open_class_submission(root, graded.paths, graded.names, graded.student, book.settings.max_size)
         if digest_of(opened.digest) != graded.digest:
             return None
-        return opened.submission(book.rubric, graded.no_documents, book.settings.arguments)
+        known = book.results.texts(graded)
+        return opened.submission(book.rubric, Opening(0, book.settings.arguments, graded.no_documents, converted=known))
     except InputError:
         return None

@@ -1,6 +1,7 @@
 """What was graded: `results.jsonl` of a gradebook, one line a graded submission and one line a run.
 
-A line of a submission comes before that of its run, and the newest of a student counts. The file can be computed
+A line of a submission comes before that of its run, and the newest of a student counts. The texts of Word and PDF
+files, which are slow to read, are on lines of their own. The file can be computed
 again from the submissions: without it only the comparison of runs and some seconds are lost. A last line that was not
 written to its end is ignored, and cut before the next one is appended.
 """
@@ -23,7 +24,7 @@ from grader.text import cut, printable_path
 
 Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
 Entry = tuple[float | None, Status, str, str]  # points, status, the mistake in words, the criterion that carries it
-_START = '{"student":"'
+_START, _TEXTS = b'{"student":"', b'{"texts":"'
 _RUN = b'{"run":'
 _MAX_CAUSE = 200  # characters
 _DIGITS = 16  # of a hash
@@ -36,8 +37,8 @@ class Graded(NamedTuple):
     names of the files say of the student. `context` is the hash of all that a result depends on besides the
     submission. `work` are hashes of the robot and the package in several forms, for equal work; `answers` are the
     keys of what a person looks at for a criterion: students with the same answer have the same one, and it is empty
-    without an answer. `no_documents` says why its documents were not read. Without a `digest` the submission could
-    not be read at all.
+    without an answer. `texts` are those of Word and PDF files by path, in a new result only. `no_documents` says why
+    its documents were not read. Without a `digest` the submission could not be read at all.
     """
 
     student: str
@@ -57,14 +58,15 @@ class Graded(NamedTuple):
     work: Mapping[str, Any] = {}
     answers: Mapping[str, str] = {}
     no_documents: str = ""
+    texts: Mapping[str, str] = {}
 
     @property
     def line(self) -> bytes:
-        """The line of the file, without what is empty."""
-        values = {
-            name: value for name, value in zip(self._fields, self, strict=True) if value or name in ("student", "run")
-        }
-        return f"{json.dumps(values, separators=(',', ':'))}\n".encode()
+        """The line of the file, without what is empty, and before it that of the texts."""
+        named = zip(self._fields[:-1], self[:-1], strict=True)
+        line = _line_of({name: value for name, value in named if value or name in ("student", "run")})
+        texts = {"texts": self.student, "digest": self.digest, "files": self.texts}
+        return _line_of(texts) + line if self.texts else line
 
     def report(self, rubric: Rubric) -> Report:
         """Return the points, under the rubric that it was graded by: outcomes without places, values and hints."""
@@ -96,7 +98,11 @@ class Run(NamedTuple):
     @property
     def line(self) -> bytes:
         """The line of the file."""
-        return f"{json.dumps(self._asdict(), separators=(',', ':'))}\n".encode()
+        return _line_of(self._asdict())
+
+
+def _line_of(values: Mapping[str, Any]) -> bytes:
+    return f"{json.dumps(values, separators=(',', ':'))}\n".encode()
 
 
 def entries_of(report: Report) -> dict[str, Entry]:
@@ -134,15 +140,16 @@ class Results:
         self._file = file
         self.end = 0  # where the last whole line ends
         self.runs: list[Run] = []
+        self._texts: dict[str, int] = {}
         self._places: dict[str, int] = {}  # a hundred thousand students fit into memory, but not all of their results
         for place, line in self._lines():
             if line.startswith(_RUN):
                 self.runs.append(Run(**_values(line)))
                 if self.runs[-1].run == until:
                     break
-            elif line.startswith(_START.encode()):
-                text = line.decode()
-                self._places[scanstring(text, len(_START), True)[0]] = place
+            elif line.startswith((_START, _TEXTS)):
+                places = self._places if line.startswith(_START) else self._texts
+                places[scanstring(line.decode(), line.index(b":") + 2, True)[0]] = place
             self.end = place + len(line)
 
     def _lines(self) -> Iterator[tuple[int, bytes]]:
@@ -180,11 +187,19 @@ class Results:
 
     def of(self, key: str) -> Graded | None:
         """Return the newest result of a student."""
-        if key not in self._places:
-            return None
+        return graded_from(self._line_at(self._places[key])) if key in self._places else None
+
+    def texts(self, graded: Graded) -> dict[str, str]:
+        """Return the texts of the Word and PDF files in a submission as it was graded, by path."""
+        if graded.student not in self._texts:
+            return {}
+        found = json.loads(self._line_at(self._texts[graded.student]))
+        return dict(found["files"]) if found["digest"] == graded.digest else {}
+
+    def _line_at(self, place: int) -> bytes:
         with self._file.open("rb") as file:
-            file.seek(self._places[key])
-            return graded_from(file.readline())
+            file.seek(place)
+            return file.readline()
 
 
 def graded_from(line: bytes) -> Graded:

@@ -5,13 +5,13 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from fnmatch import translate
 from functools import lru_cache
 from math import ceil
 from tempfile import TemporaryFile
-from types import ModuleType
+from types import MappingProxyType, ModuleType
 
 from grader.documents import converter, embedded_pictures
 from grader.documents.document import CONVERTED, Document, Unread, made_of
@@ -44,11 +44,15 @@ def _names_like(patterns: tuple[str, ...]) -> re.Pattern[str]:
 class DocumentCollection:
     """The documents of a submission. Each is read once; Word and PDF files share one budget of time.
 
-    `show_file` gets the path of a file that keeps the user waiting, and an empty text when that is read.
+    `show_file` gets the path of a file that keeps the user waiting, and an empty text when that is read. `converted`
+    are the texts of Word and PDF files by path; those that are given are not read again.
     """
 
-    def __init__(self, tree: Tree, show_file: Callable[[str], None]) -> None:
+    def __init__(
+        self, tree: Tree, show_file: Callable[[str], None], converted: Mapping[str, str] = MappingProxyType({})
+    ) -> None:
         self.tree = tree
+        self.converted = dict(converted)
         self._show_file = show_file
         self._seconds = MAX_SECONDS
         self._converted = 0
@@ -111,7 +115,9 @@ class DocumentCollection:
                 if self._converted > _MAX_CONVERTED:
                     limit = f"at most {_MAX_CONVERTED} Word and PDF files are"
                     raise InputError(f"{file.path} was not read: {limit}; needs manual grading")
-                return self._convert(file).decode("utf-8", "replace")
+                if file.path not in self.converted:
+                    self.converted[file.path] = self._convert(file).decode("utf-8", "replace")
+                return self.converted[file.path]
             case ".doc" | ".odt" | ".rtf" | ".pages" | ".ipynb":
                 raise InputError(f"{file.path} has a format that is not supported: open it yourself")
             case _:

@@ -202,11 +202,11 @@ class Report(NamedTuple):
 
 def without_gifts(results: Iterable[Result], submission: GradedSubmission) -> tuple[Result, ...]:
     """Return results in which no adjustment gives points to a submission that could not be read."""
+    if not submission.unread:
+        return tuple(results)
     return tuple(
-        result._replace(criterion=result.criterion._replace(adjustment=None))
-        if submission.unread and result.criterion.is_given
-        else result
-        for result in results
+        one._replace(criterion=one.criterion._replace(adjustment=None)) if one.criterion.is_given else one
+        for one in results
     )
 
 

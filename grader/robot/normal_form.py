@@ -47,8 +47,8 @@ def written_form(root: Element | None, *, is_handed_out: bool = False) -> str:
     `<gazebo>`, the hash is empty: `robot_hash` says who has the same.
     """
     children = list(root) if root is not None else []
-    model = [_content(child) for child in children if child.tag in _MODEL]
-    return _hash(model) if model and (is_handed_out or len(model) < len(children)) else ""
+    model = [child for child in children if child.tag in _MODEL]
+    return _hash([*map(_content, model)]) if model and (is_handed_out or len(model) < len(children)) else ""
 
 
 def _hash(content: object) -> str:

@@ -30,9 +30,10 @@ from grader.usecases.class_figures import warn_of_ignored
 from grader.usecases.class_inputs import ClassInputs, ClassOptions, keep_inputs, read_inputs
 from grader.usecases.class_reports import ReportRun, refuse_report_folder, write_reports
 from grader.usecases.terminal import Terminal, Warn
-from grader.usecases.writing import save
+from grader.usecases.writing import refuse_symlinks, save
 
 _MAX_LINES, _MAX_NAMED = 10, 5
+_LEAST_SECONDS = 15.0  # in which hints are searched, and a few reports written
 _PRIVATE = 0o600
 
 
@@ -64,6 +65,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
         refuse_report_folder(request.reports, inputs.roots)
     intake = read_class(inputs.roots, inputs.roster, settings.layout, settings.assignment, rubric.id, rubric.folders)
     _warn_of_intake(intake, terminal.warn)
+    refuse_symlinks(folder, inputs.roots)
     names.make_gradebook(folder)
     with names.batch_lock(folder):
         results = Results(folder / names.RESULTS)
@@ -72,7 +74,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
         table, done = _grade(request, inputs, results, intake, terminal)
     if request.report_format:
         run = ReportRun(folder, request.reports or folder / names.REPORTS, request.report_format, request.answers)
-        write_reports(run, terminal, request.jobs, request.timeout)
+        write_reports(run, terminal, request.jobs, max(request.timeout, _LEAST_SECONDS))
     if request.output_format is OutputFormat.JSON:
         from grader.report.class_json import render_class_json
 

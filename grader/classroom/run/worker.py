@@ -16,7 +16,7 @@ from grader.files.names import ARCHIVES
 from grader.files.reading import URDF_LIMIT
 from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, read_rubric
-from grader.submission.submission import Submission
+from grader.submission.submission import Opening, Submission
 from grader.submission.urdf import Absent, Unreadable
 from grader.text import enumerated
 
@@ -65,7 +65,7 @@ def _grade_one(context: ClassContext, task: Task) -> Graded:
         result = result._replace(digest=digest_of(opened.digest))
         if result.digest == task.graded:
             return result
-        submission = opened.submission(rubric, task.no_documents, context.arguments)
+        submission = opened.submission(rubric, Opening(arguments=context.arguments, no_documents=task.no_documents))
         if submission.students:
             raise InputError(students_refusal(submission))  # noqa: TRY301  it is handled like files that cannot be read
         report = grade(rubric, submission, context.parts, is_one_of_class=True)
@@ -87,7 +87,8 @@ def _grade_one(context: ClassContext, task: Task) -> Graded:
         return result._replace(verdict="errored", reason=fault)
     is_handed_out = bool(report.submission.another_robot)  # by the course, so that it is no equal work
     reason = _why_unreadable(submission)
-    result = result._replace(verdict="unreadable" if reason else "graded", reason=reason)
+    texts = submission.documents.converted
+    result = result._replace(verdict="unreadable" if reason else "graded", reason=reason, texts=texts)
     return result if is_handed_out else result._replace(work=forms_of(submission))
 
 
