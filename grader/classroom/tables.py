@@ -5,8 +5,7 @@ how they were written (which cells were quoted, the line ends, blank lines): so 
 values. An open quote, which csv accepts, is an error.
 
 What starts a formula is after OWASP's page on CSV injection: = + - @, a tab, a line break, the full-width forms of the
-four; also after spaces. A spreadsheet with the semicolon as separator begins a cell after each semicolon, quoted or
-not.
+four; also after spaces. With the semicolon as separator, a cell begins after each semicolon, quoted or not.
 """
 
 import codecs
@@ -74,12 +73,6 @@ class Table(NamedTuple):
         """Return the file's bytes. A character that the encoding lacks becomes an HTML character reference."""
         text = "".join(self.delimiter.join(row.cells) + row.end for row in self.rows)
         return self.bom + text.encode(self.encoding, "xmlcharrefreplace")
-
-    def with_columns(self, columns: Sequence[int]) -> "Table":
-        """Return the table with some of its columns, in their order; the cells and line breaks are unchanged."""
-        kept = sorted(columns)
-        rows = (row._replace(cells=tuple(row.cells[i] for i in kept if i < len(row.cells))) for row in self.rows)
-        return self._replace(rows=tuple(rows))
 
     def changed(self, row: TableRow, column: int, value: str) -> TableRow:
         """Return a row with another value in one cell, quoted if the old one was, or if necessary."""

@@ -87,16 +87,18 @@ def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOpt
     matched = {*of_row.values()}.union(*doubtful.values())
     missing = [name for at, name in enumerate(names) if cells[at] and at not in matched]
     notes += ((_MISSING, name, "has a grade or an excuse, but no row in the file") for name in missing)
-    table = file.table._replace(rows=tuple(filter(None, rows.values())))
+    kept = [row for row in rows.values() if row is not None]
     if options.only and "maximum" not in file.roles:
-        table = table.with_columns([*{*file.roles.values()}])
+        places = sorted({*file.roles.values()})
+        kept = [row._replace(cells=tuple(row.cells[at] for at in places if at < len(row.cells))) for row in kept]
     graded = [rows[row.number] is not row for row, _ in file.students if rows[row.number] is not None]
     count = f"column {header!r}: {sum(graded)} filled in, {len(graded) - sum(graded)} already the same"
     notes.sort(key=lambda note: note[0] not in _INCOMPLETE)
     changes = [f"{who}: {why}" for kind, who, why in notes if not kind]
     lines = [count, *first_lines(changes, _MAX_CHANGES), *by_reason(filter(itemgetter(0), notes)), *warnings]
     own = {grades[at].student.key: file.students[index][1] for index, at in of_row.items()}
-    return Filled(table.encoded(), [*map(printable, lines)], all(note[0] not in _INCOMPLETE for note in notes), own)
+    data = file.table._replace(rows=tuple(kept)).encoded()
+    return Filled(data, [*map(printable, lines)], all(note[0] not in _INCOMPLETE for note in notes), own)
 
 
 def by_reason(notes: Iterable[Note]) -> list[str]:
