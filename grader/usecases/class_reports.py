@@ -117,12 +117,9 @@ def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
     refuse_symlinks(folder, submissions)
     if folder.exists() and not folder.is_dir():
         raise InputError(f"cannot write files to {shown}: it is not a folder")
-    for submitted in submissions:
-        if folder.resolve() == submitted or submitted in folder.resolve().parents:
-            raise InputError(
-                f"cannot write files to {shown}: the next run would take them for a submission; "
-                "choose a folder outside of the class folder"
-            )
+    if not {folder.resolve(), *folder.resolve().parents}.isdisjoint(submissions):
+        why = "the next run would take them for a submission; choose a folder outside of the class folder"
+        raise InputError(f"cannot write files to {shown}: {why}")
 
 
 def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS) -> None:
@@ -132,16 +129,14 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
     """
     make_folder(run.folder)
     book = Class(run.gradebook)
-    keys = [one.student.key for one in book if one.graded is not None or one.has_final]
-    files = file_names(keys)
+    files = file_names([one.student.key for one in book if one.graded is not None or one.has_final])
     lost = render_reports(run._replace(time=book.run.time), files, terminal, jobs, timeout)
     if Format.HTML in run.formats:
         is_inside = run.folder == run.gradebook / names.REPORTS
         prefix = f"{names.REPORTS}/" * is_inside
         pages = {key: f"{prefix}{name}" for key, name in files.items() if key not in lost}
         write_class_page(book, run.gradebook if is_inside else run.folder, pages)
-    shown = printable_path(run.folder)
-    terminal.warn(f"{counted(len(files) - len(lost), 'report')} written to {shown}")
+    terminal.warn(f"{counted(len(files) - len(lost), 'report')} written to {printable_path(run.folder)}")
     for key, why in lost.items():
         terminal.warn(printable(f"no report for {key}: {why}"))
 
