@@ -1,9 +1,9 @@
 """The grades of a class as a table, one row a student: `grades.csv`, and `export csv`, which people may change."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from decimal import Decimal
 
 from grader.classroom.grades import Class, StudentGrade
-from grader.classroom.mark_import import exported_cell
 from grader.classroom.tables import CellValue
 from grader.grading.criterion import TOTAL
 from grader.grading.report import Result
@@ -38,18 +38,19 @@ def status_of(grade: StudentGrade) -> str:
 def _row(grade: StudentGrade, criteria: Iterable[str], is_exported: bool) -> list[CellValue]:
     student, report = grade.student, None if grade.is_excused else grade.report
     numbers: list[CellValue] = [None] * 5
-    results = {}
+    points = dict[str, Decimal | None].fromkeys(criteria)
     if report is not None:
         numbers = [report.score, report.max_score, grade.pending, grade.late.days, grade.late.points]
-        results = {row.criterion.id: row.points for row in report.results if not _is_undecided(row)}
-    points = {name: results.get(name) for name in criteria}
-    exported: list[CellValue] = []
-    if is_exported:
-        old = {**points, TOTAL: grade.total}
-        exported = [exported_cell({name: "" if one is None else format_points(one) for name, one in old.items()})]
+        points |= {row.criterion.id: row.points for row in report.results if not _is_undecided(row)}
+    exported = [exported_cell({**points, TOTAL: grade.total})] if is_exported else []
     digest = grade.graded.digest if grade.graded is not None else None
     head: list[CellValue] = [student.key, student.name, student.email, student.section, status_of(grade)]
     return [*head, *numbers, grade.total, grade.why_open, *points.values(), *exported, digest]
+
+
+def exported_cell(points: Mapping[str, Decimal | None]) -> str:
+    """Return the cell of the column `exported`: the points of criteria, as they are in their columns."""
+    return " ".join(f"{name}={'' if value is None else format_points(value)}" for name, value in points.items())
 
 
 def _is_undecided(result: Result) -> bool:

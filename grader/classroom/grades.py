@@ -13,7 +13,7 @@ from grader import __version__
 from grader.checks.outcome import Outcome
 from grader.classroom import folder as names
 from grader.classroom.lateness import Lateness, SubmissionTimes, lateness, read_time
-from grader.classroom.marks import Mark, Marks, read_marks
+from grader.classroom.marks import EXCUSED, Mark, Marks, read_marks
 from grader.classroom.results import Graded, Results, Run
 from grader.classroom.roster import Roster, Student, read_roster
 from grader.classroom.settings import read_settings
@@ -68,12 +68,12 @@ class StudentGrade:
     @property
     def is_excused(self) -> bool:
         """Whether the student is excused."""
-        return self.final is not None and self.final.kind == "excused"
+        return self.final is not None and self.final.value == EXCUSED
 
     @property
     def final_points(self) -> Decimal | None:
         """The points of the final mark; None without one."""
-        return self.final.points if self.final is not None and self.final.kind == "points" else None
+        return self.final.points if self.final is not None else None
 
     @property
     def has_final(self) -> bool:
@@ -214,7 +214,7 @@ class Class:
             days_late=0.0 if student.is_late is False and student.days_late is None else student.days_late,
         )
         own = self.marks.counting.get((key, DEADLINE))
-        late = lateness(self.rubric, times.extended(own.deadline if own is not None else ""), report.score, self.due)
+        late = lateness(self.rubric, times.extended(own.value if own is not None else ""), report.score, self.due)
         is_gone = key not in self.run.totals
         is_outdated = self.is_outdated or graded.context != self.run.context
         grade = StudentGrade(student, graded, report, late, final, older, is_gone, is_outdated, key in self.run.unclear)

@@ -12,14 +12,15 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from grader.classroom.tables import SIZE_LIMIT, Table, TableRow, numbered_rows, protected, read_table, unprotected
+from grader.classroom.tables import SIZE_LIMIT, Table, TableRow, protected, read_table, unprotected
 from grader.errors import InputError
 from grader.files.reading import read_capped, sha256_of
 from grader.names import folded
 from grader.text import enumerated, printable_path
 
 COLUMNS = ("time", "by", "student", "criterion", "points", "comment", "submission")
-Rows = list[tuple[int, dict[str, str]]]  # the line of each row, and its cells by the titles of their columns
+Cells = Mapping[str, str]  # of a row, by column
+Rows = list[tuple[str, Cells]]  # the place of each row, file and line, and its cells
 _TITLES = {*COLUMNS, "answer", "exported", "id"}  # known in any spelling
 SURPLUS = ""  # in place of a title: the cells that have none
 WITHDRAWN = "-"  # in place of points: no formula
@@ -31,21 +32,21 @@ _SAFE = re.compile(r"(?!(?:con|prn|aux|nul|com\d|lpt\d)$)[a-z0-9_]{1,40}")  # no
 def read_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], Rows]:
     """Return a CSV file, the titles of its columns, and its rows; raises InputError if two columns have one title."""
     table = read_table(data, shown, is_from_person=True)
-    (_, header), *rows = [*numbered_rows(table)] or [(1, TableRow(1, (), ""))]
-    titles = tuple(map(_title, header.values))
+    header, *rows = table.filled or [TableRow(1, 1, (), "")]
+    titles = tuple(name if (name := folded(title)) in _TITLES else title.strip() for title in header.values)
     if twice := [title for title, count in Counter(filter(None, titles)).items() if count > 1]:
         raise InputError(f"{shown} has two columns {twice[0]!r}")
-    return table, titles, [(line, _values(titles, row)) for line, row in rows]
+    return table, titles, [(f"{shown}:{row.line}", _cells(titles, row)) for row in rows]
 
 
-def _title(value: str) -> str:
-    return name if (name := folded(value)) in _TITLES else value.strip()
-
-
-def _values(titles: Sequence[str], row: TableRow) -> dict[str, str]:
+def _cells(titles: Sequence[str], row: TableRow) -> Cells:
     cells = [unprotected(_unix(value)) for value in row.values]
     untitled = [cell for title, cell in zip(titles, cells, strict=False) if not title] + cells[len(titles) :]
-    return {**dict(zip(titles, cells, strict=False)), SURPLUS: " ".join(untitled).strip()}
+    return {
+        **dict.fromkeys(COLUMNS, ""),
+        **dict(zip(titles, cells, strict=False)),
+        SURPLUS: " ".join(untitled).strip(),
+    }
 
 
 def _unix(text: str) -> str:
@@ -55,22 +56,20 @@ def _unix(text: str) -> str:
 def whole_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], Rows]:
     """Return the rows of a file of marks; raises InputError if the last mark in it may be cut.
 
-    The last row may be cut where it has no line break. It is refused if cells are missing, if its last cell is one of
-    a mark (12.5 cut to 12 is a wrong mark), or if a letter may be cut. A digest at the end is not used.
+    The last row may be cut where it has no line break: it is refused (12.5 cut to 12 is a wrong mark), unless its last
+    cell is the digest, which is not used then, or one of a person's own column.
     """
     table, titles, rows = read_rows(data, shown)
     if titles and not ({"student", "criterion"} <= {*titles} and {"points", "comment"} & {*titles}):
         raise InputError(f"the first line of {shown} must name the columns {enumerated(COLUMNS)}")
     last = table.rows[-1] if table.rows else None
-    if last is None or last.end or not any(value.strip() for value in last.values):
-        return table, titles, rows
-    title = (*titles, *([SURPLUS] * len(last.cells)))[len(last.cells) - 1]
-    is_cut = len(last.cells) < len(titles) or title in COLUMNS[:-1] or table.encoding == "windows-1252"
-    if is_cut or not rows:
-        where = f"{shown}:{rows[-1][0] if rows else 1}"
-        raise InputError(f"{where}: the last row may be incomplete: check it, and end it with a line break")
-    if title == COLUMNS[-1]:
-        rows[-1][1][title] = ""
+    if last is not None and not last.end and last in table.filled:
+        title = titles[len(last.cells) - 1] if len(last.cells) == len(titles) else COLUMNS[0]
+        if title in COLUMNS[:-1] or table.encoding == "windows-1252" or not rows:
+            where = f"{shown}:{last.line}"
+            raise InputError(f"{where}: the last row may be incomplete: check it, and end it with a line break")
+        if title == COLUMNS[-1]:
+            rows[-1] = rows[-1][0], {**rows[-1][1], title: ""}
     return table, titles, rows
 
 
@@ -120,18 +119,13 @@ def _encoded(data: bytes, rows: Sequence[Mapping[str, str]], shown: str) -> byte
     end = (table.rows[0].end if table.rows else "") or "\n"
     text = end if table.rows and not table.rows[-1].end else ""
     text += "" if titles else table.delimiter.join(COLUMNS) + end
-    points = " ".join(row.get("points", "") for _, row in old)
+    points = " ".join(row["points"] for _, row in old)
     has_comma = bool(re.search(r"\d,\d", points) or (table.delimiter == ";" and not re.search(r"\d\.\d", points)))
     for row in rows:
-        texts = {**row, "points": row["points"].replace(".", ",") if has_comma else row["points"]}
-        text += table.delimiter.join(_cell(texts.get(title, ""), table.delimiter) for title in titles or COLUMNS) + end
+        texts = {name: value if value == WITHDRAWN else protected(_unix(value)) for name, value in row.items()}
+        texts["points"] = texts["points"].replace(".", ",") if has_comma else texts["points"]
+        text += table.delimiter.join(table.cell(texts.get(title, "")) for title in titles or COLUMNS) + end
     return text.encode(table.encoding, "xmlcharrefreplace")
-
-
-def _cell(text: str, delimiter: str) -> str:
-    """Return a cell that no spreadsheet runs, in quotes if necessary."""
-    safe = text if text == WITHDRAWN else protected(_unix(text))
-    return '"' + safe.replace('"', '""') + '"' if re.search(rf'[{delimiter};\t"\r\n]', safe) else safe
 
 
 def mark_file(folder: Path, by: str) -> Path:

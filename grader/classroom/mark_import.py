@@ -1,15 +1,15 @@
 """Marks of many students in one CSV file: rows of a file of marks, a review sheet, or the grades as they were exported.
 
 A row of a sheet names an answer: it is a mark of the students with that answer, of those among them whom the column
-`students` names. An export becomes marks where a person
-changed a cell: the column `exported` has what the cells were, and `submission` the digest of what was graded.
+`students` names. An export becomes marks where a person changed a cell: the column `exported` has what the cells were,
+and `submission` the digest of what was graded.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from grader.classroom.mark_files import COLUMNS, read_rows
-from grader.classroom.marks import Cells, Key, Mark, Marks, collect, mark_in, maxima
+from grader.classroom.mark_files import COLUMNS, WITHDRAWN, Cells, read_rows
+from grader.classroom.marks import Key, Mark, Marks, collect, mark_in, maxima
 from grader.classroom.typed_names import as_number, criterion_of, find_typed, known, number_in
 from grader.errors import InputError
 from grader.grading.criterion import DEADLINE, TOTAL
@@ -30,46 +30,42 @@ class MarkImport(NamedTuple):
     digests: Mapping[str, str]
     answers: Mapping[tuple[str, str], Sequence[str]] = {}
 
-    def read(self, data: bytes, shown: str, by: str) -> tuple[list[Mark], int]:
-        """Return the new marks in a CSV file, and how many more count already; raises InputError like `read_marks`."""
+    def read(self, data: bytes, shown: str) -> tuple[list[Mark], int]:
+        """Return the new marks in a CSV file, without times, and how many count already; raises as `read_marks`."""
         _, titles, rows = read_rows(data, shown)
         has_marks = "criterion" in titles and {"student", "answer"} & {*titles} and {"points", "comment"} & {*titles}
         if not (has_marks or {"id", "exported"} <= {*titles}):
             raise InputError(f"the first line of {shown} must name the columns {enumerated(COLUMNS[2:6])}")
-        cells = ((f"{shown}:{line}", {**dict.fromkeys(COLUMNS, ""), **values}) for line, values in rows)
         mistakes: list[str] = []
-        found = collect(cells, self.marks_in, mistakes, mistakes).newest
-        new = {key: mark for key, mark in found.items() if not self._is_same(key, mark)}
-        marks = [mark._replace(by=mark.by or by, time=self.marks.next_time(key)) for key, mark in new.items()]
-        return marks, len(found) - len(new)
+        found = collect(rows, self.marks_in, mistakes, mistakes).newest
+        new = [mark for key, mark in found.items() if not self._is_same(key, mark)]
+        return new, len(found) - len(new)
 
     def _is_same(self, key: Key, mark: Mark) -> bool:
-        nothing = Mark("", "", *key, kind="withdrawn")
-        before = self.marks.counting.get(key) or self.marks.comments.get(key, nothing)
-        is_current = mark.kind == "comment" or before.submission in ("", mark.submission)
+        before = self.marks.counting.get(key) or self.marks.comments.get(key) or Mark("", "", *key, WITHDRAWN)
+        is_current = not mark.value or before.submission in ("", mark.submission)
         return is_current and (before.value, before.comment) == (mark.value or before.value, mark.comment)
 
     def marks_in(self, row: Cells, place: str = "") -> Iterator[Mark]:
         """Yield the marks in a row, without a time; raises InputError."""
-        most = maxima(self.rubric)
-        for key, points, comment in self._entries(row):
-            student, criterion = key
-            is_final = criterion in (TOTAL, DEADLINE)
-            if not is_final and student not in self.digests:
-                raise InputError(f"{student} has submitted nothing that could be marked: `{TOTAL}` is a final mark")
+        for student, criterion, points, comment in self._entries(row):
+            most = maxima(self.rubric)[criterion if criterion in (TOTAL, DEADLINE) else self._id(student, criterion)]
             digest = row["submission"] or ("" if criterion == DEADLINE else self.digests.get(student, ""))
             cells = {**row, "points": points, "comment": comment, "submission": digest, "time": ""}
-            yield from mark_in(
-                cells, key, most[criterion if is_final else criterion_of(self.rubric, criterion).id], place
-            )
+            yield mark_in(cells, (student, criterion), most, place)
 
-    def _entries(self, row: Cells) -> Iterator[tuple[Key, str, str]]:
+    def _id(self, student: str, criterion: str) -> str:
+        if student not in self.digests:
+            raise InputError(f"{student} has submitted nothing that could be marked: `{TOTAL}` is a final mark")
+        return criterion_of(self.rubric, criterion).id
+
+    def _entries(self, row: Cells) -> Iterator[tuple[str, str, str, str]]:
         """Yield the student and criterion of each mark in a row, the points as text, and the comment."""
         if "exported" in row:
             yield from self._changed(row)
         elif row["points"] or row["comment"]:
             for student in self._students(row):
-                yield (student, row["criterion"]), row["points"], row["comment"]
+                yield student, row["criterion"], row["points"], row["comment"]
 
     def _students(self, row: Cells) -> Sequence[str]:
         if "answer" in row:
@@ -83,7 +79,7 @@ class MarkImport(NamedTuple):
             return [known("student", cell, keys)]
         return [find_typed(self.students, cell, "; `grades.csv` lists all students").key]
 
-    def _changed(self, row: Cells) -> Iterator[tuple[Key, str, str]]:
+    def _changed(self, row: Cells) -> Iterator[tuple[str, str, str, str]]:
         """Yield the cells of an export that a person changed; a comment stays."""
         if "=" not in row["exported"]:
             raise InputError(f"{quoted(row['exported'])} in the column `exported` is not what was exported")
@@ -97,12 +93,7 @@ class MarkImport(NamedTuple):
                 raise InputError(f"{criterion} was {old} and is empty: write `-` to withdraw a mark")
             if now is not None and not (_are_equal(now.value, old) or _are_equal(now.value, new)):
                 raise InputError(f"{criterion} was {old} when it was exported, and is {now.value}{by_name(now.by)} now")
-            yield (student, criterion), new, now.comment if now is not None else ""
-
-
-def exported_cell(values: Cells) -> str:
-    """Return the cell of the column `exported`: the values of criteria, as they are in their columns."""
-    return " ".join(f"{criterion}={value}" for criterion, value in values.items())
+            yield student, criterion, new, now.comment if now is not None else ""
 
 
 def _are_equal(text: str, other: str) -> bool:

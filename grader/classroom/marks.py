@@ -6,17 +6,17 @@ Different rows that have no order are refused; equal rows are one. A comment wit
 
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from datetime import MAXYEAR, UTC, datetime, timedelta
 from decimal import Decimal
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 from grader.classroom.lateness import read_time
-from grader.classroom.mark_files import COLUMNS, SURPLUS, WITHDRAWN, append_rows, whole_rows
+from grader.classroom.mark_files import COLUMNS, SURPLUS, WITHDRAWN, Cells, append_rows, whole_rows
 from grader.classroom.tables import SIZE_LIMIT
-from grader.classroom.typed_names import NotCountedError, known, read_points
+from grader.classroom.typed_names import NotCountedError, known, number_in, read_points
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import DEADLINE, TOTAL
@@ -28,14 +28,13 @@ EXCUSED = "excused"  # in place of points, for TOTAL
 _DIGEST = re.compile(r"d[0-9a-f]+")
 _MAX_MISTAKES = 20
 
-Kind = Literal["points", "excused", "withdrawn", "deadline", "comment"]
 Key = tuple[str, str]  # a student and a criterion
-Cells = Mapping[str, str]  # of a row, by column
 
 
 class Mark(NamedTuple):
     """A row: what a grader gave for a criterion or for TOTAL, or a student's DEADLINE.
 
+    `value` is the text in the column of points: points, EXCUSED, WITHDRAWN, a time, or empty for a comment alone.
     `time` is in UTC, or empty; `submission` is the digest of what was marked, or empty; `place` is the file and line.
     """
 
@@ -43,21 +42,18 @@ class Mark(NamedTuple):
     by: str
     student: str
     criterion: str
-    points: Decimal | None = None
+    value: str = ""
     comment: str = ""
     submission: str = ""
-    kind: Kind = "points"
     place: str = ""
-    deadline: str = ""
 
     @property
-    def value(self) -> str:
-        """The text in the column of points."""
-        points = "" if self.points is None else format_points(self.points)
-        return {"excused": EXCUSED, "withdrawn": WITHDRAWN}.get(self.kind, self.deadline or points)
+    def points(self) -> Decimal | None:
+        """The points; None for another value."""
+        return number_in(self.value) if self.criterion != DEADLINE else None
 
 
-Reader = Callable[[Cells, str], Iterator[Mark]]  # of the marks in the cells of a row, at a place
+Reader = Callable[[Cells, str], Iterable[Mark]]  # of the marks in the cells of a row, at a place
 
 
 class Marks(NamedTuple):
@@ -74,10 +70,10 @@ class Marks(NamedTuple):
     def add(self, key: Key, rows: Sequence[Mark]) -> None:
         """Add all rows of a student's criterion, in the order of files; raises InputError if they have no order."""
         newest = self.newest[key] = _newest(rows)
-        counting = _newest([mark for mark in rows if mark.kind != "comment"] or rows)
-        if counting.kind not in ("comment", "withdrawn"):
+        counting = _newest([mark for mark in rows if mark.value] or rows)
+        if counting.value not in ("", WITHDRAWN):
             self.counting[key] = counting._replace(comment=newest.comment)
-        elif newest.kind == "comment":
+        elif not newest.value:
             self.comments[key] = newest
 
     def next_time(self, key: Key) -> str:
@@ -104,9 +100,9 @@ def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
     """Return the marks in the files of a folder; raises InputError with a line for each row that cannot be read."""
     most, keys = maxima(rubric), dict.fromkeys(students)
 
-    def read(cells: Cells, place: str) -> Iterator[Mark]:
+    def read(cells: Cells, place: str) -> list[Mark]:
         key = known("student", cells["student"], keys), known("criterion", cells["criterion"], most)
-        return mark_in(cells, key, most[key[1]], place)
+        return [mark_in(cells, key, most[key[1]], place)]
 
     mistakes: list[str] = []
     return collect(_rows(folder, mistakes), read, mistakes, [])
@@ -119,7 +115,8 @@ def collect(rows: Iterable[tuple[str, Cells]], read: Reader, mistakes: list[str]
     for place, cells in rows:
         try:
             for mark in read(cells, place):
-                found[mark.student, mark.criterion].append(mark)
+                if mark.value or mark.comment:
+                    found[mark.student, mark.criterion].append(mark)
         except NotCountedError as error:
             ignored.append(printable(f"{place}: {error}"))
         except InputError as error:
@@ -136,16 +133,13 @@ def collect(rows: Iterable[tuple[str, Cells]], read: Reader, mistakes: list[str]
 
 def _rows(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, Cells]]:
     """Yield the place and the cells of each row of the files in a folder; files that cannot be read are mistakes."""
-    for path in sorted(folder.absolute().iterdir()) if folder.exists() else ():
+    for path in sorted(folder.absolute().glob("[!.]*.[cC][sS][vV]")):
         shown = printable_path(Path(folder.name, path.name))
-        if path.suffix.lower() == ".csv" and not path.name.startswith("."):
-            try:
-                data = read_capped(path, SIZE_LIMIT, shown=shown, top=str(path.parent), advice="")
-                rows = [(line, {**dict.fromkeys(COLUMNS, ""), **cells}) for line, cells in whole_rows(data, shown)[2]]
-            except InputError as error:
-                mistakes.append(str(error))
-            else:
-                yield from ((f"{shown}:{line}", cells) for line, cells in rows if any(map(cells.get, COLUMNS)))
+        try:
+            data = read_capped(path, SIZE_LIMIT, shown=shown, top=str(path.parent), advice="")
+            yield from (row for row in whole_rows(data, shown)[2] if any(map(row[1].get, COLUMNS)))
+        except InputError as error:
+            mistakes.append(str(error))
 
 
 def maxima(rubric: Rubric) -> dict[str, Decimal]:
@@ -154,23 +148,20 @@ def maxima(rubric: Rubric) -> dict[str, Decimal]:
     return {**most, TOTAL: sum((row.points for row in rubric.criteria), Decimal(0)), DEADLINE: Decimal(0)}
 
 
-def mark_in(cells: Cells, key: Key, most: Decimal, place: str) -> Iterator[Mark]:
-    """Yield the mark in a row, if it has points or a comment; raises InputError, or NotCountedError."""
-    text, submission = cells["points"], cells["submission"]
+def mark_in(cells: Cells, key: Key, most: Decimal, place: str) -> Mark:
+    """Return the mark in a row; raises InputError, or NotCountedError."""
+    value, submission = cells["points"], cells["submission"]
     if cells[SURPLUS]:
         raise InputError(f"{quoted(cells[SURPLUS])} is in no column: a cell that contains a delimiter needs quotes")
     if submission and not _DIGEST.fullmatch(submission):
         raise InputError(f"{quoted(submission)} is not the digest of a submission")
-    mark = Mark(_time(cells["time"]), cells["by"], *key, None, cells["comment"], submission, "comment", place)
-    if text == WITHDRAWN or (text.casefold() == EXCUSED and key[1] == TOTAL):
-        yield mark._replace(kind="withdrawn" if text == WITHDRAWN else "excused")
-    elif text and key[1] == DEADLINE:
-        read_time(text)
-        yield mark._replace(kind="deadline", deadline=text)
-    elif text:
-        yield mark._replace(kind="points", points=read_points(text, key[1], most))
-    elif mark.comment:
-        yield mark
+    if value.casefold() == EXCUSED and key[1] == TOTAL:
+        value = EXCUSED
+    elif value not in ("", WITHDRAWN) and key[1] == DEADLINE:
+        read_time(value)
+    elif value not in ("", WITHDRAWN):
+        value = format_points(read_points(value, key[1], most))
+    return Mark(_time(cells["time"]), cells["by"], *key, value, cells["comment"], submission, place)
 
 
 def _time(text: str) -> str:

@@ -5,8 +5,7 @@ how they were written (which cells were quoted, the line ends, blank lines): so 
 values. An open quote, which csv accepts, is an error.
 
 What starts a formula is after OWASP's page on CSV injection: = + - @, a tab, a line break, the full-width forms of the
-four; also after spaces. A spreadsheet with the semicolon as separator begins a cell after each semicolon, quoted or
-not.
+four; also after spaces. With the semicolon as separator, a cell begins after each semicolon, quoted or not.
 """
 
 import codecs
@@ -22,7 +21,6 @@ from grader.files.reading import capped
 from grader.text import format_points
 
 SIZE_LIMIT = 16 * 1024 * 1024  # bytes
-ROW_LIMIT = 100_000
 CELL_LIMIT = 1_000_000
 DELIMITERS = ",;\t"
 _AS_TEXT = re.compile(r'\A="(.*)"\Z', re.DOTALL)  # keeps a spreadsheet from reading a text as a number
@@ -33,12 +31,13 @@ _BOMS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs
 
 
 class TableRow(NamedTuple):
-    """One row: `number` counts from 1, the cells are as in the file, `end` is the line break after them.
+    """One row: `number` counts from 1, `line` is the line where it begins, `end` is the line break after it.
 
-    A blank line has no cells.
+    The cells are as in the file. A blank line has none.
     """
 
     number: int
+    line: int
     cells: tuple[str, ...]
     end: str
 
@@ -65,22 +64,25 @@ class Table(NamedTuple):
         """The cells of the first row, without surrounding spaces."""
         return tuple(value.strip() for value in self.rows[0].values) if self.rows else ()
 
+    @property
+    def filled(self) -> list[TableRow]:
+        """The rows that are not empty, and do not say what the separator is to Excel."""
+        return [row for row in self.rows if any(value.strip() for value in row.values) and row.value(0) != "sep="]
+
     def encoded(self) -> bytes:
         """Return the file's bytes. A character that the encoding lacks becomes an HTML character reference."""
         text = "".join(self.delimiter.join(row.cells) + row.end for row in self.rows)
         return self.bom + text.encode(self.encoding, "xmlcharrefreplace")
 
-    def with_columns(self, columns: Sequence[int]) -> "Table":
-        """Return the table with some of its columns, in their order; the cells and line breaks are unchanged."""
-        kept = sorted(columns)
-        rows = (row._replace(cells=tuple(row.cells[i] for i in kept if i < len(row.cells))) for row in self.rows)
-        return self._replace(rows=tuple(rows))
-
     def changed(self, row: TableRow, column: int, value: str) -> TableRow:
         """Return a row with another value in one cell, quoted if the old one was, or if necessary."""
-        quoted = row.cells[column].startswith('"') or re.search(rf'[{self.delimiter};\t"\r\n]|^\s|\s$', value)
-        raw = '"' + value.replace('"', '""') + '"' if quoted else value
-        return row._replace(cells=(*row.cells[:column], raw, *row.cells[column + 1 :]))
+        new = self.cell(value, is_quoted=row.cells[column].startswith('"'))
+        return row._replace(cells=(*row.cells[:column], new, *row.cells[column + 1 :]))
+
+    def cell(self, value: str, *, is_quoted: bool = False) -> str:
+        """Return a cell with a value, quoted if necessary."""
+        is_quoted = is_quoted or re.search(rf'[{self.delimiter};\t"\r\n]|^\s|\s$', value) is not None
+        return '"' + value.replace('"', '""') + '"' if is_quoted else value
 
 
 def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Table:
@@ -103,18 +105,9 @@ def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Tabl
 
 
 def rows_with_lines(data: bytes, shown: str) -> Iterator[tuple[int, list[str]]]:
-    """Yield the line where each row of a person's file begins, unless it is empty, and its cells, spaces normalised."""
-    for line, row in numbered_rows(read_table(data, shown, is_from_person=True)):
-        yield line, [" ".join(_AS_TEXT.sub(r"\1", value.strip()).split()) for value in row.values]
-
-
-def numbered_rows(table: Table) -> Iterator[tuple[int, TableRow]]:
-    """Yield the line where each row begins, and the row, unless it is empty or says what the separator is to Excel."""
-    line = 1
-    for row in table.rows:
-        if any(value.strip() for value in row.values) and row.value(0) != "sep=":
-            yield line, row
-        line += 1 + sum(len(cell.splitlines()) - 1 for cell in row.cells if cell[:1] == '"')
+    """Yield the line where each row of a person's file begins, and its cells, spaces normalised."""
+    for row in read_table(data, shown, is_from_person=True).filled:
+        yield row.line, [" ".join(_AS_TEXT.sub(r"\1", value.strip()).split()) for value in row.values]
 
 
 def _decode(data: bytes, shown: str) -> tuple[bytes, str, str]:
@@ -134,12 +127,10 @@ def _value(cell: str) -> str:
 
 def _rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
     pattern = re.compile(rf'((?:{_QUOTED.pattern}|(?!"))[^{delimiter}\r\n]*+)({delimiter}|\r\n|\r|\n|\Z)')
-    at, count = 0, 0
+    at, line, count = 0, 1, 0
     rows: list[TableRow] = []
     cells: list[str] = []
     while at < len(text) or cells:  # a text that ends after a delimiter has one more empty cell
-        if not cells and len(rows) >= ROW_LIMIT:
-            raise InputError(f"{shown} has more than {ROW_LIMIT} rows, the limit")
         found = pattern.match(text, at)
         if found is None:
             raise InputError(f"{shown} is not a CSV file: a quotation mark in row {len(rows) + 1} is never closed")
@@ -149,7 +140,8 @@ def _rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
             raise InputError(f"{shown} has more than {CELL_LIMIT} cells, the limit")
         at = found.end()
         if found[2] != delimiter:
-            rows.append(TableRow(len(rows) + 1, () if cells == [""] else tuple(cells), found[2]))
+            rows.append(TableRow(len(rows) + 1, line, () if cells == [""] else tuple(cells), found[2]))
+            line += 1 + sum(len(cell.splitlines()) - 1 for cell in cells if cell[:1] == '"')
             cells = []
     return tuple(rows)
 

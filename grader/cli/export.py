@@ -46,17 +46,14 @@ def export(
     the late penalty. For Canvas, Moodle, Blackboard and Brightspace, give the file that the LMS exported with --into.
     Only the grade cells (and Moodle's feedback) change. Rows without a grade are omitted, so that the import overwrites
     no other grade. The maximum in the file must be the rubric's. Exits 1 if --strict finds an unmatched row or student,
-    or a grade that the LMS would refuse.
-
-    With html, the folder contains a page for each student, and the class's page index.html, which is for graders only.
+    or a grade that the LMS would refuse. With html, the folder contains a page for each student, and the class's page
+    index.html, which is for graders only.
 
     Examples:
 
       grader export csv --gradebook lab6-grades --excel --output grades.csv
 
       grader export canvas --gradebook lab6-grades --into lms.csv > upload.csv
-
-      grader export canvas --gradebook lab6-grades --feedback feedback.zip
 
       grader export moodle --gradebook lab6-grades --feedback feedback.zip
 
@@ -71,8 +68,6 @@ def export(
       feedback files".
 
       A zero for a student who submitted nothing: `grader mark STUDENT total 0` first.
-
-      Grades that still need manual grading are omitted: grade them with `grader review`, or pass --pending-as-zero.
     """
     options = locals()  # named like the fields of the request
     from grader.usecases.export import ExportRequest

@@ -48,15 +48,16 @@ def mark(
 
       grader mark --import marks.csv --gradebook lab6-grades
     """
-    from grader.usecases.manual_marks import MarkRequest, give_mark, import_marks, mark_missing
+    from grader.usecases.manual_marks import give_mark, import_marks, mark_missing
 
     if file is not None:
         if student or criterion or points or comment or missing:
             raise InputError("--import takes no argument and no other option but --by")
         return import_marks(gradebook, file, by)
+    row = {"student": student, "criterion": criterion, "points": points, "comment": comment, "by": by}
     if missing:  # in place of the student
-        return mark_missing(gradebook, MarkRequest("", student, criterion, comment, by))
-    return give_mark(gradebook, MarkRequest(student, criterion, points, comment, by), warn)
+        return mark_missing(gradebook, {**row, "criterion": student, "points": criterion})
+    return give_mark(gradebook, row, warn)
 
 
 def review(

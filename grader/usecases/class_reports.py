@@ -1,6 +1,6 @@
 """Write a report for each student of a class, and the class's page beside reports in HTML."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import NamedTuple
@@ -20,7 +20,7 @@ from grader.grading.hints.hinting import hinted
 from grader.grading.report import Report, Result
 from grader.report.formats import Format, render
 from grader.text import by_name, counted, counted_points, enumerated, format_points, printable, printable_path
-from grader.usecases.report_names import CLASS_PAGE, INDEX, file_names, write_class_page, write_index
+from grader.usecases.report_names import file_names, write_class_page
 from grader.usecases.saves import address
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import make_folder, refuse_symlinks, save
@@ -36,7 +36,7 @@ _MOVED = (
 class ReportRun(NamedTuple):
     """The reports to write of a gradebook into a folder; `answers` is the file of the model answers.
 
-    `time` is that of the newest run: workers read the gradebook once for it. Feedback always says who graded.
+    `time` is that of the newest run: workers read the gradebook once for it.
     """
 
     gradebook: Path
@@ -44,7 +44,6 @@ class ReportRun(NamedTuple):
     formats: tuple[Format, ...]
     answers: Path | None = None
     time: str = ""
-    is_feedback: bool = False
 
 
 class _Task(NamedTuple):
@@ -55,12 +54,11 @@ class _Task(NamedTuple):
     has_hints: bool = True
 
 
-def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True, feedback: bool = False) -> Report:
+def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True) -> Report:
     """Return the report on a student's submission, with the marks, the grade and notes.
 
-    There is a note for a final mark, an excuse, a comment and a late penalty. Another one says who graded if a person
-    did, and always in `feedback`. Without notes, the report is the same as that of `grader grade`. A submission that
-    has changed since has its points only.
+    There is a note for a final mark, an excuse, a comment, a late penalty, and who graded if a person did. Without
+    notes, the report is the same as that of `grader grade`. A submission that has changed since has its points only.
     """
     if grade.graded is not None:
         report = book.with_marks(_again(book, grade.graded, has_hints=has_hints), grade.graded)[0]
@@ -71,9 +69,30 @@ def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True, feedb
     is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
     if grade.is_excused or (is_changed and grade.total is not None):
         counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final_points is not None)
-    graders = graders_of(grade, report, feedback=feedback)
-    notes = (*_whole(grade), *([f"Graded {graders}."] if graders else []), *_late(grade))
-    return report._replace(notes=(*report.notes, *notes), grade=counting)
+    return report._replace(notes=(*report.notes, *notes_of(grade, report)), grade=counting)
+
+
+def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
+    """Yield the sentences about the mark, the excuse or the comment of the whole submission, graders, and lateness."""
+    mark, late = grade.final, grade.late
+    people = {row.manual_mark.by for row in report.results if row.manual_mark is not None}
+    if mark is not None:
+        by, what = by_name(mark.by), f"Comment{by_name(mark.by)}:"
+        if grade.is_excused:
+            what = f"Excused{by}."
+        elif mark.points is not None:
+            points = counted_points(mark.points)
+            what = f"Final mark: {points}, given{by or ' manually'} instead of the sum of the criteria."
+        yield " ".join((what, *mark.comment.split()))
+    if people and not grade.has_final:
+        is_automatic = any(not (row.manual_mark or row.is_open) for row in report.results)
+        names = by_name(enumerated(sorted(filter(None, people))))
+        yield f"Graded {'automatically, and ' * is_automatic}manually{names}."
+    if late.points and grade.total is not None:
+        points, total = format_points(-late.points), format_points(grade.total)
+        yield f"{late.reason}: the late penalty is {points} points, the grade is {total}"
+    elif late.reason:
+        yield late.reason
 
 
 def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
@@ -92,56 +111,15 @@ def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
         return report
 
 
-def _whole(grade: StudentGrade) -> list[str]:
-    """Return the sentence about the mark, the excuse or the comment of the whole submission."""
-    mark = grade.final
-    if mark is None:
-        return []
-    words = " ".join(mark.comment.split())
-    by, comment = by_name(mark.by), f" {words}" if words else ""
-    if mark.points is not None:
-        points = counted_points(mark.points)
-        return [f"Final mark: {points}, given{by or ' manually'} instead of the sum of the criteria.{comment}"]
-    return [f"Excused{by}.{comment}" if grade.is_excused else f"Comment{by}:{comment}"]
-
-
-def graders_of(grade: StudentGrade, report: Report, *, feedback: bool = True) -> str:
-    """Return who graded, the checks or people; empty if nothing is graded, or only by checks and not for `feedback`."""
-    people = {row.manual_mark.by for row in report.results if row.manual_mark is not None}
-    decided = [row for row in report.results if row.manual_mark is None and not row.is_open]
-    is_automatic = bool(decided) and grade.graded is not None
-    if grade.final_points is not None and grade.final is not None:
-        people, is_automatic = {grade.final.by}, False
-    if not people:
-        return "automatically" * (feedback and is_automatic)
-    manually = f"manually{by_name(enumerated(sorted(filter(None, people))))}"
-    return f"automatically, and {manually}" if is_automatic else manually
-
-
-def _late(grade: StudentGrade) -> list[str]:
-    if not grade.late.reason:
-        return []
-    penalty = format_points(-grade.late.points)
-    total = format_points(grade.total) if grade.total is not None else ""
-    more = f": the late penalty is {penalty} points, the grade is {total}" if grade.late.points else ""
-    return [f"{grade.late.reason}{more}"]
-
-
-def refuse_report_folder(folder: Path, formats: Sequence[Format], submissions: Sequence[Path]) -> None:
+def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
     """Raise InputError if reports cannot be written to a folder, or the next run would read it as a submission."""
     shown = printable_path(folder)
     refuse_symlinks(folder, submissions)
     if folder.exists() and not folder.is_dir():
         raise InputError(f"cannot write files to {shown}: it is not a folder")
-    for submitted in submissions:
-        if folder.resolve() == submitted or submitted in folder.resolve().parents:
-            raise InputError(
-                f"cannot write files to {shown}: the next run would take them for a submission; "
-                "choose a folder outside of the class folder"
-            )
-    if Format.HTML in formats and (folder / CLASS_PAGE).exists() and not (folder / INDEX).exists():
-        page = printable_path(folder / CLASS_PAGE)
-        raise InputError(f"cannot write {page}: it exists, and grader did not write it; choose another folder")
+    if not {folder.resolve(), *folder.resolve().parents}.isdisjoint(submissions):
+        why = "the next run would take them for a submission; choose a folder outside of the class folder"
+        raise InputError(f"cannot write files to {shown}: {why}")
 
 
 def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS) -> None:
@@ -151,26 +129,23 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
     """
     make_folder(run.folder)
     book = Class(run.gradebook)
-    keys = [one.student.key for one in book if one.graded is not None or one.has_final]
-    files = file_names(keys)
-    write_index(run.folder, files)
-    lost = render_reports(run._replace(time=book.run.time), files, terminal, jobs or processors(), timeout)
+    files = file_names([one.student.key for one in book if one.graded is not None or one.has_final])
+    lost = render_reports(run._replace(time=book.run.time), files, terminal, jobs, timeout)
     if Format.HTML in run.formats:
         is_inside = run.folder == run.gradebook / names.REPORTS
         prefix = f"{names.REPORTS}/" * is_inside
         pages = {key: f"{prefix}{name}" for key, name in files.items() if key not in lost}
         write_class_page(book, run.gradebook if is_inside else run.folder, pages)
-    shown = printable_path(run.folder)
-    terminal.warn(f"{counted(len(files) - len(lost), 'report')} written to {shown}")
+    terminal.warn(f"{counted(len(files) - len(lost), 'report')} written to {printable_path(run.folder)}")
     for key, why in lost.items():
         terminal.warn(printable(f"no report for {key}: {why}"))
 
 
 def render_reports(
-    run: ReportRun, files: Mapping[str, str], terminal: Terminal, workers: int, timeout: float = _SECONDS
+    run: ReportRun, files: Mapping[str, str], terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS
 ) -> dict[str, str]:
     """Write the reports of students, by their file names; return who has none, and why. Raises as `write_reports`."""
-    lost = dict[str, str]()
+    lost, workers = dict[str, str](), jobs or processors()
 
     def again(task: _Task, _: WorkerError) -> _Task | None:
         return task._replace(has_hints=False) if task.has_hints else None
@@ -196,7 +171,7 @@ def _write_some(run: ReportRun, tasks: Sequence[_Task]) -> list[tuple[str, str]]
     """Write the reports of some students; return the students."""
     book = _class(run)
     for task in tasks:
-        report = report_of(book, book.grade(task.key), has_hints=task.has_hints, feedback=run.is_feedback)
+        report = report_of(book, book.grade(task.key), has_hints=task.has_hints)
         picture = address(f"{task.name}.{Format.SVG.ending}") if Format.SVG in run.formats else ""
         for kind in run.formats:
             save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind, picture=picture))

@@ -1,5 +1,6 @@
 """Export the current grades: as CSV, JSON or pages, into a file of an LMS, and the reports as feedback for an LMS."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import ROUND_FLOOR, Decimal
 from pathlib import Path
@@ -11,11 +12,10 @@ from grader.classroom.grade_table import grade_table
 from grader.classroom.grades import Class, Reason, StudentGrade
 from grader.classroom.lms.comments import comment_html, lost_points
 from grader.classroom.lms.feedback_zip import canvas_names, moodle_names, write_feedback
-from grader.classroom.lms.fill import by_reason, fill, participants
+from grader.classroom.lms.fill import Filled, FillOptions, by_reason, fill
 from grader.classroom.lms.forms import FORMS
-from grader.classroom.lms.grade_file import FillOptions
-from grader.classroom.lms.owners import ClassGrade, Note
-from grader.classroom.run.pool import processors
+from grader.classroom.lms.owners import ClassGrade
+from grader.classroom.roster import Student
 from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.errors import GraderError, InputError
 from grader.files.reading import read_capped
@@ -54,13 +54,12 @@ class ExportRequest:
 def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]:
     """Export the grades to the output file; return what to print, and the exit code. Raises GraderError."""
     _refuse_options(request)
-    _refuse_files(request)
     book = Class(request.gradebook)
     roots = book.settings.roots(book.folder)
     if request.target == "html":
         folder = request.output or book.folder / names.REPORTS
         if request.output is not None:
-            class_reports.refuse_report_folder(folder, (Format.HTML,), roots)
+            class_reports.refuse_report_folder(folder, roots)
         class_reports.write_reports(ReportRun(book.folder, folder, (Format.HTML,)), terminal)
         return b"", ExitCode.PASSED
     for path in filter(None, (request.output, request.feedback)):
@@ -68,38 +67,41 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
         if book.folder.resolve() in path.resolve().parents:
             raise InputError(f"cannot write {printable_path(path)}: the gradebook is written by its own commands")
     warn_of_ignored(book, terminal.warn)
-    data, is_complete = _data(request, book, terminal)
-    if request.strict and (book.marks.ignored or not is_complete):
+    exported = _exported(request, book, terminal)
+    if request.strict and (book.marks.ignored or not exported.is_complete):
         terminal.warn("nothing was written, because of --strict: marks do not count, or rows or students are unmatched")
         return b"", ExitCode.FAILED
     if request.feedback is not None:
-        save_bytes(request.feedback, _feedback(request, book, terminal), roots)
+        save_bytes(request.feedback, _feedback(request, book, exported.rows, terminal), roots)
     if request.output is None:
-        return data, ExitCode.PASSED
-    save_bytes(request.output, data, roots)
+        return exported.data, ExitCode.PASSED
+    save_bytes(request.output, exported.data, roots)
     return b"", ExitCode.PASSED
 
 
-def _data(request: ExportRequest, book: Class, terminal: Terminal) -> tuple[bytes, bool]:
-    """Return the exported file, empty if only feedback is asked for, and whether everybody is in it."""
+def _exported(request: ExportRequest, book: Class, terminal: Terminal) -> Filled:
+    """Return the exported file, empty if only feedback is asked for."""
     if request.target == "csv":
-        return _BOM * request.excel + write_table(*grade_table(book, book, is_exported=True)).encode(), True
+        table = write_table(*grade_table(book, book, is_exported=True)).encode()
+        return Filled(_BOM * request.excel + table)
     if request.target == "json":
         from grader.report.class_json import render_class_json
 
-        return render_class_json(book).encode(), True
+        return Filled(render_class_json(book).encode())
     if request.into is None:
-        return b"", True
-    form = FORMS[request.target]
+        return Filled()
+    form, lab = FORMS[request.target], (book.rubric.title, book.rubric.id)
+    shown = printable_path(request.into)
+    options = FillOptions(_maximum(book), lab, request.column, request.any_maximum, request.only, shown)
     grades = [_class_grade(book, one, request, has_comment="comment" in form.columns) for one in book]
-    filled = fill(read_capped(request.into, SIZE_LIMIT, advice=""), grades, form, _options(request, book))
-    older = (Note(Reason.OLDER_MARKS, one.student.key, ", ".join(one.older)) for one in book if one.older)
+    filled = fill(read_capped(request.into, SIZE_LIMIT, advice=""), grades, form, options)
+    older = ((Reason.OLDER_MARKS, one.student.key, ", ".join(one.older)) for one in book if one.older)
     for line in [*filled.lines, *map(printable, by_reason(older))]:
         terminal.warn(line)
-    return filled.data, filled.is_complete
+    return filled
 
 
-def _class_grade(book: Class, grade: StudentGrade, request: ExportRequest, *, has_comment: bool = False) -> ClassGrade:
+def _class_grade(book: Class, grade: StudentGrade, request: ExportRequest, *, has_comment: bool) -> ClassGrade:
     """Return a grade as it is published; points that need manual grading count as zero with --pending-as-zero."""
     is_only_pending = grade.pending and grade.why_open.endswith("manual grading")
     is_published = not grade.why_open or (request.pending_as_zero and is_only_pending)
@@ -110,75 +112,55 @@ def _class_grade(book: Class, grade: StudentGrade, request: ExportRequest, *, ha
 
 def _comment(book: Class, grade: StudentGrade, total: Decimal) -> str:
     report = class_reports.report_of(book, grade, has_hints=False)
-    lines = [] if grade.has_final else [*lost_points(report.results)]
-    if grade.late.points:
-        lines.append(f"Late: {format_points(grade.late.points)}. {grade.late.reason}")
-    if grade.final is not None and grade.final.comment:
-        lines.append(f"Comment: {grade.final.comment}")
-    graders = class_reports.graders_of(grade, report) or "automatically"
+    lost = () if grade.has_final else lost_points(report.results)
     exported = format_points(total.quantize(Decimal("0.01"), ROUND_FLOOR))
-    return comment_html(f"Graded {graders}: {exported} of {format_points(_maximum(book))} points.", lines)
+    opening = f"Grade: {exported} of {format_points(_maximum(book))} points."
+    return comment_html(opening, [*lost, *class_reports.notes_of(grade, report)])
 
 
 def _maximum(book: Class) -> Decimal:
     return sum((row.maximum for row in book.criteria), Decimal(0))
 
 
-def _options(request: ExportRequest, book: Class) -> FillOptions:
-    shown = printable_path(request.into or "")
-    lab = (book.rubric.title, book.rubric.id)
-    return FillOptions(_maximum(book), lab, request.column, request.any_maximum, request.only, shown)
-
-
-def _feedback(request: ExportRequest, book: Class, terminal: Terminal) -> bytes:
-    """Return the zip of the reports, named as the LMS gives them to its students."""
+def _feedback(request: ExportRequest, book: Class, rows: Mapping[str, Student], terminal: Terminal) -> bytes:
+    """Return the zip of the reports, named as the LMS gives them to its students; `rows` are those of --into."""
     kind = Format(request.feedback_format)
     name = f"report.{kind.ending}"
-    grades = {one.student.key: one for one in book if one.graded is not None or one.has_final}
+    grades = [one for one in book if one.graded is not None or one.has_final]
     if request.target == "moodle":
-        numbers = None
+        students = [one.student for one in grades]
         if request.into is not None:
-            data = read_capped(request.into, SIZE_LIMIT, advice="")
-            known = [ClassGrade(one.student) for one in grades.values()]
-            numbers = participants(data, known, FORMS["moodle"], _options(request, book))
-        names, without = moodle_names([one.student for one in grades.values()], name, numbers)
+            students = [one._replace(moodle=rows[one.key].moodle if one.key in rows else "") for one in students]
+        paths, without = moodle_names(students, name)
     else:
-        paths = [(one.student, one.graded.paths if one.graded is not None else ()) for one in grades.values()]
-        names, without = canvas_names(paths, name)
-    files = {key: str(number) for number, key in enumerate(names)}
+        submitted = [(one.student, one.graded.paths if one.graded is not None else ()) for one in grades]
+        paths, without = canvas_names(submitted, name)
+    files = {key: str(number) for number, key in enumerate(paths)}
     with TemporaryDirectory() as folder:
-        run = ReportRun(book.folder, Path(folder), (kind,), is_feedback=True)
-        without |= class_reports.render_reports(run, files, terminal, processors())
+        run = ReportRun(book.folder, Path(folder), (kind,))
+        without |= class_reports.render_reports(run, files, terminal)
         written = ((key, Path(folder, f"{file}.{kind.ending}")) for key, file in files.items() if key not in without)
         reports = {key: path.read_bytes() for key, path in written}
-    zipped, left = write_feedback(reports, names, name)
-    for line in by_reason(Note("without feedback", key, why) for key, why in {**without, **left}.items()):
+    zipped, left = write_feedback(reports, paths, name)
+    for line in by_reason(("without feedback", key, why) for key, why in {**without, **left}.items()):
         terminal.warn(printable(line))
     terminal.warn(f"{counted(len(reports) - len(left), 'report')} in {printable_path(request.feedback or Path())}")
     return zipped
 
 
 def _refuse_options(request: ExportRequest) -> None:
-    given = {"--into": request.into, "--feedback": request.feedback, "--excel": request.excel}
-    for option, targets in _TARGETS.items():
-        if given[option] and request.target not in targets:
-            raise GraderError(f"export {request.target} takes no {option}: it is for {enumerated(targets)}")
-    if request.target in FORMS and request.into is None and (request.output or not request.feedback):
-        raise GraderError(f"export {request.target} fills in a file that the LMS exported: give it with --into")
-
-
-def _refuse_files(request: ExportRequest) -> None:
+    """Raise GraderError for an option that the target does not take, and for files that must not be replaced."""
     into, output, feedback = request.into, request.output, request.feedback
+    for option, given in {"--into": into, "--feedback": feedback, "--excel": request.excel}.items():
+        if given and request.target not in _TARGETS[option]:
+            raise GraderError(f"export {request.target} takes no {option}: it is for {enumerated(_TARGETS[option])}")
+    if request.target in FORMS and into is None and (output or not feedback):
+        raise GraderError(f"export {request.target} fills in a file that the LMS exported: give it with --into")
     if into is not None and (is_stdout(into) if output is None else is_same_file(output, into)):
         raise GraderError(
             f"cannot write {printable_path(into)}: --into reads it, and rows without a grade would be lost; "
             "choose another file"
         )
-    if feedback is None:
-        return
-    if any(other is not None and is_same_file(feedback, other) for other in (into, output)):
-        raise GraderError(f"cannot write {printable_path(feedback)}: it is also the file of --into or --output")
-    if feedback.is_symlink() or (feedback.exists() and not is_zipfile(feedback)):
-        raise InputError(
-            f"cannot write {printable_path(feedback)}: it is a symlink, or exists and is no zip; name another file"
-        )
+    if feedback is not None and (feedback.is_symlink() or (feedback.exists() and not is_zipfile(feedback))):
+        shown = printable_path(feedback)
+        raise InputError(f"cannot write {shown}: it is a symlink, or exists and is no zip; name another file")

@@ -62,7 +62,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     warn_of_due(request.options.due, inputs, terminal.warn)
     folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
     if request.reports is not None:
-        refuse_report_folder(request.reports, request.report_format, inputs.roots)
+        refuse_report_folder(request.reports, inputs.roots)
     intake = read_class(
         inputs.near_roots, inputs.roster, settings.layout, settings.assignment, rubric.id, rubric.folders
     )

@@ -2,18 +2,16 @@
 
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass
 from decimal import Decimal
 from getpass import getuser
 from pathlib import Path
 
 from grader.classroom import folder as names
 from grader.classroom.grades import Class, StudentGrade
-from grader.classroom.mark_files import COLUMNS, SURPLUS, WITHDRAWN, mark_file
+from grader.classroom.mark_files import COLUMNS, SURPLUS, WITHDRAWN, Cells, mark_file
 from grader.classroom.mark_import import MarkImport
 from grader.classroom.marks import Key, Mark, append_marks
 from grader.classroom.tables import SIZE_LIMIT
-from grader.classroom.typed_names import find_typed
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import DEADLINE, TOTAL
@@ -22,48 +20,37 @@ from grader.usecases.grade_class import write_grades
 from grader.usecases.terminal import Warn
 
 _MAX_NAMED = 10
+_EMPTY = dict.fromkeys((*COLUMNS, SURPLUS), "")
 
 
-@dataclass(frozen=True, slots=True)
-class MarkRequest:
-    """What `grader mark` records: `points` is what a person typed, empty for a comment alone."""
+def give_mark(gradebook: Path, row: Cells, warn: Warn) -> str:
+    """Append the mark in a row to the file of its grader, and return what counts for the student now.
 
-    student: str
-    criterion: str
-    points: str = ""
-    comment: str = ""
-    by: str = ""
-
-
-def give_mark(gradebook: Path, request: MarkRequest, warn: Warn) -> str:
-    """Append a mark to the file of its grader, and return what counts for the student now. Raises InputError."""
-    if not (request.student and request.criterion and (request.points or request.comment)):
+    Raises InputError.
+    """
+    if not (row["student"] and row["criterion"] and (row["points"] or row["comment"])):
         raise InputError("name a STUDENT and a CRITERION, and give POINTS or --comment")
     book = Class(gradebook)
-    reader, advice = _reader(book), f"; {printable_path(gradebook / names.GRADES)} lists all students"
-    exact = [one for one in reader.students if one.key == request.student]
-    student = exact[0] if exact else find_typed(reader.students, request.student, advice)
-    key = student.key, request.criterion
+    [mark] = _reader(book).marks_in({**_EMPTY, **row})
+    key = mark.student, mark.criterion
     before = book.marks.counting.get(key) or book.marks.comments.get(key)
-    append_marks(_file(book, request.by), _given(reader, [student.key], request))
-    now = Class(gradebook)
-    write_grades(now)
-    for line in _warnings(now, key, request, before):
+    now = _append(book, [mark], row["by"])
+    for line in _warnings(now, mark, before):
         warn(printable(line))
-    grade = now.grade(student.key)
-    late = f"; {grade.late.reason}" if request.criterion == DEADLINE and grade.late.reason else ""
-    return f"{printable(f'{named(student.key, student.name)}: {_grade_text(now, grade)}{late}')}\n"
+    grade = now.grade(mark.student)
+    late = f"; {grade.late.reason}" if mark.criterion == DEADLINE and grade.late.reason else ""
+    return f"{printable(f'{named(mark.student, grade.student.name)}: {_grade_text(now, grade)}{late}')}\n"
 
 
-def mark_missing(gradebook: Path, request: MarkRequest) -> str:
+def mark_missing(gradebook: Path, row: Cells) -> str:
     """Give all who certainly submitted nothing, and have no final mark, one; return how many. Raises InputError."""
-    if request.criterion != TOTAL or not request.points or request.points == WITHDRAWN:
+    if row["criterion"] != TOTAL or row["points"] in ("", WITHDRAWN):
         raise InputError(f"write it as --missing {TOTAL} POINTS")
     book = Class(gradebook)
+    reader = _reader(book)
     missing = [one.student.key for one in book if one.graded is None and not (one.is_unclear or one.has_final)]
-    append_marks(_file(book, request.by), _given(_reader(book), missing, request))
-    write_grades(Class(gradebook))
-    return f"{len(missing)} of {len(book.keys)} submitted nothing, and have the final mark {request.points} now\n"
+    _append(book, [mark for key in missing for mark in reader.marks_in({**_EMPTY, **row, "student": key})], row["by"])
+    return f"{len(missing)} of {len(book.keys)} submitted nothing, and have the final mark {row['points']} now\n"
 
 
 def import_marks(gradebook: Path, file: Path, by: str) -> str:
@@ -72,9 +59,8 @@ def import_marks(gradebook: Path, file: Path, by: str) -> str:
 
     book = Class(gradebook)
     reader = _reader(book)._replace(answers=answers_of(book))
-    new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file), by)
-    append_marks(_file(book, by), new)
-    write_grades(Class(gradebook))
+    new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file))
+    _append(book, new, by)
     return f"{printable_path(file)}: {len(new)} recorded, {same} the same as before\n"
 
 
@@ -84,33 +70,29 @@ def _reader(book: Class) -> MarkImport:
     return MarkImport(students, book.rubric, book.marks, {key: one.digest for key, one in graded.items()})
 
 
-def _given(reader: MarkImport, keys: Iterable[str], request: MarkRequest) -> list[Mark]:
-    """Return the mark of a request for each student, given for the submission as it is now. Raises InputError."""
-    cells = {**dict.fromkeys((*COLUMNS, SURPLUS), ""), "by": request.by, "criterion": request.criterion}
-    cells |= {"points": request.points, "comment": request.comment}
-    marks = [mark for key in keys for mark in reader.marks_in({**cells, "student": key})]
-    return [mark._replace(time=reader.marks.next_time((mark.student, mark.criterion))) for mark in marks]
-
-
-def _file(book: Class, by: str) -> Path:
-    """Return the file of a grader, without a name that of the account: the files of two gradebooks can be merged."""
-    with suppress(OSError, KeyError):  # of an account without a name
+def _append(book: Class, marks: Iterable[Mark], by: str) -> Class:
+    """Append marks to the file of a grader, and return the class with them; its grades are written."""
+    new = [one._replace(by=one.by or by, time=book.marks.next_time((one.student, one.criterion))) for one in marks]
+    with suppress(OSError, KeyError):  # of an account without a name: the files of two gradebooks can be merged
         by = by or getuser()
-    return mark_file(book.folder / names.MARKS, by)
+    append_marks(mark_file(book.folder / names.MARKS, by), new)
+    now = Class(book.folder)
+    write_grades(now)
+    return now
 
 
-def _warnings(book: Class, key: Key, request: MarkRequest, before: Mark | None) -> Iterator[str]:
+def _warnings(book: Class, mark: Mark, before: Mark | None) -> Iterator[str]:
     """Yield what a mark replaced, that it does not count, and whom else the same submission counts for."""
-    criterion = key[1]
+    criterion = mark.criterion
     if before is not None:
-        what = "comment" if before.kind == "comment" else "mark"
+        what = "mark" if before.value else "comment"
         words = f"{before.value}{by_name(before.by)}: {' '.join(before.comment.split())}".strip(": ")
         yield f"this replaces the {what} of {criterion} in {before.place}: {words}"
-    elif request.points == WITHDRAWN:
+    elif mark.value == WITHDRAWN:
         yield f"there was no mark of {criterion} to withdraw"
     if any(row.id == criterion and row.adjustment is not None for row in book.rubric.criteria):
         yield f"{criterion} is corrected after grading, by [adjust] in the rubric: its marks do not count"
-    if criterion not in (TOTAL, DEADLINE) and (others := [*_unmarked_members(book, key)]):
+    if criterion not in (TOTAL, DEADLINE) and (others := [*_unmarked_members(book, (mark.student, criterion))]):
         yield f"the same submission counts for {people_text(others, _MAX_NAMED)}: mark them as well"
 
 
@@ -126,13 +108,10 @@ def _unmarked_members(book: Class, key: Key) -> Iterator[str]:
 
 def _grade_text(book: Class, grade: StudentGrade) -> str:
     """Return what counts: an excuse, a final mark, or the points of the criteria."""
-    if grade.is_excused:
-        return "excused"
-    if grade.final_points is not None:
-        whole = sum((row.maximum for row in book.criteria), Decimal(0))
-        return f"final mark {format_points(grade.final_points)} of {format_points(whole)} points"
-    if grade.report is None or grade.total is None:
-        return "no submission"
-    total = f"{format_points(grade.total)} of {format_points(grade.report.max_score)} points"
+    if grade.total is None:
+        return "excused" if grade.is_excused else "no submission"
+    whole = sum((row.maximum for row in book.criteria), Decimal(0))
+    final = "final mark " if grade.has_final else ""
     late = f" after the late penalty of {format_points(-grade.late.points)}" if grade.late.points else ""
-    return total + late + (f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else "")
+    pending = f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else ""
+    return f"{final}{format_points(grade.total)} of {format_points(whole)} points{late}{pending}"

@@ -133,7 +133,7 @@ class ReviewSession:
             raise InputError("points are missing")
         key, digest = (one.student.key, item.criterion.id), one.graded.digest
         cells = {"time": "", "by": self.by, "points": points.strip(), "comment": comment, "submission": digest}
-        [mark] = mark_in({**cells, "": ""}, key, item.criterion.points, "")
+        mark = mark_in({**cells, "": ""}, key, item.criterion.points, "")
         return mark._replace(time=self.book.marks.next_time(key))
 
     def _check_rows(self) -> None:

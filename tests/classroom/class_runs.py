@@ -19,7 +19,6 @@ from tempfile import mkdtemp
 from typing import Any
 
 from grader.cli.app import run as run_here
-from grader.usecases.report_names import INDEX
 from tests.command_line import GRADER, HANG_TIMEOUT, clean_environment, run, run_process
 from tests.samples import ROOT
 
@@ -134,8 +133,8 @@ def counted(done: Done) -> str:
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    """Return all files of a folder by name, without the index of reports."""
-    return {path.name: path.read_bytes() for path in folder.iterdir() if path.name != INDEX}
+    """Return all files of a folder by name."""
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
 def report_in_process(path: Path, to: Path, *more: str) -> tuple[int, bytes | str]:

@@ -9,9 +9,8 @@ from functools import cache, partial
 from itertools import combinations
 from pathlib import Path
 
-from grader.classroom.lms.fill import fill
+from grader.classroom.lms.fill import FillOptions, fill
 from grader.classroom.lms.forms import FORMS
-from grader.classroom.lms.grade_file import FillOptions
 from grader.classroom.people import People
 from grader.classroom.roster import read_roster
 from grader.classroom.tables import Table, TableRow, _rows, read_table
@@ -104,7 +103,7 @@ def _are_some(before: Table, after: Sequence[TableRow], changed: set[int]) -> bo
 
 
 def _without(row: TableRow, changed: set[int]) -> list[str]:
-    return ["" if index in changed else cell.raw for index, cell in enumerate(row.cells)]
+    return ["" if index in changed else cell for index, cell in enumerate(row.cells)]
 
 
 _CELLS = {one.student.key: ("", "1.00", "")[number % 3] for number, one in enumerate(_SOME)}

@@ -7,49 +7,37 @@ HTML comment at its end holds a hash of the words: without a match, a person has
 import html
 import re
 from collections.abc import Iterable, Iterator
-from decimal import Decimal
 from itertools import accumulate
 
 from grader.classroom.tables import protected, spelt_out
 from grader.files.reading import sha256_of
-from grader.grading.criterion import Criterion
 from grader.grading.report import Result
-from grader.text import cut, enumerated, format_points
+from grader.text import cut, format_points
 
 LIMIT = 4_000  # characters
 _MAX_LINE = 700
-_MAX_TITLES = 3
-_OPENING = "Graded "
+_OPENING = "Grade"
 _MARK = re.compile(r"<!-- grader ([0-9a-f]{12}) -->")
 _TAG = re.compile(r"<[^>]*+>")
 
 
 def lost_points(results: Iterable[Result]) -> Iterator[str]:
-    """Yield a line for each criterion below its maximum, with a comment, or with points that no check decides.
-
-    Criteria that are skipped because of the same one are a line.
-    """
-    skipped: dict[str, list[Criterion]] = {}
+    """Yield a line for each criterion below its maximum, with a comment, or with points that no check decides."""
     for result in results:
         mark, criterion = result.manual_mark, result.criterion
         comment = mark.comment if mark is not None else result.comment.text if result.comment is not None else ""
-        if result.because is not None and not (mark or comment or result.why_given):
-            skipped.setdefault(result.because, []).append(criterion)
-        elif result.points < criterion.points or comment or result.why_given:
+        if result.points < criterion.points or comment or result.why_given:
             is_hidden = mark is not None or result.is_adjusted or (comment and result.outcome.status == "passed")
             points = "–" if result.is_open else format_points(result.points)
             extra = " (extra credit)" if criterion.bonus else ""
             about = f"{criterion.title}{extra}: {points} of {format_points(criterion.points)}"
-            message = "" if is_hidden else _capitalise(result.outcome.message)
-            yield ". ".join(filter(None, (about, message, result.why_given, comment)))
-    for cause, criteria in skipped.items():
-        points = format_points(sum((one.points for one in criteria), Decimal(0)))
-        titles = enumerated([one.title for one in criteria], _MAX_TITLES)
-        yield f"{titles}: 0 of {points}. Skipped because {cause} failed"
+            message = "" if is_hidden else result.outcome.message
+            about += f": {message}" if message else ""
+            yield ". ".join(filter(None, (about, result.why_given, comment)))
 
 
 def comment_html(opening: str, lines: Iterable[str]) -> str:
-    """Return a comment in one line of at most LIMIT characters: `opening`, which begins with Graded, then the lines."""
+    """Return a comment in one line of at most LIMIT characters: `opening`, which begins with Grade, then the lines."""
     first = f"<p>{_escape(opening)}</p>"
     items = [f"<li>{_escape(line)}</li>" for line in lines]
     room = LIMIT - len(first) - 100  # for the list's tags, the mark, and the line that counts the rest
@@ -64,11 +52,6 @@ def is_own_comment(text: str) -> bool:
     mark = _MARK.search(text)
     rest = _MARK.sub("", text, count=1)
     return mark is not None and _plain(rest).startswith(_OPENING) and mark[1] == _hash(rest)
-
-
-def _capitalise(message: str) -> str:
-    """Return a message with a capital, unless its first word has other characters than letters."""
-    return message[:1].upper() + message[1:] if message.partition(" ")[0].isalpha() else message
 
 
 def _escape(text: str) -> str:

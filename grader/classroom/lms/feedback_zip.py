@@ -24,19 +24,16 @@ _NOT_UTF8 = re.compile(r"[\ud800-\udfff]")  # no name that Canvas has given, and
 _ARCHIVES = (".zip", ".tar.gz", ".tgz")
 
 
-def moodle_names(students: Collection[Student], report: str, numbers: Mapping[str, str] | None = None) -> Names:
-    """Return the paths of files called `report`; the participant numbers are those of a worksheet, or the students'."""
-    why = "matches no row of the worksheet, or several"
-    if numbers is None:
-        numbers = {student.key: student.moodle for student in students}
-        why = "has no participant number: pass the grading worksheet with --into"
-    names, without, counts = dict[str, str](), dict[str, str](), Counter(numbers.values())
+def moodle_names(students: Collection[Student], report: str) -> Names:
+    """Return the paths of files called `report`, by the participant numbers of students."""
+    names, without, counts = dict[str, str](), dict[str, str](), Counter(student.moodle for student in students)
     for student in students:
-        number = numbers.get(student.key, "")
-        if number and counts[number] == 1:
-            names[student.key] = f"{_moodle_folder(student, number)}/{report}"
+        if student.moodle and counts[student.moodle] == 1:
+            names[student.key] = f"{_moodle_folder(student)}/{report}"
+        elif student.moodle:
+            without[student.key] = f"another student has participant number {student.moodle}, too"
         else:
-            without[student.key] = f"another student has participant number {number}, too" if number else why
+            without[student.key] = "has no participant number, and no row of a grading worksheet (--into)"
     return names, without
 
 
@@ -46,18 +43,13 @@ def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], repor
     for student, paths in submissions:
         users[paths] |= {student.canvas} - {""}
     ending = PurePosixPath(report).suffix
+    why = f"submitted no {ending} file or archive by whose name Canvas finds the student"
     for student, paths in submissions:
-        files = [PurePosixPath(path).name for path in paths]
-        certain = [file for file in files if _is_certain(file, users[paths])]
-        fitting = [file for file in certain if PurePosixPath(file).suffix.lower() == ending]
-        if fitting := fitting or [file for file in certain if file.lower().endswith(_ARCHIVES)]:
-            names[student.key] = min(fitting)
-        elif certain:
-            why = f"Canvas would show the report as {certain[0]!r}, which is neither an archive nor a {ending} file"
-            without[student.key] = why
+        files = [PurePosixPath(path).name for path in paths if path.lower().endswith((ending, *_ARCHIVES))]
+        if certain := [file for file in files if _is_certain(file, users[paths])]:
+            names[student.key] = min(certain, key=lambda file: (not file.lower().endswith(ending), file))
         else:
-            why = f"Canvas would find another student, or none, by the name {files[0]!r}" if files else ""
-            without[student.key] = why or "submitted no file in Canvas"
+            without[student.key] = why
     return names, without
 
 
@@ -72,11 +64,11 @@ def write_feedback(reports: Mapping[str, bytes], names: Mapping[str, str], repor
     return zip_of(files), without
 
 
-def _moodle_folder(student: Student, number: str) -> str:
+def _moodle_folder(student: Student) -> str:
     """Return the folder of a student, with the letters, digits and spaces of the name: an underscore ends it."""
     letters = (letter if letter.isalnum() or letter in "-'" else " " for letter in student.name or student.key)
     words = "".join(letters).split()
-    return f"{' '.join(words)[:_MAX_NAME].strip() or 'Participant'}_{number}_assignfeedback_file_"
+    return f"{' '.join(words)[:_MAX_NAME].strip() or 'Participant'}_{student.moodle}_assignfeedback_file_"
 
 
 def _is_certain(file: str, users: Collection[str]) -> bool:

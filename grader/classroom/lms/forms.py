@@ -9,15 +9,21 @@ Brightspace has # before ids: "Importing grades", community.d2l.com, 3538. Neith
 
 import html
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
+from grader.classroom.roster import Student
+from grader.classroom.tables import TableRow
+
+IDS = ("login", "sis", "email", "canvas", "moodle")
+WHO = ("name", "last", "first", *IDS)
+TEST_STUDENT = re.compile(r"(?i)student, test|test student|.*_previewuser\d*(, .*)?")  # of Canvas and Blackboard
 _GUARD = re.compile(r'="(.*)"', re.DOTALL)
 _TAG = re.compile(r"<[^<>]*+>")
 
 
 class Form(NamedTuple):
-    """A grade file of an LMS: `columns` are the headers of each role in lower case, one of each in `needed` exists.
+    """A grade file of an LMS: `columns` are the headers of each role in lower case, `needed` names roles that it has.
 
     `grade` matches the header of an assignment, with the groups `title`, and perhaps `number` and `maximum`; else the
     maximum is in the row that begins with `points_row`. With a column `maximum`, the grade is in the column before it.
@@ -34,7 +40,18 @@ class Form(NamedTuple):
     excuse: str = ""
     locked: Mapping[str, tuple[str, ...]] = {}
     above: str = ""
-    test_student: str = "(?!)"
+
+    def roles(self, titles: Sequence[str]) -> dict[str, int]:
+        """Return the columns of a file by role; of several the first."""
+        role_of = {header: role for role, headers in self.columns.items() for header in headers.split(" | ")}
+        return {role: at for at, title in reversed([*enumerate(titles)]) if (role := role_of.get(title.casefold()))}
+
+    def student(self, row: TableRow, roles: Mapping[str, int]) -> Student:
+        """Return the student in a row."""
+        value = {role: self.clean(row.value(roles.get(role))) for role in WHO}
+        name = value["name"] or ", ".join(filter(None, (value["last"], value["first"])))
+        number = re.split(r"\D", value["moodle"])[-1]  # of Participant 123, in any language
+        return Student("", name, value["email"], value["login"], value["sis"], value["canvas"], number)
 
 
 CANVAS = Form(
@@ -43,13 +60,12 @@ CANVAS = Form(
         "canvas": "id", "sis": "sis user id", "login": "sis login id", "name": "student", "last": "lastname",
         "first": "firstname", "section": "section", "integration": "integration id", "account": "root account",
     },
-    ("name | last", "canvas", "section"),
+    ("name last", "canvas", "section"),
     re.compile(r"(?P<title>.*\S)\s+\((?P<number>[0-9]+)\)", re.DOTALL),
     clean=lambda text: _GUARD.sub(r"\1", text),
     points_row="Points Possible",
     excuse="EX",
     locked={"grade": ("ex", "n/a")},
-    test_student="student, test|test student",
 )  # fmt: skip
 MOODLE = Form(
     "Moodle",
@@ -80,10 +96,9 @@ BLACKBOARD = Form(
         "login": "username", "sis": "student id", "email": "email", "last": "last name", "first": "first name",
         "course": "child course id", "access": "last access", "availability": "availability",
     },
-    ("login | sis",),
+    ("login sis",),
     # Not a total, which cannot be filled: Total [Total Pts: up to 100 Score] |123457
     re.compile(r"(?P<title>.*?) \[Total Pts: (?P<maximum>[0-9.,]+)(?: [^][]*)?\](?: \|(?P<number>[0-9]+))?", re.DOTALL),
-    test_student=r".*_previewuser\d*",
 )  # fmt: skip
 BRIGHTSPACE = Form(
     "Brightspace",
@@ -91,7 +106,7 @@ BRIGHTSPACE = Form(
         "login": "username", "sis": "orgdefinedid", "email": "email", "last": "last name", "first": "first name",
         "end": "end-of-line indicator",
     },
-    ("login | sis",),
+    ("login sis",),
     re.compile(r"(?P<title>.*?) Points Grade(?: <Numeric MaxPoints:(?P<maximum>[0-9.,]+)[^>]*>)?", re.DOTALL),
     clean=lambda text: text.removeprefix("#"),
 )  # fmt: skip

@@ -5,14 +5,8 @@ from collections.abc import Sequence
 from decimal import Decimal
 from typing import NamedTuple
 
-from grader.classroom.lms.grade_file import StudentRow
 from grader.classroom.roster import Student, plain
-from grader.text import named, people_text
 
-UNKNOWN = "in the file, but not in the class"
-MISSING = "in the class, but not in the file"
-AMBIGUOUS = "ambiguous"
-_MAX_NAMED = 5
 _Clues = tuple[frozenset[str], ...]  # the id in the LMS, other ids, the name
 
 
@@ -26,39 +20,15 @@ class ClassGrade(NamedTuple):
     comment: str = ""
 
 
-class Note(NamedTuple):
-    """What is to be known of a row or student; `kind` begins the message."""
-
-    kind: str
-    who: str
-    why: str
-
-
 def match_rows(
-    rows: Sequence[StudentRow], grades: Sequence[ClassGrade], lms: str
-) -> tuple[dict[int, ClassGrade], list[Note]]:
-    """Return the grades by row number, of rows and students that fit each other only, and a note on each other one."""
-    theirs = [_clues(row.student, lms) for row in rows]
-    ours = [_clues(grade.student, lms) for grade in grades]
-    grades_of, rows_of = _fitting(theirs, ours), _fitting(ours, theirs)
-    names = [named(grade.student.key, grade.student.name) for grade in grades]
-    found, notes, claimed = dict[int, ClassGrade](), list[Note](), set[int]()
-    for index, row in enumerate(rows):
-        some = [at for at in grades_of[index] if len(grades_of[index]) > 1 or index in rows_of[at]]
-        claimed.update(some)
-        if [rows_of[at] for at in some] == [[index]]:
-            found[row.row.number] = grades[some[0]]
-        elif some:
-            could = people_text([names[at] for at in some], _MAX_NAMED)
-            why = f"could be {could}" if some[1:] else f"{could} could be this row or another one"
-            notes.append(Note(AMBIGUOUS, row.who, why))
-        elif not row.is_test:
-            notes.append(Note(UNKNOWN, row.who, "no student of the class matches this id, address or name"))
-    for at, grade in enumerate(grades):
-        if at not in claimed and (grade.total is not None or grade.is_excused):
-            what = "is excused" if grade.is_excused else "has a grade"
-            notes.append(Note(MISSING, names[at], f"{what}, but no row in the file"))
-    return found, notes
+    rows: Sequence[Student], students: Sequence[Student], lms: str
+) -> tuple[dict[int, int], dict[int, list[int]]]:
+    """Return the student of each row that fits only one, and no other row does; of other rows who it could be."""
+    theirs, ours = [_clues(row, lms) for row in rows], [_clues(student, lms) for student in students]
+    students_of, rows_of = _fitting(theirs, ours), _fitting(ours, theirs)
+    found = {row: some[0] for row, some in enumerate(students_of) if some and [rows_of[at] for at in some] == [[row]]}
+    free = {*range(len(students))} - {*found.values()}
+    return found, {row: [at for at in some if at in free] for row, some in enumerate(students_of) if row not in found}
 
 
 def _clues(student: Student, lms: str) -> _Clues:

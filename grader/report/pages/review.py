@@ -125,7 +125,7 @@ def message_text(item: ReviewItem, result: Result) -> str:
 
 def mark_text(mark: Mark) -> str:
     """Return a mark or comment in one printable line: points, name, time, comment."""
-    points = counted_points(mark.points) if mark.points is not None else mark.kind
+    points = counted_points(mark.points) if mark.points is not None else "withdrawn" if mark.value else "comment"
     time = f"at {time_text(datetime.fromisoformat(mark.time))}" if mark.time else f"in {mark.place}"
     words = f"{points} by {mark.by or 'an unnamed person'} {time}"
     return printable(": ".join(filter(None, [words, " ".join(mark.comment.split())])))

@@ -30,7 +30,7 @@ def test_lost_points() -> None:
     )
     found = [
         Result(CRITERIA["loads"], Outcome("passed", "fine")),
-        Result(CRITERIA["loads"], Outcome("failed", 'xyz="0" is off')),
+        Result(CRITERIA["loads"], Outcome("failed", "it is off")),
         Result(CRITERIA["loads"], Outcome("passed", "fine"), comment=ManualComment("nice", "Kim")),
         Result(CRITERIA["box"], skip, "loads", manual_mark=ManualMark(Decimal(1), "me", "nice try")),
         Result(CRITERIA["tall"], skip, "loads"),
@@ -39,12 +39,13 @@ def test_lost_points() -> None:
         Result(CRITERIA["essay"], asks, comment=ManualComment("see me", "Kim")),
     ]
     assert list(lost_points(found)) == [
-        'About loads: 0 of 3. xyz="0" is off',
+        "About loads: 0 of 3: it is off",
         "About loads: 3 of 3. nice",
         "About box: 1 of 2.5. nice try",
-        "About tall: 0.5 of 0.5. It is too low. Not deducted: caused by box.",
-        "About essay: – of 4. A person has to mark it. see me",
-        "About tall and About essay: 0 of 4.5. Skipped because loads failed",
+        "About tall: 0 of 0.5: skipped because loads failed",
+        "About tall: 0.5 of 0.5: it is too low. Not deducted: caused by box.",
+        "About essay: 0 of 4: skipped because loads failed",
+        "About essay: – of 4: a person has to mark it. see me",
     ]
 
 

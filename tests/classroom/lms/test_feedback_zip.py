@@ -46,15 +46,12 @@ def test_moodle_reads_the_participant_in_any_folder(name: str) -> None:
 
 
 def test_participants() -> None:
-    """A worksheet's numbers count, else the student's; one of two students, or none at all, is no number."""
+    """One of two students, or none at all, is no number."""
     students = [Student("a", "Ann", moodle="1"), Student("b", moodle="2"), Student("c", moodle="2"), Student("d")]
     names, without = moodle_names(students, "r.html")
     assert names == {"a": "Ann_1_assignfeedback_file_/r.html"}
     assert without["b"] == without["c"] == "another student has participant number 2, too"
-    assert without["d"] == "has no participant number: pass the grading worksheet with --into"
-    names, without = moodle_names(students, "r.html", {"d": "7", "a": "8"})
-    assert names == {"a": "Ann_8_assignfeedback_file_/r.html", "d": "d_7_assignfeedback_file_/r.html"}
-    assert set(without.values()) == {"matches no row of the worksheet, or several"}
+    assert without["d"] == "has no participant number, and no row of a grading worksheet (--into)"
 
 
 def test_the_zip_depends_on_the_reports_only() -> None:

@@ -11,9 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.lms.fill import Filled, fill
+from grader.classroom.lms.fill import Filled, FillOptions, fill, read_points
 from grader.classroom.lms.forms import FORMS
-from grader.classroom.lms.grade_file import FillOptions, read_points
 from grader.classroom.lms.owners import ClassGrade
 from grader.classroom.roster import Student
 from grader.classroom.tables import read_table
@@ -47,7 +46,7 @@ def test_cases(case: dict[str, Any]) -> None:
     grades = grades_in(case.get("class", ""))
     more = {"out_of": case.get("out_of", 100), **case.get("options", {})}
     try:
-        data, lines, is_complete = fill_text(case["file"], *grades, lms=case["lms"], **more)
+        data, lines, is_complete, _ = fill_text(case["file"], *grades, lms=case["lms"], **more)
     except InputError as error:
         assert ([str(error)], None) == (case["lines"], case.get("filled"))
         return

@@ -7,9 +7,8 @@ from typing import NamedTuple
 import pytest
 
 from grader.classroom.lms.feedback_zip import canvas_names, moodle_names, write_feedback
-from grader.classroom.lms.fill import Filled, fill, participants
+from grader.classroom.lms.fill import Filled, FillOptions, fill
 from grader.classroom.lms.forms import FORMS
-from grader.classroom.lms.grade_file import FillOptions
 from grader.classroom.roster import Student
 from tests.classroom.lms import importers, lms_class
 from tests.classroom.lms.importers import State
@@ -95,8 +94,10 @@ def test_moodle_gives_each_student_the_report() -> None:
     data, _ = write_feedback(reports, names, "lab.md")
     assert not without
     assert importers.moodle_feedback(data, numbers) == {key: {"lab.md": report} for key, report in reports.items()}
-    some = participants(moodle_file(dict.fromkeys(list(CELLS)[:60], ""), {}), CLASS, FORMS["moodle"], OPTIONS)
-    names, without = moodle_names(STUDENTS, "lab.md", some)
+    some = fill_lms("moodle", moodle_file(dict.fromkeys(list(CELLS)[:60], ""), {})).rows
+    unknown = Student("")
+    found = [one._replace(moodle=some.get(one.key, unknown).moodle) for one in STUDENTS]
+    names, without = moodle_names(found, "lab.md")
     assert (list(names), list(without)) == (list(CELLS)[:60], list(CELLS)[60:])
     assert names == {one.key: names[one.key] for one in STUDENTS if f"_{one.moodle}_" in names.get(one.key, "")}
 
