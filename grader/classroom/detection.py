@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from grader.classroom.grouping import ClassSubmission, course_of, is_course, nbgrader, one_each
-from grader.classroom.layouts import PATTERNS, ClassFolder, in_canvas
+from grader.classroom.layouts import ClassFolder, readings_of
 from grader.classroom.listing import is_gradebook
 from grader.classroom.team_folders import team_labs, teams
 from grader.files.class_zip import ClassZip
-from grader.files.names import PACKAGE_FILES, ROBOT_ENDINGS
+from grader.files.names import PACKAGE_FILES
 from grader.submission.labs import MAX_WRAPPERS
 from grader.submission.students import is_part
 
@@ -18,8 +18,10 @@ LAYOUTS = ("folders", "canvas", "moodle", "teams", "nbgrader")
 def layout_of(folder: ClassFolder) -> str:
     """Return the layout that the names prove, else `folders`. Canvas writes names in lower case."""
     names = folder.children.folders + folder.children.files
-    in_moodle = {name for name in names if PATTERNS["moodle"].fullmatch(name)}
-    lower = {name for name in names if any(one.login or one.name == one.name.lower() for one in in_canvas(name))}
+    in_moodle = {name for name in names if readings_of(name, "moodle")}
+    lower = {
+        name for name in names if any(one.name == one.name.lower() or one.login for one in readings_of(name, "canvas"))
+    }
     for layout, fitting, share in (("moodle", in_moodle, 1), ("canvas", lower, 3)):
         if fitting and len(fitting) >= share * sum(name not in fitting for name in folder.entries):
             return layout
@@ -38,8 +40,8 @@ def submissions_in(folder: ClassFolder, layout: str) -> Iterator[ClassSubmission
 def inner_class(folder: ClassFolder) -> ClassFolder:
     """Return the folder that contains the submissions, without the gradebooks in it.
 
-    A download may be in folders that contain nothing else. In a zip, it can be any folder that contains all files,
-    unless it is itself a submission.
+    A download may be in folders that contain nothing else. In a zip, it can be any folder that contains all
+    submissions, unless it is itself one.
     """
     if books := [name for name in folder.children.folders if is_gradebook(folder.listing, folder.start + name)]:
         folder.ignore(books, "is a gradebook")
@@ -54,8 +56,7 @@ def inner_class(folder: ClassFolder) -> ClassFolder:
         return folder
     only = around[1]
     is_package = not PACKAGE_FILES.isdisjoint(only.children.files) or any(map(is_part, only.children.folders))
-    is_robot = len(only.entries) == 1 and only.entries[0].lower().endswith(ROBOT_ENDINGS)
-    return folder if is_package or is_robot or not only.entries else only
+    return folder if is_package or len(only.entries) <= 1 else only
 
 
 def _only_folder(folder: ClassFolder) -> ClassFolder | None:

@@ -11,6 +11,7 @@ from grader.classroom.owners import Intake, Owners
 from grader.classroom.people import People
 from grader.classroom.roster import Roster
 from grader.errors import InputError
+from grader.submission.labs import LabFolders, lab_words
 from grader.text import printable_path, shell_quoted
 
 __all__ = ["ClassSubmission", "Intake", "read_class"]
@@ -32,6 +33,7 @@ def read_class(
     if layout not in ("auto", *LAYOUTS):
         raise InputError(f"there is no layout {layout!r}; the layouts are: auto, {', '.join(LAYOUTS)}")
     labs = folders or tuple(filter(None, [rubric_id]))
+    words = frozenset(word for lab in labs for word in lab_words(lab))
     students, notes = roster if roster is not None else Roster(())
     ways = (["/".join(path.resolve().parts[-count:]) for path in paths] for count in (1, 2))
     names = next((way for way in ways if len(set(way)) == len(way)), [])
@@ -44,8 +46,8 @@ def read_class(
     layouts: dict[str, None] = {}
     for root, (path, (listing, _)) in enumerate(zip(paths, roots, strict=True)):
         top = ClassFolder(
-            listing, listing.children(""), "", path.resolve().name, owners.people, rubric_id, labs, assignment,
-            layout != "auto", owners.ignored,
+            listing, listing.children(""), "", path.resolve().name, owners.people, rubric_id, LabFolders(labs), words,
+            assignment, layout != "auto", owners.ignored,
         )  # fmt: skip
         folder = inner_class(top)
         chosen = layout_of(folder) if layout == "auto" else layout
