@@ -30,7 +30,7 @@ class Intake(NamedTuple):
     """
 
     layout: str
-    submissions: tuple[ClassSubmission, ...]
+    submissions: list[ClassSubmission]
     unclear: frozenset[str]
     unmatched: tuple[str, ...]
     notes: tuple[str, ...]
@@ -160,29 +160,25 @@ class Owners:
     def intake(self, layout: str) -> Intake:
         """Return what was found, with the data of the roster, and the LMS's name and ids where it has none."""
         students, found = self.people.students, list[ClassSubmission]()
-        for index, one in self._owned.items():
+        unclear = frozenset(students[index].key for index in self._unclear - self._owned.keys())
+        while self._owned:  # of a large class not all is kept twice
+            index, one = self._owned.popitem()
             own, given = students[index], one.student
             name = own.name or ("" if given.canvas else given.name)
-            own = own._replace(name=name, canvas=own.canvas or given.canvas, moodle=own.moodle or given.moodle)
-            found.append(one._replace(student=own))
+            more = own._replace(name=name, canvas=own.canvas or given.canvas, moodle=own.moodle or given.moodle)
+            found.append(one._replace(student=own if more == own else more))
         twice = {one for one, other in pairwise(sorted(one.student.key for one in self._visitors)) if one == other}
         taken = {plain(one.key) for one in students}
         for one in self._visitors:
             key, is_chosen = one.student.key, bool(one.student.canvas or one.student.aliases)
             if key in twice or not key.isprintable() or plain(key) in taken:
                 key = _path_key(f"{self.roots[one.root][1]}/{one.paths[0]}" if len(self.roots) > 1 else one.paths[0])
-            visitor = one.student._replace(
-                key=key, name="" if is_chosen else one.student.name, aliases=(), is_on_roster=not self._has_roster
-            )
+            name = "" if is_chosen else one.student.name
+            visitor = one.student._replace(key=key, name=name, aliases=(), is_on_roster=not self._has_roster)
             found.append(one if visitor == one.student else one._replace(student=visitor))
-        return Intake(
-            layout,
-            tuple(sorted(found, key=lambda one: one.student.key)),
-            frozenset(students[index].key for index in self._unclear - self._owned.keys()),
-            tuple(sorted(self._unmatched)),
-            tuple(self.notes),
-            tuple(first_lines(sorted(self.ignored), _MAX_LINES)),
-        )
+        found.sort(key=lambda one: one.student.key)
+        ignored = first_lines(sorted(self.ignored), _MAX_LINES)
+        return Intake(layout, found, unclear, tuple(sorted(self._unmatched)), tuple(self.notes), tuple(ignored))
 
 
 def _plain_path(path: str) -> str:

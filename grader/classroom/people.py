@@ -30,17 +30,17 @@ class People:
 
     def __init__(self, students: Sequence[Student]) -> None:
         self.students = students
-        self._tables: tuple[dict[str, list[int]], ...] = tuple(defaultdict(list) for _ in range(4))
+        self._tables: tuple[dict[str, tuple[int, ...]], ...] = ({}, {}, {}, {})
         self._groups: dict[str, list[int]] = defaultdict(list)
         for index, one in enumerate(students):
+            own = (index,)  # kept once for all words that only this student has
             ids = [one.key, one.login, one.sis, one.email, *one.aliases]
             names = [plain(one.name), plain(one.email.partition("@")[0]), _surname(one.name), *_in_canvas(one.name)]
             for words, table in zip((_numbers(one), ids, map(plain, ids), names), self._tables, strict=True):
-                for word in {*words} - {""}:
-                    table[unicodedata.normalize("NFC", word)].append(index)
-            if team := one.group or one.section:
-                for name in {plain(team), letters(team)} - {""}:
-                    self._groups[name].append(index)
+                for word in {unicodedata.normalize("NFC", word) for word in words if word}:
+                    table[word] = table[word] + own if word in table else own
+            for name in {plain(one.group or one.section), letters(one.group or one.section)} - {""}:
+                self._groups[name].append(index)
 
     def knows(self, name: str, team: str = "") -> bool:
         """Return whether a name is that of one student, in a team also the surname, or of a group."""
