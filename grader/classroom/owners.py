@@ -192,6 +192,4 @@ def _cell(text: str) -> str:
 
 def _path_key(path: str) -> str:
     """Return the key of a submission whose name cannot be one: `./` begins no name that a student can give a folder."""
-    if path.isprintable():
-        return f"./{path}"
-    return f"./{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"
+    return f"./{path}" if path.isprintable() else f"./{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"

@@ -82,14 +82,14 @@ class People:
         for rank, (words, table) in enumerate(zip(ranked, self._tables, strict=True)):
             found = {index for word in words for index in table.get(word, ()) if team is None or index in team}
             if found:
-                return Match(tuple(sorted(index for index in found if not self._is_other(index, claim))), rank)
+                return Match(tuple(sorted(at for at in found if not _is_other(self.students[at], claim))), rank)
         return Match()
 
-    def _is_other(self, index: int, claim: Student) -> bool:
-        """Return whether the LMS knows a student by another id than that in a claim."""
-        one = self.students[index]
-        ids = ((one.canvas, claim.canvas), (one.moodle, claim.moodle))
-        return any(own and given and own != given for own, given in ids)
+
+def _is_other(one: Student, claim: Student) -> bool:
+    """Return whether the LMS knows a student by another id than that in a claim."""
+    ids = ((one.canvas, claim.canvas), (one.moodle, claim.moodle))
+    return any(own and given and own != given for own, given in ids)
 
 
 def _numbers(one: Student) -> list[str]:
