@@ -5,17 +5,18 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from grader.classroom.layouts import READERS, ClassFolder, Entry, is_submission
+from grader.classroom.layouts import ClassFolder, Entry, entries_of, is_submission
 from grader.classroom.listing import ClassListing
 from grader.classroom.roster import Student, iso_time
-from grader.errors import InputError, MachineError
-from grader.files.members import ARCHIVE_ERRORS
+from grader.errors import InputError
 from grader.names import folded
 from grader.text import enumerated, printable_path
 
 _NUMBERED = re.compile(r"(.+?)-[1-9][0-9]?((?:\.[A-Za-z][A-Za-z0-9]*)*(?:\.[A-Za-z0-9]*)?)", re.DOTALL)
 _MAX_FILES = 200_000  # of one participant; a zip has no more
 _MAX_NAMED = 10
+_MAX_TIME = 100  # bytes
+_LOCAL_TIME = len("2026-09-01T10:00:00")
 
 
 class ClassSubmission(NamedTuple):
@@ -36,21 +37,20 @@ def one_each(folder: ClassFolder, layout: str) -> Iterator[ClassSubmission]:
     """Yield one submission for each owner. In Moodle, hidden names are the same word."""
     by_owner: dict[str, list[Entry]] = defaultdict(list)
     folder.list_refused()
-    for entry in READERS[layout](folder):
+    for entry in entries_of(folder, layout):
         by_owner[entry.owner].append(entry)
     are_hidden = layout == "moodle" and len(by_owner) > 1 == len(
-        {one.name for names in by_owner.values() for one in names}
+        {one.name for some in by_owner.values() for one in some}
     )
     below = frozenset(folder.children.folders)
     while by_owner:  # of a large class not all is kept twice
         _, entries = by_owner.popitem()
         (name, *others), kept = sorted({entry.name for entry in entries}), _last_versions(folder, entries)
         login, canvas, number = entries[0].login, entries[0].canvas.split(), entries[0].moodle
-        key = login or "_".join(filter(None, (name, *canvas[-1:], number)))
         student = Student(
-            key,
+            login or "_".join(filter(None, (name, *canvas[-1:], number))),
             "" if others or login or are_hidden else name,
-            login=login if kept[0].ending else "",
+            login=login if layout == "folders" else "",
             canvas=canvas[0] if len(canvas) == 1 else "",
             moodle=number,
             aliases=tuple(canvas) if len(canvas) > 1 else (),
@@ -78,21 +78,21 @@ def _files(
     folder: ClassFolder, kept: Sequence[Entry], below: frozenset[str]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return the paths of a student's files, or of the folder, and the own names of files."""
+    listing, start = folder.listing, folder.start
     if len(kept) > 1:  # without empty folders, such as that of an empty text
-        full = [
-            one for one in kept if one.path not in below or any(files_below(folder.listing, folder.start + one.path))
-        ]
+        full = [one for one in kept if one.path not in below or any(files_below(listing, start + one.path))]
         kept = full or kept[:1]
-    every: dict[str, str] = {}
-    for entry in kept if len(kept) > 1 else ():
-        top, part = folder.start + entry.path, f"{entry.plugin}/" if entry.plugin else ""
-        paths = sorted(files_below(folder.listing, top, _MAX_FILES)) if entry.path in below else [top]
-        every |= {path: part + (path[len(top) + 1 :] or entry.file or entry.path) for path in paths}
-    top, is_folder = folder.start + kept[0].path, kept[0].path in below
-    if is_folder and not (kept[0].ending or kept[0].upload):
-        top = _only_file(folder.listing, top)
-    one = {top: "" if is_folder else kept[0].file}
-    return tuple(every or one), tuple(filter(None, (every or one).values()))
+    first, top = kept[0], start + kept[0].path
+    if len(kept) == 1:
+        if first.path not in below:
+            return (top,), tuple(filter(None, [first.file]))
+        return (top if first.ending or first.upload else _only_file(listing, top),), ()
+    named: dict[str, str] = {}
+    for entry in kept:
+        top, part = start + entry.path, f"{entry.plugin}/" if entry.plugin else ""
+        paths = sorted(files_below(listing, top, _MAX_FILES)) if entry.path in below else [top]
+        named |= {path: part + (path[len(top) + 1 :] or entry.file or entry.path) for path in paths}
+    return tuple(named), tuple(named.values())
 
 
 def _only_file(listing: ClassListing, top: str) -> str:
@@ -137,8 +137,7 @@ def _assignments(folder: ClassFolder) -> dict[str, list[str]]:
 def nbgrader(folder: ClassFolder) -> Iterator[ClassSubmission]:
     """Yield the submissions for one assignment with their times; raises InputError if it is not clear which one."""
     course = course_of(folder)
-    found = _assignments(course)
-    lab = folder.assignment or folder.rubric_id
+    found, lab = _assignments(course), folder.assignment or folder.rubric_id
     wanted = [lab] if lab in found else [name for name in found if folded(name) == folded(lab)]
     if len(wanted) != 1 and (len(found) != 1 or folder.assignment):
         named = enumerated([printable_path(name) for name in sorted(found)], _MAX_NAMED) or "none"
@@ -149,17 +148,13 @@ def nbgrader(folder: ClassFolder) -> Iterator[ClassSubmission]:
     course.list_refused()
     for student in found[name]:
         path = f"{course.start}{student}/{name}"
-        time = iso_time(_start(folder.listing, f"{path}/timestamp.txt").decode("utf-8", "replace"))
-        has_zone = re.search(r"Z\Z|[+-][0-9:]+\Z", time[len("2026-09-01") :])
-        submitted = f"{time}Z" if time and not has_zone else time  # in UTC
-        yield ClassSubmission(Student(student, login=student), 0, (path,), submitted=submitted)
+        yield ClassSubmission(Student(student, login=student), 0, (path,), submitted=_time_of(folder.listing, path))
 
 
-def _start(listing: ClassListing, path: str) -> bytes:
-    """Return the first bytes of a file; none if it cannot be read."""
+def _time_of(listing: ClassListing, path: str) -> str:
+    """Return the time, in UTC, in the file beside an assignment; empty if there is none."""
     try:
-        with listing.raw(path) as file:
-            return file.read(100)
-    except (InputError, *ARCHIVE_ERRORS) as error:
-        MachineError.check(error, path)
-        return b""
+        time = iso_time(listing.read(f"{path}/timestamp.txt", _MAX_TIME).decode("utf-8", "replace"))
+    except InputError:
+        return ""
+    return f"{time}Z" if len(time) == _LOCAL_TIME else time

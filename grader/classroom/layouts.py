@@ -9,7 +9,7 @@
 import re
 import sys
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -17,6 +17,7 @@ from grader.classroom.listing import ClassListing
 from grader.classroom.people import People
 from grader.files.children import Children
 from grader.files.names import BUILD_FOLDERS
+from grader.submission.labs import LabFolders
 from grader.text import printable_path
 
 # The files that are submissions. Of two that differ in the ending only, the first of these counts, before it a folder.
@@ -41,7 +42,6 @@ PATTERNS = {
     ),
 }
 _NAME_IN_CANVAS = re.compile(r"[^\x00-,./:-@[-^`{-\x7f\s]+")
-_LAB = re.compile(r"lab-?[0-9]+-")
 # Canvas numbers the uploads of all courses in order: a number far below the others' is part of a student's name.
 _MAX_GROWTH = 1000
 
@@ -78,7 +78,7 @@ class Entry(NamedTuple):
 class ClassFolder:
     """A folder of submissions: its path in the listing (empty or with a slash), its name, and what the user has said.
 
-    `labs` are the names of the lab's own folders. `ignored` collects lines for the user.
+    `labs` tells the lab's own folders, `lab_words` are the words of their names. `ignored` collects lines for the user.
     """
 
     listing: ClassListing
@@ -87,7 +87,8 @@ class ClassFolder:
     name: str
     people: People
     rubric_id: str
-    labs: tuple[str, ...]
+    labs: LabFolders
+    lab_words: frozenset[str]
     assignment: str
     is_explicit: bool
     ignored: list[str]
@@ -117,21 +118,26 @@ def is_submission(name: str) -> bool:
     return name.lower().endswith(ENDINGS)
 
 
-def _entry(found: re.Match[str], **known: str) -> Entry:
-    return Entry(found.string, **known | {group: text for group, text in found.groupdict().items() if text})
-
-
-def in_canvas(name: str) -> list[Entry]:
-    """Return how a name in Canvas can be read: as team and 7, or team_7 and 101, of team_7_101_555_lab6.zip."""
+def readings_of(name: str, layout: str) -> list[Entry]:
+    """Return how a name can be read: in Canvas as team and 7, or team_7 and 101, of team_7_101_555_lab6.zip."""
+    if layout == "moodle":
+        return [_entry(found) for found in [PATTERNS["moodle"].fullmatch(name)] if found]
     found = [_entry(one, name=name[: one.start()], file="text_entry.html") for one in PATTERNS["canvas"].finditer(name)]
     if found and found[0].login:
         return [found[0]._replace(name=found[0].login, late="LATE" if name.startswith("LATE") else "")]
     return [one for one in found if _NAME_IN_CANVAS.fullmatch(one.name)]
 
 
-def _canvas(folder: ClassFolder) -> Iterator[Entry]:
-    """Yield the names with their user ids: with all possible ones if a name can be read in several ways."""
-    readings = {name: in_canvas(name) for name in folder.children.folders + folder.children.files}
+def _entry(found: re.Match[str], **known: str) -> Entry:
+    return Entry(found.string, **known | {group: text for group, text in found.groupdict().items() if text})
+
+
+def entries_of(folder: ClassFolder, layout: str) -> Iterator[Entry]:
+    """Yield the submissions by their names: in Canvas with all ids that a name may have."""
+    if layout == "folders":
+        yield from _folders(folder)
+        return
+    readings = {name: readings_of(name, layout) for name in folder.children.folders + folder.children.files}
     folder.ignore(name for name, found in readings.items() if not found)
     first = min((found[0].order[0] for found in readings.values() if len(found) == 1 and found[0].upload), default=0)
     for found in readings.values():
@@ -139,27 +145,17 @@ def _canvas(folder: ClassFolder) -> Iterator[Entry]:
         yield from (one._replace(canvas=" ".join(it.canvas for it in possible)) for one in possible[-1:])
 
 
-def _moodle(folder: ClassFolder) -> Iterator[Entry]:
-    for name in sorted(folder.children.folders + folder.children.files):
-        if found := PATTERNS["moodle"].fullmatch(name):
-            yield _entry(found)
-        else:
-            folder.ignore([name])
-
-
 def _folders(folder: ClassFolder) -> Iterator[Entry]:
     """Yield each folder, archive and URDF, without the prefix of the assignment in its name."""
-    parse, own = PATTERNS["folders"].fullmatch, [name for name in folder.children.folders if name not in BUILD_FOLDERS]
-    folder.ignore({*folder.children.folders}.difference(own))
-    folder.ignore(name for name in folder.children.files if not parse(name))
-    names = [*(f"{name}/" for name in own), *filter(parse, folder.children.files)]
-    logins = [found["login"] for found in map(parse, names) if found and found["ending"] == "/"]
-    prefix = _prefix(logins or [found["login"] for found in map(parse, names) if found], folder)
-    numbered = {found["login"] for found in map(parse, names) if found and found["upload"]}
-    others = numbered.difference(found["login"] for found in map(parse, names) if found and not found["upload"])
+    parse, (folders, files, _) = PATTERNS["folders"].fullmatch, folder.children
+    folder.ignore(BUILD_FOLDERS.intersection(folders))
+    folder.ignore(name for name in files if not parse(name))
+    names = [*(f"{name}/" for name in folders if name not in BUILD_FOLDERS), *filter(parse, files)]
+    tops = {found["login"] for found in map(parse, names) if found and not found["upload"]}
+    prefix = _prefix({found["login"] for found in map(parse, names) if found}, folder)
     for found in filter(None, map(parse, names)):
         name, ending = found["login"], sys.intern(found["ending"])
-        if name in others and not folder.people.knows(_without(prefix, name)):
+        if found["upload"] and name not in tops and not folder.people.knows(_without(prefix, name)):
             name = found.string.removesuffix(ending)  # Team (1) and Team (2) are two teams
         path = found.string.rstrip("/")
         yield Entry(path, name, login=_without(prefix, name), upload=found["upload"] or "", ending=ending)
@@ -170,26 +166,12 @@ def _without(prefix: str, name: str) -> str:
 
 
 def _prefix(names: Collection[str], folder: ClassFolder) -> str:
-    """Return the prefix of the assignment: the rubric's id, `lab9-` of most names, or what precedes the most ids.
-
-    One more folder cannot change what the others mean.
-    """
+    """Return the prefix of the assignment: the rubric's id, or what precedes the ids of most students."""
     knows, own = folder.people.knows, f"{folder.rubric_id.lower()}-"
     known = sum(map(knows, names))
     if known < len(names) and len(own) > 1 and any(_without(own, name) != name for name in names):
         return own
-    labs = Counter(found[0] for name in names if (found := _LAB.match(name.lower())))
     dashes = ((name, dash.end()) for name in names for dash in re.finditer("-", name))
     before = Counter(name[:end].lower() for name, end in dashes if knows(name[end:]))
-    for counts, least in ((labs, len(names) // 2), (before, max(1, known))):
-        prefix, count = max(counts.items(), key=lambda item: (item[1], item[0]), default=("", 0))
-        if known < len(names) and count > least:
-            return prefix
-    return ""
-
-
-READERS: dict[str, Callable[[ClassFolder], Iterator[Entry]]] = {
-    "folders": _folders,
-    "canvas": _canvas,
-    "moodle": _moodle,
-}
+    prefix, count = max(before.items(), key=lambda item: (item[1], item[0]), default=("", 0))
+    return prefix if count > max(1, known) else ""

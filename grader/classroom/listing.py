@@ -30,9 +30,3 @@ def listing_of(path: Path) -> ClassListing:
             " (`grader grade` grades a single one)"
         )
     return ClassZip(path)
-
-
-def is_gradebook(listing: ClassListing, folder: str) -> bool:
-    """Return whether a folder is a gradebook of the grader, and no submission."""
-    files = ("results.jsonl", "marks")
-    return listing.has(f"{folder}/class.toml") and any(listing.has(f"{folder}/{name}") for name in files)

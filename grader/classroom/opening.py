@@ -1,6 +1,7 @@
 """Open one submission of a class folder or zip: the same submission that `grader grade` would see, and its digest."""
 
 import os
+from contextlib import suppress
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
@@ -52,21 +53,6 @@ class OpenedSubmission(NamedTuple):
         )
 
 
-def _open(root: str) -> ClassListing:
-    """Return a class folder, or a zip that stays open as long as the file is the same."""
-    try:
-        status = os.stat(root)  # noqa: PTH116
-    except OSError:
-        return _opened(root, ())
-    return _opened(root, (status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns))
-
-
-@lru_cache(maxsize=4)
-def _opened(root: str, stamp: tuple[int, ...]) -> ClassListing:
-    del stamp
-    return listing_of(Path(root))
-
-
 def open_class_submission(
     root: str, paths: tuple[str, ...], names: tuple[str, ...], name: str, max_size: int = URDF_LIMIT
 ) -> OpenedSubmission:
@@ -80,16 +66,39 @@ def open_class_submission(
     if len(paths) == 1 and not is_document:
         return _open_single(source, paths[0], max_size)
     name = without_endings(own_names[0]) if is_document else name
-    tree = source.files(dict(zip(paths, names or own_names, strict=True)), name)
-    return OpenedSubmission(name, name, _digest_of_tree(name, tree, max_size), None, tree, max_size)
+    return _opened_tree(name, name, source.files(dict(zip(paths, names or own_names, strict=True)), name), max_size)
+
+
+def digest_of_unread(root: str, paths: tuple[str, ...]) -> str:
+    """Return the hash of the bytes of files that are no submission; empty if they cannot be read."""
+    digest = sha256()
+    try:
+        for path in paths:
+            with _open(root).raw(path) as file:
+                digest.update(file.read(_MAX_HASHED))
+    except (InputError, *ARCHIVE_ERRORS):
+        return ""
+    return digest.hexdigest()
+
+
+def _open(root: str) -> ClassListing:
+    """Return a class folder, or a zip that stays open as long as the file is the same."""
+    with suppress(OSError):
+        status = os.stat(root)  # noqa: PTH116
+        return _listing(root, (status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns))
+    return listing_of(Path(root))
+
+
+@lru_cache(maxsize=4)
+def _listing(root: str, _stamp: tuple[int, ...]) -> ClassListing:
+    return listing_of(Path(root))
 
 
 def _open_single(source: ClassListing, path: str, max_size: int) -> OpenedSubmission:
     """Open a folder, an archive, or a URDF under any name."""
     last, shown = printable_path(path.rpartition("/")[2]), printable_path(path)
     if source.is_folder(path):
-        tree = source.folder(path)
-        return OpenedSubmission(last, shown, _digest_of_tree(last, tree, max_size), None, tree, max_size)
+        return _opened_tree(last, shown, source.folder(path), max_size)
     if not last.lower().endswith((*ROBOT_ENDINGS, ".xml")):
         name = without_endings(last)
         digest = _digest(name, max_size)
@@ -122,8 +131,8 @@ def _digest(name: str, max_size: int) -> "hashlib._Hash":
     return sha256(repr(name if max_size == URDF_LIMIT else (name, max_size)).encode())
 
 
-def _digest_of_tree(name: str, tree: Tree, max_size: int) -> str:
-    """Return the hash of all that a submission is read from: its name, its files with their paths, the ignored files.
+def _opened_tree(name: str, shown: str, tree: Tree, max_size: int) -> OpenedSubmission:
+    """Return a submission of files, with the hash of all that it is read from: the files, the ignored files, its name.
 
     Build folders are unseen on disk; in a zip they are ordinary folders if they have an entry of their own.
     """
@@ -135,4 +144,4 @@ def _digest_of_tree(name: str, tree: Tree, max_size: int) -> str:
             digest.update(file.read(_MAX_HASHED, first=True))
         except InputError as error:
             digest.update(str(error).encode())
-    return digest.hexdigest()
+    return OpenedSubmission(name, shown, digest.hexdigest(), None, tree, max_size)

@@ -2,7 +2,7 @@
 
 import os
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from hashlib import sha256
 from itertools import pairwise
 from typing import NamedTuple
@@ -10,7 +10,7 @@ from typing import NamedTuple
 from grader.classroom.grouping import ClassSubmission
 from grader.classroom.layouts import PATTERNS
 from grader.classroom.listing import ClassListing
-from grader.classroom.people import CERTAIN, People
+from grader.classroom.people import CERTAIN, GROUP, People
 from grader.classroom.roster import Student, plain
 from grader.text import enumerated, first_lines, printable_path
 
@@ -30,7 +30,7 @@ class Intake(NamedTuple):
     """
 
     layout: str
-    submissions: tuple[ClassSubmission, ...]
+    submissions: list[ClassSubmission]
     unclear: frozenset[str]
     unmatched: tuple[str, ...]
     notes: tuple[str, ...]
@@ -54,29 +54,61 @@ class Owners:
         if all(one.student.key.startswith("anon_") for one in found):
             self.notes.append(_ANONYMOUS)
             self._unclear.update(range(len(self.people.students)))
+        if not self._has_roster:
+            self._visitors = [*found]
+            return
         claims: dict[int, list[tuple[int, ClassSubmission]]] = defaultdict(list)
-        groups: dict[tuple[int, ...], list[ClassSubmission]] = defaultdict(list)
         others: list[tuple[tuple[int, ...], ClassSubmission]] = []
-        taken = self._assigned(found)
-        for one in sorted(found, key=lambda one: (one.student.key, one.root, one.paths)) if self._has_roster else ():
+        for one in sorted(set(found) - self._assigned(found), key=lambda one: (one.student.key, one.root, one.paths)):
             match = self.people.match(one.student)
-            if one in taken:
-                continue
-            if match.is_group:
-                groups[match.students].append(one)
-            elif match.only is not None:
-                claims[match.only].append((match.rank, one))
+            if match.rank == GROUP and self._holds_students(one):
+                self._visit(one, "is named like a group, but contains submissions of several students")
+            elif match.is_certain:
+                for index in match.students:
+                    claims[index].append((match.rank, one))
             else:
                 others.append((match.students, one))
-        self._visitors += () if self._has_roster else found
-        for index, claimed in claims.items():
-            self._decide(index, sorted(claimed, key=lambda claim: claim[0]))
-        for members, named in groups.items():
-            self._share(members, named)
-        for students, one in others:
-            keys = [self.people.students[index].key for index in students]
-            self._visit(one, f"may belong to {enumerated(keys, _MAX_NAMED, 'or')}" if keys else "is not on the roster")
+        self._decide(claims)
+        for students, one in others:  # after the others: they make no other submission unclear
+            self._visit(one, f"may belong to {self._keys(students)}" if students else "is not on the roster")
             self._unclear.update(students)
+
+    def _decide(self, claims: Mapping[int, Sequence[tuple[int, ClassSubmission]]]) -> None:
+        """Give each student the submission with the only best id; of several that are equally good, none is graded."""
+        shared: set[ClassSubmission] = set()
+        contested: dict[ClassSubmission, tuple[Sequence[ClassSubmission], list[int]]] = {}
+        lost: dict[ClassSubmission, list[int]] = defaultdict(list)
+        for index, claimed in claims.items():
+            best = min(rank for rank, _ in claimed)
+            first = [one for rank, one in claimed if rank == best]
+            own = [one for rank, one in claimed if rank < GROUP] or first
+            if index in self._owned or index in self._unclear:
+                own = []
+            elif len(first) == 1 and (best <= CERTAIN or len(own) == 1):
+                own, self._owned[index] = first, first[0]
+                if best == GROUP:  # the ids in its name are those of one member
+                    shared.add(first[0])
+                    self._owned[index] = first[0]._replace(student=Student(""))
+            else:
+                self._unclear.add(index)
+                for one in own:
+                    contested.setdefault(one, (own, []))[1].append(index)
+            for _, one in claimed:
+                if one not in own:
+                    lost[one].append(index)
+        for one, (several, members) in contested.items():
+            names = enumerated([self._shown(other) for other in several], _MAX_NAMED)
+            reason = f"may belong to {self._keys(members)}, and of {names} none is graded"
+            self._list(one, reason, self._keys(members, "and"))
+        for one in lost.keys() - contested.keys() - shared:
+            self._visit(one, f"may belong to {self._keys(lost[one])}, who has another submission")
+
+    def _visit(self, one: ClassSubmission, reason: str) -> None:
+        self._visitors.append(one)
+        self._list(one, reason)
+
+    def _keys(self, students: Iterable[int], word: str = "or") -> str:
+        return enumerated([self.people.students[index].key for index in students], _MAX_NAMED, word)
 
     def _assigned(self, found: Iterable[ClassSubmission]) -> set[ClassSubmission]:
         """Give students what the roster's column `submission` names, and return these submissions."""
@@ -112,52 +144,12 @@ class Owners:
         top = f"{self.roots[one.root][1]}/" if len(self.roots) > 1 else ""
         return _plain_path(top + (path or one.paths[0]))
 
-    def _visit(self, one: ClassSubmission, reason: str) -> None:
-        self._visitors.append(one)
-        self._list(one, reason)
-
     def _list(self, one: ClassSubmission, reason: str, student: str = "") -> None:
         """List a submission with what assigns it: a cell of the student's row, or a row of a visitor's own."""
         key, place = (_cell(text) for text in (printable_path(one.student.key), self._shown(one)))
         row = "" if student else f", or add the row `{key},{place}` below `id,submission`"
         advice = f"write {place} in the column `submission` of {student or 'its student'}{row}"
         self._unmatched.append(f"{self._shown(one)} {reason}; to assign it, {advice}")
-
-    def _decide(self, index: int, claims: Sequence[tuple[int, ClassSubmission]]) -> None:
-        """Give a student the submission with the only best id; if there is none, none of them is graded."""
-        key = self.people.students[index].key
-        (rank, first), *others = claims
-        if index in self._owned or index in self._unclear:
-            others = list(claims)
-        elif not others or (rank <= CERTAIN and others[0][0] > rank):
-            self._owned[index] = first
-        else:
-            self._reject([one for _, one in claims], f"may belong to {key}", [index], key)
-            return
-        for _, one in others:
-            self._visit(one, f"may belong to {key}, who has another submission")
-
-    def _reject(
-        self, several: Sequence[ClassSubmission], reason: str, students: Iterable[int], student: str = ""
-    ) -> None:
-        names = enumerated([self._shown(one) for one in several], _MAX_NAMED)
-        for one in several:
-            self._list(one, f"{reason}, and of {names} none is graded", student)
-        self._unclear.update(students)
-
-    def _share(self, members: Iterable[int], named: Sequence[ClassSubmission]) -> None:
-        """Let the only submission of a group count for each member without another; that of a section for nobody."""
-        without = [index for index in members if index not in self._owned and index not in self._unclear]
-        alone = [one for one in named if not self._holds_students(one)]
-        for one in named:
-            if one not in alone:
-                self._visit(one, "is named like a group, but contains submissions of several students")
-            elif not without:
-                self._visit(one, "is named like a group whose members all have other submissions")
-        if without and len(alone) > 1:
-            self._reject(alone, "is named like a group", without)
-        elif alone:
-            self._owned |= dict.fromkeys(without, alone[0]._replace(student=Student("")))  # the ids are one member's
 
     def _holds_students(self, one: ClassSubmission) -> bool:
         """Return whether two students or more have submissions in a folder: it is a section, not a team's work."""
@@ -168,29 +160,25 @@ class Owners:
     def intake(self, layout: str) -> Intake:
         """Return what was found, with the data of the roster, and the LMS's name and ids where it has none."""
         students, found = self.people.students, list[ClassSubmission]()
-        for index, one in self._owned.items():
+        unclear = frozenset(students[index].key for index in self._unclear - self._owned.keys())
+        while self._owned:  # of a large class not all is kept twice
+            index, one = self._owned.popitem()
             own, given = students[index], one.student
             name = own.name or ("" if given.canvas else given.name)
-            own = own._replace(name=name, canvas=own.canvas or given.canvas, moodle=own.moodle or given.moodle)
-            found.append(one._replace(student=own))
+            more = own._replace(name=name, canvas=own.canvas or given.canvas, moodle=own.moodle or given.moodle)
+            found.append(one._replace(student=own if more == own else more))
         twice = {one for one, other in pairwise(sorted(one.student.key for one in self._visitors)) if one == other}
         taken = {plain(one.key) for one in students}
         for one in self._visitors:
             key, is_chosen = one.student.key, bool(one.student.canvas or one.student.aliases)
             if key in twice or not key.isprintable() or plain(key) in taken:
                 key = _path_key(f"{self.roots[one.root][1]}/{one.paths[0]}" if len(self.roots) > 1 else one.paths[0])
-            visitor = one.student._replace(
-                key=key, name="" if is_chosen else one.student.name, aliases=(), is_on_roster=not self._has_roster
-            )
+            name = "" if is_chosen else one.student.name
+            visitor = one.student._replace(key=key, name=name, aliases=(), is_on_roster=not self._has_roster)
             found.append(one if visitor == one.student else one._replace(student=visitor))
-        return Intake(
-            layout,
-            tuple(sorted(found, key=lambda one: one.student.key)),
-            frozenset(students[index].key for index in self._unclear - self._owned.keys()),
-            tuple(self._unmatched),
-            tuple(self.notes),
-            tuple(first_lines(sorted(self.ignored), _MAX_LINES)),
-        )
+        found.sort(key=lambda one: one.student.key)
+        ignored = first_lines(sorted(self.ignored), _MAX_LINES)
+        return Intake(layout, found, unclear, tuple(sorted(self._unmatched)), tuple(self.notes), tuple(ignored))
 
 
 def _plain_path(path: str) -> str:
@@ -204,6 +192,4 @@ def _cell(text: str) -> str:
 
 def _path_key(path: str) -> str:
     """Return the key of a submission whose name cannot be one: `./` begins no name that a student can give a folder."""
-    if path.isprintable():
-        return f"./{path}"
-    return f"./{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"
+    return f"./{path}" if path.isprintable() else f"./{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"

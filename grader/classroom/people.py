@@ -9,24 +9,20 @@ from typing import NamedTuple
 from grader.classroom.roster import Student, plain
 
 CERTAIN = 1  # the rank of an id as it is spelt; an LMS's own has 0
-_UNCLEAR = 4
+GROUP, _UNCLEAR = 4, 5
 _MAX_WORDS = 8
 
 
 class Match(NamedTuple):
-    """The indices of the students that a submission may belong to; `rank` grows with the doubt.
+    """The indices of the students that a submission may belong to, of a group to each; `rank` grows with the doubt."""
 
-    The submission of a group belongs to each of them.
-    """
-
-    students: tuple[int, ...]
+    students: tuple[int, ...] = ()
     rank: int = 0
-    is_group: bool = False
 
     @property
-    def only(self) -> int | None:
-        """The student to whom it belongs; None if that is nobody or not clear."""
-        return self.students[0] if len(self.students) == 1 and self.rank < _UNCLEAR else None
+    def is_certain(self) -> bool:
+        """Whether it belongs to one student, or to each of a group."""
+        return bool(self.students) and (self.rank == GROUP or (len(self.students) == 1 and self.rank < GROUP))
 
 
 class People:
@@ -34,17 +30,17 @@ class People:
 
     def __init__(self, students: Sequence[Student]) -> None:
         self.students = students
-        self._tables: tuple[dict[str, list[int]], ...] = tuple(defaultdict(list) for _ in range(4))
+        self._tables: tuple[dict[str, tuple[int, ...]], ...] = ({}, {}, {}, {})
         self._groups: dict[str, list[int]] = defaultdict(list)
         for index, one in enumerate(students):
+            own = (index,)  # kept once for all words that only this student has
             ids = [one.key, one.login, one.sis, one.email, *one.aliases]
             names = [plain(one.name), plain(one.email.partition("@")[0]), _surname(one.name), *_in_canvas(one.name)]
             for words, table in zip((_numbers(one), ids, map(plain, ids), names), self._tables, strict=True):
-                for word in {*words} - {""}:
-                    table[unicodedata.normalize("NFC", word)].append(index)
-            if team := one.group or one.section:
-                for name in {plain(team), letters(team)} - {""}:
-                    self._groups[name].append(index)
+                for word in {unicodedata.normalize("NFC", word) for word in words if word}:
+                    table[word] = table[word] + own if word in table else own
+            for name in {plain(one.group or one.section), letters(one.group or one.section)} - {""}:
+                self._groups[name].append(index)
 
     def knows(self, name: str, team: str = "") -> bool:
         """Return whether a name is that of one student, in a team also the surname, or of a group."""
@@ -52,7 +48,7 @@ class People:
 
     def knows_student(self, name: str, team: str = "") -> bool:
         """Return whether a name is that of one student."""
-        return self._person(Student(name, login=name, group=team)).only is not None
+        return self._person(Student(name, login=name, group=team)).is_certain
 
     def match(self, claim: Student) -> Match:
         """Return whose a submission is by what its name claims; with a `group`, only of a member of that team.
@@ -63,26 +59,22 @@ class People:
         if claim.aliases:
             users = {index for user in claim.aliases for index in self._tables[0].get(f"canvas {user}", ())}
             return Match(tuple(sorted(users)), _UNCLEAR)
-        found = self._person(claim)
-        name = letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
+        found, name = self._person(claim), letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
         group = () if claim.group else tuple(self._groups.get(name, ()))
-        if group and found.students and found.rank == 0:
-            owner = self.students[found.students[0]]
-            if (
-                name in _in_canvas(owner.name)
-                or name == plain(owner.name)
-                or (claim.canvas and found.only not in group)
-            ):
+        if not group:
+            return found
+        if found.students and found.rank == 0:
+            owner = found.students[0]
+            own = self.students[owner].name
+            if name in (plain(own), *_in_canvas(own)) or (claim.canvas and owner not in group):
                 return found
-            return Match(group, is_group=True) if claim.canvas else Match((*found.students, *group), _UNCLEAR)
-        if claim.canvas and group and (found.students or any(self.students[index].canvas for index in group)):
+            return Match(group, GROUP) if claim.canvas else Match((*found.students, *group), _UNCLEAR)
+        if claim.canvas and (found.students or any(self.students[index].canvas for index in group)):
             return Match((*found.students, *group), _UNCLEAR)
-        return found if found.students or not group else Match(group, is_group=True)
+        return found if found.students else Match(group, GROUP)
 
     def _person(self, claim: Student) -> Match:
         """Return the students with the best of the words in a claim, without those whom the LMS knows by another id."""
-        if not self.students:
-            return Match(())
         login, team = plain(claim.login), self._groups.get(plain(claim.group), ()) if claim.group else None
         names = [plain(claim.name), login, _surname(login) if claim.group else ""]
         names = [letters(claim.name)] if claim.canvas else names
@@ -90,14 +82,14 @@ class People:
         for rank, (words, table) in enumerate(zip(ranked, self._tables, strict=True)):
             found = {index for word in words for index in table.get(word, ()) if team is None or index in team}
             if found:
-                return Match(tuple(sorted(index for index in found if not self._is_other(index, claim))), rank)
-        return Match(())
+                return Match(tuple(sorted(at for at in found if not _is_other(self.students[at], claim))), rank)
+        return Match()
 
-    def _is_other(self, index: int, claim: Student) -> bool:
-        """Return whether the LMS knows a student by another id than that in a claim."""
-        one = self.students[index]
-        ids = ((one.canvas, claim.canvas), (one.moodle, claim.moodle))
-        return any(own and given and own != given for own, given in ids)
+
+def _is_other(one: Student, claim: Student) -> bool:
+    """Return whether the LMS knows a student by another id than that in a claim."""
+    ids = ((one.canvas, claim.canvas), (one.moodle, claim.moodle))
+    return any(own and given and own != given for own, given in ids)
 
 
 def _numbers(one: Student) -> list[str]:

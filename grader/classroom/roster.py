@@ -4,6 +4,7 @@ import re
 import unicodedata
 from collections.abc import Iterator, Sequence
 from datetime import datetime
+from operator import itemgetter
 from typing import NamedTuple
 
 from grader.classroom.tables import rows_with_lines
@@ -46,7 +47,8 @@ _NUMBERED = re.compile(r"(?:[^\W\d_]{4,}\D*)?([0-9]+)")  # Participant 123, in a
 _PARTICIPANT = re.compile(r"(?i:participant|teilnehmer(?:/?in)?)\s*[0-9]+")
 _DAYS = re.compile(r"([0-9]{1,4}(?:[.,][0-9]{1,4})?)\s*(?:days?)?")
 _LATE = {"yes": True, "true": True, "late": True, "no": False, "false": False, "on time": False}
-# The form of a cell, and what to write in it.
+_TIMES = ("due", "extension", "submitted")
+# The form of a cell that is no time, and what to write in it.
 _FORMS = {
     "canvas": ("[0-9]+", "a number"),
     "moodle": (_NUMBERED.pattern, "a number (put other ids in a column `id`)"),
@@ -54,11 +56,9 @@ _FORMS = {
     "late": (rf"{'|'.join(_LATE)}|{_DAYS.pattern}", "yes, no, or a number of days from 0"),
     "group": (r"(?!(?:none|n/a|null|nil|no group)\Z).*\w.*", "nothing for a student without a group"),
     "submission": (r"(?!/|(?:.*/)?\.\.(?:/|\Z)).+", "a path below the class folder"),
-}
-_TIMES = {
-    "due": "2026-09-01 or 2026-09-01T23:59",
-    "extension": "a number of days from 0, or a date",
-    "submitted": "2026-09-01T10:00",
+    "due": ("(?!)", "2026-09-01 or 2026-09-01T23:59"),
+    "extension": (_DAYS.pattern, "a number of days from 0, or a date"),
+    "submitted": ("(?!)", "2026-09-01T10:00"),
 }
 # moodle, mod/assign/gradingtable.php, col_status: parts with ` - ` between them, one of them `1 day 2 hours late`, from
 # the deadline that Moodle knows. Other parts with a number have a colon: overdue by, extension granted until.
@@ -110,42 +110,33 @@ def read_roster(data: bytes, shown: str) -> Roster:
     """
     rows = rows_with_lines(data, shown)
     _, header = next(rows, (1, []))
-    fields = [_FIELD_OF.get(folded(title), "") for title in header]
+    titles = [*map(folded, header)]
+    fields = [_FIELD_OF.get(title, "") for title in titles]
     if header and _WHO.isdisjoint(fields):
         named = ", ".join(filter(None, header))[:200]
         raise InputError(f"{shown} has no column for an id, login, name or email in its first line, only: {named}")
-    read, mistakes, students, notes = (
-        list[tuple[int, dict[str, str]]](),
-        list[str](),
-        list[tuple[int, Student]](),
-        list[str](),
-    )
+    is_canvas = {"student", "id"} <= {*titles} and any(title.startswith("sis") for title in titles)
+    students, lines, mistakes, notes = list[Student](), list[int](), list[tuple[int, str]](), list[str]()
     for line, cells in rows:
         if len(cells) < len(fields) or any(cells[len(fields) :]):
-            count = f"{counted(len(cells), 'cell')}, but the first line has {len(fields)}"
-            mistakes.append(f"line {line} of {shown} has {count}")
-        else:  # of several columns for a field the first that is not empty
-            filled = {field: cell for field, cell in reversed([*zip(fields, cells, strict=False)]) if cell}
-            read.append((line, dict.fromkeys(_TITLES, "") | filled))
-    has_columns = {"student", "id"} <= set(map(folded, header)) and not {"sis", "login"}.isdisjoint(fields)
-    if has_columns and any(row["id"].isdecimal() for _, row in read):  # Canvas: rows of points above the students
-        read = [(line, row) for line, row in read if row["id"] and row["name"].casefold() not in _TEST_STUDENT]
-        for _, row in read:
-            row["canvas"] = row["canvas"] or row["id"]
-    for line, row in read:
-        wrong = [*_normalise(row)]
-        student = _student(row)
-        if not student.key:
-            wrong.append("has no id, login, name or email address: add one of them")
-        mistakes += (f"line {line} of {shown} {text}" for text in wrong)
-        students.append((line, student))
+            mistakes.append((line, f"has {counted(len(cells), 'cell')}, but the first line has {len(fields)}"))
+            continue  # of several columns for a field the first that is not empty counts
+        filled = {field: cell for field, cell in reversed([*zip(fields, cells, strict=False)]) if cell}
+        row = dict.fromkeys(_TITLES, "") | filled
+        if is_canvas and (row["name"].casefold() in _TEST_STUDENT or not (row["id"] + row["sis"] + row["login"])):
+            continue  # a row of points above the students
+        row["canvas"] = row["canvas"] or (row["id"] if is_canvas and row["id"].isdecimal() else "")
+        mistakes += ((line, why) for why in _normalise(row))
+        students.append(student := _student(row))
+        lines.append(line)
         if student.is_late and student.days_late is None and not row["late"] and _days_of(row["status"]) is None:
             late = f"{row['status']!r} does not say clearly how late the submission is, and counts as late"
             notes.append(f"line {line} of {shown}: {late}: add a column `late` with `no` or a number of days")
-    mistakes += _duplicates(students, shown)
+    mistakes += _duplicates(students, lines)
     if mistakes or not students:
-        raise InputError("\n".join(first_lines(mistakes or [f"{shown} has no students"], _MAX_MISTAKES)))
-    return Roster(tuple(student for _, student in students), tuple(first_lines(notes, _MAX_MISTAKES)))
+        named_lines = [f"line {line} of {shown} {why}" for line, why in sorted(mistakes, key=itemgetter(0))]
+        raise InputError("\n".join(first_lines(named_lines or [f"{shown} has no students"], _MAX_MISTAKES)))
+    return Roster(tuple(students), tuple(first_lines(notes, _MAX_MISTAKES)))
 
 
 def _normalise(row: dict[str, str]) -> Iterator[str]:
@@ -157,24 +148,22 @@ def _normalise(row: dict[str, str]) -> Iterator[str]:
         row["moodle"], row["id"] = row["moodle"] or row["id"], ""
     field = "moodle" if _NUMBERED.fullmatch(row["identifier"]) and not row["github"] else "id"
     row[field] = row[field] or row["identifier"]
-    for field, (pattern, meant) in _FORMS.items():
-        if row[field] and not re.fullmatch(pattern, row[field], re.IGNORECASE):
-            yield f"has {row[field]!r} for {_UNIQUE.get(field, field)}: write {meant}"
-            row[field] = ""
-    for field, meant in _TIMES.items():
-        text, time = row[field], iso_time(row[field])
-        if text and not time and (field != "extension" or not _DAYS.fullmatch(text)):
-            yield f"has {text!r} for {field}: write {meant}"
-            text = ""
-        row[field] = time or text
+    if not any(map(row.__getitem__, _WHO)):
+        yield "has no id, login, name or email address: add one of them"
     if row["due"] and iso_time(row["extension"]):
         yield f"has both {row['due']!r} for due and {row['extension']!r} for extension: write one date"
+    for field, (pattern, meant) in _FORMS.items():
+        time = iso_time(row[field]) if field in _TIMES else ""
+        if row[field] and not time and not re.fullmatch(pattern, row[field], re.IGNORECASE):
+            yield f"has {row[field]!r} for {_UNIQUE.get(field, field)}: write {meant}"
+            row[field] = ""
+        row[field] = time or row[field]
 
 
 def _student(row: dict[str, str]) -> Student:
     """Return the student in a row with values as they should be; without a key if it identifies none."""
     own, canvas, moodle = row["id"], row["canvas"], re.sub(r"\D", "", row["moodle"])
-    login, sis = row["login"] or row["github"], row["sis"] or ("" if row["id"] == canvas else row["id"])
+    login, sis = row["login"] or row["github"], row["sis"] or ("" if own == canvas else own)
     name = row["name"] or f"{row['first']} {row['last']}".strip()
     extension, days_late = _days(row["extension"]), _days(row["late"])
     due, days = row["due"] or (row["extension"] if extension is None else ""), extension or 0.0
@@ -204,17 +193,17 @@ def _days_of(status: str) -> float | None:
     return 0.0
 
 
-def _duplicates(students: Sequence[tuple[int, Student]], shown: str) -> Iterator[str]:
-    """Yield a message for each student with an id or address that another student has."""
-    first: dict[tuple[str, str], int] = {}
-    for line, student in students:
-        ids = {title: str(getattr(student, field)) for field, title in _UNIQUE.items() if getattr(student, field)}
-        lines = {
-            title: first.setdefault((title, word if title == "id" else word.casefold()), line)
-            for title, word in ids.items()
-        }
-        for title in [title for title in ids if lines[title] != line][:1]:
-            yield f"{shown} has the {title} {ids[title]} twice, in lines {lines[title]} and {line}"
+def _duplicates(students: Sequence[Student], lines: Sequence[int]) -> Iterator[tuple[int, str]]:
+    """Yield a line and a message for each student with an id or address that another student has."""
+    wrong: set[int] = set()
+    for field, title in _UNIQUE.items():
+        first: dict[str, int] = {}
+        for line, student in zip(lines, students, strict=True):
+            word = getattr(student, field)
+            other = first.setdefault(word if field == "key" else word.casefold(), line) if word else line
+            if other != line and line not in wrong:
+                wrong.add(line)
+                yield line, f"has the {title} {word} of line {other}"
 
 
 def iso_time(text: str) -> str:

@@ -3,7 +3,6 @@
 import re
 from collections.abc import Collection, Iterator
 from dataclasses import replace
-from functools import lru_cache
 
 from grader.classroom.grouping import ClassSubmission, files_below, one_each
 from grader.classroom.layouts import PATTERNS, ClassFolder, is_submission
@@ -11,7 +10,7 @@ from grader.classroom.listing import ClassListing
 from grader.classroom.people import People
 from grader.classroom.roster import Student
 from grader.files.names import PACKAGE_FILES
-from grader.submission.labs import Belonging, LabFolders, lab_words
+from grader.submission.labs import Belonging
 from grader.submission.students import is_part
 
 _ROBOT = re.compile(r"\.urdf$|xacro|urdf\b|/package\.xml$")
@@ -38,7 +37,7 @@ def team_labs(folder: ClassFolder) -> Iterator[tuple[str, str]]:
 
     A folder of a student stays whole, unless the user has named the layout.
     """
-    names, _ = _names_of(folder.labs)
+    names = folder.labs
     for team in sorted(folder.children.folders):
         if folder.is_explicit or not folder.people.knows_student(team):
             top = folder.start + team
@@ -62,14 +61,15 @@ def _holds_students(folder: ClassFolder, lab: str, team: str) -> bool:
     inner = folder.listing.children(lab, 1000)
     parts = _parts(folder, inner.folders, team)
     names = [f"{name}/" for name in inner.folders] + list(filter(is_submission, inner.files))
-    if not PACKAGE_FILES.isdisjoint(inner.files) or not names or (parts and not folder.is_explicit):
+    if not PACKAGE_FILES.isdisjoint(inner.files) or not names:
         return False
     known = sum(folder.people.knows(PATTERNS["folders"].sub(r"\g<login>", name), team) for name in names)
-    if (known and known >= min(len(names), 2)) or folder.is_explicit:
+    if folder.is_explicit:
         return bool(known) or len(parts) < len(inner.folders)
     tops = [f"{lab}/{name}" for name in inner.folders]
     is_package = any(folder.listing.has(f"{top}/package.xml") for top in tops)
-    return not is_package and sum(_has_robot(folder.listing, top) for top in tops) > 1
+    are_robots = not is_package and sum(_has_robot(folder.listing, top) for top in tops) > 1
+    return not parts and (known >= min(len(names), 2) or are_robots)
 
 
 def _has_robot(listing: ClassListing, top: str) -> bool:
@@ -78,11 +78,4 @@ def _has_robot(listing: ClassListing, top: str) -> bool:
 
 def _parts(folder: ClassFolder, names: Collection[str], team: str) -> list[str]:
     """Return the names in a lab's folder that are those of parts of a submission, and not of students."""
-    _, words = _names_of(folder.labs)
-    return [name for name in names if is_part(name, words) and not folder.people.knows(name, team)]
-
-
-@lru_cache(maxsize=1)
-def _names_of(labs: tuple[str, ...]) -> tuple[LabFolders, frozenset[str]]:
-    """Return the names of the lab's folders, and the words in them."""
-    return LabFolders(labs), frozenset(word for lab in labs for word in lab_words(lab))
+    return [name for name in names if is_part(name, folder.lab_words) and not folder.people.knows(name, team)]

@@ -4,19 +4,16 @@ The search never chooses between several students: a manual mark must not go to 
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Sequence
 from decimal import Context, Decimal
 from functools import lru_cache
-from typing import Any, TypeVar
 
-from grader.classroom.roster import plain
+from grader.classroom.roster import Student, plain
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 from grader.names import did_you_mean
 from grader.text import enumerated, format_points, printable, quoted
-
-S = TypeVar("S")  # a Student
 
 _FINEST = Decimal("0.0001")  # points, as in rubrics
 _MAX_LISTED = 10
@@ -27,49 +24,50 @@ class NotCountedError(InputError):
     """A mark for no student or criterion of the class, or above the maximum."""
 
 
-def find_typed(students: Sequence[S], name: str, advice: str) -> S:
+def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
     """Return the only student whom a typed name may mean: an id, login, address or number, or some words of the name.
 
     Raises InputError: if several students match, it lists them; else similar names; else it ends with `advice`.
     """
-    everyone = _clues(tuple(students))
     word = plain(name)
-    found: list[Any] = [one for one, ids, words in everyone if word and (word in ids or words.issuperset(word.split()))]
+    found = [
+        one for one, ids, words in _clues(tuple(students)) if word in ids or words.issuperset(word.split() or [""])
+    ]
     if len(found) == 1:
-        only: S = found[0]
-        return only
+        return found[0]
     if found:
         shown = [f"{one.key!r} ({printable(one.name)})" if one.name else repr(one.key) for one in found]
         raise InputError(
             f"{name!r} is ambiguous: it may be {enumerated(shown, _MAX_LISTED, 'or')}; use one of these ids"
         )
-    changed = enumerated([*map(repr, as_number(name, tuple(one.key for one, *_ in everyone)))], _MAX_LISTED, "or")
-    some = {word for one, *_ in everyone for word in (one.key, one.login, one.name)}
+    changed = enumerated([*map(repr, as_number(name, tuple(one.key for one in students)))], _MAX_LISTED, "or")
+    some = {word for one in students for word in (one.key, one.login, one.name)}
     guess = f"; did you mean {changed}?" if changed else did_you_mean(name, some) or advice
     raise InputError(f"there is no student {name!r} in the gradebook{guess}")
 
 
 @lru_cache(maxsize=1)  # a file of marks names many
-def _clues(students: tuple[Any, ...]) -> list[tuple[Any, set[str], set[str]]]:
+def _clues(students: tuple[Student, ...]) -> list[tuple[Student, set[str], set[str]]]:
     """Return each student with the ids, and the words of the name."""
     clues = []
     for one in students:
-        words = (one.key, one.login, one.sis, one.canvas, one.moodle, one.email, one.email.partition("@")[0])
-        ids = {plain(word) for word in (*words, *getattr(one, "aliases", ())) if word}
-        clues.append((one, ids, {*plain(one.name or one.key).split()}))
+        ids = (one.key, one.login, one.sis, one.canvas, one.moodle, one.email, one.email.partition("@")[0])
+        clues.append(
+            (one, {plain(word) for word in (*ids, *one.aliases)} - {""}, {*plain(one.name or one.key).split()})
+        )
     return clues
 
 
-def known(noun: str, cell: str, names: Mapping[str, Any]) -> str:
+def known(noun: str, cell: str, names: Collection[str]) -> str:
     """Return the student or criterion in a cell; raises NotCountedError, or InputError for a changed cell."""
+    if cell in names:
+        return cell
     if not cell:
         raise InputError(f"the row names no {noun}")
-    if cell not in names and (changed := as_number(cell, tuple(names))):
-        meant = enumerated([*map(repr, changed)], 10, "or")
+    if changed := as_number(cell, tuple(names)):
+        meant = enumerated([*map(repr, changed)], _MAX_LISTED, "or")
         raise InputError(f"{noun} {cell!r} may be {meant}, changed by a spreadsheet: correct it")
-    if cell not in names:
-        raise NotCountedError(f"there is no {noun} {quoted(cell)}")
-    return cell
+    raise NotCountedError(f"there is no {noun} {quoted(cell)}")
 
 
 def as_number(cell: str, names: tuple[str, ...]) -> list[str]:

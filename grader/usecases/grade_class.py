@@ -95,10 +95,10 @@ def _grade(
     context = digest_of(
         rubric.sha256, _reference(folder), settings.parts, sorted(arguments.items()), settings.max_size, __version__
     )
+    present = dict.fromkeys(one.student.key for one in intake.submissions)
     with ResultsWriter(folder / names.RESULTS, results.end) as writer:
         done = _batch(request, inputs, Batch(results, writer, shared, context), intake, terminal)
         time = datetime.now(UTC).isoformat(timespec="milliseconds")
-        present = dict.fromkeys(one.student.key for one in intake.submissions)
         run = Run(results.next_run, time, __version__, rubric.sha256, context, present, sorted(intake.unclear))
         book, table = Class(folder, run=run), ClassTable(rubric, verbose=request.verbose)
         totals: dict[str, str | None] = {}
@@ -124,7 +124,7 @@ def _batch(request: ClassRequest, inputs: ClassInputs, batch: Batch, intake: Int
         try:
             done = batch.grade(intake.submissions, executor, workers, show, force=request.force)
         except BaseException:
-            graded = f"{batch.progress.done} of {len(intake.submissions)} have a result, which is kept"
+            graded = f"{batch.progress.done} of {batch.progress.total} have a result, which is kept"
             terminal.warn(f"stopped: {graded}; rerun the same command to resume")
             raise
     errored = f" ({done.errored} errored)" if done.errored else ""

@@ -1,6 +1,7 @@
 """The refusal to grade several students as one, a class or a team's repository, with the command for each and all."""
 
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -34,20 +35,16 @@ def refuse_class(path: str, rubric: "Rubric", options: str) -> None:
 
 def _may_be_class(path: str) -> bool:
     """Return whether a path is a zip, or a folder with names of an LMS. Reads only names, so that it is fast."""
-    try:
-        names = os.listdir(path) if os.path.isdir(path) else []  # noqa: PTH112, PTH208
+    names: list[str] = []
+    with suppress(OSError, ValueError):
         for _ in range(MAX_WRAPPERS):
-            few = names if len(names) < _MAX_LISTED else []
-            inner = [name for name in few if os.path.isdir(f"{path}/{name}")]  # noqa: PTH112
+            names = os.listdir(path)  # noqa: PTH208
+            inner = [name for name in names[:_MAX_LISTED] if os.path.isdir(f"{path}/{name}")]  # noqa: PTH112
             if len(inner) != 1 or "submitted" in names:
                 break
             path = f"{path}/{inner[0]}"
-            names = [*os.listdir(path)]  # noqa: PTH208
-    except (OSError, ValueError):
-        return False
-    if not names:
-        return path.lower().endswith(".zip")
-    return "submitted" in names or sum(name.count("_") > 1 for name in names) > 1
+    is_class = "submitted" in names or sum(name.count("_") > 1 for name in names) > 1
+    return is_class if names else path.lower().endswith(".zip")
 
 
 def _head(what: str, students: int) -> str:

@@ -1,6 +1,6 @@
 """Grade a class: send new and changed submissions to the workers, write each result into the gradebook at once."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import Executor
 from functools import partial
 
@@ -24,20 +24,21 @@ class Batch:
 
     def grade(
         self,
-        submissions: Sequence[ClassSubmission],
+        submissions: list[ClassSubmission],
         executor: Executor,
         workers: int,
         show: Callable[[Progress], None] = lambda _: None,
         *,
         force: bool = False,
     ) -> Progress:
-        """Grade all submissions that have no current result.
+        """Grade all submissions that have no current result, and empty the list: a large class takes memory.
 
         One whose grading is lost is graded without its documents; if that is lost as well, it is `errored`.
         """
         self.progress = Progress(len(submissions))
         show(self.progress)  # before the first result
-        tasks = (self._task(one, force=force) for one in submissions)
+        submissions.reverse()
+        tasks = (self._task(submissions.pop(), force=force) for _ in range(len(submissions)))
         queue = Queue(executor, workers, partial(grade_all, self._shared), _again, self._lost)
         for results in queue.results(tasks):
             self._writer.append(*map(self._line, results))

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from grader.checks.outcome import Status
 from grader.classroom.equal_work import forms_of, hashes_of
-from grader.classroom.opening import open_class_submission
+from grader.classroom.opening import digest_of_unread, open_class_submission
 from grader.classroom.results import Graded, answers_of, digest_of, entries_of
 from grader.classroom.run.pool import NO_MEMORY
 from grader.errors import InputError, MachineError
@@ -70,7 +70,7 @@ def _grade_one(context: ClassContext, task: Task) -> Graded:
             raise InputError(students_refusal(submission))  # noqa: TRY301  it is handled like files that cannot be read
         report = grade(rubric, submission, context.parts, is_one_of_class=True)
     except InputError as error:
-        result = result._replace(digest=result.digest or digest_of(str(error)))
+        result = result._replace(digest=result.digest or digest_of(str(error), digest_of_unread(root, task.paths)))
         if result.digest != task.graded:
             result = undecided(context, result._replace(verdict="unreadable", reason=str(error)))
         return result

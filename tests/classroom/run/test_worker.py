@@ -67,6 +67,16 @@ def test_the_folder_around_it_does_not_matter(kind: str, wrapped: str, tmp_path:
     assert str(tmp_path) not in result.reason
 
 
+def test_each_unreadable_file_has_its_own_digest(tmp_path: Path) -> None:
+    """It is that of its bytes: a mark for one that cannot be read is older than another such file."""
+    (tmp_path / "ann.zip").write_bytes(CUT)
+    first = graded(tmp_path, "ann.zip")
+    (tmp_path / "ann.zip").write_bytes(CUT + b" ")
+    second = graded(tmp_path, "ann.zip")
+    assert (first.verdict, first.reason) == (second.verdict, second.reason) == ("unreadable", first.reason)
+    assert first.digest != second.digest
+
+
 def test_a_folder_has_the_same_report(tmp_path: Path) -> None:
     """Points, pending criteria and messages of a folder equal those of `grader grade`."""
     shutil.copytree(ROOT / "submissions/lab6/reference", tmp_path / "ann")
