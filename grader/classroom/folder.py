@@ -56,7 +56,7 @@ def make_gradebook(folder: Path) -> None:
     """Make the folders of a gradebook, unless they exist; only its owner can read them. Raises InputError."""
     check_free(folder)
     try:
-        folder.mkdir(mode=0o700, exist_ok=True)
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         (folder / _LOCK).touch(0o600)
         (folder / MARKS).mkdir(mode=0o700, exist_ok=True)
     except OSError as error:

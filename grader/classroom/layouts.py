@@ -103,9 +103,12 @@ class ClassFolder:
         start = f"{self.start}{name}"
         return replace(self, children=self.listing.children(start), start=f"{start}/", name=name)
 
-    def ignore(self, names: Iterable[str], reason: str = "is not named like a submission") -> None:
+    def ignore(self, names: Iterable[str], reason: str = "") -> None:
         """Say why some names are no submissions; the reason continues a sentence that begins with the name."""
-        self.ignored.extend(f"{printable_path(self.start + name)} {reason}" for name in names)
+        for name in names:
+            is_other = name in self.children.files and not is_submission(name)
+            why = "is not a folder, an archive or a URDF" if is_other else "is not named like a submission"
+            self.ignored.append(f"{printable_path(self.start + name)} {reason or why}")
 
     def list_refused(self) -> None:
         """Say which names are not read, such as symlinks."""

@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
-from click import Choice
 
 from grader.classroom.lms.forms import FORMS
 from grader.cli.options import GradebookOption
@@ -22,9 +21,22 @@ _EXCEL = "Write CSV that Excel opens with a double click."
 _FEEDBACK = "Write each student's report into a zip for Moodle or Canvas."
 
 
+def _targets(incomplete: str) -> list[str]:
+    return [target for target in _TARGETS if target.startswith(incomplete)]
+
+
+def _known(target: str) -> str:
+    if target not in _TARGETS:
+        raise typer.BadParameter(f"{target!r} is not one of {', '.join(map(repr, _TARGETS))}.")
+    return target
+
+
 def export(
     target: Annotated[
-        str, typer.Argument(metavar="|".join(_TARGETS), click_type=Choice(_TARGETS), help="The format of the grades.")
+        str,
+        typer.Argument(
+            metavar="|".join(_TARGETS), callback=_known, autocompletion=_targets, help="The format of the grades."
+        ),
     ],
     gradebook: GradebookOption,
     into: Annotated[Path | None, typer.Option(metavar="LMS-FILE", help=_INTO)] = None,

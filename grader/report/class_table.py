@@ -14,7 +14,7 @@ from grader.classroom.statistics import counts, losses, total_text
 from grader.grading.rubric import Rubric
 from grader.report.class_summary import attention_line, means
 from grader.report.console import wrapped
-from grader.text import counted, format_points, printable
+from grader.text import counted, counted_points, format_points, printable
 
 _MAX_ROWS = 40
 _MAX_COSTS = 3  # criteria named in a row
@@ -78,6 +78,5 @@ def _open(grade: StudentGrade) -> str:
     if grade.graded is None:
         return "nothing submitted"
     words = {"errored": "the grader failed", "unreadable": "could not be graded"}
-    return words.get(grade.graded.verdict) or (
-        f"{format_points(grade.pending)} points" if grade.pending else grade.why_open
-    )
+    pending = counted_points(grade.pending) if grade.pending else grade.why_open
+    return words.get(grade.graded.verdict) or pending
