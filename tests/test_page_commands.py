@@ -67,9 +67,7 @@ def presumed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "marks.txt").write_text("0\n", encoding="utf-8")
     shutil.make_archive(str(folder / "submissions"), "zip", folder / "submissions")
     for _ in range(2):  # `diff` compares two runs
-        done = run_with_input(
-            ("batch", "submissions", "--roster", "roster.csv", "--force"), b"", folder=folder
-        )
+        done = run_with_input(("batch", "submissions", "--roster", "roster.csv", "--force"), b"", folder=folder)
         assert done.returncode == 0, done.stderr
     shutil.copytree(folder / "lab6-grades", folder / "lab6-monday")
     return folder

@@ -18,6 +18,8 @@ def reopened(book: Class, graded: Graded) -> Submission | None:
         if digest_of(opened.digest) != graded.digest:
             return None
         known = book.results.texts(graded)
-        return opened.submission(book.rubric, Opening(0, book.settings.arguments, graded.no_documents, converted=known))
+        options = Opening(0, book.settings.arguments, graded.no_documents, converted=known)
+        submission = opened.submission(book.rubric, options)
+        return None if submission.students else submission  # that of several students is not graded
     except InputError:
         return None

@@ -97,8 +97,7 @@ def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
 
 def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
     """Return the report on a submission as it was graded, with its details if it is still there."""
-    is_undecided = all(points is None for points, *_ in graded.results.values())
-    if graded.verdict == "errored" or (graded.verdict == "unreadable" and is_undecided):
+    if graded.verdict == "errored":
         return graded.report(book.rubric)
     submission = reopened(book, graded)
     if submission is None:

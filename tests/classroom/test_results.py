@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.results import Graded, Results, ResultsWriter, Run
+from grader.classroom.results import Entry, Graded, Results, ResultsWriter, Run
 from tests.examples import examples
 
-TEXT = st.text(st.characters(exclude_categories=("Cs",)), max_size=8)
+TEXT = st.text(st.characters(codec="utf-8"), max_size=8)
 ENTRIES = st.dictionaries(TEXT, st.tuples(st.none() | st.sampled_from([0, 1, 2.5]), TEXT, TEXT, TEXT), max_size=2)
 GRADED = st.builds(
     Graded, TEXT, st.integers(1, 3), st.sampled_from(["graded", "unreadable", "errored"]), TEXT, TEXT, TEXT,
@@ -31,7 +31,7 @@ def unsynced() -> Iterator[None]:
 
 def plain(one: Graded) -> Graded:
     """Return a result with lists in place of tuples, as JSON has them."""
-    return one._replace(results={name: tuple(entry) for name, entry in one.results.items()})
+    return one._replace(results={name: (*entry,) for name, entry in one.results.items()})  # type: ignore[misc]
 
 
 @given(st.lists(GRADED, max_size=6))
@@ -82,5 +82,5 @@ def test_an_earlier_run_can_be_read(tmp_path: Path) -> None:
 
 def test_a_full_line_is_small() -> None:
     """A submission with fifty criteria has less than 4 KB."""
-    results = {f"right-wheel-forward-{number}": (2.5, "passed", "", "") for number in range(50)}
+    results: dict[str, Entry] = {f"right-wheel-forward-{number}": (2.5, "passed", "", "") for number in range(50)}
     assert len(Graded("student-12345", 1, "graded", results=results).line) < 4096

@@ -53,7 +53,9 @@ def test_no_report_of_grade_or_batch_contains_one(graded_class: Path, tmp_path: 
         shown = grader(*arguments)
         assert shown.returncode == 0, shown.stderr
         output.append(shown.stdout + shown.stderr)
-    files = [path.read_text(encoding="utf-8") for path in (*out.rglob("*"), *(top / "book").glob("*.*")) if path.is_file()]
+    files = [
+        path.read_text(encoding="utf-8") for path in (*out.rglob("*"), *(top / "book").glob("*.*")) if path.is_file()
+    ]
     assert len(files) > 2 * len(Format)
     assert any("The roots of " in text for text in files)  # what the student has answered
     assert all("of the roots" not in text for text in (*files, *output))
