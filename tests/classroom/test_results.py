@@ -31,7 +31,7 @@ def unsynced() -> Iterator[None]:
 
 def plain(one: Graded) -> Graded:
     """Return a result with lists in place of tuples, as JSON has them."""
-    return one._replace(results={name: (*entry,) for name, entry in one.results.items()})  # type: ignore[misc]
+    return one._replace(results={name: (*entry,) for name, entry in one.results.items()})
 
 
 @given(st.lists(GRADED, max_size=6))
