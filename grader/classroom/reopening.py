@@ -20,6 +20,6 @@ def reopened(book: Class, graded: Graded) -> Submission | None:
         known = book.results.texts(graded)
         options = Opening(0, book.settings.arguments, graded.no_documents, converted=known)
         submission = opened.submission(book.rubric, options)
-        return None if submission.students else submission  # that of several students is not graded
     except InputError:
         return None
+    return None if submission.students else submission  # that of several students is not graded

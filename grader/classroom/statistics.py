@@ -82,10 +82,14 @@ def total_text(grade: StudentGrade) -> str:
 
 
 def losses(grade: StudentGrade) -> list[tuple[Decimal, str]]:
-    """Return the points that a student lost by mistakes or marks, and the criterion, the most points first."""
+    """Return the points that a student lost by mistakes or marks, and the criterion.
+
+    The most points come first, and after all others what was skipped because of another criterion.
+    """
     results = grade.report.results if grade.report is not None and not grade.has_final else ()
-    lost = ((row.criterion.maximum - row.points, row.criterion.id) for row in results if row.is_lost or row.manual_mark)
-    return sorted(((points, name) for points, name in lost if points > 0), key=lambda one: (-one[0], one[1]))
+    lost = [row for row in results if (row.is_lost or row.manual_mark) and row.points < row.criterion.maximum]
+    lost.sort(key=lambda row: (row.outcome.status == "skipped", row.points - row.criterion.maximum, row.criterion.id))
+    return [(row.criterion.maximum - row.points, row.criterion.id) for row in lost]
 
 
 def statistics(book: Class, grades: Iterable[StudentGrade]) -> ClassStatistics:
