@@ -94,8 +94,20 @@ def append_rows(path: Path, rows: Sequence[Mapping[str, str]]) -> None:
             except BaseException:
                 file.truncate(before)
                 raise
+        if not before:
+            _sync_folder(path.parent)
     except OSError as error:
         raise InputError(f"cannot write {shown}: {error.strerror}") from None
+
+
+def _sync_folder(folder: Path) -> None:
+    """Wait until the name of a new file is on the disk; Windows opens no folder."""
+    if sys.platform != "win32":
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
 
 
 def lock(handle: int, *, wait: bool = True) -> None:
