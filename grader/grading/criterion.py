@@ -70,10 +70,6 @@ class Criterion(NamedTuple):
         """The points that are part of the maximum: none of a bonus."""
         return Decimal(0) if self.bonus else self.points
 
-    def after(self, chosen: Iterable[str]) -> Decimal:
-        """Return the points after usual deductions."""
-        return max(Decimal(0), self.points + sum(self.choices[text] for text in chosen))
-
     @property
     def is_given(self) -> bool:
         """Return whether every graded submission gets the points."""

@@ -130,3 +130,17 @@ def test_several_archives_are_counted(tmp_path: Path) -> None:
         "nothing to grade was found: a.zip is not a readable archive: it is damaged or empty "
         "(and 2 more cannot be opened)"
     )
+
+
+def test_a_submission_without_its_documents(tmp_path: Path) -> None:
+    """Answers wait for a person, who is told why; all other criteria have their points, also when it is opened again."""
+    shutil.copytree(ROOT / "submissions/lab6/several-mistakes", tmp_path / "ann")
+    context = ClassContext((str(tmp_path),), LAB6.data, str(LAB6.path))
+    whole, without = (
+        grade_all(context, [Task("ann", 0, ("ann",), no_documents=why)])[0] for why in ("", "it took long")
+    )
+    assert (without.verdict, without.no_documents, without.texts) == ("graded", "it took long", {})
+    assert {name: entry[0] for name, entry in without.results.items() if name != "evidence-webcam"} == {
+        name: entry[0] for name, entry in whole.results.items() if name != "evidence-webcam"
+    }
+    assert without.results["answer-launch-nodes"][:2] == (None, "pending")
