@@ -4,6 +4,7 @@ import os
 import re
 from collections.abc import Collection, Sequence
 from decimal import Decimal
+from functools import lru_cache
 from pathlib import Path
 
 # The runner of GitHub Actions treats a line as a command if it begins with `::`, after white space as well, or contains
@@ -90,6 +91,7 @@ def counted(number: int, noun: str, plural: str = "") -> str:
     return f"{number} {noun}" if number == 1 else f"{number} {plural or noun + 's'}"
 
 
+@lru_cache(maxsize=1024)
 def format_points(points: Decimal) -> str:
     """Return exact points, without trailing zeros: 58.5, 70."""
     return format(points.normalize(), "f") if points else "0"

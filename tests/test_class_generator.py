@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.results import Graded
+from grader.classroom.graded import Graded
 from grader.classroom.roster import read_roster
 from grader.classroom.run.worker import ClassContext, Task, grade_all
 from grader.classroom.submissions import read_class

@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from grader.classroom import folder as names
+from grader.classroom.graded import Graded, Run
 from grader.classroom.grades import Class
-from grader.classroom.results import Graded, Results, Run
+from grader.classroom.results import Results
 from grader.errors import InputError
 from grader.text import printable_path
 

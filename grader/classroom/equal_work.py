@@ -7,7 +7,7 @@ from contextlib import suppress
 from itertools import combinations, starmap
 from typing import Any, NamedTuple
 
-from grader.classroom.results import Graded
+from grader.classroom.graded import Graded
 from grader.errors import InputError
 from grader.files.reading import sha256_of
 from grader.package.package import PYTHON_LIMIT, SETUP, Package

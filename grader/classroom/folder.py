@@ -11,9 +11,8 @@ from grader.errors import InputError
 from grader.files.reading import read_start
 from grader.text import printable_path, shell_quoted
 
-RESULTS, ROSTER, RUBRIC, MARKS, GRADES, REPORTS, PAGE = (
-    *("results.jsonl", "roster.csv", "rubric", "marks", "grades.csv", "reports", "index.html"),
-)
+RESULTS, GRADES, ROSTER = "results.jsonl", "grades.csv", "roster.csv"
+RUBRIC, MARKS, REPORTS = "rubric", "marks", "reports"
 _LOCK = ".lock"
 _SQLITE = b"SQLite format 3\0"
 

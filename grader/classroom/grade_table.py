@@ -3,7 +3,8 @@
 from collections.abc import Iterable, Iterator, Mapping
 from decimal import Decimal
 
-from grader.classroom.grades import Class, StudentGrade
+from grader.classroom.grades import Class
+from grader.classroom.student_grade import StudentGrade
 from grader.classroom.tables import CellValue
 from grader.grading.criterion import TOTAL
 from grader.grading.report import Result

@@ -1,8 +1,8 @@
 """Open a graded submission again, to quote its files, show its answers and search its hints."""
 
+from grader.classroom.graded import Graded, digest_of
 from grader.classroom.grades import Class
 from grader.classroom.opening import open_class_submission
-from grader.classroom.results import Graded, digest_of
 from grader.errors import InputError
 from grader.submission.submission import Opening, Submission
 

@@ -4,9 +4,9 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from grader.classroom.graded import Graded, digest_of
 from grader.classroom.grades import Class
 from grader.classroom.marks import Key, Mark
-from grader.classroom.results import Graded, digest_of
 from grader.classroom.roster import Student, plain
 from grader.grading.criterion import TOTAL, Criterion
 

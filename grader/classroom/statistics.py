@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 from grader.classroom.equal_work import EqualWork, equal_work
 from grader.classroom.grade_table import status_of
-from grader.classroom.grades import Class, Reason, StudentGrade
+from grader.classroom.grades import Class
+from grader.classroom.student_grade import Reason, StudentGrade
 from grader.grading.criterion import Criterion
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric

@@ -8,8 +8,8 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.classroom.changes import Change, PointsChange
+from grader.classroom.graded import Run
 from grader.classroom.lateness import time_text
-from grader.classroom.results import Run
 from grader.report.console import wrapped
 from grader.report.json_data import (
     COUNT,

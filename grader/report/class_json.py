@@ -7,9 +7,10 @@ from types import SimpleNamespace
 
 from grader import __version__
 from grader.classroom.grade_table import status_of
-from grader.classroom.grades import Class, StudentGrade
+from grader.classroom.grades import Class
 from grader.classroom.run.progress import Progress
 from grader.classroom.statistics import COUNTS, CriterionFigures, statistics
+from grader.classroom.student_grade import StudentGrade
 from grader.grading.report import Result
 from grader.report.json_data import (
     COUNT,

@@ -7,8 +7,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from grader.classroom.grades import Reason
 from grader.classroom.statistics import ClassStatistics, CriterionFigures
+from grader.classroom.student_grade import Reason
 from grader.report.console import wrapped
 from grader.text import counted, format_points, named, people_text, printable
 

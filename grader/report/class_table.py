@@ -9,8 +9,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from grader.classroom.grades import Reason, StudentGrade
 from grader.classroom.statistics import counts, losses, total_text
+from grader.classroom.student_grade import Reason, StudentGrade
 from grader.grading.rubric import Rubric
 from grader.report.class_summary import attention_line, means
 from grader.report.console import wrapped

@@ -7,12 +7,13 @@ from typing import NamedTuple
 
 from grader.checks.outcome import Outcome
 from grader.classroom import folder as names
-from grader.classroom.grades import Class, StudentGrade
+from grader.classroom.graded import Graded
+from grader.classroom.grades import Class
 from grader.classroom.reopening import reopened
-from grader.classroom.results import Graded
 from grader.classroom.run.pool import Processes, WorkerError, processors
 from grader.classroom.run.progress import Progress
 from grader.classroom.run.queue import Queue
+from grader.classroom.student_grade import StudentGrade
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
 from grader.grading.grade import grade as grade_submission
 from grader.grading.graded_submission import Grade, GradedSubmission

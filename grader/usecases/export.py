@@ -9,21 +9,20 @@ from zipfile import is_zipfile
 
 from grader.classroom import folder as names
 from grader.classroom.grade_table import grade_table
-from grader.classroom.grades import Class, Reason, StudentGrade
+from grader.classroom.grades import Class
 from grader.classroom.lms.comments import comment_html, lost_points
 from grader.classroom.lms.feedback_zip import canvas_names, moodle_names, write_feedback
 from grader.classroom.lms.fill import Filled, FillOptions, by_reason, fill
 from grader.classroom.lms.forms import FORMS
 from grader.classroom.lms.owners import ClassGrade
 from grader.classroom.roster import Student
+from grader.classroom.student_grade import Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.errors import GraderError, InputError
 from grader.files.reading import read_capped
 from grader.report.formats import Format
 from grader.text import counted, enumerated, format_points, printable, printable_path
-from grader.usecases import class_reports
 from grader.usecases.class_figures import warn_of_ignored
-from grader.usecases.class_reports import ReportRun
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import is_same_file, is_stdout, refuse_symlinks, save_bytes
@@ -57,10 +56,12 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
     book = Class(request.gradebook)
     roots = book.settings.roots(book.folder)
     if request.target == "html":
+        from grader.usecases import class_reports  # it loads what runs processes
+
         folder = request.output or book.folder / names.REPORTS
         if request.output is not None:
             class_reports.refuse_report_folder(folder, roots)
-        class_reports.write_reports(ReportRun(book.folder, folder, (Format.HTML,)), terminal)
+        class_reports.write_reports(class_reports.ReportRun(book.folder, folder, (Format.HTML,)), terminal)
         return b"", ExitCode.PASSED
     for path in filter(None, (request.output, request.feedback)):
         refuse_symlinks(path, roots)
@@ -111,6 +112,8 @@ def _class_grade(book: Class, grade: StudentGrade, request: ExportRequest, *, ha
 
 
 def _comment(book: Class, grade: StudentGrade, total: Decimal) -> str:
+    from grader.usecases import class_reports
+
     report = class_reports.report_of(book, grade, has_hints=False)
     lost = () if grade.has_final else lost_points(report.results)
     exported = format_points(total.quantize(Decimal("0.01"), ROUND_FLOOR))
@@ -124,6 +127,8 @@ def _maximum(book: Class) -> Decimal:
 
 def _feedback(request: ExportRequest, book: Class, rows: Mapping[str, Student], terminal: Terminal) -> bytes:
     """Return the zip of the reports, named as the LMS gives them to its students; `rows` are those of --into."""
+    from grader.usecases import class_reports
+
     kind = Format(request.feedback_format)
     name = f"report.{kind.ending}"
     grades = [one for one in book if one.graded is not None or one.has_final]
@@ -137,7 +142,7 @@ def _feedback(request: ExportRequest, book: Class, rows: Mapping[str, Student], 
         paths, without = canvas_names(submitted, name)
     files = {key: str(number) for number, key in enumerate(paths)}
     with TemporaryDirectory() as folder:
-        run = ReportRun(book.folder, Path(folder), (kind,))
+        run = class_reports.ReportRun(book.folder, Path(folder), (kind,))
         without |= class_reports.render_reports(run, files, terminal)
         written = ((key, Path(folder, f"{file}.{kind.ending}")) for key, file in files.items() if key not in without)
         reports = {key: path.read_bytes() for key, path in written}

@@ -12,12 +12,14 @@ from pathlib import Path
 from grader import __version__
 from grader.classroom import folder as names
 from grader.classroom.grade_table import grade_table
-from grader.classroom.grades import Class, StudentGrade
-from grader.classroom.results import Results, ResultsWriter, Run, digest_of
+from grader.classroom.graded import Run, digest_of
+from grader.classroom.grades import Class
+from grader.classroom.results import Results, ResultsWriter
 from grader.classroom.run.batch import Batch
 from grader.classroom.run.pool import Processes, processors
 from grader.classroom.run.progress import Progress
 from grader.classroom.run.worker import ClassContext
+from grader.classroom.student_grade import StudentGrade
 from grader.classroom.submissions import Intake, read_class
 from grader.classroom.tables import write_table
 from grader.errors import InputError

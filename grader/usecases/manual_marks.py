@@ -7,10 +7,11 @@ from getpass import getuser
 from pathlib import Path
 
 from grader.classroom import folder as names
-from grader.classroom.grades import Class, StudentGrade
+from grader.classroom.grades import Class
 from grader.classroom.mark_files import COLUMNS, SURPLUS, WITHDRAWN, Cells, mark_file
 from grader.classroom.mark_import import MarkImport
 from grader.classroom.marks import Key, Mark, append_marks
+from grader.classroom.student_grade import StudentGrade
 from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import InputError
 from grader.files.reading import read_capped
@@ -49,7 +50,9 @@ def mark_missing(gradebook: Path, row: Cells) -> str:
     book = Class(gradebook)
     reader = _reader(book)
     missing = [one.student.key for one in book if one.graded is None and not (one.is_unclear or one.has_final)]
-    _append(book, [mark for key in missing for mark in reader.marks_in({**_EMPTY, **row, "student": key})], row["by"])
+    marks = [mark for key in missing for mark in reader.marks_in({**_EMPTY, **row, "student": key})]
+    if marks:
+        _append(book, marks, row["by"])
     return f"{len(missing)} of {len(book.keys)} submitted nothing, and have the final mark {row['points']} now\n"
 
 

@@ -63,7 +63,7 @@ class OpenPage:
 
 @pytest.fixture(scope="module")
 def open_pages(browser: "Browser") -> Callable[..., OpenPage]:
-    """Return a function that opens a file or an address. Whoever opens a page checks it."""
+    """Return a function that opens a file or an address. The test that opens a page checks it."""
 
     def open_one(address: Path | str, **options: object) -> OpenPage:
         page = browser.new_page(**options)

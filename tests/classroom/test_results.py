@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.results import Entry, Graded, Results, ResultsWriter, Run
+from grader.classroom.graded import Entry, Graded, Run
+from grader.classroom.results import Results, ResultsWriter
 from tests.examples import examples
 
 TEXT = st.text(st.characters(codec="utf-8"), max_size=8)

@@ -4,7 +4,8 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from functools import partial
 
-from grader.classroom.results import Graded, Results, ResultsWriter
+from grader.classroom.graded import Graded
+from grader.classroom.results import Results, ResultsWriter
 from grader.classroom.run.pool import WorkerError
 from grader.classroom.run.progress import Progress
 from grader.classroom.run.queue import Queue

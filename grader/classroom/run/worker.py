@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from grader.checks.outcome import Status
 from grader.classroom.equal_work import forms_of, hashes_of
+from grader.classroom.graded import Graded, answers_of, digest_of, entries_of
 from grader.classroom.opening import digest_of_unread, open_class_submission
-from grader.classroom.results import Graded, answers_of, digest_of, entries_of
 from grader.classroom.run.pool import NO_MEMORY
 from grader.errors import InputError, MachineError
 from grader.files.names import ARCHIVES

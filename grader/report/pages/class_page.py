@@ -7,8 +7,9 @@ from typing import Any, NamedTuple
 
 from grader import __version__
 from grader.classroom.grade_table import status_of
-from grader.classroom.grades import Class, StudentGrade
+from grader.classroom.grades import Class
 from grader.classroom.statistics import ClassStatistics, losses, total_text
+from grader.classroom.student_grade import StudentGrade
 from grader.report import class_summary as words
 from grader.report.pages.shell import Assets, render_page
 from grader.text import counted, enumerated, format_points, printable

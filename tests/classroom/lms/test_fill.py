@@ -116,7 +116,7 @@ PERSON = st.tuples(
 
 @given(st.lists(PERSON, min_size=1, max_size=6), st.lists(st.integers(0, 5), max_size=3))
 def test_nobody_gets_the_grade_of_another(people: list[tuple[str, set[str], set[str], str]], liars: list[int]) -> None:
-    """A row gets its student's grade or none, whatever the file and the roster lack, and whoever submits as another."""
+    """A row gets its student's grade or none, whatever the file and the roster lack, and if a student submits as another."""
     rows, grades, own = [], [], {}
     for number, (name, known, shown, key) in enumerate(people):
         true = {field: f"{field}{number}" for field in FIELDS} | {"canvas": str(100 + number), "name": name}

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.results import Graded
+from grader.classroom.graded import Graded
 from grader.classroom.run.worker import ClassContext, Task, grade_all
 from tests.classroom.class_runs import report_in_process
 from tests.samples import LAB6, ROOT
@@ -133,7 +133,7 @@ def test_several_archives_are_counted(tmp_path: Path) -> None:
 
 
 def test_a_submission_without_its_documents(tmp_path: Path) -> None:
-    """Answers wait for a person, who is told why; all other criteria have their points, also when it is opened again."""
+    """Answers need manual grading, and the result says why; all other criteria have their points."""
     shutil.copytree(ROOT / "submissions/lab6/several-mistakes", tmp_path / "ann")
     context = ClassContext((str(tmp_path),), LAB6.data, str(LAB6.path))
     whole, without = (
