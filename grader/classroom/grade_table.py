@@ -41,7 +41,7 @@ def _row(grade: StudentGrade, criteria: Iterable[str], is_exported: bool) -> lis
     numbers: list[CellValue] = [None] * 5
     points = dict[str, Decimal | None].fromkeys(criteria)
     if report is not None:
-        numbers = [report.score, report.max_score, grade.pending, grade.late.days, grade.late.points]
+        numbers = [grade.score, report.max_score, grade.pending, grade.late.days, grade.late.points]
         points |= {row.criterion.id: row.points for row in report.results if not _is_undecided(row)}
     exported = [exported_cell({**points, TOTAL: grade.total})] if is_exported else []
     digest = grade.graded.digest if grade.graded is not None else None

@@ -51,6 +51,7 @@ class Class:
         self._on_roster = {one.key: one for one in self.roster.students} if self.roster is not None else {}
         self.keys = sorted({*self._on_roster, *self.results.students})
         self.marks: Marks = read_marks(folder / names.MARKS, self.keys, self.rubric)
+        self._marked = {student for student, _ in (*self.marks.counting, *self.marks.comments)}
         self.is_outdated = (self.run.rubric, self.run.version) != (self.rubric.sha256, __version__)
 
     def __iter__(self) -> Iterator[StudentGrade]:
@@ -104,6 +105,8 @@ class Class:
 
     def with_marks(self, report: Report, graded: Graded) -> tuple[Report, tuple[str, ...]]:
         """Return a report with marks and comments, and the criteria that were marked before the submission changed."""
+        if graded.student not in self._marked:
+            return report, ()
         results = {one.criterion.id: one for one in report.results}
         older: list[str] = []
         for row in self.rubric.criteria:

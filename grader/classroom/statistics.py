@@ -139,7 +139,9 @@ def _results(book: Class, grades: Iterable[StudentGrade]) -> tuple[list[Criterio
     for grade in grades:
         for result in grade.report.results if grade.report is not None else ():
             name = result.criterion.id
-            found[name].update(_of(result))
+            counts = found[name]
+            for word in _of(result):
+                counts[word] += 1
             earned[name] += result.points
             is_mistake = result.is_lost and result.manual_mark is None and not result.criterion.bonus
             if is_mistake and result.outcome.message:

@@ -68,11 +68,16 @@ class StudentGrade:
         return self.is_excused or self.final_points is not None
 
     @cached_property
+    def score(self) -> Decimal:
+        """The points of the criteria, without a submission 0."""
+        return self.report.score if self.report is not None else Decimal(0)
+
+    @cached_property
     def total(self) -> Decimal | None:
         """The final mark, else the points after the late penalty; None for an excuse, and without a submission."""
         if self.has_final or self.report is None:
             return self.final_points
-        return self.report.score + self.late.points
+        return self.score + self.late.points
 
     @cached_property
     def pending(self) -> Decimal:

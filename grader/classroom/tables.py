@@ -172,7 +172,7 @@ def write_table(header: Sequence[str], rows: Iterable[Sequence[CellValue]]) -> s
 
 def protected(text: str) -> str:
     """Return text that no spreadsheet takes for a formula, and that `unprotected` returns unchanged."""
-    return _FORMULA.sub(r"\1'\2", spelt_out(text))
+    return text if text.isalnum() else _FORMULA.sub(r"\1'\2", spelt_out(text))
 
 
 def unprotected(text: str) -> str:
