@@ -338,6 +338,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     unknown = sorted(set(given.figures) - set(FIGURES))
     if unknown:
         parser.error(f"there is no figure {', '.join(unknown)}")
+    if given.against is not None and not (given.against / "grader/__main__.py").is_file():
+        parser.error(f"--against {given.against} is no checkout")
     print("| figure | measured | goal |\n|---|---|---|")
     with tempfile.TemporaryDirectory() as top:
         bench = Bench(Path(top), given.rounds, given.against, given.all)

@@ -57,6 +57,8 @@ class ClassRequest:
 
 def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     """Grade a class and return its table. Raises InputError and RubricError."""
+    gc.freeze()  # loaded modules are not garbage
+    gc.set_threshold(50_000)
     gc.enable()  # unlike other commands, this one may run for long
     if not isfinite(request.timeout):
         raise InputError(f"--timeout takes a number of seconds, not {request.timeout}")
