@@ -34,7 +34,7 @@ def test_system_calls_of_a_submission(tmp_path: Path) -> None:
         _grade(tmp_path / "few", 10)
     with limited_work(of=SYSTEM_CALLS) as many:
         _grade(tmp_path / "many", 30)
-    assert many.calls - few.calls <= 20 * 12
+    assert many.calls - few.calls <= 20 * 11
 
 
 def _grade(folder: Path, count: int) -> None:
