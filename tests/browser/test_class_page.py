@@ -161,6 +161,10 @@ def test_every_part_fits(open_page: Open, tmp_path: Path, width: int) -> None:
     assert page.evaluate("document.documentElement.scrollWidth") == width
     cut = "[...document.querySelectorAll('pre, th, td, p, li')].filter((one) => one.scrollWidth > one.clientWidth + 1)"
     assert page.evaluate(f"{cut}.map((one) => one.textContent)") == []
+    shown = "row => [...row.children].filter((one) => getComputedStyle(one).display !== 'none').length"
+    if width >= 900:  # below, each student is a block
+        cells = {row.evaluate(shown) for row in page.locator("#students tr:not([hidden])").all()}
+        assert len(cells) == 1, cells
     grade = page.locator("#students td.grade").last
     grade.evaluate("cell => cell.parentElement.scrollIntoView()")
     head, box = page.locator("#students thead th").first.bounding_box(), grade.bounding_box()
