@@ -58,7 +58,7 @@ def main() -> None:
         page = Path(folder, "student.html")
         grader("grade", SAMPLES / STUDENT, "--part", "task1", "--save", f"html={page}")
         take(started, page, "student")
-        book, pages = Path(folder, "class.db"), Path(folder, "pages")
+        book, pages = Path(folder, "grades"), Path(folder, "pages")
         grader("batch", SAMPLES, "--gradebook", book, "--part", "task1")
         grader("export", "html", "--gradebook", book, "--output", pages)
         take(started, pages / "index.html", "class")

@@ -112,7 +112,7 @@ def press(page: "Page", keys: str, then: str = "") -> None:
         page.wait_for_selector("html")
 
 
-def test_ten_items_by_keys_alone(open_page: Open, review: Review, book: Path) -> None:
+def test_ten_items_by_keys_alone(review: Review, open_page: Open, book: Path) -> None:
     """All are in the file: typed points, all, half, none, comments, back, another mark, a withdrawn one."""
     page = open_page(review.url).page
     press(page, "'3.5' c 'the roots are missing' Enter", "2")
@@ -145,7 +145,7 @@ def test_ten_items_by_keys_alone(open_page: Open, review: Review, book: Path) ->
     page.wait_for_url("**/7")
 
 
-def test_pictures(open_page: Open, review: Review) -> None:
+def test_pictures(review: Review, open_page: Open) -> None:
     """Every picture is shown, those in archives as well, and enlarged by a key; a script under the name of a picture is not."""
     opened = open_page(f"{review.url}7")
     page = opened.page
@@ -191,7 +191,7 @@ def test_hostile_text_stays_text(open_page: Open, hostile: Path) -> None:
             assert page.title() != "run"
 
 
-def test_somebody_else_marks_meanwhile(open_page: Open, review: Review, book: Path) -> None:
+def test_somebody_else_marks_meanwhile(review: Review, open_page: Open, book: Path) -> None:
     """The page shows the newer mark, and the person keeps or replaces it."""
     page = open_page(review.url).page
     for key, name in (("ash", "1"), ("birch", "2")):
@@ -209,7 +209,7 @@ def test_somebody_else_marks_meanwhile(open_page: Open, review: Review, book: Pa
     assert [row[:3] for row in marks_in(book)] == [("ash", "essay", "1"), ("birch", "essay", "4")]
 
 
-def test_mistakes_are_said_and_nothing_is_lost(open_page: Open, review: Review, book: Path) -> None:
+def test_mistakes_are_said_and_nothing_is_lost(review: Review, open_page: Open, book: Path) -> None:
     """Invalid points, leaving what is not saved, also if it was changed after the warning, and the help."""
     page = open_page(review.url).page
     error = page.locator("#error")
@@ -233,7 +233,7 @@ def test_mistakes_are_said_and_nothing_is_lost(open_page: Open, review: Review, 
     assert marks_in(book) == []
 
 
-def test_the_page_fits(open_page: Open, review: Review) -> None:
+def test_the_page_fits(review: Review, open_page: Open) -> None:
     """On a laptop, on a small screen and enlarged to 400 %, in both colour schemes, nothing is cut off sideways."""
     for width, height, scheme in ((1280, 800, "light"), (800, 600, "dark"), (320, 480, "light")):
         page = open_page(f"{review.url}7", viewport={"width": width, "height": height}, color_scheme=scheme).page
@@ -260,7 +260,7 @@ def test_fast_typing_saves_every_mark_where_it_belongs(open_page: Open, tmp_path
     ]
 
 
-def test_keys_after_a_refused_mark_are_discarded(open_page: Open, review: Review, book: Path) -> None:
+def test_keys_after_a_refused_mark_are_discarded(review: Review, open_page: Open, book: Path) -> None:
     """Keys typed for the next item are discarded if it is not shown: the page says so, and nothing is saved for either item."""
     page = open_page(review.url).page
     held: list[Any] = []  # the answer to the first mark comes after all keys
@@ -279,7 +279,7 @@ def test_keys_after_a_refused_mark_are_discarded(open_page: Open, review: Review
     assert [row[:3] for row in marks_in(book)] == [("ash", "essay", "3"), ("birch", "essay", "1")]
 
 
-def test_an_item_that_has_changed_is_not_marked(open_page: Open, review: Review, book: Path) -> None:
+def test_an_item_that_has_changed_is_not_marked(review: Review, open_page: Open, book: Path) -> None:
     """A mark of a page that shows another state of the submission is refused, and the page shows the new one."""
     page = open_page(review.url).page
     shown = review.seen("1")["shown"]
@@ -310,7 +310,7 @@ def test_deductions(open_page: Open, chosen: Path) -> None:
     assert marks_in(chosen) == [("ash", "essay", "2", "no reason; see me")]
 
 
-def test_filters(open_page: Open, review: Review) -> None:
+def test_filters(review: Review, open_page: Open) -> None:
     """A list shows one question."""
     page = open_page(review.url).page
     page.locator("[data-filter=criterion]").select_option("picture")
@@ -318,7 +318,7 @@ def test_filters(open_page: Open, review: Review) -> None:
     assert page.locator(".place").inner_text().strip() == "1 of 5"
 
 
-def test_one_column_below_900_pixels(open_page: Open, review: Review) -> None:
+def test_one_column_below_900_pixels(review: Review, open_page: Open) -> None:
     """The answer has the width of the window, and the points stay visible while it scrolls."""
     for width in (400, 683, 890):
         page = open_page(f"{review.url}7", viewport={"width": width, "height": 500}).page

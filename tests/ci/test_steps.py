@@ -251,10 +251,10 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
         assert f"::warning title=lab6-{name}::{why}" in printed
     assert {path.name for path in (runner.temp / "class").iterdir()} == {"lab6-ada", "lab6-grace", "lab6-none"}
     assert "::warning title=lab6-none::This repository is empty." in printed
-    grades = (runner.temp / "grades.csv").read_text(encoding="utf-8")
+    grades = (runner.temp / "grades" / "grades.csv").read_text(encoding="utf-8")
     assert len(grades.splitlines()) == 5  # a header, the roster, and the empty one
     expected = {f"{name}.{ending}" for name in ("ada", "grace", "none") for ending in ("md", "svg")}
-    assert {path.name for path in (runner.temp / "reports").iterdir()} == expected
+    assert {path.name for path in (runner.temp / "grades" / "reports").iterdir()} == expected
 
 
 def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
