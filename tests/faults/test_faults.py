@@ -80,8 +80,7 @@ def test_a_hundred_processes_mark_at_once(tmp_path: Path) -> None:
     book = tmp_path / "book"
     command = (sys.executable, "-W", "error", "-c", _THREE_MARKS, str(book))
     processes = [
-        subprocess.Popen([*command, STUDENTS[number % 5]], cwd=ROOT, stdout=subprocess.DEVNULL)
-        for number in range(100)
+        subprocess.Popen([*command, STUDENTS[number % 5]], cwd=ROOT, stdout=subprocess.DEVNULL) for number in range(100)
     ]
     assert [process.wait(HANG_TIMEOUT) for process in processes] == [0] * 100
     rows = [row for file in (book / "marks").iterdir() for row in csv.DictReader(file.read_text().splitlines())]
