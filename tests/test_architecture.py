@@ -21,7 +21,7 @@ LAYERS = (
     ("submission",),
     ("checks",),
     ("grading",),
-    ("mutation", "authoring"),
+    ("mutation", "authoring", "workers"),
     ("classroom", "bundle", "drawing"),
     ("report",),
     ("usecases",),
@@ -41,7 +41,7 @@ LIBRARIES = {
     "pypdf": {"documents"},
     "numpy": {"robot"},
     "tomllib": {"grading", "bundle", "package", "classroom"},
-    "pebble": {"classroom"},
+    "pebble": {"workers"},
     "distributed": {"classroom"},
     "csv": {"classroom"},
 }

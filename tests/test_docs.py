@@ -15,7 +15,6 @@ import yaml
 from typer.main import get_command
 
 from grader import __version__
-from grader.classroom.run import pool
 from grader.cli import ending
 from grader.cli.app import COMMANDS, make_app
 from grader.cli.rubric import run_test
@@ -26,6 +25,7 @@ from grader.package import package
 from grader.robot import diagnostics
 from grader.static_python import closed, closed_values
 from grader.submission import packages
+from grader.workers import pool
 from tests.command_line import ROOT, run
 
 MIB = 1024 * 1024

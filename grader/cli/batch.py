@@ -6,7 +6,6 @@ from typing import Annotated, Literal, get_args
 
 import typer
 
-from grader.classroom.run import forks
 from grader.cli.options import (
     AnswersOption,
     ArgOption,
@@ -18,6 +17,7 @@ from grader.cli.options import (
 from grader.cli.terminal import TERMINAL
 from grader.errors import GraderError
 from grader.report.formats import Format, OutputFormat
+from grader.workers import forks
 
 Layout = Literal["auto", "folders", "canvas", "moodle", "teams", "nbgrader"]
 _PATH = "A folder with an entry for each student, or the zip of an LMS; of a class of several sections name all."

@@ -15,7 +15,7 @@ from grader.usecases.writing import write_stdout
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
 
-    from grader.classroom.run.progress import Progress
+    from grader.workers.progress import Progress
 
 _LINE_SECONDS = 10.0
 

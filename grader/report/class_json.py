@@ -8,7 +8,6 @@ from types import SimpleNamespace
 from grader import __version__
 from grader.classroom.grade_table import status_of
 from grader.classroom.grades import Class
-from grader.classroom.run.progress import Progress
 from grader.classroom.statistics import COUNTS, CriterionFigures, statistics
 from grader.classroom.student_grade import StudentGrade
 from grader.grading.report import Result
@@ -33,6 +32,7 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
+from grader.workers.progress import Progress
 
 _STATUSES = ("errored", "excused", "graded", "missing", "unreadable")
 _SUMMARY = Record({"students": TOTAL, **each(nullable(POINTS), "mean median lowest highest")})

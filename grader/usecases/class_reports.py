@@ -10,9 +10,6 @@ from grader.classroom import folder as names
 from grader.classroom.graded import Graded
 from grader.classroom.grades import Class
 from grader.classroom.reopening import reopened
-from grader.classroom.run.pool import Processes, WorkerError, processors
-from grader.classroom.run.progress import Progress
-from grader.classroom.run.queue import Queue
 from grader.classroom.student_grade import StudentGrade
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
 from grader.grading.grade import grade as grade_submission
@@ -25,6 +22,9 @@ from grader.usecases.report_names import file_names, write_class_page
 from grader.usecases.saves import address
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import make_folder, refuse_symlinks, save
+from grader.workers.pool import Processes, WorkerError, processors
+from grader.workers.progress import Progress
+from grader.workers.queue import Queue
 
 _TASK_SIZE = 4  # reports
 _SECONDS = 60.0  # in which hints are searched, and a few reports written

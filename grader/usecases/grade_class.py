@@ -16,8 +16,6 @@ from grader.classroom.graded import Run, digest_of
 from grader.classroom.grades import Class
 from grader.classroom.results import Results, ResultsWriter
 from grader.classroom.run.batch import Batch
-from grader.classroom.run.pool import Processes, processors
-from grader.classroom.run.progress import Progress
 from grader.classroom.run.worker import ClassContext
 from grader.classroom.student_grade import StudentGrade
 from grader.classroom.submissions import Intake, read_class
@@ -33,6 +31,8 @@ from grader.usecases.class_inputs import ClassInputs, ClassOptions, keep_inputs,
 from grader.usecases.class_reports import ReportRun, refuse_report_folder, write_reports
 from grader.usecases.terminal import Terminal, Warn
 from grader.usecases.writing import refuse_symlinks, save
+from grader.workers.pool import Processes, processors
+from grader.workers.progress import Progress
 
 _MAX_LINES, _MAX_NAMED = 10, 5
 _LEAST_SECONDS = 15.0  # in which hints are searched, and a few reports written

@@ -14,9 +14,6 @@ from grader.authoring.draft import RubricDraft, draft
 from grader.authoring.rubric_text import Head
 from grader.checks.measures.fact import Omission, Solution
 from grader.checks.tree import urdf_loads
-from grader.classroom.run.pool import Processes, processors
-from grader.classroom.run.progress import Progress
-from grader.classroom.run.queue import Queue
 from grader.errors import GraderError, InputError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.rubric import Rubric
@@ -38,6 +35,9 @@ from grader.usecases.exit_codes import ExitCode, read_threshold
 from grader.usecases.rubrics import load, rubric_summary
 from grader.usecases.terminal import ShowClass, Warn
 from grader.usecases.writing import missing_folder, save_bytes
+from grader.workers.pool import Processes, processors
+from grader.workers.progress import Progress
+from grader.workers.queue import Queue
 
 _URDF = "robot.urdf"
 _SCHEMA = "rubric.schema.json"  # beside the rubric, as the documentation calls it

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.report.screen import Screen
 
 if TYPE_CHECKING:
-    from grader.classroom.run.progress import Progress
+    from grader.workers.progress import Progress
 
 Warn = Callable[[str], None]
 ShowFile = Callable[[str], None]  # shows the file that is being read, and nothing for an empty path

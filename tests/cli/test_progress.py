@@ -15,8 +15,8 @@ import pytest
 from rich.console import Console
 from rich.progress import Progress
 
-from grader.classroom.run.progress import Progress as State
 from grader.cli import terminal
+from grader.workers.progress import Progress as State
 from tests.classroom.gradebooks import ENVIRONMENT, make_class
 from tests.samples import ROOT
 

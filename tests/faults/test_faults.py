@@ -14,8 +14,9 @@ from unittest.mock import patch
 import pytest
 
 from grader.classroom.opening import open_class_submission
-from grader.classroom.run import pool, worker
-from grader.classroom.run.pool import Processes, WorkerError
+from grader.classroom.run import worker
+from grader.workers import pool
+from grader.workers.pool import Processes, WorkerError
 from tests.classroom.class_runs import newest
 from tests.classroom.gradebooks import batch, grader, make_class
 from tests.command_line import HANG_TIMEOUT, ROOT

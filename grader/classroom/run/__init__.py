@@ -1,1 +1,1 @@
-"""A run over a class: the batch, its worker processes, and the work that they do."""
+"""A run over a class: the batch, the work of a worker process, and a Dask cluster."""

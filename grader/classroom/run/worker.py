@@ -10,7 +10,6 @@ from grader.checks.outcome import Status
 from grader.classroom.equal_work import forms_of, hashes_of
 from grader.classroom.graded import Graded, answers_of, digest_of, entries_of
 from grader.classroom.opening import digest_of_unread, open_class_submission
-from grader.classroom.run.pool import NO_MEMORY
 from grader.errors import InputError, MachineError
 from grader.files.names import ARCHIVES
 from grader.files.reading import URDF_LIMIT
@@ -19,6 +18,7 @@ from grader.grading.rubric import Rubric, read_rubric
 from grader.submission.submission import Opening, Submission
 from grader.submission.urdf import Absent, Unreadable
 from grader.text import enumerated
+from grader.workers.pool import NO_MEMORY
 
 _MAX_NAMED = 10  # students in a message
 

@@ -7,7 +7,7 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from itertools import islice
 from typing import Generic, TypeVar
 
-from grader.classroom.run.pool import WorkerError
+from grader.workers.pool import WorkerError
 
 _GROUP_TIME = 0.05  # seconds of work that are worth one message to a worker
 _MAX_GROUP = 64

@@ -11,7 +11,7 @@ _PRELOAD = (
     "grader.robot.edge_overlap",
     "grader.submission.search",
     "grader.package.problems",
-    "grader.classroom.run.fork_server",
+    "grader.workers.fork_server",
 )
 
 

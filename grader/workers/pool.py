@@ -15,8 +15,8 @@ from typing import Any
 
 from pebble import CONSTS, ProcessExpired, ProcessPool
 
-from grader.classroom.run import forks
 from grader.errors import GraderError
+from grader.workers import forks
 
 MAX_MEMORY = 2 * 1024**3  # bytes for each worker
 NO_MEMORY = f"grading it needs more memory than a worker has (at most {MAX_MEMORY // 1024**3} GiB)"
