@@ -102,8 +102,9 @@ def _entry(result: Result) -> Entry:
     outcome = result.outcome
     is_open = outcome.status in ("pending", "errored") and not result.is_adjusted
     words = outcome.mistake or (outcome.message if outcome.status in ("failed", "errored") else "")
-    points = int(result.points) if result.points == int(result.points) else float(result.points)
-    return None if is_open else points, outcome.status, cut(words, _MAX_CAUSE), result.carried
+    points = result.points
+    number = int(points) if points == int(points) else float(points)
+    return None if is_open else number, outcome.status, cut(words, _MAX_CAUSE), result.carried
 
 
 def answers_of(report: Report, digest: str) -> dict[str, str]:

@@ -36,12 +36,17 @@ _ELSEWHERE = "the graded URDF is outside the graded package"
 
 
 def grade(
-    rubric: Rubric, submission: Submission, parts: Sequence[str] = (), *, is_one_of_class: bool = False
+    rubric: Rubric,
+    submission: Submission,
+    parts: Sequence[str] = (),
+    *,
+    is_one_of_class: bool = False,
+    is_explained: bool = True,
 ) -> Report:
     """Return the report on a submission for all parts of the rubric, or the named ones; raises InputError for others.
 
     A single URDF is graded only on parts that need no more, unless it `is_one_of_class`: a class is graded on the same
-    parts.
+    parts. Unless it `is_explained`, no note says what its failures have in common.
     """
     is_whole = is_one_of_class or not submission.is_single
     chosen, notes = _choose_parts(rubric, submission, parts, is_whole=is_whole)
@@ -56,7 +61,8 @@ def grade(
 
         problems += package_problems(submission.package)
     evidence, other_pictures = _evidence_of(rubric, submission, chosen if is_whole else ())
-    notes += _note_on_unread(submission, evidence) + _note_on_convention(rubric, submission, results)
+    notes += _note_on_unread(submission, evidence)
+    notes += _note_on_convention(rubric, submission, results) if is_explained else ()
     if submission.is_costly and rubric.hints != "none" and any(result.is_lost for result in results):
         notes += (_NO_HINTS,)
     return Report(

@@ -78,12 +78,14 @@ def _plain(value: Any, ignored: tuple[str, ...] = _NAMES) -> Any:
     kind: Any = type(value)
     if kind is str or value is None:  # most values
         return value
-    if isinstance(value, float):
+    if kind is float:
         return value + 0.0  # -0.0 is 0.0
-    if isinstance(value, tuple) and not hasattr(value, "_fields"):
-        items = map(_plain, value)
-        return tuple(sorted(items, key=repr)) if value and isinstance(value[0], Visual | Collision) else tuple(items)
-    return tuple(map(_plain, _compared(kind, ignored)(value)))
+    if kind is not tuple:
+        return tuple(map(_plain, _compared(kind, ignored)(value)))
+    if value and type(value[0]) is float:
+        return tuple(number + 0.0 for number in value)
+    items = map(_plain, value)
+    return tuple(sorted(items, key=repr)) if value and isinstance(value[0], Visual | Collision) else tuple(items)
 
 
 @cache

@@ -68,7 +68,7 @@ def _grade_one(context: ClassContext, task: Task) -> Graded:
         submission = opened.submission(rubric, Opening(arguments=context.arguments, no_documents=task.no_documents))
         if submission.students:
             raise InputError(students_refusal(submission))  # noqa: TRY301  it is handled like files that cannot be read
-        report = grade(rubric, submission, context.parts, is_one_of_class=True)
+        report = grade(rubric, submission, context.parts, is_one_of_class=True, is_explained=False)
     except InputError as error:
         result = result._replace(digest=result.digest or digest_of(str(error), digest_of_unread(root, task.paths)))
         if result.digest != task.graded:
