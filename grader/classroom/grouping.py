@@ -5,7 +5,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from grader.classroom.layouts import ClassFolder, Entry, is_submission
+from grader.classroom.layouts import ClassFolder, Entry
 from grader.classroom.listing import ClassListing
 from grader.classroom.roster import Student
 from grader.text import printable_path
@@ -69,20 +69,11 @@ def _files(
         part = f"{one.plugin}/" if one.plugin else ""
         paths = _files_below(folder.listing, top) if one.path in folders else [top]
         named |= {path: part + (path[len(top) + 1 :] or one.file or one.path) for path in paths}
-    full = [top for top in tops if any(f"{path}/".startswith(f"{top}/") for path in named)] or [*tops][:1]
-    if len(full) > 1:
+    full = [top for top in tops if any(f"{path}/".startswith(f"{top}/") for path in named)] or [*tops]
+    if len(full) > 1 and named:
         return tuple(named), tuple(named.values())
-    (top,) = full
-    if tops[top].path not in folders:
-        return (top,), tuple(filter(None, [tops[top].file]))
-    return (top if tops[top].ending or tops[top].upload else _only_file(folder.listing, top),), ()
-
-
-def _only_file(listing: ClassListing, top: str) -> str:
-    """Return the archive or URDF that is alone in a folder, as in Canvas; else the folder."""
-    inner = listing.children(top, 9)
-    names = inner.files if not (inner.folders or inner.refused) else []
-    return f"{top}/{names[0]}" if len(names) == 1 and is_submission(names[0]) else top
+    only = tops[full[0]]
+    return (full[0],), (only.file,) if only.file and only.path not in folders else ()
 
 
 def _files_below(listing: ClassListing, top: str) -> list[str]:

@@ -20,7 +20,7 @@ from grader.files.names import BUILD_FOLDERS
 from grader.submission.labs import LabFolders
 from grader.text import printable_path
 
-# The files that are submissions. Of two that differ in the ending only, the first of these counts, before it a folder.
+# The files that are submissions.
 ENDINGS = (".zip", ".gz", ".tgz", ".bz2", ".xz", ".tar", ".7z", ".rar", ".urdf.xacro", ".urdf", ".xacro")
 _ID = r"[1-9][0-9]{0,19}"  # Canvas writes no leading zeros
 PATTERNS = {
@@ -60,10 +60,9 @@ class Entry(NamedTuple):
     submitted: str = ""
 
     @property
-    def order(self) -> tuple[int, int, str]:
-        """The order of copies: by the number, then a folder counts, then the best ending."""
-        rank = 1 if self.ending == "/" else -ENDINGS.index(self.ending.lower()) if self.ending else 0
-        return self.upload, rank, self.path
+    def order(self) -> tuple[int, bool, str]:
+        """The order of copies: by the number, then a folder counts."""
+        return self.upload, self.ending == "/", self.path
 
     def is_written_by(self, lms: str) -> bool:
         """Return whether an LMS may have written the name: Canvas writes those of students in lower case."""
@@ -101,12 +100,9 @@ class ClassFolder:
         start = f"{self.start}{name}"
         return replace(self, children=self.listing.children(start), start=f"{start}/")
 
-    def ignore(self, names: Iterable[str], reason: str = "") -> None:
+    def ignore(self, names: Iterable[str], reason: str = "is not named like a submission") -> None:
         """Say why some names are no submissions; the reason continues a sentence that begins with the name."""
-        for name in names:
-            is_other = name in self.children.files and not is_submission(name)
-            why = "is not a folder, an archive or a URDF" if is_other else "is not named like a submission"
-            self.ignored.append(f"{printable_path(self.start + name)} {reason or why}")
+        self.ignored.extend(f"{printable_path(self.start + name)} {reason}" for name in names)
 
     def list_refused(self) -> None:
         """Say which names are not read, such as symlinks."""
