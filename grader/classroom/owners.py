@@ -73,30 +73,26 @@ class Owners:
                 self._unclear.update(match.students)
         given, contested = self._decide(claims)
         for one, students in possible.items():
-            if one in contested or one not in given:
-                self._list(one, students, contested.get(one, []))
+            if one not in given:
+                self._list(one, students, is_contested=one in contested)
 
     def _decide(
         self, claims: Mapping[int, Mapping[ClassSubmission, int]]
-    ) -> tuple[set[ClassSubmission], dict[ClassSubmission, list[ClassSubmission]]]:
-        """Give each student the submission with the only best claim; of several that are equally good, none is graded.
-
-        Return those that are given, and those that are equally good, each with all of them.
-        """
-        given: set[ClassSubmission] = set()
-        contested: dict[ClassSubmission, list[ClassSubmission]] = {}
+    ) -> tuple[set[ClassSubmission], set[ClassSubmission]]:
+        """Give each student the submission with the only best claim; return those given, and those equally good."""
+        given, contested = set[ClassSubmission](), set[ClassSubmission]()
         for index, claimed in claims.items():
             best = min(claimed.values())
             first = [one for one, by in claimed.items() if by == best]
             if self.people.students[index].submission:
                 continue
-            if len(first) > 1:
+            if len(first) == 1:  # of a group's, the ids in its name are those of one member
+                self._owned[index] = first[0]._replace(student=Student("")) if best == GROUP else first[0]
+                given.add(first[0])
+            else:
                 self._unclear.add(index)
-                contested |= dict.fromkeys(first, first)
-                continue
-            given.add(first[0])  # of a group's, the ids in its name are those of one member
-            self._owned[index] = first[0]._replace(student=Student("")) if best == GROUP else first[0]
-        return given, contested
+                contested.update(first)
+        return given, contested - given
 
     def _holds_students(self, one: ClassSubmission) -> bool:
         """Return whether two students or more have submissions in a folder: it is a section, not a team's work."""
@@ -105,28 +101,29 @@ class Owners:
 
     def _assign(self, found: Iterable[ClassSubmission]) -> None:
         """Give students what the roster's column `submission` names."""
-        places: dict[str, list[ClassSubmission]] = defaultdict(list)
-        wanted = [(index, one) for index, one in enumerate(self.people.students) if one.submission]
+        wanted = {index: one for index, one in enumerate(self.people.students) if one.submission}
+        places: dict[str, set[ClassSubmission]] = defaultdict(set)
         for one in found if wanted else ():
-            for place in {text for path in one.paths for text in (self._shown(one, path), _plain_path(path))}:
-                places[place].append(one)
-        for index, student in wanted:
+            for path in one.paths:
+                places[self._shown(one, path)].add(one)
+        for index, student in wanted.items():
             place = _plain_path(student.submission)
-            named = places.get(place) or list(self._at(place))
+            named = [*(places.get(place) or self._at(place))]
             if len(named) == 1:
                 self._owned[index] = named[0]
             else:
                 self._unclear.add(index)
-                why = "is in several class folders: begin it with the name of one" if named else "does not exist"
-                self.notes.append(f"{student.key} has the submission {place!r} on the roster, which {why}")
+                self.notes.append(f"{student.key} has the submission {place!r} on the roster, which does not exist")
 
     def _at(self, place: str) -> Iterator[ClassSubmission]:
         """Yield what is at a place in the class folders, and no submission by itself."""
         for root, (listing, name) in enumerate(self.roots):
-            path = place.removeprefix(f"{name}/" if len(self.roots) > 1 else "")
-            parts = [path, *parents(path)]
-            inner = [(listing.children(part.rpartition("/")[0]), part.rpartition("/")[2]) for part in parts if part]
-            if all(part in (*children.folders, *children.files) for children, part in inner):  # and no symlink
+            path = place.removeprefix(f"{name}/") if len(self.roots) > 1 else place
+            inner = (
+                (listing.children(one.rpartition("/")[0]), one.rpartition("/")[2]) for one in (path, *parents(path))
+            )
+            is_here = len(self.roots) == 1 or path != place
+            if is_here and all(part in children.folders + children.files for children, part in inner):  # no symlink
                 yield ClassSubmission(Student(""), root, (path,))
 
     def _shown(self, one: ClassSubmission, path: str = "") -> str:
@@ -134,16 +131,15 @@ class Owners:
         top = f"{self.roots[one.root][1]}/" if len(self.roots) > 1 else ""
         return _plain_path(top + (path or one.paths[0]))
 
-    def _list(self, one: ClassSubmission, students: Sequence[int], equal: Sequence[ClassSubmission]) -> None:
-        """List a submission without an owner and what assigns it; it is graded as a visitor's if no other is equal."""
-        if not equal:
+    def _list(self, one: ClassSubmission, students: Sequence[int], *, is_contested: bool) -> None:
+        """List a submission without an owner, and what assigns it; a contested one is not graded."""
+        if not is_contested:
             self._visitors.append(one)
         keys = enumerated([self.people.students[index].key for index in students], _MAX_NAMED, "or")
         reason = f"may belong to {keys}" if students else "is not on the roster"
-        if equal:
-            reason += f", and of {enumerated([*map(self._shown, equal)], _MAX_NAMED)} none is graded"
+        reason += ", and so may another submission: none is graded" if is_contested else ""
         key, place = (_cell(text) for text in (printable_path(one.student.key), self._shown(one)))
-        row = "" if equal else f", or add the row `{key},{place}` below `id,submission`"
+        row = "" if is_contested else f", or add the row `{key},{place}` below `id,submission`"
         advice = f"write {place} in the column `submission` of its student{row}"
         self._unmatched.append(f"{self._shown(one)} {reason}; to assign it, {advice}")
 
