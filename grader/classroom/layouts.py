@@ -36,8 +36,8 @@ PATTERNS = {
         re.DOTALL,
     ),
     "moodle": re.compile(  # not if two participants could have chosen it
-        r"(?!.*_assignsubmission_.*_assignsubmission_)(?P<name>.+?)(?:_(?P<moodle>[0-9]{1,20}))?"
-        r"_assignsubmission_(?:file(?![a-z])|(?P<plugin>[a-z]+))_?(?P<file>.*)",
+        r"\A(?!.*_assignsubmission_.*_assignsubmission_)(?P<name>.+?)(?:_(?P<moodle>[0-9]{1,20}))?"
+        r"_assignsubmission_(?:file(?![a-z])|(?P<plugin>[a-z]+))_?(?P<file>.*)\Z",
         re.DOTALL,
     ),
 }
@@ -117,26 +117,27 @@ def is_submission(name: str) -> bool:
 
 def readings_of(name: str, layout: str) -> list[Entry]:
     """Return how a name can be read: in Canvas as team and 7, or team_7 and 101, of team_7_101_555_lab6.zip."""
-    if layout == "moodle":
-        return [_in_moodle(found) for found in [PATTERNS["moodle"].fullmatch(name)] if found]
-    found = [_in_canvas(one) for one in PATTERNS["canvas"].finditer(name)]
-    is_anonymous = bool(found) and not found[0].student.name
-    return [one for one in found[: 1 if is_anonymous else None] if _NAME_IN_CANVAS.fullmatch(one.student.name)]
+    found = [_entry(one) for one in PATTERNS[layout].finditer(name)]
+    is_known = layout == "moodle" or bool(found and not found[0].student.name)  # an anonymous student's
+    return found[:1] if is_known else [one for one in found if _NAME_IN_CANVAS.fullmatch(one.student.name)]
 
 
-def _in_moodle(found: re.Match[str]) -> Entry:
-    name, number = found["name"], found["moodle"] or ""
-    student = Student("_".join(filter(None, (name, number))), name, moodle=number)
-    return Entry(found.string, student, plugin=found["plugin"] or "", file=found["file"])
-
-
-def _in_canvas(found: re.Match[str]) -> Entry:
-    name, number = found.string[: found.start()], found["canvas"] or ""
-    student = Student(found["login"] or f"{name}_{number}", "" if found["login"] else name, canvas=number)
-    upload, file = int(found["upload"] or 0), found["file"] or "text_entry.html"
-    return Entry(
-        found.string, student, name, upload, file=file, is_late=bool(found["late"]) or found[0].startswith("LATE")
+def _entry(found: re.Match[str]) -> Entry:
+    text = {
+        "canvas": "",
+        "moodle": "",
+        "login": "",
+        "name": found.string[: found.start()],
+        **found.groupdict(default=""),
+    }
+    name, canvas, moodle = text["name"], text["canvas"], text["moodle"]
+    student = Student(
+        text["login"] or "_".join(filter(None, (name, canvas, moodle))), name, canvas=canvas, moodle=moodle
     )
+    if "plugin" in text:
+        return Entry(found.string, student, plugin=text["plugin"], file=text["file"])
+    upload, is_late = int(text["upload"] or 0), bool(text["late"]) or found[0].startswith("LATE")
+    return Entry(found.string, student, upload=upload, file=text["file"] or "text_entry.html", is_late=is_late)
 
 
 def entries_of(folder: ClassFolder, layout: str) -> Iterator[Entry]:
