@@ -5,7 +5,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from grader.classroom.layouts import ClassFolder, Entry
+from grader.classroom.layouts import ClassFolder, Entry, is_submission
 from grader.classroom.listing import ClassListing
 from grader.classroom.roster import Student
 from grader.text import printable_path
@@ -73,7 +73,16 @@ def _files(
     if len(full) > 1 and named:
         return tuple(named), tuple(named.values())
     only = tops[full[0]]
-    return (full[0],), (only.file,) if only.file and only.path not in folders else ()
+    if only.path not in folders:
+        return (full[0],), (only.file,) if only.file else ()
+    return (full[0] if only.ending or only.upload else _only_file(folder.listing, full[0]),), ()
+
+
+def _only_file(listing: ClassListing, top: str) -> str:
+    """Return the archive or URDF that is alone in a folder, as in Canvas; else the folder."""
+    inner = listing.children(top, 9)
+    names = inner.files if not (inner.folders or inner.refused) else []
+    return f"{top}/{names[0]}" if len(names) == 1 and is_submission(names[0]) else top
 
 
 def _files_below(listing: ClassListing, top: str) -> list[str]:
