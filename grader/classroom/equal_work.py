@@ -18,6 +18,8 @@ from grader.text import enumerated
 
 _MAX_SHARING = 4  # students, or a tenth of the class: what more have in common comes from the handout
 _DIGITS = 16  # of a hash
+_KINDS = ("setup.py", "launch files", "RViz files")
+_LABELS = {"urdf": "the same file", "robot": "the same robot", "written": "the same links, joints and materials"}
 _IGNORED = re.compile(rb"^(?:[ \t]*+#.*|(?:Panels|Window Geometry):.*\n(?:[ \t-].*(?:\n|\Z))*)", re.MULTILINE)
 
 
@@ -47,8 +49,7 @@ def forms_of(submission: Submission, *, is_handed_out: bool = False) -> dict[str
 
 def _package_forms(package: Package) -> Iterator[tuple[str, str]]:
     """Yield kinds of files, each with the hash of what they are apart from comments, white space, quotes, windows."""
-    kinds = {"setup.py": (SETUP,), "launch files": package.launch_files, "RViz files": package.rviz_files}
-    for kind, paths in kinds.items():
+    for kind, paths in zip(_KINDS, ((SETUP,), package.launch_files, package.rviz_files), strict=True):
         with suppress(InputError):
             files = [package.tree.files[path].read(PYTHON_LIMIT) for path in paths if path in package.tree.files]
             forms = sorted(_IGNORED.sub(b"", data).replace(b"'", b'"').split() for data in files)
@@ -66,42 +67,35 @@ def hashes_of(submission: Submission) -> tuple[str, ...]:
 def equal_work(results: Iterable[Graded], handed_out: Iterable[str]) -> list[EqualWork]:
     """Return the groups of students with equal work, without what the course handed out.
 
-    Those with the same file come first, then those with the same robot, which include them.
+    The same file comes first, then the same robot, the same elements, and two equal kinds of package files.
     """
-    known, works = set(handed_out), [one for one in results if one.work]
-    robots = [one for one in works if "urdf" in one.work and known.isdisjoint(map(one.work.get, ("urdf", "robot")))]
-    files = _groups((one.work["urdf"], one) for one in robots)
-    same = {_keys(group): "the same file" for group in files.values()}
-    for group in _groups((one.work.get("robot") or one.work["urdf"], one) for one in robots).values():
-        same.setdefault(_keys(group), "the same robot")
-    found = starmap(EqualWork, same.items())
-    return [*sorted(found, key=lambda one: (one.equal, -len(one.students), one)), *_same_parts(works, known)]
-
-
-def _same_parts(works: list[Graded], handed_out: set[str]) -> Iterator[EqualWork]:
-    """Yield the students with the same links, joints and materials, and those with two equal kinds of package files."""
+    known, works = {*handed_out}, [one for one in results if one.work]
     most = max(_MAX_SHARING, len(works) // 10)
-    written = ((one.work["written"], one) for one in works if one.work.get("written", "") not in {"", *handed_out})
-    for group in _groups(written).values():
-        if len(group) <= most and len({one.work.get("robot") for one in group}) > 1:
-            yield EqualWork(_keys(group), "the same links, joints and materials")
-    files = {one.student: tuple(one.work.get("package", {}).items()) for one in works}
-    counts = Counter(file for own in files.values() for file in own)
-    rare = {file for file, count in counts.items() if count <= most and file[1] not in handed_out}
+    found: dict[tuple[str, ...], str] = {}
+    own = [one for one in works if known.isdisjoint(map(one.work.get, _LABELS))]
+    for kind, label in _LABELS.items():
+        for group in _groups((one.work[kind], one) for one in own if kind in one.work):
+            is_rare = len(group) <= most and len({one.work.get("robot") for one in group}) > 1
+            if kind != "written" or is_rare:
+                found.setdefault(_keys(group), label)
+    files = {one.student: one.work.get("package", {}).items() for one in works}
+    counts = Counter(file for some in files.values() for file in some)
+    rare = {file for file, count in counts.items() if count <= most and file[1] not in known}
     pairs = ((pair, one) for one in works for pair in combinations(filter(rare.__contains__, files[one.student]), 2))
-    kinds: dict[tuple[str, ...], dict[str, None]] = {}
-    for pair, group in _groups(pairs).items():
-        kinds.setdefault(_keys(group), {}).update(dict.fromkeys(kind for kind, _ in pair))
-    for keys, same in kinds.items():
-        yield EqualWork(keys, f"the same {enumerated(same)}")
+    parts: dict[tuple[str, ...], str] = {}
+    for group in _groups(pairs):
+        same = rare.intersection(*(files[one.student] for one in group))
+        parts[_keys(group)] = f"the same {enumerated([kind for kind in _KINDS if kind in dict(same)])}"
+    return [*starmap(EqualWork, found.items()), *starmap(EqualWork, parts.items())]
 
 
-def _groups(works: Iterable[tuple[Any, Graded]]) -> dict[Any, list[Graded]]:
-    """Return the groups with the same hash that come from more than one submission: a team has one."""
+def _groups(works: Iterable[tuple[Any, Graded]]) -> list[list[Graded]]:
+    """Return the groups with the same hash that come from more than one submission, the largest first."""
     groups: dict[Any, list[Graded]] = {}
     for form, work in works:
         groups.setdefault(form, []).append(work)
-    return {form: group for form, group in groups.items() if len({(one.root, one.paths) for one in group}) > 1}
+    several = (group for group in groups.values() if len({(one.root, one.paths) for one in group}) > 1)
+    return sorted(several, key=lambda group: (-len(group), _keys(group)))
 
 
 def _keys(group: Iterable[Graded]) -> tuple[str, ...]:

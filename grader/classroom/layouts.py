@@ -7,7 +7,6 @@
 """
 
 import re
-import sys
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -15,12 +14,13 @@ from typing import NamedTuple
 
 from grader.classroom.listing import ClassListing
 from grader.classroom.people import People
+from grader.classroom.roster import Student
 from grader.files.children import Children
 from grader.files.names import BUILD_FOLDERS
 from grader.submission.labs import LabFolders
 from grader.text import printable_path
 
-# The files that are submissions. Of two that differ in the ending only, the first of these counts, before it a folder.
+# The files that are submissions.
 ENDINGS = (".zip", ".gz", ".tgz", ".bz2", ".xz", ".tar", ".7z", ".rar", ".urdf.xacro", ".urdf", ".xacro")
 _ID = r"[1-9][0-9]{0,19}"  # Canvas writes no leading zeros
 PATTERNS = {
@@ -36,62 +36,59 @@ PATTERNS = {
         re.DOTALL,
     ),
     "moodle": re.compile(  # not if two participants could have chosen it
-        r"(?!.*_assignsubmission_.*_assignsubmission_)(?P<name>.+?)(?:_(?P<moodle>[0-9]{1,20}))?"
-        r"_assignsubmission_(?:file(?![a-z])|(?P<plugin>[a-z]+))_?(?P<file>.*)",
+        r"\A(?!.*_assignsubmission_.*_assignsubmission_)(?P<name>.+?)(?:_(?P<moodle>[0-9]{1,20}))?"
+        r"_assignsubmission_(?:file(?![a-z])|(?P<plugin>[a-z]+))_?(?P<file>.*)\Z",
         re.DOTALL,
     ),
 }
-_NAME_IN_CANVAS = re.compile(r"[^\x00-,./:-@[-^`{-\x7f\s]+")
 # Canvas numbers the uploads of all courses in order: a number far below the others' is part of a student's name.
 _MAX_GROWTH = 1000
+_NAME_IN_CANVAS = re.compile(r"[^\x00-,./:-@[-^`{-\x7f\s]*")
 
 
 class Entry(NamedTuple):
-    """A name in a class folder, and what its layout tells; a folder ends in a slash in the layout `folders`."""
+    """A path in a class folder, and what its `name` tells of the student and the file; a folder ends in a slash."""
 
     path: str
+    student: Student
     name: str = ""
-    canvas: str = ""
-    moodle: str = ""
-    login: str = ""
-    upload: str = ""
-    late: str = ""
+    upload: int = 0
+    ending: str = ""
     plugin: str = ""
     file: str = ""
-    ending: str = ""
+    is_late: bool = False
+    submitted: str = ""
 
     @property
-    def owner(self) -> str:
-        """What tells whose it is. Two numbers of Canvas are two readings of a name."""
-        if " " in self.canvas:
-            return f"{self.canvas} {self.name}"
-        return self.canvas or (f"/{self.moodle}" if self.moodle else self.name)
+    def order(self) -> tuple[int, bool, str]:
+        """The order of copies: by the number, then a folder counts."""
+        return self.upload, self.ending == "/", self.path
 
-    @property
-    def order(self) -> tuple[int, int, str]:
-        """The order of copies: by the number, then a folder counts, then the best ending."""
-        rank = 1 if self.ending == "/" else -ENDINGS.index(self.ending.lower()) if self.ending else 0
-        return int(self.upload or 0), rank, self.path
+    def is_written_by(self, lms: str) -> bool:
+        """Return whether an LMS may have written the name: Canvas writes those of students in lower case."""
+        return lms == "moodle" or self.student.name == self.student.name.lower()
 
 
 @dataclass(frozen=True, slots=True)
 class ClassFolder:
-    """A folder of submissions: its path in the listing (empty or with a slash), its name, and what the user has said.
+    """A folder of submissions: its path in the listing (empty or with a slash), the names in it, and the course's.
 
-    `labs` tells the lab's own folders, `lab_words` are the words of their names. `ignored` collects lines for the user.
+    `labs` tells the folders of the lab; `ignored` collects lines for the user.
     """
 
     listing: ClassListing
     children: Children
     start: str
-    name: str
     people: People
-    rubric_id: str
     labs: LabFolders
-    lab_words: frozenset[str]
-    assignment: str
+    lab: str
     is_explicit: bool
     ignored: list[str]
+
+    @property
+    def names(self) -> list[str]:
+        """All names in it."""
+        return self.children.folders + self.children.files
 
     @property
     def entries(self) -> list[str]:
@@ -101,14 +98,11 @@ class ClassFolder:
     def inside(self, name: str) -> "ClassFolder":
         """Return a folder in it."""
         start = f"{self.start}{name}"
-        return replace(self, children=self.listing.children(start), start=f"{start}/", name=name)
+        return replace(self, children=self.listing.children(start), start=f"{start}/")
 
-    def ignore(self, names: Iterable[str], reason: str = "") -> None:
+    def ignore(self, names: Iterable[str], reason: str = "is not named like a submission") -> None:
         """Say why some names are no submissions; the reason continues a sentence that begins with the name."""
-        for name in names:
-            is_other = name in self.children.files and not is_submission(name)
-            why = "is not a folder, an archive or a URDF" if is_other else "is not named like a submission"
-            self.ignored.append(f"{printable_path(self.start + name)} {reason or why}")
+        self.ignored.extend(f"{printable_path(self.start + name)} {reason}" for name in names)
 
     def list_refused(self) -> None:
         """Say which names are not read, such as symlinks."""
@@ -123,45 +117,59 @@ def is_submission(name: str) -> bool:
 
 def readings_of(name: str, layout: str) -> list[Entry]:
     """Return how a name can be read: in Canvas as team and 7, or team_7 and 101, of team_7_101_555_lab6.zip."""
-    if layout == "moodle":
-        return [_entry(found) for found in [PATTERNS["moodle"].fullmatch(name)] if found]
-    found = [_entry(one, name=name[: one.start()], file="text_entry.html") for one in PATTERNS["canvas"].finditer(name)]
-    if found and found[0].login:
-        return [found[0]._replace(name=found[0].login, late="LATE" if name.startswith("LATE") else "")]
-    return [one for one in found if _NAME_IN_CANVAS.fullmatch(one.name)]
+    found = [_entry(one) for one in PATTERNS[layout].finditer(name)]
+    is_known = layout == "moodle" or bool(found and not found[0].student.name)  # an anonymous student's
+    return found[:1] if is_known else [one for one in found if _NAME_IN_CANVAS.fullmatch(one.student.name)]
 
 
-def _entry(found: re.Match[str], **known: str) -> Entry:
-    return Entry(found.string, **known | {group: text for group, text in found.groupdict().items() if text})
+def _entry(found: re.Match[str]) -> Entry:
+    text = {
+        "canvas": "",
+        "moodle": "",
+        "login": "",
+        "name": found.string[: found.start()],
+        **found.groupdict(default=""),
+    }
+    name, canvas, moodle = text["name"], text["canvas"], text["moodle"]
+    student = Student(
+        text["login"] or "_".join(filter(None, (name, canvas, moodle))), name, canvas=canvas, moodle=moodle
+    )
+    if "plugin" in text:
+        return Entry(found.string, student, plugin=text["plugin"], file=text["file"])
+    upload, is_late = int(text["upload"] or 0), bool(text["late"]) or found[0].startswith("LATE")
+    return Entry(found.string, student, upload=upload, file=text["file"] or "text_entry.html", is_late=is_late)
 
 
 def entries_of(folder: ClassFolder, layout: str) -> Iterator[Entry]:
-    """Yield the submissions by their names: in Canvas with all ids that a name may have."""
+    """Yield the submissions by their names; `aliases` are the numbers of which one is the user's."""
+    folder.list_refused()
     if layout == "folders":
         yield from _folders(folder)
         return
-    readings = {name: readings_of(name, layout) for name in folder.children.folders + folder.children.files}
+    readings = {name: readings_of(name, layout) for name in folder.names}
     folder.ignore(name for name, found in readings.items() if not found)
-    first = min((found[0].order[0] for found in readings.values() if len(found) == 1 and found[0].upload), default=0)
+    first = min((found[0].upload for found in readings.values() if len(found) == 1 and found[0].upload), default=0)
     for found in readings.values():
-        possible = [one for one in found if not 0 < one.order[0] * _MAX_GROWTH < first] or found
-        yield from (one._replace(canvas=" ".join(it.canvas for it in possible)) for one in possible[-1:])
+        possible = [one for one in found if not 0 < one.upload * _MAX_GROWTH < first] or found
+        for one in possible[-1:]:
+            users = tuple(other.student.canvas for other in possible)
+            student = one.student._replace(canvas="", aliases=users) if len(users) > 1 else one.student
+            yield one._replace(student=student)
 
 
 def _folders(folder: ClassFolder) -> Iterator[Entry]:
     """Yield each folder, archive and URDF, without the prefix of the assignment in its name."""
-    parse, (folders, files, _) = PATTERNS["folders"].fullmatch, folder.children
-    folder.ignore(BUILD_FOLDERS.intersection(folders))
-    folder.ignore(name for name in files if not parse(name))
-    names = [*(f"{name}/" for name in folders if name not in BUILD_FOLDERS), *filter(parse, files)]
-    tops = {found["login"] for found in map(parse, names) if found and not found["upload"]}
-    prefix = _prefix({found["login"] for found in map(parse, names) if found}, folder)
-    for found in filter(None, map(parse, names)):
-        name, ending = found["login"], sys.intern(found["ending"])
-        if found["upload"] and name not in tops and not folder.people.knows(_without(prefix, name)):
-            name = found.string.removesuffix(ending)  # Team (1) and Team (2) are two teams
-        path = found.string.rstrip("/")
-        yield Entry(path, name, login=_without(prefix, name), upload=found["upload"] or "", ending=ending)
+    names = [f"{name}/" for name in folder.children.folders if name not in BUILD_FOLDERS] + folder.children.files
+    read = {name: found for name in names if (found := PATTERNS["folders"].fullmatch(name))}
+    folder.ignore(name for name in folder.names if not {name, f"{name}/"} & read.keys())
+    logins = {found["login"] for found in read.values()}
+    prefix, tops = _prefix(logins, folder), {found["login"] for found in read.values() if not found["upload"]}
+    for name, found in read.items():
+        login, upload = found["login"], int(found["upload"] or 0)
+        if upload and login not in tops and not folder.people.knows(_without(prefix, login)):
+            login = name.removesuffix(found["ending"])  # Team (1) and Team (2) are two teams
+        own = _without(prefix, login)
+        yield Entry(name.rstrip("/"), Student(own, login=own), login, upload, found["ending"])
 
 
 def _without(prefix: str, name: str) -> str:
@@ -170,7 +178,7 @@ def _without(prefix: str, name: str) -> str:
 
 def _prefix(names: Collection[str], folder: ClassFolder) -> str:
     """Return the prefix of the assignment: the rubric's id, or what precedes the ids of most students."""
-    knows, own = folder.people.knows, f"{folder.rubric_id.lower()}-"
+    knows, own = folder.people.knows, f"{folder.lab.lower()}-"
     known = sum(map(knows, names))
     if known < len(names) and len(own) > 1 and any(_without(own, name) != name for name in names):
         return own

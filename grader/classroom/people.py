@@ -3,26 +3,26 @@
 import re
 import unicodedata
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from grader.classroom.roster import Student, plain
 
-CERTAIN = 1  # the rank of an id as it is spelt; an LMS's own has 0
-GROUP, _UNCLEAR = 4, 5
+# What tells whose a submission is: an id of the LMS, another id as it is spelt, in another spelling or a name; a group.
+_LMS_ID, _EXACT, _WORD, GROUP, _UNCLEAR = range(5)
 _MAX_WORDS = 8
 
 
 class Match(NamedTuple):
-    """The indices of the students that a submission may belong to, of a group to each; `rank` grows with the doubt."""
+    """The indices of the students that a submission may belong to, and by what."""
 
     students: tuple[int, ...] = ()
-    rank: int = 0
+    by: int = _UNCLEAR
 
     @property
-    def is_certain(self) -> bool:
-        """Whether it belongs to one student, or to each of a group."""
-        return bool(self.students) and (self.rank == GROUP or (len(self.students) == 1 and self.rank < GROUP))
+    def owners(self) -> tuple[int, ...]:
+        """The student whom it belongs to, or each member of its group; empty if that is not certain."""
+        return self.students if self.by == GROUP or (len(self.students) == 1 and self.by < GROUP) else ()
 
 
 class People:
@@ -30,60 +30,61 @@ class People:
 
     def __init__(self, students: Sequence[Student]) -> None:
         self.students = students
-        self._tables: tuple[dict[str, tuple[int, ...]], ...] = ({}, {}, {}, {})
+        self._known: tuple[dict[str, tuple[int, ...]], ...] = ({}, {}, {}, {})
         self._groups: dict[str, list[int]] = defaultdict(list)
         for index, one in enumerate(students):
             own = (index,)  # kept once for all words that only this student has
             ids = [one.key, one.login, one.sis, one.email, *one.aliases]
             names = [plain(one.name), plain(one.email.partition("@")[0]), _surname(one.name), *_in_canvas(one.name)]
-            for words, table in zip((_numbers(one), ids, map(plain, ids), names), self._tables, strict=True):
+            for words, table in zip((_lms_ids(one), ids, map(plain, ids), names), self._known, strict=True):
                 for word in {unicodedata.normalize("NFC", word) for word in words if word}:
                     table[word] = table[word] + own if word in table else own
-            for name in {plain(one.group or one.section), letters(one.group or one.section)} - {""}:
-                self._groups[name].append(index)
+            for word in {plain(one.group), letters(one.group)} - {""}:
+                self._groups[word].append(index)
+
+    def members(self, group: str) -> Sequence[int]:
+        """Return the students of a group."""
+        return self._groups.get(plain(group), ())
 
     def knows(self, name: str, team: str = "") -> bool:
-        """Return whether a name is that of one student, in a team also the surname, or of a group."""
-        return self.knows_student(name, team) or (not team and plain(name) in self._groups)
-
-    def knows_student(self, name: str, team: str = "") -> bool:
-        """Return whether a name is that of one student."""
-        return self._person(Student(name, login=name, group=team)).is_certain
+        """Return whether a name is that of one student, in a team also the surname, or else of a group."""
+        return bool(self.match(Student(name, login=name, group=team)).owners)
 
     def match(self, claim: Student) -> Match:
         """Return whose a submission is by what its name claims; with a `group`, only of a member of that team.
 
-        Named like a group, it belongs to that only if its id of Canvas is a member's, or no member has one, and if its
-        number in Moodle, that of the group, is no participant's. Of `aliases` it is not clear which is the user's id.
+        What has the name of a group is the group's, unless an id in it is that of another student: Canvas writes the id
+        of a member, Moodle a number of the group's own. Of `aliases` it is not clear which is the user's id.
         """
         if claim.aliases:
-            users = {index for user in claim.aliases for index in self._tables[0].get(f"canvas {user}", ())}
-            return Match(tuple(sorted(users)), _UNCLEAR)
-        found, name = self._person(claim), letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
-        group = () if claim.group else tuple(self._groups.get(name, ()))
-        if not group:
+            users = [f"canvas {user}" for user in claim.aliases]
+            return Match(self._having(users, self._known[_LMS_ID]))
+        name = letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
+        found, group = self._person(claim, name), [] if claim.group else self._groups.get(name, [])
+        is_own_name = found.by == _LMS_ID and found.students[0] in self._known[-1].get(name, ())
+        if is_own_name or not {*group}.difference(found.students):
             return found
-        if found.students and found.rank == 0:
-            owner = found.students[0]
-            own = self.students[owner].name
-            if name in (plain(own), *_in_canvas(own)) or (claim.canvas and owner not in group):
-                return found
-            return Match(group, GROUP) if claim.canvas else Match((*found.students, *group), _UNCLEAR)
-        if claim.canvas and (found.students or any(self.students[index].canvas for index in group)):
-            return Match((*found.students, *group), _UNCLEAR)
-        return found if found.students else Match(group, GROUP)
+        if found.by == _LMS_ID and claim.canvas:
+            return Match(tuple(group), GROUP) if found.students[0] in group else found
+        if found.students or (claim.canvas and any(self.students[index].canvas for index in group)):
+            return Match(tuple(sorted({*found.students, *group})))
+        return Match(tuple(group), GROUP)
 
-    def _person(self, claim: Student) -> Match:
-        """Return the students with the best of the words in a claim, without those whom the LMS knows by another id."""
-        login, team = plain(claim.login), self._groups.get(plain(claim.group), ()) if claim.group else None
-        names = [plain(claim.name), login, _surname(login) if claim.group else ""]
-        names = [letters(claim.name)] if claim.canvas else names
-        ranked = (_numbers(claim), [unicodedata.normalize("NFC", claim.login)], [login], names)
-        for rank, (words, table) in enumerate(zip(ranked, self._tables, strict=True)):
-            found = {index for word in words for index in table.get(word, ()) if team is None or index in team}
+    def _person(self, claim: Student, name: str) -> Match:
+        """Return the students with the best words of a claim, without those whom the LMS knows by another id."""
+        login = plain(claim.login)
+        names = [name, login, _surname(login) if claim.group else ""]
+        ranked = (_lms_ids(claim), [unicodedata.normalize("NFC", claim.login)], [login], names)
+        for by, (words, table) in enumerate(zip(ranked, self._known, strict=True)):
+            found = self._having(words, table)
+            if claim.group:
+                found = tuple(index for index in found if index in self.members(claim.group))
             if found:
-                return Match(tuple(sorted(at for at in found if not _is_other(self.students[at], claim))), rank)
+                return Match(tuple(at for at in found if not _is_other(self.students[at], claim)), min(by, _WORD))
         return Match()
+
+    def _having(self, words: Iterable[str], table: Mapping[str, tuple[int, ...]]) -> tuple[int, ...]:
+        return tuple(sorted({index for word in words for index in table.get(word, ())}))
 
 
 def _is_other(one: Student, claim: Student) -> bool:
@@ -92,7 +93,7 @@ def _is_other(one: Student, claim: Student) -> bool:
     return any(own and given and own != given for own, given in ids)
 
 
-def _numbers(one: Student) -> list[str]:
+def _lms_ids(one: Student) -> list[str]:
     return [f"{lms} {number}" for lms, number in (("canvas", one.canvas), ("moodle", one.moodle)) if number]
 
 

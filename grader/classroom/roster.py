@@ -2,7 +2,7 @@
 
 import re
 import unicodedata
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from datetime import datetime
 from operator import itemgetter
 from typing import NamedTuple
@@ -13,7 +13,7 @@ from grader.names import folded
 from grader.text import counted, first_lines, printable_path
 
 _TITLES = {
-    "id": "id userid key",
+    "id": "id userid key identifier identifiant identificador identificativo identificatie",
     "sis": "sis sisid sisuserid studentid studentnumber studentno idnumber matriculationnumber matrikelnummer"
     " idnummer númerodeid",
     "login": "login loginid username user sisloginid netid account",
@@ -25,7 +25,6 @@ _TITLES = {
     "email": "email emailaddress mail sisemail emailadresse direccióndecorreo correoelectrónico",
     "canvas": "canvas canvasid canvasuserid",
     "moodle": "moodle moodleid participantid participant",
-    "identifier": "identifier identifiant identificador identificativo identificatie",
     "group": "group groupname team teamname gruppe",
     "section": "section class tutorial",
     "due": "due duedate dueat deadline dueuntil extendeduntil extensionuntil",
@@ -36,22 +35,21 @@ _TITLES = {
     "submission": "submission",
 }
 _FIELD_OF = {title: field for field, titles in _TITLES.items() for title in titles.split()}
-_WHO = frozenset({"id", "sis", "login", "github", "email", "name", "last", "canvas", "moodle", "identifier"})
+_WHO = frozenset({"id", "sis", "login", "github", "email", "name", "last", "canvas", "moodle"})
 _UNIQUE = {"key": "id", "canvas": "canvas id", "moodle": "moodle id", "sis": "sis id", "login": "login",
            "email": "email address"}  # fmt: skip
 _TEST_STUDENT = ("student, test", "test student")  # whom Canvas makes for "View as Student"
 _MAX_MISTAKES = 20
 # Characters that count as spaces; Moodle removes the others from the names of files (moodlelib.php, PARAM_FILE).
 _ALIKE = str.maketrans("_-", "  ", "&<>\"`|':\\/")
-_NUMBERED = re.compile(r"(?:[^\W\d_]{4,}\D*)?([0-9]+)")  # Participant 123, in any language
-_PARTICIPANT = re.compile(r"(?i:participant|teilnehmer(?:/?in)?)\s*[0-9]+")
+_PARTICIPANT = re.compile(r"(?i:(?:part[ie]ci|teilnehm|deelnem)\D*)([0-9]+)")  # Moodle's Identifier
 _DAYS = re.compile(r"([0-9]{1,4}(?:[.,][0-9]{1,4})?)\s*(?:days?)?")
 _LATE = {"yes": True, "true": True, "late": True, "no": False, "false": False, "on time": False}
 _TIMES = ("due", "extension", "submitted")
 # The form of a cell that is no time, and what to write in it.
 _FORMS = {
     "canvas": ("[0-9]+", "a number"),
-    "moodle": (_NUMBERED.pattern, "a number (put other ids in a column `id`)"),
+    "moodle": ("[0-9]+", "a number (put other ids in a column `id`)"),
     "email": (r"[^@\s]+@[^@\s]+", "an address with an @"),
     "late": (rf"{'|'.join(_LATE)}|{_DAYS.pattern}", "yes, no, or a number of days from 0"),
     "group": (r"(?!(?:none|n/a|null|nil|no group)\Z).*\w.*", "nothing for a student without a group"),
@@ -116,7 +114,8 @@ def read_roster(data: bytes, shown: str) -> Roster:
         named = ", ".join(filter(None, header))[:200]
         raise InputError(f"{shown} has no column for an id, login, name or email in its first line, only: {named}")
     is_canvas = {"student", "id"} <= {*titles} and any(title.startswith("sis") for title in titles)
-    students, lines, mistakes, notes = list[Student](), list[int](), list[tuple[int, str]](), list[str]()
+    students: dict[int, Student] = {}  # by the line
+    mistakes, notes = list[tuple[int, str]](), list[str]()
     for line, cells in rows:
         if len(cells) < len(fields) or any(cells[len(fields) :]):
             mistakes.append((line, f"has {counted(len(cells), 'cell')}, but the first line has {len(fields)}"))
@@ -127,27 +126,22 @@ def read_roster(data: bytes, shown: str) -> Roster:
             continue  # a row of points above the students
         row["canvas"] = row["canvas"] or (row["id"] if is_canvas and row["id"].isdecimal() else "")
         mistakes += ((line, why) for why in _normalise(row))
-        students.append(student := _student(row))
-        lines.append(line)
+        students[line] = student = _student(row)
         if student.is_late and student.days_late is None and not row["late"] and _days_of(row["status"]) is None:
             late = f"{row['status']!r} does not say clearly how late the submission is, and counts as late"
             notes.append(f"line {line} of {shown}: {late}: add a column `late` with `no` or a number of days")
-    mistakes += _duplicates(students, lines)
+    mistakes += _duplicates(students)
     if mistakes or not students:
         named_lines = [f"line {line} of {shown} {why}" for line, why in sorted(mistakes, key=itemgetter(0))]
         raise InputError("\n".join(first_lines(named_lines or [f"{shown} has no students"], _MAX_MISTAKES)))
-    return Roster(tuple(students), tuple(first_lines(notes, _MAX_MISTAKES)))
+    return Roster(tuple(students.values()), tuple(first_lines(notes, _MAX_MISTAKES)))
 
 
 def _normalise(row: dict[str, str]) -> Iterator[str]:
-    """Move ids to their own fields, write times as ISO 8601, empty the cells that are wrong, and yield why they are.
-
-    The identifier of a worksheet is Moodle's, that of GitHub Classroom is the course's own.
-    """
-    if _PARTICIPANT.fullmatch(row["id"]):
-        row["moodle"], row["id"] = row["moodle"] or row["id"], ""
-    field = "moodle" if _NUMBERED.fullmatch(row["identifier"]) and not row["github"] else "id"
-    row[field] = row[field] or row["identifier"]
+    """Move Moodle's numbers to their field, write times as ISO 8601, empty the cells that are wrong, and yield why."""
+    for field in ("id", "moodle"):
+        if found := _PARTICIPANT.fullmatch(row[field]):
+            row[field], row["moodle"] = "", found[1]
     if not any(map(row.__getitem__, _WHO)):
         yield "has no id, login, name or email address: add one of them"
     if row["due"] and iso_time(row["extension"]):
@@ -162,7 +156,7 @@ def _normalise(row: dict[str, str]) -> Iterator[str]:
 
 def _student(row: dict[str, str]) -> Student:
     """Return the student in a row with values as they should be; without a key if it identifies none."""
-    own, canvas, moodle = row["id"], row["canvas"], re.sub(r"\D", "", row["moodle"])
+    own, canvas, moodle = row["id"], row["canvas"], row["moodle"]
     login, sis = row["login"] or row["github"], row["sis"] or ("" if own == canvas else own)
     name = row["name"] or f"{row['first']} {row['last']}".strip()
     extension, days_late = _days(row["extension"]), _days(row["late"])
@@ -173,8 +167,8 @@ def _student(row: dict[str, str]) -> Student:
         days_late = None if status is None or due else max(0.0, status - days)
     return Student(
         printable_path(own or row["sis"] or login or row["email"] or name or canvas or moodle), name, row["email"],
-        login, sis, canvas, moodle, (row["github"],) if row["github"] not in ("", login) else (), row["group"],
-        row["section"], due, row["submitted"], days, is_late, days_late, row["submission"].strip("/"),
+        login, sis, canvas, moodle, tuple(filter(None, [row["github"]])), row["group"], row["section"], due,
+         row["submitted"], days, is_late, days_late, row["submission"].strip("/"),
     )  # fmt: skip
 
 
@@ -193,12 +187,12 @@ def _days_of(status: str) -> float | None:
     return 0.0
 
 
-def _duplicates(students: Sequence[Student], lines: Sequence[int]) -> Iterator[tuple[int, str]]:
+def _duplicates(students: Mapping[int, Student]) -> Iterator[tuple[int, str]]:
     """Yield a line and a message for each student with an id or address that another student has."""
     wrong: set[int] = set()
     for field, title in _UNIQUE.items():
         first: dict[str, int] = {}
-        for line, student in zip(lines, students, strict=True):
+        for line, student in students.items():
             word = getattr(student, field)
             other = first.setdefault(word if field == "key" else word.casefold(), line) if word else line
             if other != line and line not in wrong:

@@ -1,81 +1,93 @@
-"""The repositories of teams: `{team}/Lab6/{student}`, and the work of a team without such folders."""
+"""Students' folders further down: nbgrader's `submitted/{student}/{lab}`, and `{team}/Lab6/{student}`."""
 
-import re
+from collections import defaultdict
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 
-from grader.classroom.grouping import ClassSubmission, files_below, one_each
-from grader.classroom.layouts import PATTERNS, ClassFolder, is_submission
-from grader.classroom.listing import ClassListing
+from grader.classroom.layouts import PATTERNS, ClassFolder, Entry, entries_of
 from grader.classroom.people import People
-from grader.classroom.roster import Student
+from grader.classroom.roster import Student, iso_time
+from grader.errors import InputError
 from grader.files.names import PACKAGE_FILES
-from grader.submission.labs import Belonging
+from grader.names import folded
+from grader.submission.labs import lab_words
 from grader.submission.students import is_part
+from grader.text import enumerated, printable_path
 
-_ROBOT = re.compile(r"\.urdf$|xacro|urdf\b|/package\.xml$")
-
-
-def teams(folder: ClassFolder) -> Iterator[ClassSubmission]:
-    """Yield the submissions of the students in lab folders, and of the teams without one."""
-    labs = dict(team_labs(folder))
-    rest = [name for name in folder.children.folders if name not in labs.values()]
-    yield from one_each(replace(folder, children=folder.children._replace(folders=rest)), "folders")
-    for lab, team in labs.items():
-        inner = folder.listing.children(lab)
-        members = replace(folder, start=f"{lab}/", people=People(()), rubric_id="")
-        parts = _parts(folder, inner.folders, team)
-        members.ignore(parts, "is named like a part of a submission")
-        kept = inner._replace(folders=[name for name in inner.folders if name not in parts])
-        for found in one_each(replace(members, children=kept), "folders"):
-            name = found.student.login
-            yield found._replace(student=Student(f"{team}/{name}", name, login=name, group=team))
+_MAX_NAMED = 10
+_MAX_TIME = 100  # bytes
+_LOCAL_TIME = len("2026-09-01T10:00:00")
 
 
-def team_labs(folder: ClassFolder) -> Iterator[tuple[str, str]]:
-    """Yield the lab folders with students' folders, each with its team.
+def nbgrader(course: ClassFolder) -> Iterator[Entry]:
+    """Yield the submissions for one assignment with their times; raises InputError if there is none of its name."""
+    folder = course.inside("submitted") if "submitted" in course.children.folders else course
+    found: dict[str, list[str]] = defaultdict(list)
+    for student in sorted(folder.children.folders):
+        for name in folder.listing.children(folder.start + student).folders:
+            found[name].append(student)
+    wanted = [folder.lab] if folder.lab in found else [name for name in found if folded(name) == folded(folder.lab)]
+    if len(wanted) != 1:
+        named = enumerated([printable_path(name) for name in sorted(found)], _MAX_NAMED) or "none"
+        raise InputError(f"name the assignment to grade with --assignment; there are: {named}")
+    lab = wanted[0]
+    folder.ignore({*folder.children.folders}.difference(found[lab]), f"has no submission for {printable_path(lab)}")
+    folder.ignore(folder.children.files)
+    folder.list_refused()
+    for student in found[lab]:
+        path = f"{folder.start}{student}/{lab}"
+        time = _time_of(folder, path)
+        yield Entry(path.removeprefix(course.start), Student(student, login=student), ending="/", submitted=time)
 
-    A folder of a student stays whole, unless the user has named the layout.
-    """
-    names = folder.labs
+
+def _time_of(folder: ClassFolder, path: str) -> str:
+    """Return the time, in UTC, in the file beside an assignment; empty if there is none."""
+    try:
+        data = folder.listing.read(f"{path}/timestamp.txt", _MAX_TIME)
+    except InputError:
+        return ""
+    time = iso_time(data.decode("utf-8", "replace"))
+    return f"{time}Z" if len(time) == _LOCAL_TIME else time
+
+
+def teams(folder: ClassFolder) -> Iterator[Entry]:
+    """Yield the submissions of the students in lab folders, and all other submissions as a whole."""
+    whole = []
     for team in sorted(folder.children.folders):
-        if folder.is_explicit or not folder.people.knows_student(team):
-            top = folder.start + team
-            below = folder.listing.children(top, 1000).folders
-            labs = [f"{top}/{name}" for name in below if names.is_lab(name)]
-            others = [name for name in below if names.belonging(f"{name}/") is Belonging.OTHER_LAB]
-            others = [f"{top}/{name}" for name in others if not names.is_project(f"{name}/")]
-            labs = [lab for lab in labs if _holds_students(folder, lab, team)]
-            if not _is_elsewhere(folder.listing, labs, others):
-                yield from ((lab, team) for lab in labs)
+        if students := list(_of_students(folder.inside(team), team)):
+            yield from students
+        else:
+            whole.append(team)
+    yield from entries_of(replace(folder, children=folder.children._replace(folders=whole)), "folders")
 
 
-def _is_elsewhere(listing: ClassListing, labs: list[str], others: list[str]) -> bool:
-    """Return whether the robot of an only student is in another lab's folder."""
-    are_alone = [len(listing.children(lab).folders) for lab in labs] == [1]
-    return are_alone and not _has_robot(listing, labs[0]) and any(_has_robot(listing, lab) for lab in others)
+def _of_students(top: ClassFolder, team: str) -> Iterator[Entry]:
+    """Yield the submissions of the students in the lab folders of a team."""
+    for lab in filter(top.labs.is_lab, top.children.folders):
+        below = top.inside(lab)
+        if names := _students(below, team, lab_words(lab)):
+            others = {*below.children.folders}.difference(names)
+            below.ignore(others, "is named like a part of a submission")
+            children = below.children._replace(folders=[name for name in below.children.folders if name in names])
+            for entry in entries_of(replace(below, children=children, people=People(()), lab=""), "folders"):
+                name, path = entry.student.login, f"{team}/{lab}/{entry.path}"
+                yield entry._replace(path=path, student=Student(f"{team}/{name}", name, login=name, group=team))
 
 
-def _holds_students(folder: ClassFolder, lab: str, team: str) -> bool:
-    """Return whether the folders in a lab's are those of students, and not the parts of one submission."""
-    inner = folder.listing.children(lab, 1000)
-    parts = _parts(folder, inner.folders, team)
-    names = [f"{name}/" for name in inner.folders] + list(filter(is_submission, inner.files))
-    if not PACKAGE_FILES.isdisjoint(inner.files) or not names:
-        return False
-    known = sum(folder.people.knows(PATTERNS["folders"].sub(r"\g<login>", name), team) for name in names)
-    if folder.is_explicit:
-        return bool(known) or len(parts) < len(inner.folders)
-    tops = [f"{lab}/{name}" for name in inner.folders]
-    is_package = any(folder.listing.has(f"{top}/package.xml") for top in tops)
-    are_robots = not is_package and sum(_has_robot(folder.listing, top) for top in tops) > 1
-    return not parts and (known >= min(len(names), 2) or are_robots)
+def _students(lab: ClassFolder, team: str, words: Collection[str]) -> set[str]:
+    """Return the names in a lab's folder that are those of students; none if it is one submission.
 
-
-def _has_robot(listing: ClassListing, top: str) -> bool:
-    return any(_ROBOT.search(path.lower()) for path in files_below(listing, top))
-
-
-def _parts(folder: ClassFolder, names: Collection[str], team: str) -> list[str]:
-    """Return the names in a lab's folder that are those of parts of a submission, and not of students."""
-    return [name for name in names if is_part(name, folder.lab_words) and not folder.people.knows(name, team)]
+    Members of the team on the roster are certain, and with them others; without a roster several folders of which none
+    is a package or has the name of a part. The folder of the only member alone stays with the rest of the repository.
+    """
+    people, folders = lab.people, lab.children.folders
+    names = (f"{name}/" if name in folders else name for name in lab.names)
+    read = filter(None, map(PATTERNS["folders"].fullmatch, names))
+    known = {found.string.rstrip("/") for found in read if people.knows(found["login"], team)}
+    others = {name for name in folders if name not in known and not is_part(name, words)}
+    is_package = any(lab.listing.has(f"{lab.start}{name}/package.xml") for name in folders)
+    are_students = not (people.students or is_package) and 1 < len(others) == len(folders)
+    if not (lab.is_explicit or known or are_students):
+        return set()
+    is_alone = bool(known) and len(lab.entries) == 1 == len(people.members(team))
+    return set() if is_alone or not PACKAGE_FILES.isdisjoint(lab.children.files) else known | others

@@ -3,7 +3,6 @@
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -56,7 +55,7 @@ class ClassInputs:
     @property
     def roots(self) -> tuple[Path, ...]:
         """The absolute paths of the submissions."""
-        return tuple(path.resolve() for path in self.settings.roots(self.folder))
+        return self.settings.roots(self.folder)
 
     @property
     def near_roots(self) -> tuple[Path, ...]:
@@ -64,17 +63,11 @@ class ClassInputs:
         here = Path.cwd()
         return tuple(root.relative_to(here) if root.is_relative_to(here) else root for root in self.roots)
 
-    @property
-    def deadline(self) -> datetime | None:
-        """The deadline of the class."""
-        return read_time(self.settings.due) if self.settings.due else None
-
 
 def read_inputs(options: ClassOptions, warn: Warn) -> ClassInputs:
     """Return the inputs of a run; raise InputError and RubricError. Nothing is written."""
     rubric = load_rubric(options.rubric) if options.rubric is not None else None
-    default = names.default_folder(rubric.id if rubric is not None else DEFAULT_RUBRIC)
-    folder = options.gradebook if options.gradebook is not None else default
+    folder = options.gradebook or names.default_folder(rubric.id if rubric is not None else DEFAULT_RUBRIC)
     is_new = not names.is_gradebook(folder)
     names.check_free(folder)
     settings = ClassSettings() if is_new else read_settings(folder)
@@ -91,8 +84,8 @@ def read_inputs(options: ClassOptions, warn: Warn) -> ClassInputs:
         warn(f"deadline of the last run: {time_text(due, due.tzinfo)} (--due changes it)")
     roster_file = options.roster or (folder / names.ROSTER)
     roster = None
-    if options.roster is not None or roster_file.exists():
-        roster = read_roster(read_capped(roster_file, SIZE_LIMIT, advice=""), printable_path(roster_file))
+    if options.roster or roster_file.exists():
+        roster = read_roster(_read(roster_file), printable_path(roster_file))
     return ClassInputs(folder, _updated(options, settings, folder, rubric), rubric, roster)
 
 
@@ -126,23 +119,28 @@ def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
 
 def keep_inputs(inputs: ClassInputs, options: ClassOptions, warn: Warn) -> ClassInputs:
     """Write the settings and the copies of the roster and the rubric into the gradebook. Raises InputError."""
-    folder, settings = inputs.folder, inputs.settings
+    folder, settings, rubric = inputs.folder, inputs.settings, inputs.rubric
     if options.roster is not None:
-        data = read_capped(options.roster, SIZE_LIMIT, advice="")
-        file = folder / names.ROSTER
-        if file.exists() and _hash(file) not in (settings.roster_hash, sha256_of(data)):
-            warn(f"{printable_path(file)} was edited: it is replaced by {printable_path(options.roster)}")
+        data, file = _read(options.roster), folder / names.ROSTER
+        _warn_of_edits(file, (settings.roster_hash, sha256_of(data)), options.roster, warn)
         save_bytes(file, data, inputs.roots, _PRIVATE)
         settings = replace(settings, roster_hash=sha256_of(data))
     if options.rubric is not None or not settings.rubric:
-        place = folder / settings.rubric
-        if settings.rubric and place.exists() and _hash(place) not in (settings.rubric_hash, inputs.rubric.sha256):
-            warn(f"{printable_path(place)} was edited: it is replaced by {printable_path(inputs.rubric.path)}")
-        settings = replace(settings, rubric=_copy_rubric(folder, inputs.rubric), rubric_hash=inputs.rubric.sha256)
-    text = settings_text(settings)
+        _warn_of_edits(folder / settings.rubric, (settings.rubric_hash, rubric.sha256), rubric.path, warn)
+        settings = replace(settings, rubric=_copy_rubric(folder, rubric), rubric_hash=rubric.sha256)
     if not (folder / CLASS_FILE).exists() or settings != read_settings(folder):
-        save(folder / CLASS_FILE, text, inputs.roots, _PRIVATE)
+        save(folder / CLASS_FILE, settings_text(settings), inputs.roots, _PRIVATE)
     return replace(inputs, settings=settings, rubric=load_rubric(folder / settings.rubric))
+
+
+def _warn_of_edits(file: Path, known: Sequence[str], new: Path, warn: Warn) -> None:
+    """Say that a copy which a person has edited is replaced."""
+    if file.is_file() and sha256_of(_read(file)) not in known:
+        warn(f"{printable_path(file)} was edited: it is replaced by {printable_path(new)}")
+
+
+def _read(file: Path) -> bytes:
+    return read_capped(file, SIZE_LIMIT, advice="")
 
 
 def _copy_rubric(folder: Path, rubric: Rubric) -> str:
@@ -151,12 +149,9 @@ def _copy_rubric(folder: Path, rubric: Rubric) -> str:
     files = [file for file in files_of(str(rubric.path)) if file.name != rubric.answers and file.exists()]
     near = [file.resolve() for file in files if not Path(rubric.reference).is_absolute() or file == rubric.path]
     base = Path(os.path.commonpath([file.parent for file in near]))
-    found = [path for file in near for path in (file.rglob("*") if file.is_dir() else [file])]
-    copies = {
-        target / path.relative_to(base): path
-        for path in sorted(found, key=lambda path: (path == own, path))  # the rubric when all that it needs is there
-        if path.is_file() and path.parent.name != "__pycache__"
-    }
+    found = {path for file in near for path in (file, *file.rglob("*")) if path.is_file()} - {own}
+    copies = {target / path.relative_to(base): path for path in found if path.parent.name != "__pycache__"}
+    copies[target / own.relative_to(base)] = own  # when all that it needs is there
     try:
         for place, path in copies.items():
             place.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -167,7 +162,3 @@ def _copy_rubric(folder: Path, rubric: Rubric) -> str:
     except OSError as error:
         raise InputError(f"cannot write {printable_path(target)}: {error.strerror}") from None
     return (target / own.relative_to(base)).relative_to(folder).as_posix()
-
-
-def _hash(file: Path) -> str:
-    return sha256_of(read_capped(file, SIZE_LIMIT, advice=""))

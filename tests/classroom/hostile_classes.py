@@ -82,7 +82,7 @@ class ClassLayout:
         in_canvas, in_moodle = self.layout == "canvas", self.layout == "moodle"
         students = [
             Student(
-                f"k{_NUMBER[name]}", _FULL[name], f"{name}@example.org", name, section=_TEAM[name],
+                f"k{_NUMBER[name]}", _FULL[name], f"{name}@example.org", name, group=_TEAM[name],
                 canvas=_NUMBER[name] if in_canvas else "", moodle=_NUMBER[name] if in_moodle else "",
             )
             for name in (*NAMES, MALLORY)
@@ -204,9 +204,7 @@ class HostileClass(RuleBasedStateMachine):
         intake = read_class([self.source], self.made.roster, layout, rubric_id="lab6")
         self.unmatched, self.unclear = intake.unmatched, intake.unclear
         for one in intake.submissions:
-            owners = {
-                next((name for name in NAMES if _is_below(path, self.made.place(name))), MALLORY) for path in one.paths
-            }
+            owners = {next((name for name in NAMES if self._is_of(name, path)), MALLORY) for path in one.paths}
             assert len(owners) == 1, one
             (owner,) = owners
             assert not self.made.has_roster or owner == MALLORY or one.student.key == f"k{_NUMBER[owner]}", one
@@ -215,6 +213,11 @@ class HostileClass(RuleBasedStateMachine):
                 assert owner not in found, (owner, one)
                 found[owner] = one.paths
         return found
+
+    def _is_of(self, name: str, path: str) -> bool:
+        """Return whether a path is that of an honest student, also of the whole repository of a team with no other."""
+        place = self.made.place(name)
+        return _is_below(path, place) or (self.made.layout == "teams" and place.startswith(f"{path}/"))
 
     def _check_files(self, paths: tuple[str, ...], names: tuple[str, ...], owner: str) -> None:
         """Assert that the files read for a submission belong to the owner of its folder."""

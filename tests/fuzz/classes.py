@@ -67,7 +67,7 @@ def roster(data: bytes) -> None:
         people = People(found.students)
         for index, student in enumerate(found.students):
             match = people.match(student)
-            assert not match.is_certain or index in match.students
+            assert not match.owners or index in match.owners
 
 
 def rosters() -> Iterator[bytes]:
