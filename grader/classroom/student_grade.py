@@ -1,6 +1,5 @@
-"""The grade of one student: what counts, why it is open, and why a person should look at it."""
+"""The grade of one student: what counts, what is open, and why a person should look at it."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from decimal import Decimal
 from enum import StrEnum
@@ -11,8 +10,8 @@ from grader.classroom.lateness import Lateness
 from grader.classroom.marks import EXCUSED, Mark
 from grader.classroom.roster import Student
 from grader.grading.criterion import TOTAL
-from grader.grading.report import Report
-from grader.text import counted_points
+from grader.grading.report import Report, Result
+from grader.text import counted_points, format_points
 
 _ON_TIME = Lateness()
 
@@ -25,11 +24,17 @@ class Reason(StrEnum):
     UNCLEAR = "it is unclear which submission counts"
     MISSING = "nothing was submitted"
     GONE = "no longer in the class folder"
-    OUTDATED = "graded with an earlier version of the rubric or the grader"
+    OUTDATED = "graded with another rubric or version: run `grader batch` again"
     NOT_ON_ROSTER = "not on the roster"
     OLDER_FINAL = "final mark or excuse given before the submission changed"
     OLDER_MARKS = "marked before the submission changed"
     MARKED = "could not be graded, and was marked manually"
+    PENDING = "needs manual grading"
+    EXCUSED = "excused"
+
+
+# They keep a grade from being published.
+_OBSTACLES = {Reason.FAILED, Reason.UNREADABLE, Reason.UNCLEAR, Reason.MISSING, Reason.GONE, Reason.OUTDATED}
 
 
 @dataclass(frozen=True)
@@ -67,6 +72,18 @@ class StudentGrade:
         """Whether a person has decided the whole grade: then there is no late penalty."""
         return self.is_excused or self.final_points is not None
 
+    @property
+    def status(self) -> str:
+        """How the submission went: graded, unreadable, errored, missing or excused."""
+        if self.is_excused:
+            return "excused"
+        return self.graded.verdict if self.graded is not None else "missing"
+
+    @property
+    def results(self) -> tuple[Result, ...]:
+        """The results of the criteria."""
+        return self.report.results if self.report is not None else ()
+
     @cached_property
     def score(self) -> Decimal:
         """The points of the criteria, without a submission 0."""
@@ -84,55 +101,77 @@ class StudentGrade:
         """The points that still need manual grading and can change the grade."""
         return self.report.pending if self.report is not None and not self.has_final else Decimal(0)
 
-    @cached_property
-    def faults(self) -> int:
-        """The number of criteria on which the grader failed, and that nobody has marked."""
-        rows = self.report.results if self.report is not None else ()
-        return sum(row.outcome.status == "errored" and row.manual_mark is None and not row.is_adjusted for row in rows)
+    @property
+    def total_text(self) -> str:
+        """The grade; empty where there is none or nothing could be graded."""
+        is_ungraded = self.status in ("unreadable", "errored") and self.obstacle and not self.total
+        return "" if self.total is None or is_ungraded else format_points(self.total)
 
     @cached_property
+    def losses(self) -> list[tuple[Decimal, str]]:
+        """The points that were lost by mistakes or marks, and the criterion.
+
+        The most points come first, and after all others what was skipped because of another criterion.
+        """
+        lost = [one for one in self.results if one.is_lost or one.manual_mark] if not self.has_final else []
+        lost.sort(
+            key=lambda one: (one.outcome.status == "skipped", one.points - one.criterion.maximum, one.criterion.id)
+        )
+        points = ((one.criterion.maximum - one.points, one.criterion.id) for one in lost)
+        return [loss for loss in points if loss[0] > 0]
+
+    @cached_property
+    def concerns(self) -> dict[Reason, str]:
+        """Why a person should look at this grade, each reason with its details."""
+        reason = self.graded.reason if self.graded is not None else ""
+        is_undecided, has_fault = not self.has_final, any(map(is_faulty, self.results))
+        is_open = is_undecided and bool(has_fault or self.pending)
+        is_marked = is_undecided and not is_open and self.status in ("errored", "unreadable")
+        older = ", ".join(name for name in self.older if name != TOTAL)
+        found = (
+            (is_undecided and has_fault, Reason.FAILED, reason),
+            (is_open and self.status == "unreadable", Reason.UNREADABLE, reason),
+            (is_undecided and self.is_unclear, Reason.UNCLEAR, ""),
+            (is_undecided and self.graded is None and not self.is_unclear, Reason.MISSING, ""),
+            (self.is_gone, Reason.GONE, ""),
+            (is_undecided and self.is_outdated, Reason.OUTDATED, ""),
+            (not self.student.is_on_roster, Reason.NOT_ON_ROSTER, ""),
+            (TOTAL in self.older, Reason.OLDER_FINAL, ""),
+            (older, Reason.OLDER_MARKS, older),
+            (is_marked, Reason.MARKED, ""),
+        )
+        return {why: detail for holds, why, detail in found if holds}
+
+    @cached_property
+    def obstacle(self) -> Reason | None:
+        """What keeps this grade from being published; None if it is final."""
+        if self.has_final:
+            return Reason.EXCUSED if self.is_excused else None
+        pending = Reason.PENDING if self.pending else None
+        return next((reason for reason in self.concerns if reason in _OBSTACLES), pending)
+
+    @property
     def why_open(self) -> str:
         """Why this grade must not be published yet; empty if it is final."""
-        if self.final_points is not None:
+        if self.obstacle is None:
             return ""
-        reason = self.graded.reason if self.graded is not None else ""
-        reasons = (
-            (self.is_excused, "excused"),
-            (self.is_unclear, Reason.UNCLEAR.value),
-            (self.report is None, Reason.MISSING.value),
-            (self.faults, f"the grader failed: {reason}" if reason else "the grader failed on a criterion"),
-            (self._is("unreadable") and self.pending, f"it could not be graded: {reason}"),
-            (self.is_gone, "it is no longer in the class folder"),
-            (self.is_outdated, "it was graded with another rubric or version: run `grader batch` again"),
-            (self.pending, f"{counted_points(self.pending)} need{'s' * (self.pending == 1)} manual grading"),
-        )
-        return next((why for holds, why in reasons if holds), "")
+        if self.obstacle is Reason.PENDING:
+            return f"{counted_points(self.pending)} need{'s' * (self.pending == 1)} manual grading"
+        details = self.concerns.get(self.obstacle, "")
+        return f"{self.obstacle}: {details}" if details else str(self.obstacle)
 
     @property
     def published(self) -> Decimal | None:
         """The grade that is published: the total, unless something is open."""
-        return None if self.why_open else self.total
+        return self.total if self.obstacle is None else None
 
     @property
-    def concerns(self) -> Iterator[tuple[Reason, str]]:
-        """Yield why a person should look at this grade, each reason with its details."""
-        reason = self.graded.reason if self.graded is not None else ""
-        is_open = not self.has_final and bool(self.faults or self.pending)
-        is_ungraded = not self.has_final and (self._is("errored") or self._is("unreadable"))
-        older = tuple(name for name in self.older if name != TOTAL)
-        reasons = (
-            (not self.has_final and self.faults, Reason.FAILED, reason),
-            (is_open and self._is("unreadable"), Reason.UNREADABLE, reason),
-            (is_ungraded and not is_open, Reason.MARKED, ""),
-            (not self.has_final and self.is_unclear, Reason.UNCLEAR, ""),
-            (not self.has_final and self.graded is None and not self.is_unclear, Reason.MISSING, ""),
-            (self.is_gone, Reason.GONE, ""),
-            (not self.has_final and self.is_outdated, Reason.OUTDATED, ""),
-            (not self.student.is_on_roster, Reason.NOT_ON_ROSTER, ""),
-            (TOTAL in self.older, Reason.OLDER_FINAL, ""),
-            (older, Reason.OLDER_MARKS, ", ".join(older)),
-        )
-        return ((reason, detail) for holds, reason, detail in reasons if holds)
+    def is_counted(self) -> bool:
+        """Whether the grade is in the figures of the class: also one that is open, if the submission was graded."""
+        is_graded = self.status == "graded" and not self.is_gone
+        return self.student.is_on_roster and (is_graded or self.published is not None)
 
-    def _is(self, verdict: str) -> bool:
-        return self.graded is not None and self.graded.verdict == verdict
+
+def is_faulty(result: Result) -> bool:
+    """Return whether the grader failed on a criterion, and nobody has marked it."""
+    return result.outcome.status == "errored" and result.manual_mark is None and not result.is_adjusted

@@ -6,7 +6,6 @@ from operator import itemgetter
 from types import SimpleNamespace
 
 from grader import __version__
-from grader.classroom.grade_table import status_of
 from grader.classroom.grades import Class
 from grader.classroom.run.progress import Progress
 from grader.classroom.statistics import COUNTS, CriterionFigures, statistics
@@ -84,7 +83,7 @@ _STUDENT = Record(
     {
         "id": (TEXT, "student.key"),
         **inner("student", each(TEXT, "name email section")),
-        "status": ({"enum": [*_STATUSES]}, status_of),
+        "status": {"enum": [*_STATUSES]},
         "reason": (TEXT, lambda one: one.graded.reason if one.graded is not None else ""),
         "score": _of_report("score"),
         "max_score": _of_report("max_score"),

@@ -99,10 +99,10 @@ def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
 def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
     """Return the report on a submission as it was graded, with its details if it is still there."""
     if graded.verdict == "errored":
-        return graded.report(book.rubric)
+        return book.report(graded)
     submission = reopened(book, graded)
     if submission is None:
-        return graded.report(book.rubric)._replace(notes=(_MOVED,) * (graded.verdict == "graded"))
+        return book.report(graded)._replace(notes=(_MOVED,) * (graded.verdict == "graded"))
     report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
     if not has_hints or book.rubric.hints == "none" or not report.has_failures:
         return report
