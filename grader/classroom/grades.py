@@ -1,6 +1,6 @@
 """The grades of a class, computed from the results, the rubric, the roster and the marks of people."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from datetime import datetime
 from functools import lru_cache
 from pathlib import Path
@@ -15,7 +15,7 @@ from grader.classroom.marks import Mark, Marks, read_marks
 from grader.classroom.results import Results
 from grader.classroom.roster import Roster, Student, read_roster
 from grader.classroom.settings import read_settings
-from grader.classroom.student_grade import StudentGrade
+from grader.classroom.student_grade import Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import InputError
 from grader.files.reading import read_capped
@@ -94,18 +94,18 @@ class Class:
     def _grade(self, key: str, graded: Graded | None) -> StudentGrade:
         whole = (key, TOTAL)
         student, final = self.student(key, graded), self.marks.counting.get(whole) or self.marks.comments.get(whole)
-        is_unclear = key in self.run.unclear
+        known = {Reason.NOT_ON_ROSTER: not student.is_on_roster, Reason.UNCLEAR: key in self.run.unclear}
         if graded is None:
-            return StudentGrade(student, None, None, final=final, is_unclear=is_unclear)
+            return StudentGrade(student, final=final, known=_held(known))
+        known[Reason.GONE] = key not in self.run.totals
+        known[Reason.OUTDATED] = self._is_outdated or graded.context != self.run.context
         report, older = self.with_marks(self.report(graded), graded)
         if final is not None and _is_older(final, graded):
             older = (*older, TOTAL)
         late = self._lateness(student, graded, report)
         if final is not None and final.value:
             late = Lateness(late.days, reason=late.reason)
-        is_outdated = self._is_outdated or graded.context != self.run.context
-        is_gone = key not in self.run.totals
-        return StudentGrade(student, graded, report, late, final, older, is_gone, is_outdated, is_unclear)
+        return StudentGrade(student, graded, report, late, final, older, _held(known))
 
     def _lateness(self, student: Student, graded: Graded, report: Report) -> Lateness:
         """Return the lateness; what the roster says counts before what the LMS says."""
@@ -134,6 +134,10 @@ class Class:
             results[name] = result._replace(manual_mark=given, hint=None, comment=None)
             older += [name] if _is_older(mark, graded) else []
         return report._replace(results=tuple(results[name] for name in self._rows if name in results)), tuple(older)
+
+
+def _held(facts: Mapping[Reason, bool]) -> frozenset[Reason]:
+    return frozenset(reason for reason, holds in facts.items() if holds)
 
 
 def _is_older(mark: Mark, graded: Graded) -> bool:

@@ -17,13 +17,11 @@ _TENTHS, _MAX_MISTAKES = 10, 20
 
 
 class Summary(NamedTuple):
-    """The grades of some students: their number, mean, median, lowest and highest."""
+    """The grades of some students: their number, mean and median."""
 
     students: int
     mean: Decimal
     median: Decimal
-    lowest: Decimal
-    highest: Decimal
 
 
 class CriterionFigures(NamedTuple):
@@ -102,8 +100,7 @@ def summary(totals: Iterable[Decimal]) -> Summary:
     """Return the figures of some grades, of at least one."""
     found = sorted(totals)
     count = len(found)
-    median = (found[(count - 1) // 2] + found[count // 2]) / 2
-    return Summary(count, sum(found, Decimal(0)) / count, median, found[0], found[-1])
+    return Summary(count, sum(found, Decimal(0)) / count, (found[(count - 1) // 2] + found[count // 2]) / 2)
 
 
 def _of_criteria(book: Class, grades: Iterable[StudentGrade]) -> tuple[list[CriterionFigures], list[Mistake]]:

@@ -9,15 +9,14 @@ from grader.classroom.graded import Graded
 from grader.classroom.lateness import Lateness
 from grader.classroom.marks import EXCUSED, Mark
 from grader.classroom.roster import Student
-from grader.grading.criterion import TOTAL
 from grader.grading.report import Report, Result
 from grader.text import counted_points, format_points
 
-_ON_TIME = Lateness()
+_NONE = Decimal(0)
 
 
 class Reason(StrEnum):
-    """Why a grade needs attention, the most urgent reason first."""
+    """Why a grade needs attention, the most urgent reason first; the last two only keep it from being published."""
 
     FAILED = "the grader failed"
     UNREADABLE = "could not be graded"
@@ -26,14 +25,12 @@ class Reason(StrEnum):
     GONE = "no longer in the class folder"
     OUTDATED = "graded with another rubric or version: run `grader batch` again"
     NOT_ON_ROSTER = "not on the roster"
-    OLDER_FINAL = "final mark or excuse given before the submission changed"
     OLDER_MARKS = "marked before the submission changed"
-    MARKED = "could not be graded, and was marked manually"
     PENDING = "needs manual grading"
     EXCUSED = "excused"
 
 
-# They keep a grade from being published.
+# They keep a grade from being published; of a final mark only GONE needs attention.
 _OBSTACLES = {Reason.FAILED, Reason.UNREADABLE, Reason.UNCLEAR, Reason.MISSING, Reason.GONE, Reason.OUTDATED}
 
 
@@ -42,20 +39,18 @@ class StudentGrade:
     """The grade of one student. Without a submission there is no result, and no report.
 
     `report` has the points with the manual marks; `final` is the mark or excuse of the whole submission; `older` are
-    the criteria (or `total`) that were marked before the submission changed; `is_gone` means that the newest run did
-    not find the submission, `is_outdated` that it was graded by another rubric, version, or on other parts, and
-    `is_unclear` that there are possible submissions, of which none was graded.
+    the criteria (or `total`) that were marked before the submission changed; `known` is what the class says: GONE means
+    that the newest run did not find the submission, OUTDATED that it was graded by another rubric, version, or on other
+    parts, and UNCLEAR that there are possible submissions, of which none was graded.
     """
 
     student: Student
-    graded: Graded | None
-    report: Report | None
-    late: Lateness = _ON_TIME
+    graded: Graded | None = None
+    report: Report | None = None
+    late: Lateness = Lateness()
     final: Mark | None = None
     older: tuple[str, ...] = ()
-    is_gone: bool = False
-    is_outdated: bool = False
-    is_unclear: bool = False
+    known: frozenset[Reason] = frozenset()
 
     @property
     def is_excused(self) -> bool:
@@ -73,6 +68,11 @@ class StudentGrade:
         return self.is_excused or self.final_points is not None
 
     @property
+    def is_gone(self) -> bool:
+        """Whether the newest run did not find the submission."""
+        return Reason.GONE in self.known
+
+    @property
     def status(self) -> str:
         """How the submission went: graded, unreadable, errored, missing or excused."""
         if self.is_excused:
@@ -87,19 +87,17 @@ class StudentGrade:
     @cached_property
     def score(self) -> Decimal:
         """The points of the criteria, without a submission 0."""
-        return self.report.score if self.report is not None else Decimal(0)
+        return self.report.score if self.report is not None else _NONE
 
     @cached_property
     def total(self) -> Decimal | None:
         """The final mark, else the points after the late penalty; None for an excuse, and without a submission."""
-        if self.has_final or self.report is None:
-            return self.final_points
-        return self.score + self.late.points
+        return self.final_points if self.has_final or self.report is None else self.score + self.late.points
 
     @cached_property
     def pending(self) -> Decimal:
         """The points that still need manual grading and can change the grade."""
-        return self.report.pending if self.report is not None and not self.has_final else Decimal(0)
+        return self.report.pending if self.report is not None and not self.has_final else _NONE
 
     @property
     def total_text(self) -> str:
@@ -113,34 +111,29 @@ class StudentGrade:
 
         The most points come first, and after all others what was skipped because of another criterion.
         """
-        lost = [one for one in self.results if one.is_lost or one.manual_mark] if not self.has_final else []
-        lost.sort(
-            key=lambda one: (one.outcome.status == "skipped", one.points - one.criterion.maximum, one.criterion.id)
-        )
-        points = ((one.criterion.maximum - one.points, one.criterion.id) for one in lost)
-        return [loss for loss in points if loss[0] > 0]
+        lost = [
+            (one.outcome.status == "skipped", one.points - one.criterion.maximum, one.criterion.id)
+            for one in (self.results if not self.has_final else ())
+            if (one.is_lost or one.manual_mark) and one.points < one.criterion.maximum
+        ]
+        return [(-points, name) for _, points, name in sorted(lost)]
 
     @cached_property
     def concerns(self) -> dict[Reason, str]:
         """Why a person should look at this grade, each reason with its details."""
-        reason = self.graded.reason if self.graded is not None else ""
-        is_undecided, has_fault = not self.has_final, any(map(is_faulty, self.results))
-        is_open = is_undecided and bool(has_fault or self.pending)
-        is_marked = is_undecided and not is_open and self.status in ("errored", "unreadable")
-        older = ", ".join(name for name in self.older if name != TOTAL)
-        found = (
-            (is_undecided and has_fault, Reason.FAILED, reason),
-            (is_open and self.status == "unreadable", Reason.UNREADABLE, reason),
-            (is_undecided and self.is_unclear, Reason.UNCLEAR, ""),
-            (is_undecided and self.graded is None and not self.is_unclear, Reason.MISSING, ""),
-            (self.is_gone, Reason.GONE, ""),
-            (is_undecided and self.is_outdated, Reason.OUTDATED, ""),
-            (not self.student.is_on_roster, Reason.NOT_ON_ROSTER, ""),
-            (TOTAL in self.older, Reason.OLDER_FINAL, ""),
-            (older, Reason.OLDER_MARKS, older),
-            (is_marked, Reason.MARKED, ""),
-        )
-        return {why: detail for holds, why, detail in found if holds}
+        reason, found = self.graded.reason if self.graded is not None else "", {*self.known}
+        if any(map(is_faulty, self.results)):
+            found.add(Reason.FAILED)
+        if self.status == "unreadable" and self.pending:
+            found.add(Reason.UNREADABLE)
+        if self.graded is None and Reason.UNCLEAR not in found:
+            found.add(Reason.MISSING)
+        if self.has_final:
+            found -= _OBSTACLES - {Reason.GONE}
+        if self.older:
+            found.add(Reason.OLDER_MARKS)
+        details = {Reason.FAILED: reason, Reason.UNREADABLE: reason, Reason.OLDER_MARKS: ", ".join(self.older)}
+        return {one: details.get(one, "") for one in Reason if one in found}
 
     @cached_property
     def obstacle(self) -> Reason | None:
@@ -148,17 +141,14 @@ class StudentGrade:
         if self.has_final:
             return Reason.EXCUSED if self.is_excused else None
         pending = Reason.PENDING if self.pending else None
-        return next((reason for reason in self.concerns if reason in _OBSTACLES), pending)
+        return next((one for one in self.concerns if one in _OBSTACLES), pending)
 
     @property
     def why_open(self) -> str:
         """Why this grade must not be published yet; empty if it is final."""
-        if self.obstacle is None:
-            return ""
         if self.obstacle is Reason.PENDING:
             return f"{counted_points(self.pending)} need{'s' * (self.pending == 1)} manual grading"
-        details = self.concerns.get(self.obstacle, "")
-        return f"{self.obstacle}: {details}" if details else str(self.obstacle)
+        return ": ".join(filter(None, (self.obstacle, self.concerns.get(self.obstacle or Reason.PENDING))))
 
     @property
     def published(self) -> Decimal | None:

@@ -34,7 +34,7 @@ from grader.report.json_data import (
 )
 
 _STATUSES = ("errored", "excused", "graded", "missing", "unreadable")
-_SUMMARY = Record({"students": TOTAL, **each(nullable(POINTS), "mean median lowest highest")})
+_SUMMARY = Record({"students": TOTAL, **each(nullable(POINTS), "mean median")})
 _NO_GRADES = {**dict.fromkeys(_SUMMARY.keys), "students": 0}
 
 

@@ -52,8 +52,7 @@ def head_lines(found: ClassStatistics) -> Iterator[str]:
     counts = [f"{found.statuses[status]} {text}" for status, text in words.items() if status in found.statuses]
     yield ", ".join([*counts, *([f"{found.late} late"] if found.late else [])]) or "no students"
     if found.all is not None:
-        ends = f"lowest {format_points(found.all.lowest)}, highest {format_points(found.all.highest)}"
-        yield f"Grades of {format_points(found.maximum)}: {means(found.all.mean, found.all.median)}, {ends}"
+        yield f"Grades of {format_points(found.maximum)}: {means(found.all.mean, found.all.median)}"
     if found.open:
         yield f"{counted(found.open, 'grade')} still {'needs' if found.open == 1 else 'need'} manual grading"
     for name, one in found.sections.items():
