@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 
 from grader.classroom.grades import Class
-from grader.classroom.student_grade import StudentGrade, is_faulty
+from grader.classroom.student_grade import StudentGrade
 from grader.classroom.tables import CellValue
 from grader.grading.criterion import TOTAL
 from grader.text import format_points
@@ -30,16 +30,14 @@ def grade_table(
 
 def _row(grade: StudentGrade, criteria: Sequence[str], is_exported: bool) -> list[CellValue]:
     student, report = grade.student, None if grade.is_excused else grade.report
-    row: list[CellValue] = [student.key, student.name, student.email, student.section, grade.status]
-    points = dict.fromkeys(criteria, "")
-    if report is None:
-        row += [None] * 5
-    else:
-        row += [grade.score, report.max_score, grade.pending, grade.late.days, grade.late.points]
-        decided = (one for one in report.results if not (one.is_open or is_faulty(one)))
-        points |= {one.criterion.id: format_points(one.points) for one in decided}
-    row += [grade.total, grade.why_open, *points.values()]
+    row: list[CellValue] = [student.key, student.name or None, student.email or None, student.section or None]
+    points: dict[str, str | None] = dict.fromkeys(criteria)
+    numbers: list[CellValue] = [None] * 5
+    if report is not None:
+        numbers = [grade.score, report.max_score, grade.pending, grade.late.days, grade.late.points]
+        points |= {one.criterion.id: one.cell for one in grade.results}
+    row += [grade.status, *numbers, grade.total, grade.why_open or None, *points.values()]
     if is_exported:
-        points[TOTAL] = format_points(grade.total) if grade.total is not None else ""
-        row.append(" ".join(f"{name}={text}" for name, text in points.items()))
+        points[TOTAL] = format_points(grade.total) if grade.total is not None else None
+        row.append(" ".join(f"{name}={text or ''}" for name, text in points.items()))
     return [*row, grade.graded.digest if grade.graded is not None else None]

@@ -15,13 +15,13 @@ from grader.classroom.marks import Mark, Marks, read_marks
 from grader.classroom.results import Results
 from grader.classroom.roster import Roster, Student, read_roster
 from grader.classroom.settings import read_settings
-from grader.classroom.student_grade import Reason, StudentGrade
+from grader.classroom.student_grade import ClassResult, Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import DEADLINE, TOTAL, Criterion
 from grader.grading.graded_submission import GradedSubmission
-from grader.grading.report import ManualComment, ManualMark, Report, Result, without_gifts
+from grader.grading.report import ManualComment, ManualMark, Report, without_gifts
 from grader.grading.rubric import load_rubric
 from grader.text import printable_path
 
@@ -88,8 +88,8 @@ class Class:
         submission = GradedSubmission(graded.student, unread=unread)
         return Report(submission, self.rubric, graded.parts, without_gifts(results, submission))
 
-    def _new_result(self, name: str, status: Status, words: str, carried: str) -> Result:
-        return Result(self._rows[name], Outcome(status, words), carried=carried)
+    def _new_result(self, name: str, status: Status, words: str, carried: str) -> ClassResult:
+        return ClassResult(self._rows[name], Outcome(status, words), carried=carried)
 
     def _grade(self, key: str, graded: Graded | None) -> StudentGrade:
         whole = (key, TOTAL)
@@ -130,7 +130,7 @@ class Class:
             if mark is None or mark.points is None or row.adjustment is not None:
                 continue
             given = ManualMark(mark.points, mark.by, mark.comment)
-            result = results.get(name) or Result(row, _NOT_SUBMITTED)
+            result = results.get(name) or ClassResult(row, _NOT_SUBMITTED)
             results[name] = result._replace(manual_mark=given, hint=None, comment=None)
             older += [name] if _is_older(mark, graded) else []
         return report._replace(results=tuple(results[name] for name in self._rows if name in results)), tuple(older)

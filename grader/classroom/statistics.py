@@ -7,9 +7,8 @@ from typing import NamedTuple
 
 from grader.classroom.equal_work import EqualWork, equal_work
 from grader.classroom.grades import Class
-from grader.classroom.student_grade import Reason, StudentGrade
+from grader.classroom.student_grade import ClassResult, Reason, StudentGrade
 from grader.grading.criterion import Criterion
-from grader.grading.report import Result
 from grader.grading.rubric import Rubric
 
 COUNTS = ("passed", "failed", "skipped", "pending", "errored", "carried", "marked")
@@ -105,7 +104,7 @@ def summary(totals: Iterable[Decimal]) -> Summary:
 
 def _of_criteria(book: Class, grades: Iterable[StudentGrade]) -> tuple[list[CriterionFigures], list[Mistake]]:
     """Return the figures of the criteria, and the most common mistakes."""
-    shared: dict[int, tuple[Result, list[str]]] = {}  # most students of a class have the same few objects
+    shared: dict[int, tuple[ClassResult, list[str]]] = {}  # most students of a class have the same few objects
     for grade in grades:
         for result in grade.results:
             shared.setdefault(id(result), (result, []))[1].append(grade.student.key)
@@ -122,7 +121,7 @@ def _of_criteria(book: Class, grades: Iterable[StudentGrade]) -> tuple[list[Crit
     return rows, [Mistake(*where, sorted(keys)) for where, keys in common]
 
 
-def _of(result: Result) -> tuple[str, ...]:
+def _of(result: ClassResult) -> tuple[str, ...]:
     """Return what a result counts as: a mark, a given point, or the status of the check."""
     if result.manual_mark is not None:
         return "marked", "decided"

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from enum import StrEnum
 from functools import cached_property
+from typing import cast
 
 from grader.classroom.graded import Graded
 from grader.classroom.lateness import Lateness
@@ -12,7 +13,7 @@ from grader.classroom.roster import Student
 from grader.grading.report import Report, Result
 from grader.text import counted_points, format_points
 
-_NONE = Decimal(0)
+_NONE, _ON_TIME = Decimal(0), Lateness()
 
 
 class Reason(StrEnum):
@@ -34,6 +35,30 @@ class Reason(StrEnum):
 _OBSTACLES = {Reason.FAILED, Reason.UNREADABLE, Reason.UNCLEAR, Reason.MISSING, Reason.GONE, Reason.OUTDATED}
 
 
+class ClassResult(Result):
+    """A result in a class: most students share it with others, so what follows from it is computed once."""
+
+    @cached_property
+    def points(self) -> Decimal:
+        """The points earned."""
+        return super().points
+
+    @cached_property
+    def is_open(self) -> bool:
+        """Whether the criterion still needs manual grading."""
+        return super().is_open
+
+    @cached_property
+    def is_faulty(self) -> bool:
+        """Whether the grader failed on the criterion, and nobody has marked it."""
+        return self.outcome.status == "errored" and self.manual_mark is None and not self.is_adjusted
+
+    @cached_property
+    def cell(self) -> str | None:
+        """The points in a table; None if they are not decided."""
+        return None if self.is_open or self.is_faulty else format_points(self.points)
+
+
 @dataclass(frozen=True)
 class StudentGrade:
     """The grade of one student. Without a submission there is no result, and no report.
@@ -47,7 +72,7 @@ class StudentGrade:
     student: Student
     graded: Graded | None = None
     report: Report | None = None
-    late: Lateness = Lateness()
+    late: Lateness = _ON_TIME
     final: Mark | None = None
     older: tuple[str, ...] = ()
     known: frozenset[Reason] = frozenset()
@@ -80,9 +105,9 @@ class StudentGrade:
         return self.graded.verdict if self.graded is not None else "missing"
 
     @property
-    def results(self) -> tuple[Result, ...]:
+    def results(self) -> tuple[ClassResult, ...]:
         """The results of the criteria."""
-        return self.report.results if self.report is not None else ()
+        return cast("tuple[ClassResult, ...]", self.report.results) if self.report is not None else ()
 
     @cached_property
     def score(self) -> Decimal:
@@ -122,7 +147,7 @@ class StudentGrade:
     def concerns(self) -> dict[Reason, str]:
         """Why a person should look at this grade, each reason with its details."""
         reason, found = self.graded.reason if self.graded is not None else "", {*self.known}
-        if any(map(is_faulty, self.results)):
+        if any(one.is_faulty for one in self.results):
             found.add(Reason.FAILED)
         if self.status == "unreadable" and self.pending:
             found.add(Reason.UNREADABLE)
@@ -160,8 +185,3 @@ class StudentGrade:
         """Whether the grade is in the figures of the class: also one that is open, if the submission was graded."""
         is_graded = self.status == "graded" and not self.is_gone
         return self.student.is_on_roster and (is_graded or self.published is not None)
-
-
-def is_faulty(result: Result) -> bool:
-    """Return whether the grader failed on a criterion, and nobody has marked it."""
-    return result.outcome.status == "errored" and result.manual_mark is None and not result.is_adjusted

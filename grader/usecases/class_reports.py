@@ -36,12 +36,16 @@ _Task = tuple[str, str, bool]  # a student, the name of the file, and whether hi
 
 
 class ReportRun(NamedTuple):
-    """The reports to write of a gradebook into a folder; `answers` is the file of the model answers."""
+    """The reports to write of a gradebook into a folder; `answers` is the file of the model answers.
+
+    `time` is that of the newest run: workers read the gradebook once for it.
+    """
 
     gradebook: Path
     folder: Path
     formats: tuple[Format, ...]
     answers: Path | None = None
+    time: str = ""
 
 
 def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True) -> Report:
@@ -116,7 +120,7 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
     make_folder(run.folder)
     book = Class(run.gradebook)
     files = file_names([one.student.key for one in book if one.graded is not None or one.has_final])
-    lost = render_reports(run, files, terminal, jobs, timeout)
+    lost = render_reports(run._replace(time=book.run.time), files, terminal, jobs, timeout)
     if Format.HTML in run.formats:
         is_inside = run.folder == run.gradebook / names.REPORTS
         prefix = f"{names.REPORTS}/" * is_inside
