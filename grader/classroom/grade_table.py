@@ -29,12 +29,12 @@ def grade_table(
 
 
 def _row(grade: StudentGrade, criteria: Sequence[str], is_exported: bool) -> list[CellValue]:
-    student, report = grade.student, None if grade.is_excused else grade.report
+    student, report, late = grade.student, grade.report, grade.late
     row: list[CellValue] = [student.key, student.name or None, student.email or None, student.section or None]
     points: dict[str, str | None] = dict.fromkeys(criteria)
     numbers: list[CellValue] = [None] * 5
-    if report is not None:
-        numbers = [grade.score, report.max_score, grade.pending, grade.late.days, grade.late.points]
+    if grade.status not in ("missing", "excused"):
+        numbers = [grade.score, report.max_score, grade.pending, late.days, late.points]
         points |= {one.criterion.id: one.cell for one in grade.results}
     row += [grade.status, *numbers, grade.total, grade.why_open or None, *points.values()]
     if is_exported:

@@ -96,7 +96,8 @@ class Class:
         student, final = self.student(key, graded), self.marks.counting.get(whole) or self.marks.comments.get(whole)
         known = {Reason.NOT_ON_ROSTER: not student.is_on_roster, Reason.UNCLEAR: key in self.run.unclear}
         if graded is None:
-            return StudentGrade(student, final=final, known=_held(known))
+            nothing = Report(GradedSubmission(key), self.rubric, self.settings.parts, ())
+            return StudentGrade(student, None, nothing, final=final, known=_held(known))
         known[Reason.GONE] = key not in self.run.totals
         known[Reason.OUTDATED] = self._is_outdated or graded.context != self.run.context
         report, older = self.with_marks(self.report(graded), graded)

@@ -13,7 +13,7 @@ from grader.classroom.roster import Student
 from grader.grading.report import Report, Result
 from grader.text import counted_points, format_points
 
-_NONE, _ON_TIME = Decimal(0), Lateness()
+_ON_TIME = Lateness()
 
 
 class Reason(StrEnum):
@@ -61,17 +61,17 @@ class ClassResult(Result):
 
 @dataclass(frozen=True)
 class StudentGrade:
-    """The grade of one student. Without a submission there is no result, and no report.
+    """The grade of one student.
 
-    `report` has the points with the manual marks; `final` is the mark or excuse of the whole submission; `older` are
-    the criteria (or `total`) that were marked before the submission changed; `known` is what the class says: GONE means
-    that the newest run did not find the submission, OUTDATED that it was graded by another rubric, version, or on other
-    parts, and UNCLEAR that there are possible submissions, of which none was graded.
+    `report` has the points with the manual marks, without a submission none; `final` is the mark or excuse of the whole
+    submission; `older` are the criteria (or `total`) that were marked before the submission changed; `known` is what
+    the class says: GONE means that the newest run did not find the submission, OUTDATED that it was graded by another
+    rubric, version, or on other parts, and UNCLEAR that there are possible submissions, of which none was graded.
     """
 
     student: Student
-    graded: Graded | None = None
-    report: Report | None = None
+    graded: Graded | None
+    report: Report
     late: Lateness = _ON_TIME
     final: Mark | None = None
     older: tuple[str, ...] = ()
@@ -107,22 +107,22 @@ class StudentGrade:
     @property
     def results(self) -> tuple[ClassResult, ...]:
         """The results of the criteria."""
-        return cast("tuple[ClassResult, ...]", self.report.results) if self.report is not None else ()
+        return cast("tuple[ClassResult, ...]", self.report.results)
 
     @cached_property
     def score(self) -> Decimal:
         """The points of the criteria, without a submission 0."""
-        return self.report.score if self.report is not None else _NONE
+        return self.report.score
 
     @cached_property
     def total(self) -> Decimal | None:
         """The final mark, else the points after the late penalty; None for an excuse, and without a submission."""
-        return self.final_points if self.has_final or self.report is None else self.score + self.late.points
+        return self.final_points if self.has_final or self.graded is None else self.score + self.late.points
 
     @cached_property
     def pending(self) -> Decimal:
         """The points that still need manual grading and can change the grade."""
-        return self.report.pending if self.report is not None and not self.has_final else _NONE
+        return self.report.pending if not self.has_final else Decimal(0)
 
     @property
     def total_text(self) -> str:

@@ -114,7 +114,7 @@ def _grade_text(book: Class, grade: StudentGrade) -> str:
     if grade.total is None:
         return "excused" if grade.is_excused else "no submission"
     whole = sum((row.maximum for row in book.criteria), Decimal(0))
-    if grade.report is not None and not grade.has_final:  # also with marks of parts that are not graded
+    if not grade.has_final:  # also with marks of parts that are not graded
         whole = grade.report.max_score
     final = "final mark " if grade.has_final else ""
     late = f" after the late penalty of {format_points(-grade.late.points)}" if grade.late.points else ""
