@@ -34,6 +34,7 @@ class Results:
                     places[scanstring(line.decode(), len(start) + 1, True)[0]] = self.end
             self.end += len(line)
             if line.startswith(_RUN):
+                self.runs[-1:] = [run._replace(totals={}) for run in self.runs[-1:]]  # only the newest are compared
                 self.runs.append(Run(**values_in(line)))
                 if self.runs[-1].run == until:
                     break
