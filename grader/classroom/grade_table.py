@@ -1,13 +1,11 @@
 """The grades of a class as a table, one row a student: `grades.csv`, and `export csv`, which people may change."""
 
-from collections.abc import Iterable, Iterator, Mapping
-from decimal import Decimal
+from collections.abc import Iterable, Iterator, Sequence
 
 from grader.classroom.grades import Class
 from grader.classroom.student_grade import StudentGrade
 from grader.classroom.tables import CellValue
 from grader.grading.criterion import TOTAL
-from grader.grading.report import Result
 from grader.text import format_points
 
 # Columns before those of the criteria; the last one, `submission`, is the digest of what was graded.
@@ -22,37 +20,24 @@ def grade_table(
 ) -> tuple[list[str], Iterator[list[CellValue]]]:
     """Return the header, and the rows of grades; what is not decided is empty.
 
-    A table that `is_exported` also says what the cells were that `mark --import` takes for marks.
+    A table that `is_exported` has a column with the values that `mark --import` takes for marks, so that it knows which
+    of them a person changed.
     """
     criteria = [row.id for row in book.rubric.criteria]
     exported = ["exported"] * is_exported
     return [*HEADER, *criteria, *exported, "submission"], (_row(one, criteria, is_exported) for one in grades)
 
 
-def status_of(grade: StudentGrade) -> str:
-    """Return how the submission went: graded, unreadable, errored, missing or excused."""
-    if grade.is_excused:
-        return "excused"
-    return grade.graded.verdict if grade.graded is not None else "missing"
-
-
-def _row(grade: StudentGrade, criteria: Iterable[str], is_exported: bool) -> list[CellValue]:
-    student, report = grade.student, None if grade.is_excused else grade.report
+def _row(grade: StudentGrade, criteria: Sequence[str], is_exported: bool) -> list[CellValue]:
+    student, report, late = grade.student, grade.report, grade.late
+    row: list[CellValue] = [student.key, student.name or None, student.email or None, student.section or None]
+    points: dict[str, str | None] = dict.fromkeys(criteria)
     numbers: list[CellValue] = [None] * 5
-    points = dict[str, Decimal | None].fromkeys(criteria)
-    if report is not None:
-        numbers = [grade.score, report.max_score, grade.pending, grade.late.days, grade.late.points]
-        points |= {row.criterion.id: row.points for row in report.results if not _is_undecided(row)}
-    exported = [exported_cell({**points, TOTAL: grade.total})] if is_exported else []
-    digest = grade.graded.digest if grade.graded is not None else None
-    head: list[CellValue] = [student.key, student.name, student.email, student.section, status_of(grade)]
-    return [*head, *numbers, grade.total, grade.why_open, *points.values(), *exported, digest]
-
-
-def exported_cell(points: Mapping[str, Decimal | None]) -> str:
-    """Return the cell of the column `exported`: the points of criteria, as they are in their columns."""
-    return " ".join(f"{name}={'' if value is None else format_points(value)}" for name, value in points.items())
-
-
-def _is_undecided(result: Result) -> bool:
-    return result.is_open or (result.outcome.status == "errored" and result.manual_mark is None)
+    if grade.status not in ("missing", "excused"):
+        numbers = [grade.score, report.max_score, grade.pending, late.days, late.points]
+        points |= {one.criterion.id: one.cell for one in grade.results}
+    row += [grade.status, *numbers, grade.total, grade.why_open or None, *points.values()]
+    if is_exported:
+        points[TOTAL] = format_points(grade.total) if grade.total is not None else None
+        row.append(" ".join(f"{name}={text or ''}" for name, text in points.items()))
+    return [*row, grade.graded.digest if grade.graded is not None else None]

@@ -1,49 +1,51 @@
 """The grades of a class, computed from the results, the rubric, the roster and the marks of people."""
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
 from datetime import datetime
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from grader import __version__
-from grader.checks.outcome import Outcome
+from grader.checks.outcome import Outcome, Status
 from grader.classroom import folder as names
 from grader.classroom.graded import Graded, Run
-from grader.classroom.lateness import Lateness, SubmissionTimes, lateness, read_time
+from grader.classroom.lateness import Lateness, lateness, read_time
 from grader.classroom.marks import Mark, Marks, read_marks
 from grader.classroom.results import Results
 from grader.classroom.roster import Roster, Student, read_roster
 from grader.classroom.settings import read_settings
-from grader.classroom.student_grade import StudentGrade
+from grader.classroom.student_grade import ClassResult, Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import InputError
 from grader.files.reading import read_capped
-from grader.grading.answers import load_with_answers
 from grader.grading.criterion import DEADLINE, TOTAL, Criterion
-from grader.grading.report import ManualComment, ManualMark, Report, Result
+from grader.grading.graded_submission import GradedSubmission
+from grader.grading.report import ManualComment, ManualMark, Report, without_gifts
 from grader.grading.rubric import load_rubric
 from grader.text import printable_path
 
 _NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
+_MAX_SHARED = 10_000  # results
 
 
 class Class:
     """A class in a gradebook: iterating yields the grade of every student, in the order of the keys."""
 
-    def __init__(
-        self, folder: Path, until: int | None = None, run: Run | None = None, answers: Path | None = None
-    ) -> None:
-        """`until` is the number of the run whose results count; marks, roster and deadline are those of now.
-
-        `run` is one that is not in the file yet; `answers` is the file of the model answers, for those who grade.
-        """
+    def __init__(self, folder: Path, run: Run | None = None, answers: Path | None = None) -> None:
+        """`run` is one that is not in the file yet; `answers` is the file of the model answers, for those who grade."""
         names.check_gradebook(folder)
         self.folder, self.settings = folder, read_settings(folder)
-        rubric = folder / self.settings.rubric
-        self.rubric = load_rubric(rubric) if answers is None else load_with_answers(str(rubric), answers)
-        self.roster = read_class_roster(folder)
-        self.results = Results(folder / names.RESULTS, until)
+        rubric, roster = folder / self.settings.rubric, folder / names.ROSTER
+        self.rubric = load_rubric(rubric)
+        if answers is not None:
+            from grader.grading.answers import load_with_answers
+
+            self.rubric = load_with_answers(str(rubric), answers)
+        self.roster: Roster | None = None
+        if roster.exists():
+            self.roster = read_roster(read_capped(roster, SIZE_LIMIT, advice=""), printable_path(roster))
+        self.results = Results(folder / names.RESULTS)
         if run is None and not self.results.runs:
             raise InputError(f"nothing is graded yet in {printable_path(folder)}: run `grader batch PATH`")
         self.run: Run = run or self.results.runs[-1]
@@ -52,17 +54,13 @@ class Class:
         self.keys = sorted({*self._on_roster, *self.results.students})
         self.marks: Marks = read_marks(folder / names.MARKS, self.keys, self.rubric)
         self._marked = {student for student, _ in (*self.marks.counting, *self.marks.comments)}
-        self.is_outdated = (self.run.rubric, self.run.version) != (self.rubric.sha256, __version__)
+        self._is_outdated = (self.run.rubric, self.run.version) != (self.rubric.sha256, __version__)
+        self._rows = {row.id: row for row in self.rubric.criteria}
+        # Most results of a class are equal, and are shared: it is read in half the time.
+        self._result = lru_cache(_MAX_SHARED)(self._new_result)
 
     def __iter__(self) -> Iterator[StudentGrade]:
-        results = self.results.all()
-        newest = next(results, None)
-        for key in self.keys:
-            if newest is not None and newest.student == key:
-                yield self._grade(key, newest)
-                newest = next(results, None)
-            else:
-                yield self._grade(key, None)
+        return map(self._grade, self.keys, self.results.each(self.keys))
 
     @property
     def criteria(self) -> tuple[Criterion, ...]:
@@ -81,27 +79,44 @@ class Class:
             return Student(key, **person, is_on_roster=self.roster is None)
         return found._replace(**{name: value for name, value in person.items() if not getattr(found, name)})
 
+    def report(self, graded: Graded) -> Report:
+        """Return the points of a result: outcomes without places, values and hints."""
+        unread = graded.reason if graded.verdict == "unreadable" else ""
+        why = f"{unread}; needs manual grading" if unread else graded.reason
+        entries = ((name, graded.results[name]) for name in self._rows if name in graded.results)
+        results = (self._result(name, status, words or why, by) for name, (_, status, words, by) in entries)
+        submission = GradedSubmission(graded.student, unread=unread)
+        return Report(submission, self.rubric, graded.parts, without_gifts(results, submission))
+
+    def _new_result(self, name: str, status: Status, words: str, carried: str) -> ClassResult:
+        return ClassResult(self._rows[name], Outcome(status, words), carried=carried)
+
     def _grade(self, key: str, graded: Graded | None) -> StudentGrade:
         whole = (key, TOTAL)
         student, final = self.student(key, graded), self.marks.counting.get(whole) or self.marks.comments.get(whole)
+        known = {Reason.NOT_ON_ROSTER: not student.is_on_roster, Reason.UNCLEAR: key in self.run.unclear}
         if graded is None:
-            return StudentGrade(student, None, None, final=final, is_unclear=key in self.run.unclear)
-        report, older = self.with_marks(graded.report(self.rubric), graded)
+            nothing = Report(GradedSubmission(key), self.rubric, self.settings.parts, ())
+            return StudentGrade(student, None, nothing, final=final, known=_held(known))
+        known[Reason.GONE] = key not in self.run.totals
+        known[Reason.OUTDATED] = self._is_outdated or graded.context != self.run.context
+        report, older = self.with_marks(self.report(graded), graded)
         if final is not None and _is_older(final, graded):
             older = (*older, TOTAL)
-        times = SubmissionTimes(
+        late = self._lateness(student, graded, report)
+        if final is not None and final.value:
+            late = Lateness(late.days, reason=late.reason)
+        return StudentGrade(student, graded, report, late, final, older, _held(known))
+
+    def _lateness(self, student: Student, graded: Graded, report: Report) -> Lateness:
+        """Return the lateness; what the roster says counts before what the LMS says."""
+        own = self.marks.counting.get((graded.student, DEADLINE))
+        times = student._replace(
             is_late=graded.is_late if student.is_late is None else student.is_late,
             submitted=student.submitted or graded.submitted,
-            deadline=student.due,
-            extension=student.extension_days,
             days_late=0.0 if student.is_late is False and student.days_late is None else student.days_late,
         )
-        own = self.marks.counting.get((key, DEADLINE))
-        late = lateness(self.rubric, times.extended(own.value if own is not None else ""), report.score, self.due)
-        is_gone = key not in self.run.totals
-        is_outdated = self.is_outdated or graded.context != self.run.context
-        grade = StudentGrade(student, graded, report, late, final, older, is_gone, is_outdated, key in self.run.unclear)
-        return replace(grade, late=Lateness(late.days, reason=late.reason)) if grade.has_final else grade
+        return lateness(self.rubric, times, report.score, self.due, own.value if own is not None else "")
 
     def with_marks(self, report: Report, graded: Graded) -> tuple[Report, tuple[str, ...]]:
         """Return a report with marks and comments, and the criteria that were marked before the submission changed."""
@@ -109,27 +124,22 @@ class Class:
             return report, ()
         results = {one.criterion.id: one for one in report.results}
         older: list[str] = []
-        for row in self.rubric.criteria:
-            key = graded.student, row.id
-            mark, comment = self.marks.counting.get(key), self.marks.comments.get(key)
-            if comment is not None and row.id in results:
-                results[row.id] = results[row.id]._replace(comment=ManualComment(comment.comment, comment.by))
+        for name, row in self._rows.items():
+            mark, comment = (found.get((graded.student, name)) for found in (self.marks.counting, self.marks.comments))
+            if comment is not None and name in results:
+                results[name] = results[name]._replace(comment=ManualComment(comment.comment, comment.by))
             if mark is None or mark.points is None or row.adjustment is not None:
                 continue
-            result = results.get(row.id) or Result(row, _NOT_SUBMITTED)
-            results[row.id] = result._replace(
-                manual_mark=ManualMark(mark.points, mark.by, mark.comment), hint=None, comment=None
-            )
-            older += [row.id] if _is_older(mark, graded) else []
-        ordered = tuple(results[row.id] for row in self.rubric.criteria if row.id in results)
-        return report._replace(results=ordered), tuple(older)
+            given = ManualMark(mark.points, mark.by, mark.comment)
+            result = results.get(name) or ClassResult(row, _NOT_SUBMITTED)
+            results[name] = result._replace(manual_mark=given, hint=None, comment=None)
+            older += [name] if _is_older(mark, graded) else []
+        return report._replace(results=tuple(results[name] for name in self._rows if name in results)), tuple(older)
+
+
+def _held(facts: Mapping[Reason, bool]) -> frozenset[Reason]:
+    return frozenset(reason for reason, holds in facts.items() if holds)
 
 
 def _is_older(mark: Mark, graded: Graded) -> bool:
     return bool(mark.submission) and mark.submission != graded.digest
-
-
-def read_class_roster(folder: Path) -> Roster | None:
-    """Return the roster in a gradebook; None without one."""
-    file = folder / names.ROSTER
-    return read_roster(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file)) if file.exists() else None

@@ -9,6 +9,7 @@ from decimal import Decimal
 from math import ceil
 from typing import NamedTuple
 
+from grader.classroom.roster import Student
 from grader.errors import InputError
 from grader.grading.criterion import Late
 from grader.grading.rubric import Rubric
@@ -25,32 +26,19 @@ class Lateness(NamedTuple):
     reason: str = ""
 
 
-class SubmissionTimes(NamedTuple):
-    """When something was submitted and was due: ISO 8601, empty or None where unknown. `extension` is in days.
+def lateness(
+    rubric: Rubric, times: Student, score: Decimal, deadline: datetime | None = None, own: str = ""
+) -> Lateness:
+    """Return the lateness of a student's submission with this score.
 
-    `is_extended`: the deadline is that of `grader mark STUDENT deadline`.
+    The deadline `own` of `grader mark STUDENT deadline` comes first, then the student's, `deadline` and the rubric's.
     """
-
-    is_late: bool = False
-    submitted: str = ""
-    deadline: str = ""
-    extension: float = 0.0
-    days_late: float | None = None
-    is_extended: bool = False
-
-    def extended(self, deadline: str) -> "SubmissionTimes":
-        """Return the times with the deadline of `grader mark STUDENT deadline`, unless empty."""
-        days = None if self.submitted and self.days_late else self.days_late  # without a time no days can be counted
-        return self._replace(deadline=deadline, extension=0.0, days_late=days, is_extended=True) if deadline else self
-
-
-def lateness(rubric: Rubric, times: SubmissionTimes, score: Decimal, deadline: datetime | None = None) -> Lateness:
-    """Return the lateness of a submission with this score.
-
-    The student's own deadline comes first, then `deadline`, then the rubric's.
-    """
-    policy = rubric.late
-    days, reason = _days_late(times, policy, deadline)
+    policy, is_extended = rubric.late, bool(own)
+    if own:
+        is_timed = times.submitted and times.days_late  # without a time no days can be counted
+        days_late = None if is_timed else times.days_late
+        times = times._replace(due=own, extension_days=0.0, days_late=days_late)
+    days, reason = _days_late(times, policy, deadline, is_extended=is_extended)
     if policy is None or not days:
         return Lateness(days, Decimal(0), reason)
     floor = min(score, rubric.points * policy.floor_percent / 100)
@@ -83,41 +71,37 @@ def time_text(when: datetime | str, zone: tzinfo | None = None) -> str:
     return f"{shown} (UTC{offset.replace('+00:00', '')})" if offset else shown
 
 
-def _days_late(times: SubmissionTimes, policy: Late | None, deadline: datetime | None) -> tuple[int, str]:
+def _days_late(times: Student, policy: Late | None, deadline: datetime | None, *, is_extended: bool) -> tuple[int, str]:
     grace = timedelta(minutes=float(policy.grace_minutes) if policy is not None else 0)
     if times.days_late is not None:
         # A whole number is what a person has decided; a fraction is a time, which Moodle has measured.
-        late = times.days_late - grace / _DAY if times.days_late % 1 else times.days_late
-        days = max(0, ceil(late))
+        days = max(0, ceil(times.days_late - grace / _DAY if times.days_late % 1 else times.days_late))
         return days, f"{counted(days, 'day')} late, as recorded by the instructor" if days else ""
     of_class = deadline or (policy.due if policy is not None else None)
-    due = read_time(times.deadline) if times.deadline else of_class
-    if not times.submitted or due is None:
-        return _of_flag(times, of_class) if times.is_late else (0, "")
-    submitted = datetime.fromisoformat(times.submitted)
-    # A time without an offset is in the time zone of the other one.
-    due = due.replace(tzinfo=due.tzinfo or submitted.tzinfo)
-    submitted = submitted.replace(tzinfo=submitted.tzinfo or due.tzinfo)
-    days = max(0, -((times.extension * _DAY + grace - (submitted - due)) // _DAY))  # rounded up to days begun
-    extension = f", {_extension(times)}" if times.extension else ""
-    shown = f"submitted {time_text(submitted, due.tzinfo)}, deadline {time_text(due, due.tzinfo)}{extension}"
-    return days, f"{counted(days, 'day')} late: {shown}" if days else ""
-
-
-def _of_flag(times: SubmissionTimes, of_class: datetime | None) -> tuple[int, str]:
-    """Return the days late and the reason if the LMS says only that a submission is late.
-
-    The LMS does not know the extensions in the roster.
-    """
-    own = read_time(times.deadline) if times.deadline else None
-    if own is not None:
-        own = own.replace(tzinfo=own.tzinfo or (of_class.tzinfo if of_class is not None else None))
-        if times.is_extended if of_class is None else own > of_class.replace(tzinfo=of_class.tzinfo or own.tzinfo):
-            return 0, f"late for the LMS, on time with the student's own deadline {time_text(own, own.tzinfo)}"
-    if times.extension > 0:
-        return 0, f"late for the LMS, on time with the {_extension(times)}"
+    own = read_time(times.due) if times.due else None
+    extension = f"extension {times.extension_days:g} day{'s' * (times.extension_days != 1)}"
+    due = own or of_class
+    if times.submitted and due is not None:
+        # A time without an offset is in the time zone of the other one.
+        submitted = _in_zone(datetime.fromisoformat(times.submitted), due)
+        due = _in_zone(due, submitted)
+        days = max(0, -((times.extension_days * _DAY + grace - (submitted - due)) // _DAY))  # rounded up to days begun
+        more = f", {extension}" if times.extension_days else ""
+        shown = f"submitted {time_text(submitted, due.tzinfo)}, deadline {time_text(due, due.tzinfo)}{more}"
+        return days, f"{counted(days, 'day')} late: {shown}" if days else ""
+    if not times.is_late:
+        return 0, ""
+    # The LMS says only that the submission is late, and does not know the extensions in the roster.
+    if own is not None and of_class is not None:
+        own = _in_zone(own, of_class)
+        is_extended = own > _in_zone(of_class, own)
+    if own is not None and is_extended:
+        return 0, f"late for the LMS, on time with the student's own deadline {time_text(own, own.tzinfo)}"
+    if times.extension_days > 0:
+        return 0, f"late for the LMS, on time with the {extension}"
     return 1, "late by an unknown time, which counts as 1 day"
 
 
-def _extension(times: SubmissionTimes) -> str:
-    return f"extension {times.extension:g} day{'s' * (times.extension != 1)}"
+def _in_zone(time: datetime, other: datetime) -> datetime:
+    """Return a time without an offset in the time zone of another one."""
+    return time.replace(tzinfo=time.tzinfo or other.tzinfo)

@@ -6,19 +6,17 @@ it only the comparison of runs and some seconds are lost. A last line that was n
 cut before the next one is appended.
 """
 
-import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from json.decoder import scanstring  # type: ignore[attr-defined,unused-ignore]
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
-from grader.classroom.graded import Graded, Run, graded_from, values_in
+from grader.classroom.graded import Graded, Run, values_in
 from grader.errors import InputError
 from grader.text import printable_path
 
-_START, _TEXTS = b'{"student":"', b'{"texts":"'
-_RUN = b'{"run":'
+_RUN, _GRADED, _TEXTS = b'{"run":', b'{"student":', b'{"texts":'
 
 
 class Results:
@@ -28,30 +26,29 @@ class Results:
         self._file = file
         self.end = 0  # where the last whole line ends
         self.runs: list[Run] = []
-        self._texts: dict[str, int] = {}
-        self._places: dict[str, int] = {}  # a hundred thousand students fit into memory, but not all of their results
-        for place, line in self._lines():
+        # A hundred thousand students fit into memory, but not all of their results.
+        self._places, self._texts = dict[str, int](), dict[str, int]()
+        for line in self._lines():
+            for start, places in ((_GRADED, self._places), (_TEXTS, self._texts)):
+                if line.startswith(start):
+                    places[scanstring(line.decode(), len(start) + 1, True)[0]] = self.end
+            self.end += len(line)
             if line.startswith(_RUN):
+                self.runs[-1:] = [run._replace(totals={}) for run in self.runs[-1:]]  # only the newest are compared
                 self.runs.append(Run(**values_in(line)))
                 if self.runs[-1].run == until:
                     break
-            elif line.startswith((_START, _TEXTS)):
-                places = self._places if line.startswith(_START) else self._texts
-                places[scanstring(line.decode(), line.index(b":") + 2, True)[0]] = place
-            self.end = place + len(line)
 
-    def _lines(self) -> Iterator[tuple[int, bytes]]:
-        """Yield the whole lines and where they begin, up to one that was not written to its end."""
+    def _lines(self) -> Iterator[bytes]:
+        """Yield the whole lines, up to one that was not written to its end."""
         if not self._file.exists():
             return
-        place = 0
         try:
             with self._file.open("rb") as file:
                 for line in file:
                     if not line.endswith(b"\n") or b"\0" in line:  # a power failure leaves holes
                         return
-                    yield place, line
-                    place += len(line)
+                    yield line
         except OSError as error:
             raise InputError(f"cannot read {printable_path(self._file)}: {error.strerror}") from None
 
@@ -67,27 +64,32 @@ class Results:
 
     def all(self) -> Iterator[Graded]:
         """Yield the newest result of each student, in the order of the keys."""
-        if self._places:
-            with self._file.open("rb") as file:
-                for key in self.students:
-                    file.seek(self._places[key])
-                    yield graded_from(file.readline())
+        return (one for one in self.each(self.students) if one is not None)
+
+    def each(self, keys: Iterable[str]) -> Iterator[Graded | None]:
+        """Yield the newest result of each of some students, None for one without."""
+        found = self._values(self._places, keys)
+        return (Graded(**values) if values else None for values in found)
 
     def of(self, key: str) -> Graded | None:
         """Return the newest result of a student."""
-        return graded_from(self._line_at(self._places[key])) if key in self._places else None
+        return next(self.each([key]))
 
     def texts(self, graded: Graded) -> dict[str, str]:
         """Return the texts of the Word and PDF files in a submission as it was graded, by path."""
-        if graded.student not in self._texts:
-            return {}
-        found = json.loads(self._line_at(self._texts[graded.student]))
-        return dict(found["files"]) if found["digest"] == graded.digest else {}
+        [found] = self._values(self._texts, [graded.student])
+        return dict(found["files"]) if found and found["digest"] == graded.digest else {}
 
-    def _line_at(self, place: int) -> bytes:
+    def _values(self, places: Mapping[str, int], keys: Iterable[str]) -> Iterator[dict[str, Any]]:
+        """Yield the values in a line for each key, none for a key without."""
+        if not places:
+            yield from ({} for _ in keys)
+            return
         with self._file.open("rb") as file:
-            file.seek(place)
-            return file.readline()
+            for key in keys:
+                if key in places:
+                    file.seek(places[key])
+                yield values_in(file.readline()) if key in places else {}
 
 
 class ResultsWriter:
@@ -105,17 +107,18 @@ class ResultsWriter:
         """Append lines in one write."""
         data = b"".join(lines)
         try:
-            if os.write(self._handle, data) != len(data):
-                raise InputError(f"cannot write {self._shown}: the disk is full")
+            is_written = os.write(self._handle, data) == len(data)
         except OSError as error:
             raise InputError(f"cannot write {self._shown}: {error.strerror}") from None
+        if not is_written:
+            raise InputError(f"cannot write {self._shown}: the disk is full")
+
+    def sync(self) -> None:
+        """Write to the disk what the system still holds."""
+        os.fsync(self._handle)
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
         os.close(self._handle)
-
-    def sync(self) -> None:
-        """Write to the disk what the system still holds."""
-        os.fsync(self._handle)

@@ -1,56 +1,81 @@
-"""The grade of one student: what counts, why it is open, and why a person should look at it."""
+"""The grade of one student: what counts, what is open, and why a person should look at it."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from decimal import Decimal
 from enum import StrEnum
 from functools import cached_property
+from typing import cast
 
 from grader.classroom.graded import Graded
 from grader.classroom.lateness import Lateness
 from grader.classroom.marks import EXCUSED, Mark
 from grader.classroom.roster import Student
-from grader.grading.criterion import TOTAL
-from grader.grading.report import Report
-from grader.text import counted_points
+from grader.grading.report import Report, Result
+from grader.text import counted_points, format_points
 
 _ON_TIME = Lateness()
 
 
 class Reason(StrEnum):
-    """Why a grade needs attention, the most urgent reason first."""
+    """Why a grade needs attention, the most urgent reason first; the last two only keep it from being published."""
 
     FAILED = "the grader failed"
     UNREADABLE = "could not be graded"
     UNCLEAR = "it is unclear which submission counts"
     MISSING = "nothing was submitted"
     GONE = "no longer in the class folder"
-    OUTDATED = "graded with an earlier version of the rubric or the grader"
+    OUTDATED = "graded with another rubric or version: run `grader batch` again"
     NOT_ON_ROSTER = "not on the roster"
-    OLDER_FINAL = "final mark or excuse given before the submission changed"
     OLDER_MARKS = "marked before the submission changed"
-    MARKED = "could not be graded, and was marked manually"
+    PENDING = "needs manual grading"
+    EXCUSED = "excused"
+
+
+# They keep a grade from being published; of a final mark only GONE needs attention.
+_OBSTACLES = {Reason.FAILED, Reason.UNREADABLE, Reason.UNCLEAR, Reason.MISSING, Reason.GONE, Reason.OUTDATED}
+
+
+class ClassResult(Result):
+    """A result in a class: most students share it with others, so what follows from it is computed once."""
+
+    @cached_property
+    def points(self) -> Decimal:
+        """The points earned."""
+        return super().points
+
+    @cached_property
+    def is_open(self) -> bool:
+        """Whether the criterion still needs manual grading."""
+        return super().is_open
+
+    @cached_property
+    def is_faulty(self) -> bool:
+        """Whether the grader failed on the criterion, and nobody has marked it."""
+        return self.outcome.status == "errored" and self.manual_mark is None and not self.is_adjusted
+
+    @cached_property
+    def cell(self) -> str | None:
+        """The points in a table; None if they are not decided."""
+        return None if self.is_open or self.is_faulty else format_points(self.points)
 
 
 @dataclass(frozen=True)
 class StudentGrade:
-    """The grade of one student. Without a submission there is no result, and no report.
+    """The grade of one student.
 
-    `report` has the points with the manual marks; `final` is the mark or excuse of the whole submission; `older` are
-    the criteria (or `total`) that were marked before the submission changed; `is_gone` means that the newest run did
-    not find the submission, `is_outdated` that it was graded by another rubric, version, or on other parts, and
-    `is_unclear` that there are possible submissions, of which none was graded.
+    `report` has the points with the manual marks, without a submission none; `final` is the mark or excuse of the whole
+    submission; `older` are the criteria (or `total`) that were marked before the submission changed; `known` is what
+    the class says: GONE means that the newest run did not find the submission, OUTDATED that it was graded by another
+    rubric, version, or on other parts, and UNCLEAR that there are possible submissions, of which none was graded.
     """
 
     student: Student
     graded: Graded | None
-    report: Report | None
+    report: Report
     late: Lateness = _ON_TIME
     final: Mark | None = None
     older: tuple[str, ...] = ()
-    is_gone: bool = False
-    is_outdated: bool = False
-    is_unclear: bool = False
+    known: frozenset[Reason] = frozenset()
 
     @property
     def is_excused(self) -> bool:
@@ -67,72 +92,96 @@ class StudentGrade:
         """Whether a person has decided the whole grade: then there is no late penalty."""
         return self.is_excused or self.final_points is not None
 
+    @property
+    def is_gone(self) -> bool:
+        """Whether the newest run did not find the submission."""
+        return Reason.GONE in self.known
+
+    @property
+    def status(self) -> str:
+        """How the submission went: graded, unreadable, errored, missing or excused."""
+        if self.is_excused:
+            return "excused"
+        return self.graded.verdict if self.graded is not None else "missing"
+
+    @property
+    def results(self) -> tuple[ClassResult, ...]:
+        """The results of the criteria."""
+        return cast("tuple[ClassResult, ...]", self.report.results)
+
     @cached_property
     def score(self) -> Decimal:
         """The points of the criteria, without a submission 0."""
-        return self.report.score if self.report is not None else Decimal(0)
+        return self.report.score
 
     @cached_property
     def total(self) -> Decimal | None:
         """The final mark, else the points after the late penalty; None for an excuse, and without a submission."""
-        if self.has_final or self.report is None:
-            return self.final_points
-        return self.score + self.late.points
+        return self.final_points if self.has_final or self.graded is None else self.score + self.late.points
 
     @cached_property
     def pending(self) -> Decimal:
         """The points that still need manual grading and can change the grade."""
-        return self.report.pending if self.report is not None and not self.has_final else Decimal(0)
+        return self.report.pending if not self.has_final else Decimal(0)
+
+    @property
+    def total_text(self) -> str:
+        """The grade; empty where there is none or nothing could be graded."""
+        is_ungraded = self.status in ("unreadable", "errored") and self.obstacle and not self.total
+        return "" if self.total is None or is_ungraded else format_points(self.total)
 
     @cached_property
-    def faults(self) -> int:
-        """The number of criteria on which the grader failed, and that nobody has marked."""
-        rows = self.report.results if self.report is not None else ()
-        return sum(row.outcome.status == "errored" and row.manual_mark is None and not row.is_adjusted for row in rows)
+    def losses(self) -> list[tuple[Decimal, str]]:
+        """The points that were lost by mistakes or marks, and the criterion.
+
+        The most points come first, and after all others what was skipped because of another criterion.
+        """
+        lost = [
+            (one.outcome.status == "skipped", one.points - one.criterion.maximum, one.criterion.id)
+            for one in (self.results if not self.has_final else ())
+            if (one.is_lost or one.manual_mark) and one.points < one.criterion.maximum
+        ]
+        return [(-points, name) for _, points, name in sorted(lost)]
 
     @cached_property
+    def concerns(self) -> dict[Reason, str]:
+        """Why a person should look at this grade, each reason with its details."""
+        reason, found = self.graded.reason if self.graded is not None else "", {*self.known}
+        if any(one.is_faulty for one in self.results):
+            found.add(Reason.FAILED)
+        if self.status == "unreadable" and self.pending:
+            found.add(Reason.UNREADABLE)
+        if self.graded is None and Reason.UNCLEAR not in found:
+            found.add(Reason.MISSING)
+        if self.has_final:
+            found -= _OBSTACLES - {Reason.GONE}
+        if self.older:
+            found.add(Reason.OLDER_MARKS)
+        details = {Reason.FAILED: reason, Reason.UNREADABLE: reason, Reason.OLDER_MARKS: ", ".join(self.older)}
+        return {one: details.get(one, "") for one in Reason if one in found}
+
+    @cached_property
+    def obstacle(self) -> Reason | None:
+        """What keeps this grade from being published; None if it is final."""
+        if self.has_final:
+            return Reason.EXCUSED if self.is_excused else None
+        pending = Reason.PENDING if self.pending else None
+        return next((one for one in self.concerns if one in _OBSTACLES), pending)
+
+    @property
     def why_open(self) -> str:
         """Why this grade must not be published yet; empty if it is final."""
-        if self.final_points is not None:
-            return ""
-        reason = self.graded.reason if self.graded is not None else ""
-        reasons = (
-            (self.is_excused, "excused"),
-            (self.is_unclear, Reason.UNCLEAR.value),
-            (self.report is None, Reason.MISSING.value),
-            (self.faults, f"the grader failed: {reason}" if reason else "the grader failed on a criterion"),
-            (self._is("unreadable") and self.pending, f"it could not be graded: {reason}"),
-            (self.is_gone, "it is no longer in the class folder"),
-            (self.is_outdated, "it was graded with another rubric or version: run `grader batch` again"),
-            (self.pending, f"{counted_points(self.pending)} need{'s' * (self.pending == 1)} manual grading"),
-        )
-        return next((why for holds, why in reasons if holds), "")
+        if self.obstacle is Reason.PENDING:
+            return f"{counted_points(self.pending)} need{'s' * (self.pending == 1)} manual grading"
+        return ": ".join(filter(None, (self.obstacle, self.concerns.get(self.obstacle or Reason.PENDING))))
 
     @property
     def published(self) -> Decimal | None:
         """The grade that is published: the total, unless something is open."""
-        return None if self.why_open else self.total
+        return self.total if self.obstacle is None else None
 
     @property
-    def concerns(self) -> Iterator[tuple[Reason, str]]:
-        """Yield why a person should look at this grade, each reason with its details."""
-        reason = self.graded.reason if self.graded is not None else ""
-        is_open = not self.has_final and bool(self.faults or self.pending)
-        is_ungraded = not self.has_final and (self._is("errored") or self._is("unreadable"))
-        older = tuple(name for name in self.older if name != TOTAL)
-        reasons = (
-            (not self.has_final and self.faults, Reason.FAILED, reason),
-            (is_open and self._is("unreadable"), Reason.UNREADABLE, reason),
-            (is_ungraded and not is_open, Reason.MARKED, ""),
-            (not self.has_final and self.is_unclear, Reason.UNCLEAR, ""),
-            (not self.has_final and self.graded is None and not self.is_unclear, Reason.MISSING, ""),
-            (self.is_gone, Reason.GONE, ""),
-            (not self.has_final and self.is_outdated, Reason.OUTDATED, ""),
-            (not self.student.is_on_roster, Reason.NOT_ON_ROSTER, ""),
-            (TOTAL in self.older, Reason.OLDER_FINAL, ""),
-            (older, Reason.OLDER_MARKS, ", ".join(older)),
-        )
-        return ((reason, detail) for holds, reason, detail in reasons if holds)
-
-    def _is(self, verdict: str) -> bool:
-        return self.graded is not None and self.graded.verdict == verdict
+    def is_counted(self) -> bool:
+        """Whether the grade is in the figures of the class: also one that is open, if the submission was graded."""
+        is_graded = self.status == "graded" and not self.is_gone
+        return self.student.is_on_roster and (is_graded or self.published is not None)

@@ -184,7 +184,7 @@ def unprotected(text: str) -> str:
 
 def spelt_out(text: str) -> str:
     """Return text with escapes for controls, lone surrogates and bidirectional marks."""
-    return _ESCAPED.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
+    return text if text.isprintable() else _ESCAPED.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
 
 def _cell(value: CellValue) -> str:

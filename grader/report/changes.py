@@ -1,7 +1,6 @@
 """The changes between two runs or gradebooks, on a terminal and as JSON."""
 
-from collections.abc import Iterator, Sequence
-from decimal import Decimal
+from collections.abc import Sequence
 from operator import itemgetter
 
 from rich.console import Console
@@ -27,9 +26,9 @@ from grader.report.json_data import (
     to_json,
 )
 from grader.report.order import alike
-from grader.text import counted, enumerated, first_lines, format_points, named, printable, signed_points
+from grader.text import counted, first_lines, format_points, named, printable, signed_points
 
-_MAX_NAMED, _MAX_LINES = 3, 12
+_MAX_NAMED = 5  # criteria of a student
 _RUN = Record(
     {
         "run": COUNT,
@@ -39,10 +38,8 @@ _RUN = Record(
     }
 )
 _SPAN = each(nullable(POINTS), "before after")
-_STEP = Record({"id": (TEXT, "criterion"), **_SPAN})
-_CHANGE = Record(
-    {"id": (TEXT, "key"), "name": TEXT, **_SPAN, "reasons": (array(TEXT), "why"), "criteria": (Many(_STEP), "steps")}
-)
+_STEP = Record({"id": TEXT, **_SPAN})
+_CHANGE = Record({"id": (TEXT, "key"), "name": TEXT, **_SPAN, "reasons": (array(TEXT), "why"), "criteria": Many(_STEP)})
 DIFF = Record(  # of the two runs, and the changes
     {
         **schema_key("grader/diff/v1"),
@@ -59,37 +56,23 @@ def render_changes_json(changes: Sequence[Change], runs: tuple[Run, Run]) -> str
 
 
 def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Console) -> None:
-    """Print the two runs, and whose grade changed, by how much, in which criteria, and why.
-
-    Students with the same reason and the same changes of criteria are listed together.
-    """
+    """Print the two runs, and by reason whose grade changed, by how much, and in which criteria."""
     before, after = (f"run {run.run} of {time_text(run.time)}" for run in runs)
     wrapped(console, Text(printable(f"From {before} to {after}"), style="dim"), 0)
     if not changes:
         wrapped(console, Text("nothing changed"), 0)
     for why, found in sorted(alike(changes, lambda change: change.why), key=lambda group: -len(group[1])):
         console.print()
-        heading = f"{'; '.join(why)} ({counted(len(found), 'student')})"
-        wrapped(console, Text(printable(heading), style="bold"), 0)
-        for steps, some in sorted(alike(found, lambda change: change.steps), key=lambda group: -len(group[1])):
-            for line in first_lines([*_lines(steps)], _MAX_LINES):
-                wrapped(console, Text(printable(line)), 2)
-            for one in some:
-                total = f"{named(one.key, one.name)}: {_span(one.before, one.after, 'not final')}"
-                wrapped(console, Text(printable(total), style="bold"), 4)
+        wrapped(console, Text(printable(f"{'; '.join(why)} ({counted(len(found), 'student')})"), style="bold"), 0)
+        for one in found:
+            steps = [f"{step.id} {_span(step, 'none')}" for step in one.criteria]
+            total = f"{named(one.key, one.name)}: {_span(one, 'not final')}"
+            wrapped(console, Text(printable("; ".join([total, *first_lines(steps, _MAX_NAMED)]))), 4, Text("  "))
 
 
-def _lines(steps: Sequence[PointsChange]) -> Iterator[str]:
-    """Yield a line for the criteria with the same change."""
-    for span, some in alike(steps, lambda step: (step.before, step.after)):
-        names = enumerated([step.criterion for step in some], _MAX_NAMED)
-        yield f"{names}: {_span(*span)}{' each' * (len(some) > 1)}"
-
-
-def _span(before: Decimal | None, after: Decimal | None, nothing: str = "none") -> str:
+def _span(change: Change | PointsChange, nothing: str) -> str:
     """Return points before and after: "50 to 60 (+10)"."""
+    before, after = change.before, change.after
     first, last = (nothing if points is None else format_points(points) for points in (before, after))
-    if first == last:
-        return f"{first}, as before"
-    words = f"{first} to {last}"
-    return words if before is None or after is None else f"{words} ({signed_points(after - before)})"
+    more = f" ({signed_points(after - before)})" if before is not None and after is not None else ""
+    return f"{first}, as before" if first == last else f"{first} to {last}{more}"

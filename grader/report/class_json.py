@@ -1,16 +1,12 @@
 """A class as JSON, schema grader/class/v1."""
 
-from collections.abc import Sequence
 from functools import partial
 from operator import itemgetter
 from types import SimpleNamespace
 
 from grader import __version__
-from grader.classroom.grade_table import status_of
 from grader.classroom.grades import Class
 from grader.classroom.statistics import COUNTS, CriterionFigures, statistics
-from grader.classroom.student_grade import StudentGrade
-from grader.grading.report import Result
 from grader.report.json_data import (
     COUNT,
     FLAG,
@@ -35,7 +31,7 @@ from grader.report.json_data import (
 from grader.workers.progress import Progress
 
 _STATUSES = ("errored", "excused", "graded", "missing", "unreadable")
-_SUMMARY = Record({"students": TOTAL, **each(nullable(POINTS), "mean median lowest highest")})
+_SUMMARY = Record({"students": TOTAL, **each(nullable(POINTS), "mean median")})
 _NO_GRADES = {**dict.fromkeys(_SUMMARY.keys), "students": 0}
 
 
@@ -73,18 +69,14 @@ _ATTENTION = Record({"reason": (TEXT, itemgetter(0)), "students": (Many(_CONCERN
 
 def _of_report(name: str) -> Key:
     """Return the key of points that only a student with a graded submission has."""
-    return nullable(POINTS), lambda one: exact(getattr(one.report, name)) if one.report is not None else None
-
-
-def _results(one: StudentGrade) -> Sequence[Result]:
-    return one.report.results if one.report is not None else ()
+    return nullable(POINTS), lambda one: exact(getattr(one.report, name)) if one.graded is not None else None
 
 
 _STUDENT = Record(
     {
         "id": (TEXT, "student.key"),
         **inner("student", each(TEXT, "name email section")),
-        "status": ({"enum": [*_STATUSES]}, status_of),
+        "status": {"enum": [*_STATUSES]},
         "reason": (TEXT, lambda one: one.graded.reason if one.graded is not None else ""),
         "score": _of_report("score"),
         "max_score": _of_report("max_score"),
@@ -94,8 +86,8 @@ _STUDENT = Record(
         "final_mark": (nullable(POINTS), "final_points"),
         "is_excused": FLAG,
         "not_final_because": (TEXT, "why_open"),
-        "carried": (array(TEXT), lambda one: [row.criterion.id for row in _results(one) if row.carried]),
-        "manual_marks": (TOTAL, lambda one: sum(row.manual_mark is not None for row in _results(one))),
+        "carried": (array(TEXT), lambda one: [row.criterion.id for row in one.results if row.carried]),
+        "manual_marks": (TOTAL, lambda one: sum(row.manual_mark is not None for row in one.results)),
         "marked_before": (array(TEXT), "older"),
         "paths": (array(TEXT), lambda one: list(one.graded.paths) if one.graded is not None else []),
         "submission": (TEXT, lambda one: one.graded.digest if one.graded is not None else ""),

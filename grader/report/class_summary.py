@@ -33,16 +33,29 @@ def render_class(found: ClassStatistics, console: Console, *, verbose: bool = Fa
         console.print(Text(f"  {span(found, tenth):>14} {len(keys):>6}  {bar}"), no_wrap=True, crop=False)
     if most:
         _print_criteria(found.criteria, console)
-    mistakes = [(len(one.students), f"{one.criterion}: {one.message}") for one in found.mistakes[:_MAX_MISTAKES]]
-    _print_lines("Common mistakes", (f"{count:>4}  {words}" for count, words in mistakes), console, 8)
-    works = (([named(key, found.names[key]) for key in one.students], one.equal) for one in found.equal[:_MAX_GROUPS])
-    equal = (f"{people_text(who, _MAX_NAMED)}: {what}" for who, what in works)
-    _print_lines("Equal work", equal, console, note=EQUAL_NOTE)
-    attention = (
-        attention_line(reason, [(named(key, found.names[key]), detail) for key, detail in those], verbose=verbose)
+
+    def name(key: str) -> str:
+        return named(key, found.names[key])
+
+    mistakes = [f"{len(one.students):>4}  {one.criterion}: {one.message}" for one in found.mistakes[:_MAX_MISTAKES]]
+    equal = [f"{people_text([*map(name, one.students)], _MAX_NAMED)}: {one.equal}" for one in found.equal[:_MAX_GROUPS]]
+    attention = [
+        attention_line(reason, [(name(key), detail) for key, detail in those], verbose=verbose)
         for reason, those in found.attention.items()
+    ]
+    sections = (
+        ("Common mistakes", mistakes, 8, ""),
+        ("Equal work", equal, 4, EQUAL_NOTE),
+        ("Needs a person", attention, 4, ""),
     )
-    _print_lines("Needs a person", attention, console)
+    for title, lines, indent, note in sections:
+        if lines:
+            console.print()
+            console.print(Text(title, style="bold"))
+            if note:
+                wrapped(console, Text(note, style="dim"), 2)
+        for line in lines:
+            wrapped(console, Text(printable(line)), indent, Text("  "))
 
 
 def head_lines(found: ClassStatistics) -> Iterator[str]:
@@ -52,8 +65,7 @@ def head_lines(found: ClassStatistics) -> Iterator[str]:
     counts = [f"{found.statuses[status]} {text}" for status, text in words.items() if status in found.statuses]
     yield ", ".join([*counts, *([f"{found.late} late"] if found.late else [])]) or "no students"
     if found.all is not None:
-        ends = f"lowest {format_points(found.all.lowest)}, highest {format_points(found.all.highest)}"
-        yield f"Grades of {format_points(found.maximum)}: {means(found.all.mean, found.all.median)}, {ends}"
+        yield f"Grades of {format_points(found.maximum)}: {means(found.all.mean, found.all.median)}"
     if found.open:
         yield f"{counted(found.open, 'grade')} still {'needs' if found.open == 1 else 'need'} manual grading"
     for name, one in found.sections.items():
@@ -80,17 +92,6 @@ def attention_line(reason: Reason, who: Sequence[tuple[str, str]], *, verbose: b
     """Return the students who need a person for one reason, each with a detail."""
     names = [f"{name} ({detail})" if detail else name for name, detail in who]
     return f"{reason[:1].upper()}{reason[1:]} ({len(who)}): {people_text(names, len(who) if verbose else _MAX_NAMED)}"
-
-
-def _print_lines(title: str, lines: Iterator[str], console: Console, indent: int = 4, note: str = "") -> None:
-    """Print lines below a title, if there are any."""
-    for number, line in enumerate(lines):
-        if not number:
-            console.print()
-            console.print(Text(title, style="bold"))
-            if note:
-                wrapped(console, Text(note, style="dim"), 2)
-        wrapped(console, Text(printable(line)), indent, Text("  "))
 
 
 def _print_criteria(rows: Sequence[CriterionFigures], console: Console) -> None:

@@ -1,15 +1,14 @@
 """What `grader batch` prints: a table of the class, one row a student, then the mean and what needs a person."""
 
-from array import array
-from collections import defaultdict
+from collections import Counter, defaultdict
+from collections.abc import Sequence
 from decimal import Decimal
-from statistics import fmean, median
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from grader.classroom.statistics import counts, losses, total_text
+from grader.classroom.statistics import summary
 from grader.classroom.student_grade import Reason, StudentGrade
 from grader.grading.rubric import Rubric
 from grader.report.class_summary import attention_line, means
@@ -25,9 +24,9 @@ class ClassTable:
 
     def __init__(self, rubric: Rubric, *, verbose: bool = False) -> None:
         self.rubric, self.verbose = rubric, verbose
-        self.rows: list[tuple[str, str, str, str]] = []  # the student, the total, what cost most, what is open
+        self.rows: list[Sequence[str]] = []
         self.count = 0
-        self._totals = array("d")
+        self._totals = Counter[Decimal]()
         self._concerns: defaultdict[Reason, list[tuple[str, str]]] = defaultdict(list)
 
     def add(self, grade: StudentGrade) -> None:
@@ -35,10 +34,11 @@ class ClassTable:
         self.count += 1
         name = grade.student.name or grade.student.key
         if self.verbose or len(self.rows) < _MAX_ROWS:
-            self.rows.append((name, total_text(grade) or "–", _costs(grade), _open(grade)))
-        if grade.total is not None and counts(grade):
-            self._totals.append(float(grade.total))
-        for reason, detail in grade.concerns:
+            pending = counted_points(grade.pending) if grade.obstacle is Reason.PENDING else ""
+            self.rows.append((name, grade.total_text or "–", _costs(grade), pending or grade.obstacle or ""))
+        if grade.total is not None and grade.is_counted:
+            self._totals[grade.total] += 1
+        for reason, detail in grade.concerns.items():
             self._concerns[reason].append((name, detail))
 
     def print(self, console: Console) -> None:
@@ -56,27 +56,18 @@ class ClassTable:
             console.print(Text(f"... and {counted(rest, 'more student')} (--verbose lists all)", style="dim"))
         console.print()
         if self._totals:
-            who = counted(len(self._totals), "student")
-            console.print(Text(f"{means(fmean(self._totals), median(self._totals)).capitalize()} ({who})"))
+            found = summary(self._totals.elements())
+            words = means(found.mean, found.median).capitalize()
+            console.print(Text(f"{words} ({counted(found.students, 'student')})"))
         for reason in filter(self._concerns.get, Reason):
             wrapped(console, Text(printable(attention_line(reason, self._concerns[reason], verbose=self.verbose))), 2)
 
 
 def _costs(grade: StudentGrade) -> str:
     """Return the criteria that cost most, with their points, and the late penalty."""
-    costs = losses(grade)
-    words = [f"{name} {format_points(-points)}" for points, name in costs[:_MAX_COSTS]]
-    if rest := costs[_MAX_COSTS:]:
-        words.append(f"{len(rest)} more {format_points(sum((-points for points, _ in rest), Decimal(0)))}")
-    return ", ".join([*words, *([f"late {format_points(grade.late.points)}"] if grade.late.points else [])])
-
-
-def _open(grade: StudentGrade) -> str:
-    """Return what keeps a grade from being final, in few words."""
-    if grade.is_excused or grade.why_open == "":
-        return "excused" if grade.is_excused else ""
-    if grade.graded is None:
-        return "nothing submitted"
-    words = {"errored": "the grader failed", "unreadable": "could not be graded"}
-    pending = counted_points(grade.pending) if grade.pending else grade.why_open
-    return words.get(grade.graded.verdict) or pending
+    costs = [*grade.losses[:_MAX_COSTS]]
+    if rest := grade.losses[_MAX_COSTS:]:
+        costs.append((sum((points for points, _ in rest), Decimal(0)), f"{len(rest)} more"))
+    if grade.late.points:
+        costs.append((-grade.late.points, "late"))
+    return ", ".join(f"{name} {format_points(-points)}" for points, name in costs)

@@ -3,8 +3,7 @@
 from functools import partial
 from pathlib import Path
 
-from grader.classroom import folder as names
-from grader.classroom.changes import changes, snapshot
+from grader.classroom.folder import RESULTS, check_gradebook
 from grader.classroom.grades import Class
 from grader.classroom.results import Results
 from grader.classroom.statistics import statistics
@@ -14,7 +13,7 @@ from grader.report.screen import Screen, draw
 from grader.text import first_lines
 from grader.usecases.terminal import Terminal, Warn
 
-_MAX_BOOKS, _MAX_LINES = 2, 20
+_MAX_LINES = 20
 
 
 def warn_of_ignored(book: Class, warn: Warn) -> None:
@@ -38,16 +37,17 @@ def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *,
 
 def compare(books: tuple[Path, ...], before: int | None, after: int | None, kind: OutputFormat, screen: Screen) -> str:
     """Return what changed between two runs of a gradebook, or two gradebooks. Raises InputError."""
+    from grader.classroom.changes import changes, snapshot
     from grader.report.changes import render_changes, render_changes_json
 
-    if not 1 <= len(books) <= _MAX_BOOKS:
+    if len(books) not in (1, 2):
         raise InputError("name one gradebook, or two")
-    names.check_gradebook(books[0])
-    newest = len(Results(books[0] / names.RESULTS).runs)
-    if len(books) == 1 and before is None and (after or newest) < _MAX_BOOKS:
-        raise InputError(f"{books[0]} has one run: grade the class again, and compare then")
-    earlier = before if before is not None or len(books) > 1 else (after or newest) - 1
-    old, new = snapshot(books[0], earlier), snapshot(books[-1], after)
+    if len(books) == 1 and before is None:
+        check_gradebook(books[0])
+        before = (after or len(Results(books[0] / RESULTS).runs)) - 1
+        if before < 1:
+            raise InputError(f"{books[0]} has one run: grade the class again, and compare then")
+    old, new = snapshot(books[0], before), snapshot(books[-1], after)
     found, runs = [*changes(old, new)], (old.run, new.run)
     if kind is OutputFormat.JSON:
         return render_changes_json(found, runs)

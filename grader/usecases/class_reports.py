@@ -32,6 +32,7 @@ _NOTHING = Outcome("skipped", "not graded, because nothing was submitted")
 _MOVED = (
     "The submission has moved or changed since it was graded, so this report has no details: run `grader batch` again."
 )
+_Task = tuple[str, str, bool]  # a student, the name of the file, and whether hints are searched
 
 
 class ReportRun(NamedTuple):
@@ -47,14 +48,6 @@ class ReportRun(NamedTuple):
     time: str = ""
 
 
-class _Task(NamedTuple):
-    """A report to write: the student and the name of the file; without hints if their search was lost."""
-
-    key: str
-    name: str
-    has_hints: bool = True
-
-
 def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True) -> Report:
     """Return the report on a student's submission, with the marks, the grade and notes.
 
@@ -62,33 +55,30 @@ def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True) -> Re
     notes, the report is the same as that of `grader grade`. A submission that has changed since has its points only.
     """
     if grade.graded is not None:
-        report = book.with_marks(_again(book, grade.graded, has_hints=has_hints), grade.graded)[0]
+        report, _ = book.with_marks(_again(book, grade.graded, has_hints=has_hints), grade.graded)
     else:
         results = tuple(Result(criterion, _NOTHING) for criterion in book.criteria)
         report = Report(GradedSubmission(grade.student.key), book.rubric, book.settings.parts, results)
-    counting = None
     is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
-    if grade.is_excused or (is_changed and grade.total is not None):
-        counting = Grade(None if grade.is_excused else grade.total, grade.late.points, grade.final_points is not None)
+    counting = Grade(grade.total, grade.late.points, grade.final_points is not None) if is_changed else None
     return report._replace(notes=(*report.notes, *notes_of(grade, report)), grade=counting)
 
 
 def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
     """Yield the sentences about the mark, the excuse or the comment of the whole submission, graders, and lateness."""
     mark, late = grade.final, grade.late
-    people = {row.manual_mark.by for row in report.results if row.manual_mark is not None}
     if mark is not None:
-        by, what = by_name(mark.by), f"Comment{by_name(mark.by)}:"
-        if grade.is_excused:
-            what = f"Excused{by}."
-        elif mark.points is not None:
+        by = by_name(mark.by)
+        what = f"Excused{by}." if grade.is_excused else f"Comment{by}:"
+        if mark.points is not None:
             points = counted_points(mark.points)
             what = f"Final mark: {points}, given{by or ' manually'} instead of the sum of the criteria."
         yield " ".join((what, *mark.comment.split()))
+    people = {row.manual_mark.by for row in report.results if row.manual_mark is not None}
     if people and not grade.has_final:
         is_automatic = any(not (row.manual_mark or row.is_open) for row in report.results)
-        names = by_name(enumerated(sorted(filter(None, people))))
-        yield f"Graded {'automatically, and ' * is_automatic}manually{names}."
+        graders = by_name(enumerated(sorted(filter(None, people))))
+        yield f"Graded {'automatically, and ' * is_automatic}manually{graders}."
     if late.points and grade.total is not None:
         points, total = format_points(-late.points), format_points(grade.total)
         yield f"{late.reason}: the late penalty is {points} points, the grade is {total}"
@@ -98,11 +88,9 @@ def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
 
 def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
     """Return the report on a submission as it was graded, with its details if it is still there."""
-    if graded.verdict == "errored":
-        return graded.report(book.rubric)
-    submission = reopened(book, graded)
+    submission = reopened(book, graded) if graded.verdict != "errored" else None
     if submission is None:
-        return graded.report(book.rubric)._replace(notes=(_MOVED,) * (graded.verdict == "graded"))
+        return book.report(graded)._replace(notes=(_MOVED,) * (graded.verdict == "graded"))
     report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
     if not has_hints or book.rubric.hints == "none" or not report.has_failures:
         return report
@@ -114,13 +102,14 @@ def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
 
 def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
     """Raise InputError if reports cannot be written to a folder, or the next run would read it as a submission."""
-    shown = printable_path(folder)
     refuse_symlinks(folder, submissions)
+    why = ""
     if folder.exists() and not folder.is_dir():
-        raise InputError(f"cannot write files to {shown}: it is not a folder")
-    if not {folder.resolve(), *folder.resolve().parents}.isdisjoint(submissions):
+        why = "it is not a folder"
+    elif not {folder.resolve(), *folder.resolve().parents}.isdisjoint(submissions):
         why = "the next run would take them for a submission; choose a folder outside of the class folder"
-        raise InputError(f"cannot write files to {shown}: {why}")
+    if why:
+        raise InputError(f"cannot write files to {printable_path(folder)}: {why}")
 
 
 def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS) -> None:
@@ -146,40 +135,41 @@ def render_reports(
     run: ReportRun, files: Mapping[str, str], terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS
 ) -> dict[str, str]:
     """Write the reports of students, by their file names; return who has none, and why. Raises as `write_reports`."""
-    lost, workers = dict[str, str](), jobs or processors()
-
-    def again(task: _Task, _: WorkerError) -> _Task | None:
-        return task._replace(has_hints=False) if task.has_hints else None
-
-    def give_up(task: _Task, error: Exception) -> tuple[str, str]:
-        if isinstance(error, InputError | RubricError):
-            raise error
-        fault = f"the grader itself failed: {type(error).__name__}: {error}"
-        return task.key, str(error) if isinstance(error, WorkerError | MachineError) else fault
-
+    lost, workers, done = dict[str, str](), jobs or processors(), 0
     with Processes(workers, timeout) as executor, terminal.show_class("writing reports") as show:
         show(Progress(len(files)))
-        done = 0
-        tasks = (_Task(key, name) for key, name in files.items())
-        queue = Queue(executor, workers, partial(_write_some, run), again, give_up, _TASK_SIZE)
-        for results in queue.results(tasks):
+        queue = Queue(executor, workers, partial(_write_some, run), _without_hints, _lost, _TASK_SIZE)
+        for results in queue.results((key, name, True) for key, name in files.items()):
             lost |= {key: why for key, why in results if why}
-            show(Progress(len(files), graded=(done := done + len(results))))
+            done += len(results)
+            show(Progress(len(files), graded=done))
     return {key: lost[key] for key in files if key in lost}
 
 
+def _without_hints(task: _Task, _: WorkerError) -> _Task | None:
+    """Return a lost task without the search for hints, which may be the cause."""
+    return (*task[:2], False) if task[2] else None
+
+
+def _lost(task: _Task, error: Exception) -> tuple[str, str]:
+    """Return the student without a report, and why."""
+    if isinstance(error, InputError | RubricError):
+        raise error
+    is_known = isinstance(error, WorkerError | MachineError)
+    return task[0], str(error) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
+
+
 def _write_some(run: ReportRun, tasks: Sequence[_Task]) -> list[tuple[str, str]]:
-    """Write the reports of some students; return the students."""
+    """Write the reports of some students, in a worker; return the students."""
     book = _class(run)
-    for task in tasks:
-        report = report_of(book, book.grade(task.key), has_hints=task.has_hints)
-        picture = address(f"{task.name}.{Format.SVG.ending}") if Format.SVG in run.formats else ""
+    for key, name, has_hints in tasks:
+        report = report_of(book, book.grade(key), has_hints=has_hints)
+        picture = address(f"{name}.{Format.SVG.ending}") if Format.SVG in run.formats else ""
         for kind in run.formats:
-            save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind, picture=picture))
-    return [(task.key, "") for task in tasks]
+            save(Path(run.folder, f"{name}.{kind.ending}"), render(report, kind, picture=picture))
+    return [(key, "") for key, _, _ in tasks]
 
 
 @lru_cache(maxsize=1)
 def _class(run: ReportRun) -> Class:
-    """Return the class of a run, in a worker."""
     return Class(run.gradebook.absolute(), answers=run.answers)  # no report names a rubric by its place in a gradebook

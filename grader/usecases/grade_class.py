@@ -1,7 +1,7 @@
 """Grade a class into its gradebook, and write its grades and reports."""
 
 import gc
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -29,7 +29,7 @@ from grader.text import counted, enumerated, first_lines, format_points, printab
 from grader.usecases.class_figures import warn_of_ignored
 from grader.usecases.class_inputs import ClassInputs, ClassOptions, keep_inputs, read_inputs
 from grader.usecases.class_reports import ReportRun, refuse_report_folder, write_reports
-from grader.usecases.terminal import Terminal, Warn
+from grader.usecases.terminal import Terminal
 from grader.usecases.writing import refuse_symlinks, save
 from grader.workers.pool import Processes, processors
 from grader.workers.progress import Progress
@@ -62,21 +62,26 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     gc.enable()  # unlike other commands, this one may run for long
     if not isfinite(request.timeout):
         raise InputError(f"--timeout takes a number of seconds, not {request.timeout}")
-    inputs = read_inputs(request.options, terminal.warn)
-    warn_of_due(request.options.due, inputs, terminal.warn)
+    warn, inputs = terminal.warn, read_inputs(request.options, terminal.warn)
     folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
+    if request.options.due and rubric.late is None:
+        no_late = f"because the rubric {rubric.id} has no [late]: only the days late are shown"
+        warn(f"--due has no effect on grades, {no_late}")
     if request.reports is not None:
         refuse_report_folder(request.reports, inputs.roots)
     intake = read_class(
         inputs.near_roots, inputs.roster, settings.layout, settings.assignment, rubric.id, rubric.folders
     )
-    _warn_of_intake(intake, terminal.warn)
+    warn(f"{counted(len(intake.submissions), 'submission')}, layout {intake.layout}")
+    for lines in (intake.notes, intake.unmatched, [f"ignored: {line}" for line in intake.ignored]):
+        for line in first_lines(lines, _MAX_LINES):
+            warn(printable(line))
     refuse_symlinks(folder, inputs.roots)
     names.make_gradebook(folder)
     with names.batch_lock(folder):
         results = Results(folder / names.RESULTS)
         _check_same_class(folder, results, intake)
-        inputs = keep_inputs(inputs, request.options, terminal.warn)
+        inputs = keep_inputs(inputs, request.options, warn)
         table, done = _grade(request, inputs, results, intake, terminal)
     if request.report_format:
         run = ReportRun(folder, request.reports or folder / names.REPORTS, request.report_format, request.answers)
@@ -93,12 +98,12 @@ def _grade(
 ) -> tuple[ClassTable, Progress]:
     """Grade what has no current result, append the run, and write the grades of the class."""
     folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
-    roots = tuple(map(str, inputs.roots))
-    arguments = dict(settings.arguments)
+    roots, arguments = tuple(map(str, inputs.roots)), dict(settings.arguments)
     shared = ClassContext(roots, rubric.data, str(rubric.path.resolve()), settings.max_size, settings.parts, arguments)
-    context = digest_of(
-        rubric.sha256, _reference(folder), settings.parts, sorted(arguments.items()), settings.max_size, __version__
-    )
+    copies = sorted(path for path in (folder / names.RUBRIC).rglob("*") if path.is_file())  # with the reference
+    reference = sha256_of(repr([(path.relative_to(folder).as_posix(), path.read_bytes()) for path in copies]).encode())
+    options = settings.parts, sorted(arguments.items()), settings.max_size
+    context = digest_of(rubric.sha256, reference, *options, __version__)
     present = dict.fromkeys(one.student.key for one in intake.submissions)
     with ResultsWriter(folder / names.RESULTS, results.end) as writer:
         done = _batch(request, inputs, Batch(results, writer, shared, context), intake, terminal)
@@ -115,7 +120,7 @@ def _grade(
                     totals[grade.student.key] = format_points(published) if published is not None else None
                 yield grade
 
-        save(folder / names.GRADES, write_table(*grade_table(book, passing())), inputs.roots, _PRIVATE)
+        write_grades(book, passing())
         writer.append(run._replace(totals=totals).line)
         writer.sync()
     warn_of_ignored(book, terminal.warn)
@@ -136,37 +141,6 @@ def _batch(request: ClassRequest, inputs: ClassInputs, batch: Batch, intake: Int
     return done
 
 
-def write_grades(book: Class) -> None:
-    """Write the grades of a class into its gradebook. Raises InputError."""
-    save(book.folder / names.GRADES, write_table(*grade_table(book, book)), book.settings.roots(book.folder), _PRIVATE)
-
-
-def warn_of_due(due: str | None, inputs: ClassInputs, warn: Warn) -> None:
-    """Say that `--due` changes no grade if the rubric has no late penalty."""
-    if due and inputs.rubric.late is None:
-        name = inputs.rubric.id
-        warn(f"--due has no effect on grades, because the rubric {name} has no [late]: only the days late are shown")
-
-
-def _reference(folder: Path) -> str:
-    """Return the hash of the rubric's files in a gradebook, the reference among them."""
-    files = sorted(path for path in (folder / names.RUBRIC).rglob("*") if path.is_file())
-    return sha256_of(repr([(path.relative_to(folder).as_posix(), path.read_bytes()) for path in files]).encode())
-
-
-def _check_same_class(folder: Path, results: Results, intake: Intake) -> None:
-    """Raise InputError if most of the students who submitted in the last run are missing, or the roster fits nobody."""
-    recorded = results.runs[-1].totals if results.runs else {}
-    here = intake.unclear | {one.student.key for one in intake.submissions}
-    missing = sorted(recorded.keys() - here)
-    if 2 * len(missing) > len(recorded):
-        raise InputError(
-            f"{printable_path(folder)} is the gradebook of another class, or a section is missing: "
-            f"{counted(len(missing), 'student')} of {len(recorded)} have no submission now "
-            f"({printable(enumerated(missing, _MAX_NAMED))}); name the paths of all sections, or another --gradebook"
-        )
-
-
 @contextmanager
 def _executor(request: ClassRequest, inputs: ClassInputs) -> Iterator[tuple[Executor, int]]:
     """Open what runs the tasks; yield it with the number of tasks at a time."""
@@ -180,13 +154,20 @@ def _executor(request: ClassRequest, inputs: ClassInputs) -> Iterator[tuple[Exec
         yield remote, remote.workers
 
 
-def _warn_of_intake(intake: Intake, warn: Warn) -> None:
-    """Say how many submissions there are, which are unmatched, and which files are ignored."""
-    warn(f"{counted(len(intake.submissions), 'submission')}, layout {intake.layout}")
-    for lines in (intake.notes, intake.unmatched, [f"ignored: {line}" for line in intake.ignored]):
-        _warn_lines(lines, warn)
+def write_grades(book: Class, grades: Iterable[StudentGrade] | None = None) -> None:
+    """Write the grades of a class, by default those of now, into its gradebook. Raises InputError."""
+    table = write_table(*grade_table(book, book if grades is None else grades))
+    save(book.folder / names.GRADES, table, book.settings.roots(book.folder), _PRIVATE)
 
 
-def _warn_lines(lines: Sequence[str], warn: Warn) -> None:
-    for line in first_lines(list(lines), _MAX_LINES):
-        warn(printable(line))
+def _check_same_class(folder: Path, results: Results, intake: Intake) -> None:
+    """Raise InputError if most of the students who submitted in the last run are missing."""
+    recorded = results.runs[-1].totals if results.runs else {}
+    here = intake.unclear | {one.student.key for one in intake.submissions}
+    missing = sorted(recorded.keys() - here)
+    if 2 * len(missing) > len(recorded):
+        raise InputError(
+            f"{printable_path(folder)} is the gradebook of another class, or a section is missing: "
+            f"{counted(len(missing), 'student')} of {len(recorded)} have no submission now "
+            f"({printable(enumerated(missing, _MAX_NAMED))}); name the paths of all sections, or another --gradebook"
+        )

@@ -11,7 +11,7 @@ from grader.classroom.grades import Class
 from grader.classroom.mark_files import COLUMNS, SURPLUS, WITHDRAWN, Cells, mark_file
 from grader.classroom.mark_import import MarkImport
 from grader.classroom.marks import Key, Mark, append_marks
-from grader.classroom.student_grade import StudentGrade
+from grader.classroom.student_grade import Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import InputError
 from grader.files.reading import read_capped
@@ -49,7 +49,7 @@ def mark_missing(gradebook: Path, row: Cells) -> str:
         raise InputError(f"write it as --missing {TOTAL} POINTS")
     book = Class(gradebook)
     reader = _reader(book)
-    missing = [one.student.key for one in book if one.graded is None and not (one.is_unclear or one.has_final)]
+    missing = [one.student.key for one in book if Reason.MISSING in one.concerns]
     marks = [mark for key in missing for mark in reader.marks_in({**_EMPTY, **row, "student": key})]
     if marks:
         _append(book, marks, row["by"])
@@ -114,7 +114,7 @@ def _grade_text(book: Class, grade: StudentGrade) -> str:
     if grade.total is None:
         return "excused" if grade.is_excused else "no submission"
     whole = sum((row.maximum for row in book.criteria), Decimal(0))
-    if grade.report is not None and not grade.has_final:  # also with marks of parts that are not graded
+    if not grade.has_final:  # also with marks of parts that are not graded
         whole = grade.report.max_score
     final = "final mark " if grade.has_final else ""
     late = f" after the late penalty of {format_points(-grade.late.points)}" if grade.late.points else ""

@@ -25,12 +25,9 @@ def file_names(keys: Sequence[str]) -> dict[str, str]:
 
     A key that is not a valid name, or that differs from another one only in case, gets its digest appended.
     """
-    counts = Counter(map(_fold, keys))
-    return {key: key if _SAFE.fullmatch(key) and counts[_fold(key)] == 1 else _with_digest(key) for key in keys}
-
-
-def _fold(key: str) -> str:
-    return unicodedata.normalize("NFC", key).casefold()
+    folds = {key: unicodedata.normalize("NFC", key).casefold() for key in keys}
+    counts = Counter(folds.values())
+    return {key: key if _SAFE.fullmatch(key) and counts[folds[key]] == 1 else _with_digest(key) for key in keys}
 
 
 def _with_digest(key: str) -> str:

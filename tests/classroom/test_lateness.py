@@ -7,7 +7,8 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.lateness import SubmissionTimes, lateness, read_time
+from grader.classroom.lateness import lateness, read_time
+from grader.classroom.roster import Student
 from grader.grading.rubric import Rubric
 from tests.classroom.gradebooks import lab
 
@@ -18,12 +19,12 @@ LAB = lab(DUE + POLICY)  # of 11 points
 
 def cost(score: str, days: float, policy: str = POLICY) -> Decimal:
     """Return the penalty for so many days late on a submission with this score."""
-    return lateness(lab(policy), SubmissionTimes(days_late=days), Decimal(score)).points
+    return lateness(lab(policy), Student("ann", days_late=days), Decimal(score)).points
 
 
 def days(submitted: str, rubric: Rubric = LAB, due: datetime | None = None, own: str = "", **more: Any) -> int:
     """Return how many days late a submission is; `own` is the student's own deadline."""
-    return lateness(rubric, SubmissionTimes(submitted=submitted, deadline=own, **more), Decimal(11), due).days
+    return lateness(rubric, Student("ann", submitted=submitted, due=own, **more), Decimal(11), due).days
 
 
 PERCENT = st.decimals(0, 100, places=2)

@@ -56,7 +56,7 @@ class FailingWorkers(Executor):
     def submit(self, function: Callable[..., Any], /, *arguments: Any, **_: Any) -> "Future[Any]":
         """Run a function here and now."""
         future: Future[Any] = Future()
-        if any(task.key == "ben" for task in arguments[-1]):
+        if any(key == "ben" for key, *_ in arguments[-1]):
             future.set_exception(self.error)
         else:
             future.set_result(function(*arguments))

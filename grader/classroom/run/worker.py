@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from grader.checks.outcome import Status
+from grader.classroom.entries import answers_of, entries_of
 from grader.classroom.equal_work import forms_of, hashes_of
-from grader.classroom.graded import Graded, answers_of, digest_of, entries_of
+from grader.classroom.graded import Graded, digest_of
 from grader.classroom.opening import digest_of_unread, open_class_submission
 from grader.errors import InputError, MachineError
 from grader.files.names import ARCHIVES

@@ -6,9 +6,8 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from grader import __version__
-from grader.classroom.grade_table import status_of
 from grader.classroom.grades import Class
-from grader.classroom.statistics import ClassStatistics, losses, total_text
+from grader.classroom.statistics import ClassStatistics
 from grader.classroom.student_grade import StudentGrade
 from grader.report import class_summary as words
 from grader.report.pages.shell import Assets, render_page
@@ -77,15 +76,15 @@ def render_class_page(
 
 
 def _row(grade: StudentGrade, links: Mapping[str, str]) -> Row:
-    student, late, lost = grade.student, grade.late, [name for _, name in losses(grade)]
+    student, late, lost = grade.student, grade.late, [name for _, name in grade.losses]
     penalty = f", {format_points(late.points)}" if late.points else ""
     return Row(
         student.key,
         student.name or student.key,
         links.get(student.key, ""),
         student.section,
-        status_of(grade) + ", final mark" * (grade.final_points is not None),
-        total_text(grade),
+        grade.status + ", final mark" * (grade.final_points is not None),
+        grade.total_text,
         format_points(grade.pending) if grade.pending else "",
         f"{counted(late.days, 'day')}{penalty}" if late.days and not grade.has_final else "",
         enumerated(lost, _MAX_LOST) if lost else "",
@@ -124,16 +123,16 @@ def _groups(grades: Sequence[StudentGrade], found: ClassStatistics) -> dict[str,
     has_sections = len({one.student.section for one in grades}) > 1
     for one in grades:
         labels = (
-            (status_of(one), True),
+            (one.status, True),
             (f"section {one.student.section or '(none)'}", has_sections),
-            ("need a person", any(one.concerns)),
+            ("need a person", one.concerns),
             ("need manual grading", one.pending),
             ("late", one.late.days and not one.has_final),
             ("a final mark", one.final_points is not None),
         )
         for place in ((at, label) for at, (label, is_in) in enumerate(labels) if is_in):
             keys[place].append(one.student.key)
-        for _, name in losses(one):
+        for _, name in one.losses:
             lost[name].append(one.student.key)
     filters = {f"filter-{label}": Group(label, those, label) for (_, label), those in sorted(keys.items())}
     tenths = {f"grade-{at}": Group(f"a grade of {words.span(found, at)}", of) for at, of in enumerate(found.tenths)}
