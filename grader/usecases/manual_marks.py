@@ -58,10 +58,12 @@ def mark_missing(gradebook: Path, row: Cells) -> str:
 
 def import_marks(gradebook: Path, file: Path, by: str) -> str:
     """Append the marks in a CSV file; return how many. Raises InputError, and records none, if a row is wrong."""
-    from grader.classroom.review_items import answers_of
+    from grader.classroom.review_items import review_items
 
     book = Class(gradebook)
-    reader = _reader(book)._replace(answers=answers_of(book))
+    reader = _reader(book)._replace(
+        answers={place: [one.student.key for one in item.members] for place, item in review_items(book).items()}
+    )
     new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file))
     _append(book, new, by)
     return f"{printable_path(file)}: {len(new)} recorded, {same} the same as before\n"
