@@ -67,15 +67,6 @@ class Marks(NamedTuple):
     newest: dict[Key, Mark]
     ignored: list[str]
 
-    def add(self, key: Key, rows: Sequence[Mark]) -> None:
-        """Add all rows of a student's criterion, in the order of files; raises InputError if they have no order."""
-        newest = self.newest[key] = _newest(rows)
-        counting = _newest([mark for mark in rows if mark.value] or rows)
-        if counting.value not in ("", WITHDRAWN):
-            self.counting[key] = counting._replace(comment=newest.comment)
-        elif not newest.value:
-            self.comments[key] = newest
-
     def next_time(self, key: Key) -> str:
         """Return the time for a new mark: now, or later, so that it counts. Raises InputError if none would."""
         before, now = self.newest.get(key), datetime.now(UTC)
@@ -123,9 +114,15 @@ def collect(rows: Iterable[tuple[str, Cells]], read: Reader, mistakes: list[str]
             mistakes.append(f"{place}: {error}")
     for key, those in found.items():
         try:
-            marks.add(key, those)
+            newest, counting = _newest(those), _newest([mark for mark in those if mark.value] or those)
         except InputError as error:
             mistakes.append(str(error))
+            continue
+        marks.newest[key] = newest
+        if counting.value not in ("", WITHDRAWN):
+            marks.counting[key] = counting._replace(comment=newest.comment)
+        elif not newest.value:
+            marks.comments[key] = newest
     if mistakes:
         raise InputError("\n".join(map(printable, first_lines(mistakes, _MAX_MISTAKES))))
     return marks
@@ -173,8 +170,6 @@ def _time(text: str) -> str:
 
 def _newest(rows: Sequence[Mark]) -> Mark:
     """Return the newest of some rows; raises InputError if two that differ are."""
-    if len(rows) == 1:
-        return rows[0]
     time = max((not mark.time, mark.time) for mark in rows)[1]
     tied = [mark for mark in rows if mark.time == time]
     by_file = {mark.place.rpartition(":")[0] if time else mark.place: mark for mark in tied}

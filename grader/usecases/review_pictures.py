@@ -59,13 +59,13 @@ def open_item(book: Class, item: ReviewItem) -> OpenedItem:
     if item.members[1:] and not item.answer:
         return OpenedItem("")
     result, pictures = _opened(book, first.student.key, item.criterion.id)
-    outcome, location, places = result.outcome, result.outcome.location, evidence_files(result)
+    outcome, location, places = result.outcome, result.outcome.location, [*evidence_files(result)]
     if first.number:
         question = str(item.criterion.arguments.get("question", ""))
         message = question if outcome.status == "pending" else f"the check: {outcome.status}"
         return OpenedItem(message, answer_lines(outcome), [*starmap(_anonymous, enumerate(pictures, 1))])
     if location is not None:
-        places = [*places, f"{location.path}, line {location.line}" if counts_lines(location) else location.path]
+        places.append(f"{location.path}, line {location.line}" if counts_lines(location) else location.path)
     root = book.settings.roots(book.folder)[first.graded.root]
     submitted = ", ".join(str(root / path) for path in first.graded.paths)
     paths = [f"{place} in {submitted}" for place in places] or [submitted]

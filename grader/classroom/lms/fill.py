@@ -188,8 +188,8 @@ def _read(data: bytes, form: Form, options: FillOptions) -> _GradeFile:
 
 def _student(row: TableRow, roles: Mapping[str, int]) -> Student:
     """Return the student in a row."""
-    value = {role: row.value(roles.get(role)).removeprefix("#") for role in (*IDS, "name")}
-    return Student("", **{**value, "moodle": re.split(r"\D", value["moodle"])[-1]})  # of Participant 123
+    login, sis, email, canvas, moodle, name = (row.value(roles.get(role)).removeprefix("#") for role in (*IDS, "name"))
+    return Student("", name, email, login, sis, canvas, re.split(r"\D", moodle)[-1])  # of Participant 123
 
 
 def _choose(columns: Mapping[int, re.Match[str]], form: Form, options: FillOptions) -> int:
