@@ -15,6 +15,7 @@ from grader.classroom.lms.forms import IDS, Form
 from grader.classroom.lms.owners import ClassGrade, match_rows
 from grader.classroom.roster import Student
 from grader.classroom.tables import Table, TableRow, read_table
+from grader.classroom.typed_names import number_in
 from grader.errors import InputError
 from grader.text import enumerated, first_lines, format_points, named, people_text, printable
 
@@ -25,7 +26,6 @@ _TEST_STUDENT = re.compile(r"(?i)student, test|test student|.*_previewuser\d*") 
 _NOT_GRADED = frozenset({"", "-", "needs grading"})  # the last in Blackboard
 _POINTS_ROW = "Points Possible"  # in the first cell, of Canvas
 _COMMA = re.compile(r"[0-9],[0-9]{1,2}$")
-_NUMBER = re.compile(r"-?[0-9][0-9.,]*")
 _WORD = re.compile(r"[^\W\d_]+|\d+")
 _MAX_CHANGES, _MAX_REASONS, _MAX_NAMED, _MAX_COLUMNS = 40, 50, 3, 20
 
@@ -64,12 +64,12 @@ class _GradeFile(NamedTuple):
 
     def changed(self, row: TableRow, grade: ClassGrade) -> tuple[TableRow | None, list[Note]]:
         """Return a row with its grade and comment, None if it gets no grade; and notes on it, a change's without a kind."""
-        new, titles, who = _cell(grade, self), self.table.titles, self.who(row)
+        new, who = _cell(grade, self), self.who(row)
         at, comment_at = self.roles["grade"], self.roles.get("comment")
         if why := next(self._why_not(row, new, grade.why_open or "has no grade"), None):
             return None, [(why[0], who, why[1])]
         notes, old, comment = list[Note](), row.value(at), row.value(comment_at)
-        if old.casefold() != new.casefold() and (read_points(old) is None or read_points(old) != read_points(new)):
+        if old.casefold() != new.casefold() and (number_in(old) is None or number_in(old) != number_in(new)):
             notes += [("", who, f"was {old}, becomes {new}")] if old.casefold() not in _NOT_GRADED else []
             row = self.table.changed(row, at, new)
         if comment_at is not None and grade.comment not in ("", comment):
@@ -89,7 +89,7 @@ class _GradeFile(NamedTuple):
             cell = row.value(self.roles.get(role))
             if cell.casefold() in words.split() and cell.casefold() != new.casefold():
                 yield _OPEN, f"{titles[self.roles[role]]!r} is {cell!r} in {self.form.lms}"
-        if self.form.above and (read_points(new) or 0) > (read_points(self.maximum) or 0):
+        if self.form.above and (number_in(new) or 0) > (number_in(self.maximum) or 0):
             yield _REFUSED, f"{new} points are above the maximum of {self.maximum}: {self.form.above}"
 
     def who(self, row: TableRow) -> str:
@@ -152,20 +152,12 @@ def _cell(grade: ClassGrade, file: _GradeFile) -> str:
 
 def _check_maximum(text: str, what: str, options: FillOptions) -> list[str]:
     """Return a warning about an unknown maximum; raises InputError for another one: 9.33 of 100 is not 9.33 of 10."""
-    maximum = read_points(text)
+    maximum = number_in(text)
     if maximum is not None and maximum != options.out_of and not options.any_maximum:
         others = f"{format_points(maximum)}, but that of the rubric is {format_points(options.out_of)}"
         advice = "change it in the LMS and export again, or pass --any-maximum to write the points unchanged"
         raise InputError(f"the maximum of {what} is {others}: {advice}")
     return [] if maximum is not None else [f"the file does not state the maximum of {what}"]
-
-
-def read_points(text: str) -> Decimal | None:
-    """Return the points in a cell, or None; the last comma or point is decimal (Canvas gradebook_importer.rb)."""
-    text = re.sub(r"\s", "", text)
-    last = max(text.rfind("."), text.rfind(","))
-    text = re.sub("[.,]", "", text[:last]) + text[last:].replace(",", ".") if last >= 0 else text
-    return Decimal(text) if _NUMBER.fullmatch(text) else None
 
 
 def _read(data: bytes, form: Form, options: FillOptions) -> _GradeFile:
