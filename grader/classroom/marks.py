@@ -67,6 +67,15 @@ class Marks(NamedTuple):
     newest: dict[Key, Mark]
     ignored: list[str]
 
+    def add(self, key: Key, rows: Sequence[Mark]) -> None:
+        """Add all rows of a student's criterion, in the order of files; raises InputError if they have no order."""
+        newest, counting = _newest(rows), _newest([mark for mark in rows if mark.value] or rows)
+        self.newest[key] = newest
+        if counting.value not in ("", WITHDRAWN):
+            self.counting[key] = counting._replace(comment=newest.comment)
+        elif not newest.value:
+            self.comments[key] = newest
+
     def next_time(self, key: Key) -> str:
         """Return the time for a new mark: now, or later, so that it counts. Raises InputError if none would."""
         before, now = self.newest.get(key), datetime.now(UTC)
@@ -114,15 +123,9 @@ def collect(rows: Iterable[tuple[str, Cells]], read: Reader, mistakes: list[str]
             mistakes.append(f"{place}: {error}")
     for key, those in found.items():
         try:
-            newest, counting = _newest(those), _newest([mark for mark in those if mark.value] or those)
+            marks.add(key, those)
         except InputError as error:
             mistakes.append(str(error))
-            continue
-        marks.newest[key] = newest
-        if counting.value not in ("", WITHDRAWN):
-            marks.counting[key] = counting._replace(comment=newest.comment)
-        elif not newest.value:
-            marks.comments[key] = newest
     if mistakes:
         raise InputError("\n".join(map(printable, first_lines(mistakes, _MAX_MISTAKES))))
     return marks

@@ -97,5 +97,5 @@ def review_items(book: Class, *, is_anonymous: bool = False) -> dict[Place, Revi
                 member = Member(student, one, mark or book.marks.comments.get((one.student, name)), number)
                 groups[name, answers.get(name, one.digest)].append(member)
     rows = {row.id: row for row in book.rubric.criteria if row.adjustment is None}
-    items = {place: ReviewItem(rows[place[0]], place[1], (*some,)) for place, some in groups.items() if place[0] in rows}
-    return dict(sorted(items.items(), key=lambda one: (one[1].criterion.position, not one[1].answer)))
+    items = (ReviewItem(rows[name], answer, (*some,)) for (name, answer), some in groups.items() if name in rows)
+    return {one.place: one for one in sorted(items, key=lambda one: (one.criterion.position, not one.answer))}

@@ -68,9 +68,7 @@ class LocalServer(ThreadingTCPServer):
         try:
             super().__init__((HOST, port), _Handler)
         except OSError as error:
-            raise InputError(
-                f"cannot listen on port {port} of {HOST}: {error.strerror}; name another --port"
-            ) from None
+            raise InputError(f"cannot listen on port {port} of {HOST}: {error.strerror}; name another --port") from None
         self.port = int(self.server_address[1])
         self.hosts = tuple(f"{name}:{self.port}" for name in (HOST, "localhost"))
         self.url = f"http://{self.hosts[0]}/{self.token}/"

@@ -63,7 +63,7 @@ class _GradeFile(NamedTuple):
     maximum: str
 
     def changed(self, row: TableRow, grade: ClassGrade) -> tuple[TableRow | None, list[Note]]:
-        """Return a row with its grade and comment, None if it gets no grade; and notes on it, a change's without a kind."""
+        """Return a row with its grade and comment, or None; and notes on it, a change's without a kind."""
         new, who = _cell(grade, self), self.who(row)
         at, comment_at = self.roles["grade"], self.roles.get("comment")
         if why := next(self._why_not(row, new, grade.why_open or "has no grade"), None):
@@ -121,7 +121,10 @@ def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOpt
     kept = [row for row in rows.values() if row is not None]
     graded = [rows[row] is not row for row in file.people if rows[row] is not None]
     if options.only and "maximum" not in file.roles:
-        places = {*file.roles.values(), *(at for at, title in enumerate(file.table.titles) if title.lower() in form.kept)}
+        places = {
+            *file.roles.values(),
+            *(at for at, title in enumerate(file.table.titles) if title.lower() in form.kept),
+        }
         kept = [row._replace(cells=tuple(cell for at, cell in enumerate(row.cells) if at in places)) for row in kept]
     notes.sort(key=lambda note: note[0] in (_OPEN, _KEPT))
     lines = [f"column {header!r}: {sum(graded)} filled in, {len(graded) - sum(graded)} already the same"]
@@ -138,8 +141,10 @@ def by_reason(notes: Iterable[Note]) -> list[str]:
     names = defaultdict[tuple[str, str], list[str]](list)
     for kind, who, why in notes:
         names[kind, why].append(who)
-    groups = ((*key, f"{len(who)} ({people_text(who, _MAX_NAMED)})" if who[1:] else who[0]) for key, who in names.items())
-    return first_lines([f"{kind}: {who}: {why}" for kind, why, who in groups], _MAX_REASONS)
+    groups = (
+        (*key, f"{len(who)} ({people_text(who, _MAX_NAMED)})" if who[1:] else who[0]) for key, who in names.items()
+    )
+    return first_lines([printable(f"{kind}: {who}: {why}") for kind, why, who in groups], _MAX_REASONS)
 
 
 def _cell(grade: ClassGrade, file: _GradeFile) -> str:

@@ -21,7 +21,7 @@ _DECIMALS = Decimal("0.0001")
 
 
 class OpenedItem(NamedTuple):
-    """What was found, the lines of the answer, the pictures, with files that are not shown, and the paths of the files."""
+    """What was found, the lines of the answer, the pictures with what is not shown, and the paths of the files."""
 
     message: str
     answer: Sequence[str] = ()
@@ -87,7 +87,8 @@ def end_page(marked: int, left: int, place: Mapping[str, Any], gradebook: str) -
 
 def error_page(message: str, following: str) -> str:
     """Return the page of an item that cannot be shown; `following` is the address of the next one."""
-    return _page("review-error.html", {"title": "This item cannot be shown", "message": message, "following": following})
+    title = "This item cannot be shown"
+    return _page("review-error.html", {"title": title, "message": message, "following": following})
 
 
 def _page(template: str, values: Mapping[str, object], data: Mapping[str, Any] = {}) -> str:
