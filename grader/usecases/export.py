@@ -15,7 +15,6 @@ from grader.classroom.lms.feedback_zip import canvas_names, moodle_names, write_
 from grader.classroom.lms.fill import Filled, FillOptions, by_reason, fill
 from grader.classroom.lms.forms import FORMS
 from grader.classroom.lms.owners import ClassGrade
-from grader.classroom.roster import Student
 from grader.classroom.student_grade import Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.errors import GraderError, InputError
@@ -73,7 +72,7 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
         terminal.warn("nothing was written, because of --strict: marks do not count, or rows or students are unmatched")
         return b"", ExitCode.FAILED
     if request.feedback is not None:
-        save_bytes(request.feedback, _feedback(request, book, exported.rows, terminal), roots)
+        save_bytes(request.feedback, _feedback(request, book, exported.numbers, terminal), roots)
     if request.output is None:
         return exported.data, ExitCode.PASSED
     save_bytes(request.output, exported.data, roots)
@@ -122,8 +121,8 @@ def _maximum(book: Class) -> Decimal:
     return sum((row.maximum for row in book.criteria), Decimal(0))
 
 
-def _feedback(request: ExportRequest, book: Class, rows: Mapping[str, Student], terminal: Terminal) -> bytes:
-    """Return the zip of the reports, named as the LMS gives them to its students; `rows` are those of --into."""
+def _feedback(request: ExportRequest, book: Class, numbers: Mapping[str, str], terminal: Terminal) -> bytes:
+    """Return the zip of the reports, named as the LMS gives them to its students; `numbers` are of --into."""
     from grader.usecases import class_reports
 
     kind = Format(request.feedback_format)
@@ -133,7 +132,7 @@ def _feedback(request: ExportRequest, book: Class, rows: Mapping[str, Student], 
     else:
         students = [one.student for one in grades]
         if request.into is not None:
-            students = [one._replace(moodle=rows[one.key].moodle if one.key in rows else "") for one in students]
+            students = [one._replace(moodle=numbers.get(one.key, "")) for one in students]
         paths, without = moodle_names(students, name)
     files = {key: str(number) for number, key in enumerate(paths)}
     with TemporaryDirectory() as folder:

@@ -4,7 +4,6 @@ A person fills in the sheet, a CSV file, and `grader mark --import` records it.
 """
 
 import os
-from collections.abc import Sequence
 from functools import lru_cache
 from itertools import starmap
 from pathlib import Path
@@ -17,7 +16,7 @@ from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import InputError
 from grader.grading.grade import grade
 from grader.grading.pictures import evidence_files, may_have_pictures, pictures_of
-from grader.grading.report import Report, Result
+from grader.grading.report import Report
 from grader.report.details import answer_lines, counts_lines
 from grader.report.pages.review import NO_ANSWER, OpenedItem
 from grader.submission.submission import Submission
@@ -30,7 +29,7 @@ _PRIVATE = 0o600
 _MAX_TEXT = 30_000  # characters; a cell of Excel has at most 32,767
 
 
-@lru_cache(maxsize=1)
+@lru_cache(maxsize=1)  # a page asks for its pictures one by one
 def _graded_again(book: Class, key: str) -> tuple[Submission, Report]:
     """Return a student's submission as it was graded, and its report. Raises InputError."""
     graded = book.results.of(key)
@@ -41,15 +40,6 @@ def _graded_again(book: Class, key: str) -> tuple[Submission, Report]:
     return submission, grade(book.rubric, submission, book.settings.parts, is_one_of_class=True)
 
 
-@lru_cache(maxsize=2)  # a page asks for its pictures one by one
-def _opened(book: Class, key: str, criterion: str) -> tuple[Result, Sequence[EmbeddedPicture | NotShown]]:
-    submission, report = _graded_again(book, key)
-    result = next((one for one in report.results if one.criterion.id == criterion), None)
-    if result is None:
-        raise InputError("this criterion is no longer graded for this student")
-    return result, pictures_of(result, submission) if may_have_pictures(result) else ()
-
-
 def open_item(book: Class, item: ReviewItem) -> OpenedItem:
     """Return what a person looks at for an item. Raises InputError if its submission has moved or changed.
 
@@ -58,7 +48,11 @@ def open_item(book: Class, item: ReviewItem) -> OpenedItem:
     first = item.members[0]
     if item.members[1:] and not item.answer:
         return OpenedItem("")
-    result, pictures = _opened(book, first.student.key, item.criterion.id)
+    submission, report = _graded_again(book, first.student.key)
+    result = next((one for one in report.results if one.criterion.id == item.criterion.id), None)
+    if result is None:
+        raise InputError("this criterion is no longer graded for this student")
+    pictures = pictures_of(result, submission) if may_have_pictures(result) else ()
     outcome, location, places = result.outcome, result.outcome.location, [*evidence_files(result)]
     if first.number:
         question = str(item.criterion.arguments.get("question", ""))

@@ -44,13 +44,13 @@ class FillOptions(NamedTuple):
 class Filled(NamedTuple):
     """A filled file and what importing it does; it is complete if each row has its student, and each grade its row.
 
-    `rows` are the students as the file has them, by the key of the student of the class.
+    `numbers` are the ids of students in Moodle as the file has them, by the key of the student of the class.
     """
 
     data: bytes = b""
     lines: Sequence[str] = ()
     is_complete: bool = True
-    rows: Mapping[str, Student] = {}
+    numbers: Mapping[str, str] = {}
 
 
 class _GradeFile(NamedTuple):
@@ -100,10 +100,10 @@ class _GradeFile(NamedTuple):
 def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOptions) -> Filled:
     """Return a grade file with the grades in the column of the lab; raises InputError if it is not such a file."""
     file = _read(data, form, options)
-    header = file.table.titles[file.roles["grade"]]
+    people, titles = [*file.people.values()], file.table.titles
+    header = titles[file.roles["grade"]]
     warnings = _check_maximum(file.maximum, f"{header!r} in {form.lms}", options)
-    names = [named(one.student.key, one.student.name) for one in grades]
-    of_row, doubtful = match_rows([*file.people.values()], [one.student for one in grades], form.lms)
+    of_row = match_rows(people, [one.student for one in grades], form.lms)
     rows: dict[TableRow, TableRow | None] = {row: row for row in file.table.rows}
     notes = list[Note]()
     for index, (row, one) in enumerate(file.people.items()):
@@ -111,29 +111,21 @@ def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOpt
         if index in of_row:
             rows[row], some = file.changed(row, grades[of_row[index]])
             notes += some
-        elif could := people_text([names[at] for at in doubtful[index]], _MAX_NAMED):
-            notes.append(("ambiguous", file.who(row), f"could be {could}"))
         elif not _TEST_STUDENT.fullmatch(one.name or one.login):
-            notes.append((_UNKNOWN, file.who(row), "no student of the class matches this id, address or name"))
-    matched = {*of_row.values()}.union(*doubtful.values())
-    missing = (names[at] for at, one in enumerate(grades) if _cell(one, file) and at not in matched)
-    notes += ((_MISSING, name, "has a grade or an excuse, but no row in the file") for name in missing)
+            notes.append((_UNKNOWN, file.who(row), "no student certainly has this id, address or name"))
+    missing = [one for at, one in enumerate(grades) if _cell(one, file) and at not in of_row.values()]
+    notes += ((_MISSING, named(*one.student[:2]), "has a grade or an excuse, but no certain row") for one in missing)
     kept = [row for row in rows.values() if row is not None]
     graded = [rows[row] is not row for row in file.people if rows[row] is not None]
     if options.only and "maximum" not in file.roles:
-        places = {
-            *file.roles.values(),
-            *(at for at, title in enumerate(file.table.titles) if title.lower() in form.kept),
-        }
+        places = {*file.roles.values(), *(at for at, title in enumerate(titles) if title.lower() in form.kept)}
         kept = [row._replace(cells=tuple(cell for at, cell in enumerate(row.cells) if at in places)) for row in kept]
-    notes.sort(key=lambda note: note[0] in (_OPEN, _KEPT))
     lines = [f"column {header!r}: {sum(graded)} filled in, {len(graded) - sum(graded)} already the same"]
     lines += first_lines([f"{who}: {why}" for kind, who, why in notes if not kind], _MAX_CHANGES)
     lines += [*by_reason(note for note in notes if note[0]), *warnings]
     is_complete = all(note[0] in ("", _OPEN, _KEPT) for note in notes)
-    people = [*file.people.values()]
-    own = {grades[at].student.key: people[index] for index, at in of_row.items()}
-    return Filled(file.table._replace(rows=tuple(kept)).encoded(), [*map(printable, lines)], is_complete, own)
+    numbers = {grades[at].student.key: people[index].moodle for index, at in of_row.items()}
+    return Filled(file.table._replace(rows=tuple(kept)).encoded(), [*map(printable, lines)], is_complete, numbers)
 
 
 def by_reason(notes: Iterable[Note]) -> list[str]:

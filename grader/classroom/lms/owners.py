@@ -18,15 +18,11 @@ class ClassGrade(NamedTuple):
     comment: str = ""
 
 
-def match_rows(
-    rows: Sequence[Student], students: Sequence[Student], lms: str
-) -> tuple[dict[int, int], dict[int, list[int]]]:
-    """Return the student of each row that fits only one, and no other row does; of other rows who it could be."""
+def match_rows(rows: Sequence[Student], students: Sequence[Student], lms: str) -> dict[int, int]:
+    """Return the student of each row that fits only one, whom no other row fits."""
     theirs, ours = [_clues(row, lms) for row in rows], [_clues(student, lms) for student in students]
     students_of, rows_of = _fitting(theirs, ours), _fitting(ours, theirs)
-    found = {row: some[0] for row, some in enumerate(students_of) if [rows_of[at] for at in some] == [[row]]}
-    free = {*range(len(students))} - {*found.values()}
-    return found, {row: [at for at in some if at in free] for row, some in enumerate(students_of) if row not in found}
+    return {row: some[0] for row, some in enumerate(students_of) if [rows_of[at] for at in some] == [[row]]}
 
 
 def _clues(student: Student, lms: str) -> list[set[str]]:
