@@ -130,6 +130,8 @@ class _Handler(BaseHTTPRequestHandler):
         """Return the path after the secret."""
         if len(self.headers.get_all("Host", [])) != 1 or self.headers["Host"].lower() not in self.server.hosts:
             raise _RefusedError(HTTPStatus.MISDIRECTED_REQUEST, "wrong host name: use the address of the command")
+        if self.path == "/favicon.ico":  # every browser asks for it
+            raise _RefusedError(HTTPStatus.NO_CONTENT)
         first, *rest = self.path.partition("?")[0].removeprefix("/").split("/")
         if not hmac.compare_digest(first.encode(), self.server.token.encode()) or not rest:
             raise _RefusedError(HTTPStatus.NOT_FOUND, "not found: use the whole address that the command has printed")

@@ -189,9 +189,10 @@ def test_a_submission_that_has_moved_or_changed_is_not_marked(review: Review, bo
 
 
 PATHS = {
-    404: ["GET /", "GET /1", "GET /TOKE/1", "GET /TOKEN", "GET /TOKEN/0", "GET /TOKEN/7", "GET /favicon.ico", "GET /TOKEN/1/picture/../../x",
+    404: ["GET /", "GET /1", "GET /TOKE/1", "GET /TOKEN", "GET /TOKEN/0", "GET /TOKEN/7", "GET /TOKEN/1/picture/../../x",
           "GET /TOKEN/4/picture/..%2f..%2fclass.toml", f"GET /TOKEN/4/picture/{'9' * 20}", "GET /TOKEN/../TOKEN/1", "GET /TOKEN/%d9%a1"],
     200: ["GET /TOKEN/1"],
+    204: ["GET /favicon.ico"],
     501: [f"{method} /TOKEN/1" for method in ("HEAD", "PUT", "DELETE", "OPTIONS", "TRACE", "BREW")],
 }  # fmt: skip
 
