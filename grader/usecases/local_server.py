@@ -37,12 +37,11 @@ SANDBOX = "sandbox; default-src 'none'"  # for everything that is not a page
 
 
 class Response(NamedTuple):
-    """A response. `location` is where a redirect leads, below the secret."""
+    """A response."""
 
     body: bytes
     media_type: str = TEXT
     status: HTTPStatus = HTTPStatus.OK
-    location: str | None = None
     policy: str = SANDBOX
 
 
@@ -119,8 +118,6 @@ class _Handler(BaseHTTPRequestHandler):
         self.send_response(response.status)
         self.send_header("Content-Type", response.media_type)
         self.send_header("Content-Length", str(len(response.body)))
-        if response.location is not None:
-            self.send_header("Location", f"/{self.server.token}/{response.location}")
         self.end_headers()
         self.wfile.write(response.body)
 

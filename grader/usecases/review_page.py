@@ -40,15 +40,13 @@ class ReviewPage:
         except GraderError as error:
             if body is not None:
                 return _json(error=str(error))
-            page = pages.error_page(str(error), self._address(self.session.following(at)))
+            page = pages.error_page(str(error), self.address(self.session.following(at)))
             return _html(page, HTTPStatus.SERVICE_UNAVAILABLE)
 
     def _page(self, at: int, path: tuple[str, ...]) -> Response:
         session, book = self.session, self.session.book
         is_item = 0 <= at < len(session.places)
         match path:
-            case ("",):
-                return Response(b"", status=HTTPStatus.FOUND, location=self._address(session.following()))
             case ("end",):
                 given = sum(mark.points is not None for mark in session.own.values())
                 return _html(pages.end_page(given, session.left, self._place(at), printable_path(session.folder)))
@@ -66,7 +64,7 @@ class ReviewPage:
         session, listed = self.session, self.session.listed
         questions = [*dict.fromkeys(criterion for criterion, _ in session.items)]
         filters = pages.filters(session.filter, questions, sorted(session.sections.values()))
-        return {"number": bisect(listed, at), "total": len(listed), "address": self._address(at), "filters": filters}
+        return {"number": bisect(listed, at), "total": len(listed), "address": self.address(at), "filters": filters}
 
     def _act(self, at: int, body: bytes) -> Response:
         """Execute an action of the page."""
@@ -90,7 +88,7 @@ class ReviewPage:
                 at = session.following(at)
             case _:
                 return _json(HTTPStatus.BAD_REQUEST, error="this request is not from the page")
-        return _json(go=self._address(at))
+        return _json(go=self.address(at))
 
     def _mark(self, at: int, points: str, comment: str, shown: str) -> Response:
         """Save a mark, or return those of others that it would replace."""
@@ -101,10 +99,11 @@ class ReviewPage:
             more = f" (and {counted(len(replaced) - 1, 'more mark')})" if len(replaced) > 1 else ""
             return _json(newer=pages.mark_text(replaced[0]) + more)
         if replaced is None:
-            return _json(error=_CHANGED, go=self._address(at))
-        return _json(go=self._address(session.following(at)))
+            return _json(error=_CHANGED, go=self.address(at))
+        return _json(go=self.address(session.following(at)))
 
-    def _address(self, at: int) -> str:
+    def address(self, at: int) -> str:
+        """Return the address of an item below that of the server."""
         return str(at + 1) if at < len(self.session.places) else "end"
 
     def _position(self, address: str) -> int:
@@ -126,12 +125,13 @@ def review_in_browser(session: ReviewSession, port: int, terminal: Terminal) -> 
     """Serve the review page until Ctrl-C, write the grades, and return a summary. Raises InputError."""
     if not session.places:
         return "nothing needs manual grading\n"
-    with LocalServer(ReviewPage(session), port) as server:
+    page = ReviewPage(session)
+    with LocalServer(page, port) as server:
         if is_open_in_libreoffice(session.file):
             shown = printable_path(session.file)
             terminal.warn(f"{shown} is open in LibreOffice: close it, because saving it there would remove new marks")
         with suppress(KeyboardInterrupt):
-            terminal.print(f"{server.url}\n")
+            terminal.print(f"{server.url}{page.address(session.following())}\n")
             terminal.warn("open this address in a browser on this machine; Ctrl-C ends the review, all marks are kept")
             server.serve_forever()
     write_grades(Class(session.folder))

@@ -17,7 +17,6 @@ from grader.classroom.roster import Student
 from grader.files.zip_writing import tar_gz_of, zip_of
 
 Names = tuple[dict[str, str], dict[str, str]]  # by the student's key: the path in the zip, or why there is none
-_MAX_NAME = 60
 _NOT_UTF8 = re.compile(r"[\ud800-\udfff]")  # no name that Canvas has given, and no zip can have it
 _ARCHIVES = (".zip", ".tar.gz", ".tgz")
 
@@ -27,7 +26,7 @@ def moodle_names(students: Collection[Student], report: str) -> Names:
     names, without, counts = dict[str, str](), dict[str, str](), Counter(student.moodle for student in students)
     for student in students:
         if student.moodle and counts[student.moodle] == 1:
-            names[student.key] = f"{_moodle_folder(student)}/{report}"
+            names[student.key] = f"Participant_{student.moodle}_assignfeedback_file_/{report}"
         elif student.moodle:
             without[student.key] = f"another student has participant number {student.moodle}, too"
         else:
@@ -57,13 +56,6 @@ def write_feedback(reports: Mapping[str, bytes], names: Mapping[str, str], repor
     without = {key: why for key in reports if len(contents[names[key]]) > 1}
     files = {name: _packed(name, report, *found) for name, found in contents.items() if len(found) == 1}
     return zip_of(files), without
-
-
-def _moodle_folder(student: Student) -> str:
-    """Return the folder of a student, with the letters, digits and spaces of the name: an underscore ends it."""
-    letters = (letter if letter.isalnum() or letter in "-'" else " " for letter in student.name or student.key)
-    words = "".join(letters).split()
-    return f"{' '.join(words)[:_MAX_NAME].strip() or 'Participant'}_{student.moodle}_assignfeedback_file_"
 
 
 def _is_certain(file: str, users: Collection[str]) -> bool:
