@@ -113,7 +113,8 @@ def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOpt
             notes += some
         elif not _TEST_STUDENT.fullmatch(one.name or one.login):
             notes.append((_UNKNOWN, file.who(row), "no student certainly has this id, address or name"))
-    missing = [one for at, one in enumerate(grades) if _cell(one, file) and at not in of_row.values()]
+    rest = [grades[at] for at in sorted({*range(len(grades))}.difference(of_row.values()))]
+    missing = (one for one in rest if _cell(one, file))
     notes += ((_MISSING, named(*one.student[:2]), "has a grade or an excuse, but no certain row") for one in missing)
     kept = [row for row in rows.values() if row is not None]
     graded = [rows[row] is not row for row in file.people if rows[row] is not None]
@@ -197,12 +198,12 @@ def _choose(columns: Mapping[int, re.Match[str]], form: Form, options: FillOptio
 
 
 def _likeness(found: re.Match[str], options: FillOptions) -> int | None:
-    """Return how much a column is like the wanted one, the best first: by its header, or by its title or number.
+    """Return how much a column is like the lab, 0 is best: it has the header, title or number that is wanted.
 
-    Of none, whether its title is, or contains, each of some names, in this order; last, whether it is part of one.
+    Else its title is, or contains, each of the lab's names, in this order; last, it is part of one.
     """
     if wanted := options.column.strip():
-        tests = [wanted == found[0], wanted in (found["title"], found.groupdict().get("number"))]
+        tests = [wanted in (found[0], found["title"], found.groupdict().get("number"))]
     else:
         own, known = _words(found["title"]), [_words(name) for name in options.names]
         tests = [is_so for name in known for is_so in (own.replace(" ", "") == name.replace(" ", ""), name in own)]
