@@ -86,6 +86,7 @@ def review_items(book: Class, *, is_anonymous: bool = False) -> dict[Place, Revi
     groups: defaultdict[Place, list[Member]] = defaultdict(list)
     keys = sorted(book.keys, key=digest_of) if is_anonymous else book.keys
     order, counting = {key: at for at, key in enumerate(keys, 1)}, book.marks.counting
+    # Several files are a submission named after the student, so digests of members differ, and with them the keys.
     of_files: dict[tuple[int, tuple[str, ...]], Mapping[str, str]] = {}
     graded = (one for one in book.results.all() if one.verdict != "unreadable" and one.student in book.run.totals)
     for one in sorted(graded, key=lambda one: order[one.student]):
