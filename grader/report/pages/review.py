@@ -42,22 +42,22 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
     The addresses of the pictures are ADDRESS/picture/1 and so on.
     """
     criterion, first, members = item.criterion, item.members[0], [one.label for one in item.members]
-    mark, is_alone, shown = first.mark, len(members) == 1, [*enumerate(opened.pictures, 1)]
+    mark, is_alone = first.mark, len(members) == 1
     who = members[0] if is_alone else f"{len(members)} students"
     values = {
         **place,
         "title": f"{place['number']} of {place['total']}: {who}, {criterion.title}",
         "who": who,
-        "together": "The same answer" if item.answer else NO_ANSWER,
         "members": [] if is_alone else members,
-        "criterion": criterion,
+        "item": item,
         "maximum": format_points(criterion.points),
         "opened": opened,
         "model": model_lines(criterion),
         "pictures": [
-            (f"{place['address']}/picture/{at}", one) for at, one in shown if isinstance(one, EmbeddedPicture)
+            (f"{place['address']}/picture/{at}", one)
+            for at, one in enumerate(opened.pictures, 1)
+            if isinstance(one, EmbeddedPicture)
         ],
-        "not_shown": [one for _, one in shown if isinstance(one, NotShown)],
         "marked": (mark_text(mark) if mark else "") + ", before the submission changed" * (first.state == OLDER),
         "buttons": _buttons(criterion),
         "choices": [f"{text} ({format_points(points)})" for text, points in criterion.choices.items()],
