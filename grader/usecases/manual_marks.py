@@ -16,7 +16,7 @@ from grader.classroom.student_grade import StudentGrade
 from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import InputError
 from grader.files.reading import read_capped
-from grader.grading.criterion import DEADLINE, TOTAL
+from grader.grading.criterion import DEADLINE
 from grader.text import by_name, counted_points, format_points, named, printable, printable_path
 from grader.usecases.grade_class import write_grades
 from grader.usecases.terminal import Warn

@@ -192,7 +192,9 @@ def test_answers_that_are_not_all_there_is_are_not_equal(contents: Callable[...,
 def test_a_team_with_several_files_is_one_item(tmp_path: Path) -> None:
     """Though the digests of its members differ, because several files are a submission named after the student."""
     (tmp_path / "class").mkdir()
-    for number, (name, data) in enumerate({"robot.urdf": urdf().encode(), "screen.png": PNG, "answers.md": b"x"}.items()):
+    for number, (name, data) in enumerate(
+        {"robot.urdf": urdf().encode(), "screen.png": PNG, "answers.md": b"x"}.items()
+    ):
         (tmp_path / "class" / f"team1_101_{2000 + number}_{name}").write_bytes(data)
     (tmp_path / "roster.csv").write_text("id,name,canvas,group\ngum,Gum,101,team1\nholly,Holly,102,team1\n")
     (tmp_path / "small.toml").write_text(lab_text())

@@ -41,8 +41,8 @@ class Form(NamedTuple):
 
     def roles(self, titles: Sequence[str]) -> dict[str, int]:
         """Return the columns of a file by role; of several the first."""
-        columns = {**_COLUMNS, **self.columns}
-        role_of = {header: role for role, headers in columns.items() for header in headers.split(" | ")}
+        columns = (*_COLUMNS.items(), *self.columns.items())
+        role_of = {header: role for role, headers in columns for header in headers.split(" | ")}
         return {role: at for at, title in reversed([*enumerate(titles)]) if (role := role_of.get(title.casefold()))}
 
 

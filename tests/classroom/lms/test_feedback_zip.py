@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
 from grader.classroom.lms.feedback_zip import canvas_names, moodle_names, write_feedback
 from grader.classroom.roster import Student
 
