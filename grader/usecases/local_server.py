@@ -86,7 +86,8 @@ class LocalServer(ThreadingTCPServer):
             with self.lock:
                 return self.application(path, body)
         except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
-            message = printable(f"the grader failed on this request: {type(error).__name__}: {error}")
+            reason = error.strerror if isinstance(error, OSError) else f"{type(error).__name__}: {error}"
+            message = printable(f"the grader failed on this request: {reason}")
             return Response(f"{message}\n".encode(), status=HTTPStatus.INTERNAL_SERVER_ERROR)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
