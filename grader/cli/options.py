@@ -20,7 +20,7 @@ _GROUPS = {
     "Input": "roster layout assignment ignore-file add arg joint relative-to max-size",
     "Selection": "criterion section anonymous before after compare",
     "Grades": "due pending-as-zero",
-    "Marks": "comment list-comments excused undo by import",
+    "Marks": "comment list-comments excused undo by missing import",
     "File of the LMS": "into strict column any-maximum only",
     "Run": "jobs timeout force cluster fail-under watch mutants seed port",
     "Output": "format output save fix sheet excel reports report-format csv feedback feedback-format verbose",

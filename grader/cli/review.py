@@ -21,6 +21,7 @@ def mark(
     criterion: Annotated[str, typer.Argument(metavar="CRITERION|total|deadline", help=_CRITERION)] = "",
     points: Annotated[str, typer.Argument(metavar="[POINTS|TIME|excused|-]", help=_POINTS)] = "",
     comment: Annotated[str, typer.Option(metavar="TEXT", help="For the student.")] = "",
+    missing: Annotated[bool, typer.Option("--missing", help="All who submitted nothing, not STUDENT.")] = False,
     file: Annotated[Path | None, typer.Option("--import", metavar="CSV", help="The marks of many students.")] = None,
     by: ByOption = "",
 ) -> str:
@@ -41,15 +42,19 @@ def mark(
 
       grader mark alice deadline 2026-11-25 --gradebook lab6-grades
 
+      grader mark --missing total 0 --gradebook lab6-grades
+
       grader mark --import marks.csv --gradebook lab6-grades
     """
-    from grader.usecases.manual_marks import give_mark, import_marks
+    from grader.usecases.manual_marks import give_mark, import_marks, mark_missing
 
     if file is not None:
-        if student or criterion or points or comment:
+        if student or criterion or points or comment or missing:
             raise InputError("--import takes no argument and no other option but --by")
         return import_marks(gradebook, file, by)
     row = {"student": student, "criterion": criterion, "points": points, "comment": comment, "by": by}
+    if missing:  # in place of the student
+        return mark_missing(gradebook, {**row, "criterion": student, "points": criterion})
     return give_mark(gradebook, row, warn)
 
 

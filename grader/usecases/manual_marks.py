@@ -1,4 +1,4 @@
-"""Give and withdraw marks by command: of one student, or of a CSV file."""
+"""Give and withdraw marks by command: of one student, of all who submitted nothing, and of a CSV file."""
 
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
@@ -39,6 +39,17 @@ def give_mark(gradebook: Path, row: Cells, warn: Warn) -> str:
     grade = now.grade(mark.student)
     late = f"; {grade.late.reason}" if mark.criterion == DEADLINE and grade.late.reason else ""
     return f"{printable(f'{named(mark.student, grade.student.name)}: {_grade_text(now, grade)}{late}')}\n"
+
+
+def mark_missing(gradebook: Path, row: Cells) -> str:
+    """Give all who certainly submitted nothing, and have no final mark, one; return how many. Raises InputError."""
+    if row["criterion"] != TOTAL or row["points"] in ("", WITHDRAWN):
+        raise InputError(f"write it as --missing {TOTAL} POINTS")
+    book = Class(gradebook)
+    reader = _reader(book)
+    missing = [one.student.key for one in book if one.graded is None and not (one.is_unclear or one.has_final)]
+    _append(book, [mark for key in missing for mark in reader.marks_in({**_EMPTY, **row, "student": key})], row["by"])
+    return f"{len(missing)} of {len(book.keys)} submitted nothing, and have the final mark {row['points']} now\n"
 
 
 def import_marks(gradebook: Path, file: Path, by: str) -> str:
