@@ -10,6 +10,7 @@ import sys
 import unicodedata
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from itertools import zip_longest
 from pathlib import Path
 
 from grader.classroom.tables import SIZE_LIMIT, Table, TableRow, protected, read_table, unprotected
@@ -32,21 +33,21 @@ _SAFE = re.compile(r"(?!(?:con|prn|aux|nul|com\d|lpt\d)$)[a-z0-9_]{1,40}")  # no
 def read_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], Rows]:
     """Return a CSV file, the titles of its columns, and its rows; raises InputError if two columns have one title."""
     table = read_table(data, shown, is_from_person=True)
-    header, *rows = table.filled or [TableRow(1, 1, (), "")]
+    header, *lines = table.filled or [TableRow(1, 1, (), "")]
     titles = tuple(name if (name := folded(title)) in _TITLES else title.strip() for title in header.values)
     if twice := [title for title, count in Counter(filter(None, titles)).items() if count > 1]:
         raise InputError(f"{shown} has two columns {twice[0]!r}")
-    return table, titles, [(f"{shown}:{row.line}", _cells(titles, row)) for row in rows]
+    rows = Rows()
+    for line in lines:
+        row = dict.fromkeys((*COLUMNS, SURPLUS), "")
+        for title, cell in zip_longest(titles[: len(line.cells)], map(_read, line.values), fillvalue=SURPLUS):
+            row[title] = cell if title else f"{row[SURPLUS]} {cell}".strip()
+        rows.append((f"{shown}:{line.line}", row))
+    return table, titles, rows
 
 
-def _cells(titles: Sequence[str], row: TableRow) -> Cells:
-    cells = [unprotected(_unix(value)) for value in row.values]
-    untitled = [cell for title, cell in zip(titles, cells, strict=False) if not title] + cells[len(titles) :]
-    return {
-        **dict.fromkeys(COLUMNS, ""),
-        **dict(zip(titles, cells, strict=False)),
-        SURPLUS: " ".join(untitled).strip(),
-    }
+def _read(cell: str) -> str:
+    return unprotected(_unix(cell))
 
 
 def _unix(text: str) -> str:
@@ -64,12 +65,12 @@ def whole_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], Rows]:
         raise InputError(f"the first line of {shown} must name the columns {enumerated(COLUMNS)}")
     last = table.rows[-1] if table.rows else None
     if last is not None and not last.end and last in table.filled:
-        title = titles[len(last.cells) - 1] if len(last.cells) == len(titles) else COLUMNS[0]
-        if title in COLUMNS[:-1] or table.encoding == "windows-1252" or not rows:
+        is_whole = rows and len(last.cells) == len(titles) and titles[-1] not in COLUMNS[:-1]
+        if not is_whole or table.encoding == "windows-1252":
             where = f"{shown}:{last.line}"
             raise InputError(f"{where}: the last row may be incomplete: check it, and end it with a line break")
-        if title == COLUMNS[-1]:
-            rows[-1] = rows[-1][0], {**rows[-1][1], title: ""}
+        if titles[-1] == COLUMNS[-1]:
+            rows[-1] = rows[-1][0], {**rows[-1][1], titles[-1]: ""}
     return table, titles, rows
 
 

@@ -48,24 +48,19 @@ class MarkImport(NamedTuple):
 
     def marks_in(self, row: Cells, place: str = "") -> Iterator[Mark]:
         """Yield the marks in a row, without a time; raises InputError."""
-        for student, criterion, points, comment in self._entries(row):
-            most = maxima(self.rubric)[criterion if criterion in (TOTAL, DEADLINE) else self._id(student, criterion)]
+        for cells in self._changed(row) if "exported" in row else self._expanded(row):
+            key = student, criterion = cells["student"], cells["criterion"]
+            if criterion not in (TOTAL, DEADLINE):
+                if student not in self.digests:
+                    raise InputError(f"{student} has submitted nothing that could be marked: `{TOTAL}` is a final mark")
+                criterion_of(self.rubric, criterion)
             digest = row["submission"] or ("" if criterion == DEADLINE else self.digests.get(student, ""))
-            cells = {**row, "points": points, "comment": comment, "submission": digest, "time": ""}
-            yield mark_in(cells, (student, criterion), most, place)
+            yield mark_in({**cells, "submission": digest, "time": ""}, key, maxima(self.rubric)[criterion], place)
 
-    def _id(self, student: str, criterion: str) -> str:
-        if student not in self.digests:
-            raise InputError(f"{student} has submitted nothing that could be marked: `{TOTAL}` is a final mark")
-        return criterion_of(self.rubric, criterion).id
-
-    def _entries(self, row: Cells) -> Iterator[tuple[str, str, str, str]]:
-        """Yield the student and criterion of each mark in a row, the points as text, and the comment."""
-        if "exported" in row:
-            yield from self._changed(row)
-        elif row["points"] or row["comment"]:
-            for student in self._students(row):
-                yield student, row["criterion"], row["points"], row["comment"]
+    def _expanded(self, row: Cells) -> Iterator[Cells]:
+        """Yield the cells of a row for each of its students."""
+        for student in self._students(row) if row["points"] or row["comment"] else ():
+            yield {**row, "student": student}
 
     def _students(self, row: Cells) -> Sequence[str]:
         if "answer" in row:
@@ -79,8 +74,8 @@ class MarkImport(NamedTuple):
             return [known("student", cell, keys)]
         return [find_typed(self.students, cell, "; `grades.csv` lists all students").key]
 
-    def _changed(self, row: Cells) -> Iterator[tuple[str, str, str, str]]:
-        """Yield the cells of an export that a person changed; a comment stays."""
+    def _changed(self, row: Cells) -> Iterator[Cells]:
+        """Yield the cells of an export that a person changed, as a row for each; a comment stays."""
         if "=" not in row["exported"]:
             raise InputError(f"{quoted(row['exported'])} in the column `exported` is not what was exported")
         student = known("student", row["id"], {one.key: one for one in self.students})
@@ -93,7 +88,8 @@ class MarkImport(NamedTuple):
                 raise InputError(f"{criterion} was {old} and is empty: write `-` to withdraw a mark")
             if now is not None and not (_are_equal(now.value, old) or _are_equal(now.value, new)):
                 raise InputError(f"{criterion} was {old} when it was exported, and is {now.value}{by_name(now.by)} now")
-            yield student, criterion, new, now.comment if now is not None else ""
+            comment = now.comment if now is not None else ""
+            yield {**row, "student": student, "criterion": criterion, "points": new, "comment": comment}
 
 
 def _are_equal(text: str, other: str) -> bool:

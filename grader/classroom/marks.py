@@ -69,8 +69,8 @@ class Marks(NamedTuple):
 
     def add(self, key: Key, rows: Sequence[Mark]) -> None:
         """Add all rows of a student's criterion, in the order of files; raises InputError if they have no order."""
-        newest = self.newest[key] = _newest(rows)
-        counting = _newest([mark for mark in rows if mark.value] or rows)
+        newest, counting = _newest(rows), _newest([mark for mark in rows if mark.value] or rows)
+        self.newest[key] = newest
         if counting.value not in ("", WITHDRAWN):
             self.counting[key] = counting._replace(comment=newest.comment)
         elif not newest.value:
@@ -173,8 +173,6 @@ def _time(text: str) -> str:
 
 def _newest(rows: Sequence[Mark]) -> Mark:
     """Return the newest of some rows; raises InputError if two that differ are."""
-    if len(rows) == 1:
-        return rows[0]
     time = max((not mark.time, mark.time) for mark in rows)[1]
     tied = [mark for mark in rows if mark.time == time]
     by_file = {mark.place.rpartition(":")[0] if time else mark.place: mark for mark in tied}

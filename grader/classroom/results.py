@@ -8,6 +8,7 @@ cut before the next one is appended.
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from json.decoder import scanstring  # type: ignore[attr-defined,unused-ignore]
 from pathlib import Path
 from typing import Any, Self
@@ -28,6 +29,11 @@ class Results:
         self.runs: list[Run] = []
         # A hundred thousand students fit into memory, but not all of their results.
         self._places, self._texts = dict[str, int](), dict[str, int]()
+        with self._whole():
+            self._find(until)
+
+    def _find(self, until: int | None) -> None:
+        """Find the place of each line, up to the end of a run."""
         for line in self._lines():
             for start, places in ((_GRADED, self._places), (_TEXTS, self._texts)):
                 if line.startswith(start):
@@ -38,6 +44,15 @@ class Results:
                 self.runs.append(Run(**values_in(line)))
                 if self.runs[-1].run == until:
                     break
+
+    @contextmanager
+    def _whole(self) -> Iterator[None]:
+        """Read lines; raises InputError if one is not as it was written."""
+        try:
+            yield
+        except (ValueError, TypeError, KeyError, AttributeError):
+            shown = printable_path(self._file)
+            raise InputError(f"{shown} is damaged: delete it, and rerun `grader batch`, which makes it again") from None
 
     def _lines(self) -> Iterator[bytes]:
         """Yield the whole lines, up to one that was not written to its end."""
@@ -68,8 +83,10 @@ class Results:
 
     def each(self, keys: Iterable[str]) -> Iterator[Graded | None]:
         """Yield the newest result of each of some students, None for one without."""
-        found = self._values(self._places, keys)
-        return (Graded(**values) if values else None for values in found)
+        for values in self._values(self._places, keys):
+            with self._whole():
+                found = Graded(**values) if values else None
+            yield found
 
     def of(self, key: str) -> Graded | None:
         """Return the newest result of a student."""
@@ -89,7 +106,9 @@ class Results:
             for key in keys:
                 if key in places:
                     file.seek(places[key])
-                yield values_in(file.readline()) if key in places else {}
+                with self._whole():
+                    values = values_in(file.readline()) if key in places else {}
+                yield values
 
 
 class ResultsWriter:

@@ -1,7 +1,7 @@
 """What a person decides: the items of a class, each a criterion of the students whose answer is the same."""
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
 from grader.classroom.graded import Graded, digest_of
@@ -9,9 +9,11 @@ from grader.classroom.grades import Class
 from grader.classroom.marks import Key, Mark
 from grader.classroom.roster import Student, plain
 from grader.grading.criterion import TOTAL, Criterion
+from grader.text import named
 
 UNMARKED, OLDER = "unmarked", "older"
 STATES = {UNMARKED: "unmarked", "marked": "marked", OLDER: "marked before the submission changed", "": "all"}
+Place = tuple[str, str]  # a criterion and the key of an answer
 
 
 class Member(NamedTuple):
@@ -20,7 +22,12 @@ class Member(NamedTuple):
     student: Student
     graded: Graded
     mark: Mark | None = None
-    number: int | None = None
+    number: int = 0
+
+    @property
+    def label(self) -> str:
+        """The name and key of the student, or the number of an anonymous one."""
+        return f"submission {self.number}" if self.number else named(self.student.key, self.student.name)
 
     @property
     def state(self) -> str:
@@ -29,14 +36,9 @@ class Member(NamedTuple):
             return UNMARKED
         return "marked" if self.mark.submission in ("", self.graded.digest) else OLDER
 
-    @property
-    def order(self) -> tuple[int, str]:
-        """What students are sorted by: it says nothing about the name of an anonymous one."""
-        return self.number or 0, self.student.key
-
 
 class ReviewItem(NamedTuple):
-    """A criterion of the students whose answers are equal: one mark serves all.
+    """A criterion of the students whose answers are equal: one mark serves all. The first student's is shown.
 
     `answer` is the key of the answer, empty without one.
     """
@@ -46,14 +48,9 @@ class ReviewItem(NamedTuple):
     members: tuple[Member, ...]
 
     @property
-    def first(self) -> Member:
-        """The student whose submission is shown."""
-        return self.members[0]
-
-    @property
-    def is_empty_group(self) -> bool:
-        """Whether it has several students without an answer."""
-        return len(self.members) > 1 and not self.answer
+    def place(self) -> Place:
+        """What the item is listed by."""
+        return self.criterion.id, self.answer
 
     @property
     def view(self) -> str:
@@ -79,44 +76,27 @@ class ReviewFilter(NamedTuple):
         )
 
 
-def review_items(book: Class, results: Iterable[Graded], *, is_anonymous: bool = False) -> list[ReviewItem]:
+def review_items(book: Class, *, is_anonymous: bool = False) -> dict[Place, ReviewItem]:
     """Return what needs manual grading, and what else has a mark: in the rubric's order, each criterion by student.
 
     Those without an answer are the last item of a criterion. Unreadable submissions are omitted: they need a fix, not
-    points. So are students with a final mark or an excuse, and criteria that the rubric adjusts.
+    points. So are students with a final mark or an excuse, and criteria that the rubric adjusts. Students of one
+    submission have the same answers. The numbers and the order of anonymous students say nothing about their names.
     """
-    groups: defaultdict[tuple[str, str], list[Member]] = defaultdict(list)
-    numbers = {key: number for number, key in enumerate(sorted(book.keys, key=digest_of), 1)}  # by no name
-    counting, marked = book.marks.counting, defaultdict[str, list[str]](list)
-    for key, criterion in counting:
-        marked[key].append(criterion)
-    for one, answers in _answers(book, results):
-        overridden = {name: one.digest for name in marked[one.student] if name in one.results}
-        for name, answer in {**overridden, **answers}.items() if TOTAL not in marked[one.student] else ():
-            mark = counting.get((one.student, name)) or book.marks.comments.get((one.student, name))
-            student, number = book.student(one.student, one), numbers[one.student] if is_anonymous else None
-            groups[name, answer].append(Member(student, one, mark, number))
-    rows = {row.id: row for row in book.rubric.criteria if row.adjustment is None}
-    items = [
-        ReviewItem(rows[name], answer, tuple(sorted(members, key=lambda one: one.order)))
-        for (name, answer), members in groups.items()
-        if name in rows
-    ]
-    return sorted(items, key=lambda item: (item.criterion.position, not item.answer, item.first.order))
-
-
-def _answers(book: Class, results: Iterable[Graded]) -> Iterator[tuple[Graded, Mapping[str, str]]]:
-    """Yield what can be marked, and the key of each answer; several students of one submission have the same keys."""
+    groups: defaultdict[Place, list[Member]] = defaultdict(list)
+    keys = sorted(book.keys, key=digest_of) if is_anonymous else book.keys
+    order, counting = {key: at for at, key in enumerate(keys, 1)}, book.marks.counting
+    # Several files are a submission named after the student, so digests of members differ, and with them the keys.
     of_files: dict[tuple[int, tuple[str, ...]], Mapping[str, str]] = {}
-    for one in results:
-        if one.verdict != "unreadable" and one.student in book.run.totals:
-            yield one, of_files.setdefault((one.root, one.paths), one.answers)
-
-
-def answers_of(book: Class) -> Mapping[tuple[str, str], Sequence[str]]:
-    """Return the students with each answer, by criterion and the key of the answer."""
-    found: defaultdict[tuple[str, str], list[str]] = defaultdict(list)
-    for one, answers in _answers(book, book.results.all()):
-        for criterion, key in answers.items():
-            found[criterion, key].append(one.student)
-    return found
+    graded = (one for one in book.results.all() if one.verdict != "unreadable" and one.student in book.run.totals)
+    for one in sorted(graded, key=lambda one: order[one.student]):
+        answers = of_files.setdefault((one.root, one.paths), one.answers)
+        student, number = book.student(one.student, one), order[one.student] * is_anonymous
+        for name in one.results if (one.student, TOTAL) not in counting else ():
+            mark = counting.get((one.student, name))
+            if name in answers or mark is not None:
+                member = Member(student, one, mark or book.marks.comments.get((one.student, name)), number)
+                groups[name, answers.get(name, one.digest)].append(member)
+    rows = {row.id: row for row in book.rubric.criteria if row.adjustment is None}
+    items = (ReviewItem(rows[name], answer, (*some,)) for (name, answer), some in groups.items() if name in rows)
+    return {one.place: one for one in sorted(items, key=lambda one: (one.criterion.position, not one.answer))}

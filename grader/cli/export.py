@@ -69,8 +69,6 @@ def export(
 
       grader export moodle --gradebook lab6-grades --feedback feedback.zip
 
-      grader export html --gradebook lab6-grades --output pages
-
     Recipes:
 
       Publish in Canvas: --into and --only, then import the file. Upload the zip of --feedback with "Upload
@@ -78,8 +76,6 @@ def export(
 
       Publish in Moodle: --into, then "Upload grading worksheet". Upload the zip of --feedback with "Upload multiple
       feedback files".
-
-      A zero for a student who submitted nothing: `grader mark STUDENT total 0` first.
     """
     options = locals()  # named like the fields of the request
     from grader.usecases.export import ExportRequest

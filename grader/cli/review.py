@@ -36,8 +36,6 @@ def mark(
 
       grader mark alice answer-floating-link 3.5 --gradebook lab6-grades
 
-      grader mark alice lidar-frame 6 --gradebook lab6-grades --comment "fixed"
-
       grader mark alice lidar-frame - --gradebook lab6-grades
 
       grader mark carol total excused --gradebook lab6-grades --comment "ill"
@@ -82,8 +80,6 @@ def review(
     Examples:
 
       grader review --gradebook lab6-grades --by Kim
-
-      grader review --gradebook lab6-grades --answers answers.toml
 
       grader review --gradebook lab6-grades --section A --anonymous
 

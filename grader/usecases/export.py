@@ -15,13 +15,12 @@ from grader.classroom.lms.feedback_zip import canvas_names, moodle_names, write_
 from grader.classroom.lms.fill import Filled, FillOptions, by_reason, fill
 from grader.classroom.lms.forms import FORMS
 from grader.classroom.lms.owners import ClassGrade
-from grader.classroom.roster import Student
 from grader.classroom.student_grade import Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.errors import GraderError, InputError
 from grader.files.reading import read_capped
 from grader.report.formats import Format
-from grader.text import counted, enumerated, format_points, printable, printable_path
+from grader.text import counted, enumerated, format_points, printable_path
 from grader.usecases.class_figures import warn_of_ignored
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.terminal import Terminal
@@ -73,7 +72,7 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
         terminal.warn("nothing was written, because of --strict: marks do not count, or rows or students are unmatched")
         return b"", ExitCode.FAILED
     if request.feedback is not None:
-        save_bytes(request.feedback, _feedback(request, book, exported.rows, terminal), roots)
+        save_bytes(request.feedback, _feedback(request, book, exported.numbers, terminal), roots)
     if request.output is None:
         return exported.data, ExitCode.PASSED
     save_bytes(request.output, exported.data, roots)
@@ -83,30 +82,27 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
 def _exported(request: ExportRequest, book: Class, terminal: Terminal) -> Filled:
     """Return the exported file, empty if only feedback is asked for."""
     if request.target == "csv":
-        table = write_table(*grade_table(book, book, is_exported=True)).encode()
-        return Filled(_BOM * request.excel + table)
+        return Filled(_BOM * request.excel + write_table(*grade_table(book, book, is_exported=True)).encode())
     if request.target == "json":
         from grader.report.class_json import render_class_json
 
         return Filled(render_class_json(book).encode())
     if request.into is None:
         return Filled()
-    form, lab = FORMS[request.target], (book.rubric.title, book.rubric.id)
-    shown = printable_path(request.into)
+    form, lab, shown = FORMS[request.target], (book.rubric.title, book.rubric.id), printable_path(request.into)
     options = FillOptions(_maximum(book), lab, request.column, request.any_maximum, request.only, shown)
     grades = [_class_grade(book, one, request, has_comment="comment" in form.columns) for one in book]
     filled = fill(read_capped(request.into, SIZE_LIMIT, advice=""), grades, form, options)
     older = ((Reason.OLDER_MARKS, one.student.key, ", ".join(one.older)) for one in book if one.older)
-    for line in [*filled.lines, *map(printable, by_reason(older))]:
+    for line in [*filled.lines, *by_reason(older)]:
         terminal.warn(line)
     return filled
 
 
 def _class_grade(book: Class, grade: StudentGrade, request: ExportRequest, *, has_comment: bool) -> ClassGrade:
     """Return a grade as it is published; points that need manual grading count as zero with --pending-as-zero."""
-    is_only_pending = grade.pending and grade.why_open.endswith("manual grading")
-    is_published = not grade.why_open or (request.pending_as_zero and is_only_pending)
-    total = grade.total if is_published and not grade.is_excused else None
+    is_zero = request.pending_as_zero and grade.pending and grade.why_open.endswith("manual grading")
+    total = grade.total if is_zero else grade.published
     comment = _comment(book, grade, total) if has_comment and total is not None else ""
     return ClassGrade(grade.student, total, grade.is_excused, grade.why_open, comment)
 
@@ -125,36 +121,33 @@ def _maximum(book: Class) -> Decimal:
     return sum((row.maximum for row in book.criteria), Decimal(0))
 
 
-def _feedback(request: ExportRequest, book: Class, rows: Mapping[str, Student], terminal: Terminal) -> bytes:
-    """Return the zip of the reports, named as the LMS gives them to its students; `rows` are those of --into."""
+def _feedback(request: ExportRequest, book: Class, numbers: Mapping[str, str], terminal: Terminal) -> bytes:
+    """Return the zip of the reports, named as the LMS gives them to its students; `numbers` are of --into."""
     from grader.usecases import class_reports
 
     kind = Format(request.feedback_format)
-    name = f"report.{kind.ending}"
-    grades = [one for one in book if one.graded is not None or one.has_final]
-    if request.target == "moodle":
+    name, grades = f"report.{kind.ending}", [one for one in book if one.graded is not None or one.has_final]
+    if request.target == "canvas":
+        paths, without = canvas_names([(one.student, one.graded.paths if one.graded else ()) for one in grades], name)
+    else:
         students = [one.student for one in grades]
         if request.into is not None:
-            students = [one._replace(moodle=rows[one.key].moodle if one.key in rows else "") for one in students]
+            students = [one._replace(moodle=numbers.get(one.key, "")) for one in students]
         paths, without = moodle_names(students, name)
-    else:
-        submitted = [(one.student, one.graded.paths if one.graded is not None else ()) for one in grades]
-        paths, without = canvas_names(submitted, name)
     files = {key: str(number) for number, key in enumerate(paths)}
     with TemporaryDirectory() as folder:
         run = class_reports.ReportRun(book.folder, Path(folder), (kind,))
         without |= class_reports.render_reports(run, files, terminal)
-        written = ((key, Path(folder, f"{file}.{kind.ending}")) for key, file in files.items() if key not in without)
-        reports = {key: path.read_bytes() for key, path in written}
-    zipped, left = write_feedback(reports, paths, name)
+        written = {key: Path(folder, f"{file}.{kind.ending}") for key, file in files.items() if key not in without}
+        zipped, left = write_feedback({key: path.read_bytes() for key, path in written.items()}, paths, name)
     for line in by_reason(("without feedback", key, why) for key, why in {**without, **left}.items()):
-        terminal.warn(printable(line))
-    terminal.warn(f"{counted(len(reports) - len(left), 'report')} in {printable_path(request.feedback or Path())}")
+        terminal.warn(line)
+    terminal.warn(f"{counted(len(written) - len(left), 'report')} in {printable_path(request.feedback or Path())}")
     return zipped
 
 
 def _refuse_options(request: ExportRequest) -> None:
-    """Raise GraderError for an option that the target does not take, and for files that must not be replaced."""
+    """Raise GraderError for an option that the target does not take, and for a file that must not be replaced."""
     into, output, feedback = request.into, request.output, request.feedback
     for option, given in {"--into": into, "--feedback": feedback, "--excel": request.excel}.items():
         if given and request.target not in _TARGETS[option]:
@@ -162,10 +155,8 @@ def _refuse_options(request: ExportRequest) -> None:
     if request.target in FORMS and into is None and (output or not feedback):
         raise GraderError(f"export {request.target} fills in a file that the LMS exported: give it with --into")
     if into is not None and (is_stdout(into) if output is None else is_same_file(output, into)):
-        raise GraderError(
-            f"cannot write {printable_path(into)}: --into reads it, and rows without a grade would be lost; "
-            "choose another file"
-        )
+        why = "--into reads it, and rows without a grade would be lost"
+        raise GraderError(f"cannot write {printable_path(into)}: {why}; choose another file")
     if feedback is not None and (feedback.is_symlink() or (feedback.exists() and not is_zipfile(feedback))):
         shown = printable_path(feedback)
         raise InputError(f"cannot write {shown}: it is a symlink, or exists and is no zip; name another file")

@@ -5,6 +5,7 @@ host name, and only JSON from its own origin. It answers one request at a time, 
 """
 
 import hmac
+import re
 import secrets
 from collections.abc import Callable
 from contextlib import suppress
@@ -36,12 +37,11 @@ SANDBOX = "sandbox; default-src 'none'"  # for everything that is not a page
 
 
 class Response(NamedTuple):
-    """A response. `location` is the path of a redirect, after the secret."""
+    """A response."""
 
     body: bytes
     media_type: str = TEXT
     status: HTTPStatus = HTTPStatus.OK
-    location: str | None = None
     policy: str = SANDBOX
 
 
@@ -66,9 +66,8 @@ class LocalServer(ThreadingTCPServer):
         self.token = secrets.token_urlsafe(_TOKEN_BYTES)
         try:
             super().__init__((HOST, port), _Handler)
-        except (OSError, OverflowError) as error:
-            reason = error.strerror if isinstance(error, OSError) else str(error)
-            raise InputError(f"cannot listen on port {port} of {HOST}: {reason}; name another --port") from None
+        except OSError as error:
+            raise InputError(f"cannot listen on port {port} of {HOST}: {error.strerror}; name another --port") from None
         self.port = int(self.server_address[1])
         self.hosts = tuple(f"{name}:{self.port}" for name in (HOST, "localhost"))
         self.url = f"http://{self.hosts[0]}/{self.token}/"
@@ -108,19 +107,10 @@ class _Handler(BaseHTTPRequestHandler):
     timeout, policy = PATIENCE, SANDBOX
 
     def do_GET(self) -> None:
-        """Answer a request that changes nothing; HEAD without the body."""
-        self._serve(has_body=False)
-
-    do_HEAD = do_GET  # noqa: N815  the name of the base class
-
-    def do_POST(self) -> None:
-        """Answer a request from the page."""
-        self._serve(has_body=True)
-
-    def _serve(self, *, has_body: bool) -> None:
+        """Answer a request: one with a body is from the page, which may change something."""
         try:
             path = self._path()
-            body = self._body() if has_body else None
+            body = self._body() if self.command == "POST" else None
         except _RefusedError as error:
             self.send_error(*error.args)
             return
@@ -129,11 +119,10 @@ class _Handler(BaseHTTPRequestHandler):
         self.send_response(response.status)
         self.send_header("Content-Type", response.media_type)
         self.send_header("Content-Length", str(len(response.body)))
-        if response.location is not None:
-            self.send_header("Location", f"/{self.server.token}/{response.location}")
         self.end_headers()
-        if self.command != "HEAD":
-            self.wfile.write(response.body)
+        self.wfile.write(response.body)
+
+    do_POST = do_GET  # noqa: N815  the name of the base class
 
     def _path(self) -> tuple[str, ...]:
         """Return the path after the secret."""
@@ -154,7 +143,7 @@ class _Handler(BaseHTTPRequestHandler):
         if self.headers.get_content_type() != "application/json":
             raise _RefusedError(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "the content type must be application/json")
         length = self.headers.get("Content-Length", "")
-        if "Transfer-Encoding" in self.headers or not (length.isascii() and length.isdigit()):
+        if not re.fullmatch("[0-9]+", length):
             raise _RefusedError(HTTPStatus.LENGTH_REQUIRED, "the header Content-Length is missing")
         if len(length) > 9 or int(length) > MAX_BODY:
             raise _RefusedError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"at most {MAX_BODY} bytes")

@@ -10,17 +10,17 @@ from grader.classroom import folder as names
 from grader.classroom.grades import Class
 from grader.classroom.mark_files import COLUMNS, SURPLUS, WITHDRAWN, Cells, mark_file
 from grader.classroom.mark_import import MarkImport
-from grader.classroom.marks import Key, Mark, append_marks
+from grader.classroom.marks import Mark, append_marks
+from grader.classroom.review_items import review_items
 from grader.classroom.student_grade import Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import DEADLINE, TOTAL
-from grader.text import by_name, counted_points, format_points, named, people_text, printable, printable_path
+from grader.text import by_name, counted_points, format_points, named, printable, printable_path
 from grader.usecases.grade_class import write_grades
 from grader.usecases.terminal import Warn
 
-_MAX_NAMED = 10
 _EMPTY = dict.fromkeys((*COLUMNS, SURPLUS), "")
 
 
@@ -33,10 +33,8 @@ def give_mark(gradebook: Path, row: Cells, warn: Warn) -> str:
         raise InputError("name a STUDENT and a CRITERION, and give POINTS or --comment")
     book = Class(gradebook)
     [mark] = _reader(book).marks_in({**_EMPTY, **row})
-    key = mark.student, mark.criterion
-    before = book.marks.counting.get(key) or book.marks.comments.get(key)
     now = _append(book, [mark], row["by"])
-    for line in _warnings(now, mark, before):
+    for line in _warnings(book, mark):
         warn(printable(line))
     grade = now.grade(mark.student)
     late = f"; {grade.late.reason}" if mark.criterion == DEADLINE and grade.late.reason else ""
@@ -58,10 +56,9 @@ def mark_missing(gradebook: Path, row: Cells) -> str:
 
 def import_marks(gradebook: Path, file: Path, by: str) -> str:
     """Append the marks in a CSV file; return how many. Raises InputError, and records none, if a row is wrong."""
-    from grader.classroom.review_items import answers_of
-
     book = Class(gradebook)
-    reader = _reader(book)._replace(answers=answers_of(book))
+    answers = {place: [one.student.key for one in item.members] for place, item in review_items(book).items()}
+    reader = _reader(book)._replace(answers=answers)
     new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file))
     _append(book, new, by)
     return f"{printable_path(file)}: {len(new)} recorded, {same} the same as before\n"
@@ -78,35 +75,24 @@ def _append(book: Class, marks: Iterable[Mark], by: str) -> Class:
     new = [one._replace(by=one.by or by, time=book.marks.next_time((one.student, one.criterion))) for one in marks]
     with suppress(OSError, KeyError):  # of an account without a name: the files of two gradebooks can be merged
         by = by or getuser()
-    append_marks(mark_file(book.folder / names.MARKS, by), new)
+    if new:
+        append_marks(mark_file(book.folder / names.MARKS, by), new)
     now = Class(book.folder)
     write_grades(now)
     return now
 
 
-def _warnings(book: Class, mark: Mark, before: Mark | None) -> Iterator[str]:
-    """Yield what a mark replaced, that it does not count, and whom else the same submission counts for."""
-    criterion = mark.criterion
-    if before is not None:
-        what = "mark" if before.value else "comment"
-        words = f"{before.value}{by_name(before.by)}: {' '.join(before.comment.split())}".strip(": ")
-        yield f"this replaces the {what} of {criterion} in {before.place}: {words}"
+def _warnings(before: Class, mark: Mark) -> Iterator[str]:
+    """Yield what a mark replaced, and that it does not count."""
+    criterion, marks = mark.criterion, before.marks
+    if old := marks.counting.get((mark.student, criterion)) or marks.comments.get((mark.student, criterion)):
+        what = "mark" if old.value else "comment"
+        words = f"{old.value}{by_name(old.by)}: {' '.join(old.comment.split())}".strip(": ")
+        yield f"this replaces the {what} of {criterion} in {old.place}: {words}"
     elif mark.value == WITHDRAWN:
         yield f"there was no mark of {criterion} to withdraw"
-    if any(row.id == criterion and row.adjustment is not None for row in book.rubric.criteria):
+    if any(row.id == criterion and row.adjustment is not None for row in before.rubric.criteria):
         yield f"{criterion} is corrected after grading, by [adjust] in the rubric: its marks do not count"
-    if criterion not in (TOTAL, DEADLINE) and (others := [*_unmarked_members(book, (mark.student, criterion))]):
-        yield f"the same submission counts for {people_text(others, _MAX_NAMED)}: mark them as well"
-
-
-def _unmarked_members(book: Class, key: Key) -> Iterator[str]:
-    """Yield the other students of the same submission whose mark of a criterion is not the same."""
-    own, mark = book.results.of(key[0]), book.marks.counting.get(key)
-    for other in book.results.all() if own is not None else ():
-        if other.student != key[0] and own is not None and (other.root, other.paths) == (own.root, own.paths):
-            theirs = book.marks.counting.get((other.student, key[1]))
-            if (theirs.value if theirs else "") != (mark.value if mark else ""):
-                yield named(other.student, book.student(other.student, other).name)
 
 
 def _grade_text(book: Class, grade: StudentGrade) -> str:

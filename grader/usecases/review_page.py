@@ -3,13 +3,13 @@
 import json
 import re
 from bisect import bisect
-from collections.abc import Mapping
 from contextlib import suppress
 from http import HTTPStatus
 from typing import Any
 
 from grader.classroom.grades import Class
-from grader.classroom.review_items import STATES, ReviewFilter, ReviewItem
+from grader.classroom.mark_files import is_open_in_libreoffice
+from grader.classroom.review_items import STATES, ReviewFilter
 from grader.documents.pictures import EmbeddedPicture
 from grader.errors import GraderError
 from grader.report.pages import review as pages
@@ -20,11 +20,9 @@ from grader.usecases.review_pictures import open_item
 from grader.usecases.review_session import ReviewSession
 from grader.usecases.terminal import Terminal
 
-_HTML, _JSON = "text/html; charset=utf-8", "application/json"
 _PAGE_POLICY = "frame-ancestors 'none'"  # the page itself contains the rest
 _PDF_POLICY = "default-src 'none'; frame-ancestors 'self'"
 _CHANGED = "Not saved: this item has changed since it was shown. Look at it again."
-_NO_PAGE = Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
 
 
 class ReviewPage:
@@ -35,119 +33,105 @@ class ReviewPage:
 
     def __call__(self, path: tuple[str, ...], body: bytes | None) -> Response:
         """Return the response to a request; errors of the gradebook become messages."""
-        session = self.session
+        at = self._position(path[0])
         try:
-            session.refresh()
-            return self._act(path, body) if body is not None else self._page(path)
+            self.session.refresh()
+            return self._page(at, path) if body is None else self._act(at, body)
         except GraderError as error:
             if body is not None:
-                return _json({"error": str(error)})
-            following = session.following(self._position(path[0]))
-            return _html(pages.error_page(str(error), self._address(following)), HTTPStatus.SERVICE_UNAVAILABLE)
+                return _json(error=str(error))
+            page = pages.error_page(str(error), self.address(self.session.following(at)))
+            return _html(page, HTTPStatus.SERVICE_UNAVAILABLE)
 
-    def _page(self, path: tuple[str, ...]) -> Response:
-        session = self.session
+    def _page(self, at: int, path: tuple[str, ...]) -> Response:
+        session, book = self.session, self.session.book
+        is_item = 0 <= at < len(session.places)
         match path:
-            case ("",):
-                return Response(b"", status=HTTPStatus.FOUND, location=self._address(session.position))
             case ("end",):
                 given = sum(mark.points is not None for mark in session.own.values())
-                return _html(pages.end_page(given, session.left, self._place(), printable_path(session.folder)))
-            case (number, *rest) if (position := self._position(number)) >= 0:
-                session.position = position
-                return self._of_item(session.item_at(position), rest)
-        return _NO_PAGE
-
-    def _of_item(self, item: ReviewItem, rest: list[str]) -> Response:
-        """Return the page of the current item, or one of its pictures."""
-        session, book = self.session, self.session.book
-        match rest:
-            case []:
-                criterion = session.models.get(item.criterion.id, item.criterion)
-                return _html(pages.item_page(item, open_item(book, item), criterion, self._place()))
-            case ["picture", which]:
-                found = {str(at): one for at, one in enumerate(open_item(book, item).pictures, 1)}.get(which)
+                return _html(pages.end_page(given, session.left, self._place(at), printable_path(session.folder)))
+            case (_,) if is_item:
+                item = session.item_at(at)
+                return _html(pages.item_page(item, open_item(book, item), self._place(at)))
+            case (_, "picture", number) if is_item:
+                pictures = enumerate(open_item(book, session.item_at(at)).pictures, 1)
+                found = {str(which): one for which, one in pictures}.get(number)
                 if isinstance(found, EmbeddedPicture):
                     return Response(found.data, found.kind.media_type, policy=SANDBOX if found.height else _PDF_POLICY)
-        return _NO_PAGE
+        return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
 
-    def _place(self) -> pages.Place:
+    def _place(self, at: int) -> dict[str, Any]:
         session, listed = self.session, self.session.listed
-        values = (
-            {"": "all questions", **{name: name for name, _ in session.items}},
-            {"": "all sections", **{name: name for name in sorted(session.sections.values())}},
-            STATES,
-        )
-        filters = [*zip(ReviewFilter._fields, ("Question", "Section", "Items"), values, session.filter, strict=True)]
-        return pages.Place(bisect(listed, session.position), len(listed), self._address(session.position), filters)
+        questions = [*dict.fromkeys(criterion for criterion, _ in session.items)]
+        filters = pages.filters(session.filter, questions, sorted(session.sections.values()))
+        return {"number": bisect(listed, at), "total": len(listed), "address": self.address(at), "filters": filters}
 
-    def _act(self, path: tuple[str, ...], body: bytes) -> Response:
+    def _act(self, at: int, body: bytes) -> Response:
         """Execute an action of the page."""
-        session = self.session
-        at = len(session.places) if path == ("end",) else self._position("/".join(path))
-        match _read(body) if at >= 0 else None:
+        session, sent = self.session, None
+        with suppress(ValueError, RecursionError):
+            sent = json.loads(body)
+        match sent if at >= 0 else None:
             case {"do": "mark", "points": str(points), "comment": str(comment), "shown": str(shown)}:
-                session.position = at
-                return self._mark(points, comment.strip(), shown)
+                return self._mark(at, points, comment.strip(), shown)
             case {"do": "filter", "criterion": str(criterion), "section": str(section), "state": str(state)} if (
                 state in STATES
             ):
                 session.show_only(ReviewFilter(criterion, section, state))
+                at = session.following()
             case {"do": "again"}:
                 session.show_only(session.filter)
+                at = session.following()
             case {"do": "back"}:
-                session.position = session.previous(at)
+                at = session.previous(at)
             case {"do": "next"}:
-                session.position = session.following(at)
+                at = session.following(at)
             case _:
-                return _json({"error": "this request is not from the page"}, HTTPStatus.BAD_REQUEST)
-        return _json({"go": self._address(session.position)})
+                return _json(HTTPStatus.BAD_REQUEST, error="this request is not from the page")
+        return _json(go=self.address(at))
 
-    def _mark(self, points: str, comment: str, shown: str) -> Response:
+    def _mark(self, at: int, points: str, comment: str, shown: str) -> Response:
         """Save a mark, or return those of others that it would replace."""
         session = self.session
-        open_item(session.book, session.item_at(session.position))  # what has moved or changed cannot be marked
-        replaced = session.mark(points, comment, shown)
+        open_item(session.book, session.item_at(at))  # what has moved or changed cannot be marked
+        replaced = session.mark(at, points, comment, shown)
         if replaced:
             more = f" (and {counted(len(replaced) - 1, 'more mark')})" if len(replaced) > 1 else ""
-            return _json({"newer": pages.mark_text(replaced[0]) + more})
-        answer = {"error": _CHANGED} if replaced is None else {}
-        session.position = session.position if answer else session.following(session.position)
-        return _json({**answer, "go": self._address(session.position)})
+            return _json(newer=pages.mark_text(replaced[0]) + more)
+        if replaced is None:
+            return _json(error=_CHANGED, go=self.address(at))
+        return _json(go=self.address(session.following(at)))
 
-    def _address(self, position: int) -> str:
-        return str(position + 1) if position < len(self.session.places) else "end"
+    def address(self, at: int) -> str:
+        """Return the address of an item below that of the server."""
+        return str(at + 1) if at < len(self.session.places) else "end"
 
-    def _position(self, number: str) -> int:
-        """Return the position of an item; -1 if there is none."""
-        is_item = re.fullmatch("[1-9][0-9]{0,7}", number) and int(number) <= len(self.session.places)
-        return int(number) - 1 if is_item else -1
-
-
-def _read(body: bytes) -> Any:
-    try:
-        return json.loads(body)
-    except (ValueError, RecursionError):
-        return None
+    def _position(self, address: str) -> int:
+        """Return the position of an item, beyond the last one for the end; -1 if there is none."""
+        count = len(self.session.places)
+        at = int(address) if re.fullmatch("[1-9][0-9]{0,7}", address) else 0
+        return count if address == "end" else at - 1 if at <= count else -1
 
 
-def _html(page: str, status: HTTPStatus = HTTPStatus.OK, policy: str = _PAGE_POLICY) -> Response:
-    return Response(page.encode("utf-8", "backslashreplace"), _HTML, status, policy=policy)
+def _html(page: str, status: HTTPStatus = HTTPStatus.OK) -> Response:
+    return Response(page.encode("utf-8", "backslashreplace"), "text/html; charset=utf-8", status, policy=_PAGE_POLICY)
 
 
-def _json(answer: Mapping[str, str], status: HTTPStatus = HTTPStatus.OK) -> Response:
-    return Response(json.dumps(answer).encode(), _JSON, status)
+def _json(status: HTTPStatus = HTTPStatus.OK, **answer: str) -> Response:
+    return Response(json.dumps(answer).encode(), "application/json", status)
 
 
 def review_in_browser(session: ReviewSession, port: int, terminal: Terminal) -> str:
     """Serve the review page until Ctrl-C, write the grades, and return a summary. Raises InputError."""
     if not session.places:
         return "nothing needs manual grading\n"
-    with LocalServer(ReviewPage(session), port) as server:
-        for warning in session.warnings:
-            terminal.warn(warning)
+    page = ReviewPage(session)
+    with LocalServer(page, port) as server:
+        if is_open_in_libreoffice(session.file):
+            shown = printable_path(session.file)
+            terminal.warn(f"{shown} is open in LibreOffice: close it, because saving it there would remove new marks")
         with suppress(KeyboardInterrupt):
-            terminal.print(f"{server.url}\n")
+            terminal.print(f"{server.url}{page.address(session.following())}\n")
             terminal.warn("open this address in a browser on this machine; Ctrl-C ends the review, all marks are kept")
             server.serve_forever()
     write_grades(Class(session.folder))

@@ -1,13 +1,12 @@
 """A review: one person goes through the items of a class. Each mark is saved immediately."""
 
-from collections.abc import Iterable
 from pathlib import Path
 
 from grader.classroom import folder as names
 from grader.classroom.grades import Class
-from grader.classroom.mark_files import is_open_in_libreoffice, mark_file
-from grader.classroom.marks import Key, Mark, append_marks, mark_in, read_marks
-from grader.classroom.review_items import Member, ReviewFilter, ReviewItem, review_items
+from grader.classroom.mark_files import mark_file
+from grader.classroom.marks import Key, Mark, append_marks, mark_in
+from grader.classroom.review_items import Place, ReviewFilter, ReviewItem, review_items
 from grader.classroom.roster import plain
 from grader.classroom.settings import CLASS_FILE
 from grader.classroom.typed_names import criterion_of
@@ -18,13 +17,14 @@ from grader.text import enumerated, printable_path
 CONFIRMED = "!"  # ends what the page sends to replace marks that it was asked about
 _MAX_NAMED = 5
 _GONE = "this answer has changed, or its students have final marks: go to the next item"
+_READ = (names.RESULTS, CLASS_FILE, names.ROSTER, f"{names.RUBRIC}/**/*.toml", f"{names.MARKS}/*")
 
 
 class ReviewSession:
-    """The items of a review, which keep their positions, and the place among them.
+    """The items of a review, which keep their positions.
 
     `by` is the name that reports show, `answers` the file of the model answers. `own` are the newest marks that the
-    review has given, `models` the criteria with their model answers.
+    review has given.
     """
 
     def __init__(
@@ -36,35 +36,32 @@ class ReviewSession:
         *,
         is_anonymous: bool = False,
     ) -> None:
-        self.folder, self.by, self.is_anonymous = folder, by, is_anonymous
+        self.folder, self.by, self.answers, self.is_anonymous = folder, by, answers, is_anonymous
         self.file = mark_file(folder / names.MARKS, by)
-        self.own, self.position = dict[Key, Mark](), 0
+        self.own = dict[Key, Mark]()
         self._kept = set[Key]()  # marked since the filter was chosen: these stay in the list
-        self.places: tuple[tuple[str, str], ...] = ()  # a criterion and an answer
-        self._read: tuple[object, object] = None, None  # the stamps of the files
+        self.places: tuple[Place, ...] = ()
+        self._stamps: object = None
         self.refresh()
-        rubric = load_with_answers(str(folder / self.book.settings.rubric), answers)
-        self.models = {row.id: row for row in rubric.criteria}
-        self._lacks_answers = bool(rubric.answers) and answers is None
-        students = self.book.roster.students if self.book.roster is not None else ()
-        self.sections = {plain(one.section): one.section for one in students if one.section}
         self.show_only(shown)
 
     def refresh(self) -> None:
         """Read the gradebook again if it has changed. Raises InputError."""
-        inputs, marks = (names.RESULTS, CLASS_FILE, names.ROSTER, f"{names.RUBRIC}/**/*.toml"), (f"{names.MARKS}/*",)
-        read = _stamps(self.folder, inputs), _stamps(self.folder, marks)
-        if read == self._read:
-            return
-        if read[0] != self._read[0]:
+        found = ((path, path.stat()) for pattern in _READ for path in self.folder.glob(pattern))
+        stamps = [(path, status.st_ino, status.st_size, status.st_mtime_ns) for path, status in found]
+        if stamps != self._stamps:
             self.book = Class(self.folder)
-            self._results = [one._replace(work={}) for one in self.book.results.all()]
-        else:
-            self.book.marks = read_marks(self.folder / names.MARKS, self.book.keys, self.book.rubric)
-        items = review_items(self.book, self._results, is_anonymous=self.is_anonymous)
-        self.items = {(item.criterion.id, item.answer): item for item in items}
-        self.places = tuple(dict.fromkeys((*self.places, *self.items)))
-        self._read = read
+            rubric = str(self.folder / self.book.settings.rubric)
+            self.book.rubric = load_with_answers(rubric, self.answers)
+            self.items = review_items(self.book, is_anonymous=self.is_anonymous)
+            self.places = tuple(dict.fromkeys((*self.places, *self.items)))
+            self._stamps = stamps
+
+    @property
+    def sections(self) -> dict[str, str]:
+        """The sections of the roster, by their names without differences of spelling."""
+        students = self.book.roster.students if self.book.roster is not None else ()
+        return {plain(one.section): one.section for one in students if one.section}
 
     @property
     def left(self) -> int:
@@ -80,13 +77,13 @@ class ReviewSession:
 
     def item_at(self, at: int) -> ReviewItem:
         """Return an item with the students that are shown, with others if none is. Raises InputError if it is gone."""
-        item = self.items.get(self.places[at]) if at < len(self.places) else None
+        item = self.items.get(self.places[at])
         if item is None:
             raise InputError(_GONE)
-        of_section = self.filter._replace(state="", criterion="").members(item)
+        of_section = ReviewFilter("", self.filter.section, "").members(item)
         return item._replace(members=self.filter.members(item, self._kept) or of_section or item.members)
 
-    def following(self, position: int) -> int:
+    def following(self, position: int = -1) -> int:
         """Return the position of the next item that is shown, beyond the last one at the end."""
         return next((at for at in self.listed if at > position), len(self.places))
 
@@ -95,46 +92,44 @@ class ReviewSession:
         return max((at for at in self.listed if at < position), default=position)
 
     def show_only(self, wanted: ReviewFilter) -> None:
-        """Show the items that a filter lets through, from the first one. Raises InputError."""
+        """Show the items that a filter lets through. Raises InputError."""
+        sections = self.sections
         if wanted.criterion:
             criterion_of(self.book.rubric, wanted.criterion)
-        if wanted.section and plain(wanted.section) not in self.sections:
-            known = enumerated([*map(repr, sorted(self.sections.values()))], _MAX_NAMED)
-            raise InputError(f"no student has the section {wanted.section!r} in the roster; it has {known or 'none'}")
-        self.filter = wanted._replace(section=self.sections.get(plain(wanted.section), ""))
+        if wanted.section and plain(wanted.section) not in sections:
+            known = enumerated([*map(repr, sorted(sections.values()))], _MAX_NAMED) or "none"
+            raise InputError(f"no student has the section {wanted.section!r} in the roster; it has {known}")
+        self.filter = wanted._replace(section=sections.get(plain(wanted.section), ""))
         self._kept.clear()
-        self.position = self.following(-1)
 
-    def mark(self, points: str, comment: str, shown: str) -> list[Mark] | None:
-        """Append a mark for each student of the current item; `-` as points withdraws marks.
+    def mark(self, at: int, points: str, comment: str, shown: str) -> list[Mark] | None:
+        """Append a mark for each student of an item; `-` as points withdraws marks.
 
         `shown` is the item's view that the person saw: without effect, returns None if it is another one. Returns the
         marks of others that would be replaced; nothing is saved then, unless `shown` ends with CONFIRMED. Raises
         InputError.
         """
-        item = self.item_at(self.position)
+        item = self.item_at(at)
         self._check_rows()
         if shown.removesuffix(CONFIRMED) != item.view:
             return None
-        new = [self._new_mark(one, item, points, comment) for one in item.members]
+        if not points.strip():
+            raise InputError("points are missing")
+        cells = {"time": "", "by": self.by, "points": points.strip(), "comment": comment, "": ""}
+        new = dict[Key, Mark]()
+        for one in item.members:
+            key = one.student.key, item.criterion.id
+            mark = mark_in({**cells, "submission": one.graded.digest}, key, item.criterion.points, "")
+            new[key] = mark._replace(time=self.book.marks.next_time(key))
         replaced = [one.mark for one in item.members if one.mark is not None and one.mark.points is not None]
         others = [mark for mark in replaced if mark.by != self.by]
         if others and not shown.endswith(CONFIRMED):
             return others
-        append_marks(self.file, new)
-        given = {(mark.student, mark.criterion): mark for mark in new}
-        self.own |= given
-        self._kept |= given.keys()
+        append_marks(self.file, new.values())
+        self.own |= new
+        self._kept |= new.keys()
         self.refresh()
         return []
-
-    def _new_mark(self, one: Member, item: ReviewItem, points: str, comment: str) -> Mark:
-        if not points.strip():
-            raise InputError("points are missing")
-        key, digest = (one.student.key, item.criterion.id), one.graded.digest
-        cells = {"time": "", "by": self.by, "points": points.strip(), "comment": comment, "submission": digest}
-        mark = mark_in({**cells, "": ""}, key, item.criterion.points, "")
-        return mark._replace(time=self.book.marks.next_time(key))
 
     def _check_rows(self) -> None:
         """Raise InputError, once, if rows that this review wrote are no longer in the file."""
@@ -146,16 +141,3 @@ class ReviewSession:
             shown = printable_path(Path(names.MARKS, self.file.name))
             why = f"rows of this review are no longer in {shown}, which another program has replaced"
             raise InputError(f"Not saved: {why}: {enumerated(rows, _MAX_NAMED)}. Save again to go on without them.")
-
-    @property
-    def warnings(self) -> list[str]:
-        """What to say at the start: no model answers are shown; LibreOffice has the file of marks open."""
-        shown = printable_path(self.file)
-        loss = f"{shown} is open in LibreOffice: close it, because saving it there would remove new marks"
-        answers = "no model answers are shown: name their file with --answers"
-        return [answers] * self._lacks_answers + [loss] * is_open_in_libreoffice(self.file)
-
-
-def _stamps(folder: Path, patterns: Iterable[str]) -> list[tuple[Path, int, int, int]]:
-    found = ((path, path.stat()) for pattern in patterns for path in folder.glob(pattern))
-    return [(path, status.st_ino, status.st_size, status.st_mtime_ns) for path, status in found]

@@ -114,7 +114,7 @@ def press(page: "Page", keys: str, then: str = "") -> None:
 
 def test_ten_items_by_keys_alone(review: Review, open_page: Open, book: Path) -> None:
     """All are in the file: typed points, all, half, none, comments, back, another mark, a withdrawn one."""
-    page = open_page(review.url).page
+    page = open_page(f"{review.url}1").page
     press(page, "'3.5' c 'the roots are missing' Enter", "2")
     press(page, "f Enter", "3")
     press(page, "h c 'half of it' Enter", "4")
@@ -193,7 +193,7 @@ def test_hostile_text_stays_text(open_page: Open, hostile: Path) -> None:
 
 def test_somebody_else_marks_meanwhile(review: Review, open_page: Open, book: Path) -> None:
     """The page shows the newer mark, and the person keeps or replaces it."""
-    page = open_page(review.url).page
+    page = open_page(f"{review.url}1").page
     for key, name in (("ash", "1"), ("birch", "2")):
         done = grader("mark", key, "essay", "1", "--by", "Lee", "--comment", "<b>seen</b>", "--gradebook", book)
         assert done.returncode == 0
@@ -211,7 +211,7 @@ def test_somebody_else_marks_meanwhile(review: Review, open_page: Open, book: Pa
 
 def test_mistakes_are_said_and_nothing_is_lost(review: Review, open_page: Open, book: Path) -> None:
     """Invalid points, leaving what is not saved, also if it was changed after the warning, and the help."""
-    page = open_page(review.url).page
+    page = open_page(f"{review.url}1").page
     error = page.locator("#error")
     for typed, why in (("", "Enter the points first."), ("9", "essay is worth 0 to 4 points, not 9")):
         press(page, f"{typed} Enter")
@@ -252,7 +252,7 @@ def test_fast_typing_saves_every_mark_where_it_belongs(open_page: Open, tmp_path
     book = graded_in(top, "id\n" + "".join(f"s{number:03}\n" for number in range(200)))
     wanted = [Decimal(number % 41) / 10 for number in range(200)]
     with running(book, "essay") as review:
-        page = open_page(review.url).page
+        page = open_page(f"{review.url}1").page
         page.keyboard.type("".join(f"{points}\n" for points in wanted), delay=10)
         page.wait_for_url("**/end")
     assert [(key, float(points)) for key, _, points, _ in marks_in(book)] == [
@@ -262,7 +262,7 @@ def test_fast_typing_saves_every_mark_where_it_belongs(open_page: Open, tmp_path
 
 def test_keys_after_a_refused_mark_are_discarded(review: Review, open_page: Open, book: Path) -> None:
     """Keys typed for the next item are discarded if it is not shown: the page says so, and nothing is saved for either item."""
-    page = open_page(review.url).page
+    page = open_page(f"{review.url}1").page
     held: list[Any] = []  # the answer to the first mark comes after all keys
     page.route("**/1", lambda route: route.continue_() if held else held.append(route))
     page.keyboard.type("9\n2\n")
@@ -281,7 +281,7 @@ def test_keys_after_a_refused_mark_are_discarded(review: Review, open_page: Open
 
 def test_an_item_that_has_changed_is_not_marked(review: Review, open_page: Open, book: Path) -> None:
     """A mark of a page that shows another state of the submission is refused, and the page shows the new one."""
-    page = open_page(review.url).page
+    page = open_page(f"{review.url}1").page
     shown = review.seen("1")["shown"]
     page.route("**/1", lambda route: route.continue_(post_data=str(route.request.post_data or "").replace(shown, "0")))
     press(page, "2 Enter")
@@ -295,7 +295,7 @@ def test_an_item_that_has_changed_is_not_marked(review: Review, open_page: Open,
 def test_deductions(open_page: Open, chosen: Path) -> None:
     """A key gives the points and the comment, and takes both back; free comments stay."""
     with running(chosen, "essay") as review:
-        page = open_page(review.url).page
+        page = open_page(f"{review.url}1").page
         press(page, "c 'see me' Alt+1 Alt+2")
         assert page.locator("#points").input_value() == "1.5"
         assert page.locator("#comment").input_value() == "too short; no reason; see me"
@@ -312,7 +312,7 @@ def test_deductions(open_page: Open, chosen: Path) -> None:
 
 def test_filters(review: Review, open_page: Open) -> None:
     """A list shows one question."""
-    page = open_page(review.url).page
+    page = open_page(f"{review.url}1").page
     page.locator("[data-filter=criterion]").select_option("picture")
     page.wait_for_url("**/6")
     assert page.locator(".place").inner_text().strip() == "1 of 5"

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from grader.classroom.grades import Class
-from grader.classroom.review_items import ReviewFilter, answers_of, review_items
+from grader.classroom.review_items import ReviewFilter, review_items
 from grader.errors import InputError
 from grader.usecases.review_session import ReviewSession
 from tests.checks.submissions import jpeg
@@ -62,9 +62,7 @@ def words(session: ReviewSession, at: int) -> str:
 
 def give(session: ReviewSession, at: int, points: str, comment: str = "") -> None:
     """Mark an item as the person sees it."""
-    session.position = at
-    item = session.item_at(at)
-    assert session.mark(points, comment, item.view) == []
+    assert session.mark(at, points, comment, session.item_at(at).view) == []
 
 
 def rows(book: Path, by: str = "kim") -> list[tuple[str, ...]]:
@@ -100,14 +98,14 @@ def test_a_mark_of_somebody_else_marks_nobody(session: ReviewSession, book: Path
     item = session.item_at(0)
     assert grader("mark", "ash", "essay", "1", "--gradebook", book, "--by", "Lee").returncode == 0
     session.refresh()
-    assert session.mark("3", "", item.view) is None
+    assert session.mark(0, "3", "", item.view) is None
     assert not (book / "marks" / "kim.csv").exists()
     assert words(session, 0) == "essay: cedar"
     give(session, 0, "2")
     assert words(session, 0) == "essay: cedar"  # it stays in the list
     session.show_only(ReviewFilter(state=""))
     item = session.item_at(0)
-    replaced = session.mark("4", "", item.view)
+    replaced = session.mark(0, "4", "", item.view)
     assert [(mark.by, mark.student) for mark in replaced or ()] == [("Lee", "ash")]
     assert rows(book) == [("cedar", "essay", "2")]
 
@@ -133,7 +131,7 @@ def test_who_has_no_items(book: Path) -> None:
     opened = Class(book)
     found = {
         f"{item.criterion.id}: {' '.join(one.student.key for one in item.members)}"
-        for item in review_items(opened, opened.results.all())
+        for item in review_items(opened).values()
     }
     assert found == {"box: birch", "essay: birch", "essay: cedar", "essay: gum holly", "essay: dogwood fir"}
 
@@ -151,8 +149,9 @@ def contents(tmp_path: Path) -> Callable[..., dict[str, list[str]]]:
         (tmp_path / "small.toml").write_text(lab_text())
         assert batch(tmp_path).returncode == 0
         found: dict[str, list[str]] = {}
-        for (criterion, answer), keys in answers_of(Class(tmp_path / "book")).items():
-            found.setdefault(criterion if answer else f"no {criterion}", []).append(" ".join(keys))
+        for (criterion, answer), item in review_items(Class(tmp_path / "book")).items():
+            keys = " ".join(one.student.key for one in item.members)
+            found.setdefault(criterion if answer else f"no {criterion}", []).append(keys)
         return found
 
     return grade
@@ -188,3 +187,22 @@ def test_answers_that_are_not_all_there_is_are_not_equal(contents: Callable[...,
         gum={"answers.md": text + b"/cmd_vel\n\n"},
     )
     assert sorted(found["essay"]) == ["ash", "birch", "cedar", "dogwood", "elm", "fir gum"]
+
+
+def test_a_team_with_several_files_is_one_item(tmp_path: Path) -> None:
+    """Though the digests of its members differ, because several files are a submission named after the student."""
+    (tmp_path / "class").mkdir()
+    for number, (name, data) in enumerate(
+        {"robot.urdf": urdf().encode(), "screen.png": PNG, "answers.md": b"x"}.items()
+    ):
+        (tmp_path / "class" / f"team1_101_{2000 + number}_{name}").write_bytes(data)
+    (tmp_path / "roster.csv").write_text("id,name,canvas,group\ngum,Gum,101,team1\nholly,Holly,102,team1\n")
+    (tmp_path / "small.toml").write_text(lab_text())
+    done = batch(tmp_path)
+    assert done.returncode == 0, done.stderr
+    book = Class(tmp_path / "book")
+    assert len({one.digest for one in book.results.all()}) == 2
+    found = review_items(book).values()
+    assert {(one.criterion.id, *(member.student.key for member in one.members)) for one in found} == {
+        ("essay", "gum", "holly"), ("picture", "gum", "holly"),
+    }  # fmt: skip

@@ -161,7 +161,6 @@ def test_states(review: Review, book: Path) -> None:
 
 def test_marks_at_once_and_the_end(review: Review, book: Path) -> None:
     """Requests that arrive together are followed one after the other; the end says how many are marked, and the next command."""
-    assert review.get().headers["location"] == f"/{review.token}/1"
     with ThreadPoolExecutor(ITEMS) as pool:
         answers = list(pool.map(lambda number: review.mark(str(number), "1"), range(1, ITEMS + 1)))
     assert [list(answer) for answer in answers] == [["go"]] * ITEMS
@@ -189,11 +188,11 @@ def test_a_submission_that_has_moved_or_changed_is_not_marked(review: Review, bo
 
 
 PATHS = {
-    404: ["GET /", "GET /1", "GET /TOKE/1", "GET /TOKEN", "GET /TOKEN/0", "GET /TOKEN/7", "HEAD /1", "GET /TOKEN/1/picture/../../x",
+    404: ["GET /", "GET /TOKEN/", "GET /1", "GET /TOKE/1", "GET /TOKEN", "GET /TOKEN/0", "GET /TOKEN/7", "GET /TOKEN/1/picture/../../x",
           "GET /TOKEN/4/picture/..%2f..%2fclass.toml", f"GET /TOKEN/4/picture/{'9' * 20}", "GET /TOKEN/../TOKEN/1", "GET /TOKEN/%d9%a1"],
-    200: ["HEAD /TOKEN/1", "GET /TOKEN/1"],
+    200: ["GET /TOKEN/1"],
     204: ["GET /favicon.ico"],
-    501: [f"{method} /TOKEN/1" for method in ("PUT", "DELETE", "OPTIONS", "TRACE", "BREW")],
+    501: [f"{method} /TOKEN/1" for method in ("HEAD", "PUT", "DELETE", "OPTIONS", "TRACE", "BREW")],
 }  # fmt: skip
 
 
@@ -291,9 +290,9 @@ def test_the_command(book: Path) -> None:
     ) as process:  # fmt: skip
         assert process.stdout is not None
         url = process.stdout.readline().strip()
-        with urlopen(f"{url}4", timeout=HANG_TIMEOUT) as page:
+        with urlopen(url, timeout=HANG_TIMEOUT) as page:
             assert b"1 of 3" in page.read()
-        _, port, token = re.fullmatch(r"http://(127\.0\.0\.1):(\d+)/([\w-]{32})/", url).groups()  # type: ignore[union-attr]
+        _, port, token = re.fullmatch(r"http://(127\.0\.0\.1):(\d+)/([\w-]{32})/4", url).groups()  # type: ignore[union-attr]
         Review(url, int(port), token).mark("4", "0.5")
         refused = refusal(grader("review", "--gradebook", book, "--port", port))
         assert refused.startswith(f"cannot listen on port {port} of 127.0.0.1")

@@ -6,16 +6,15 @@ HTML comment at its end holds a hash of the words: without a match, a person has
 
 import html
 import re
-from collections.abc import Iterable, Iterator
-from itertools import accumulate
+from collections.abc import Iterable, Iterator, Sequence
 
 from grader.classroom.tables import protected, spelt_out
 from grader.files.reading import sha256_of
 from grader.grading.report import Result
-from grader.text import cut, format_points
+from grader.text import cut, first_lines, format_points
 
-LIMIT = 4_000  # characters
-_MAX_LINE = 700
+MAX_LINES = 40
+_MAX_LINE = 700  # characters: with all lines less than a cell of Excel has
 _OPENING = "Grade"
 _MARK = re.compile(r"<!-- grader ([0-9a-f]{12}) -->")
 _TAG = re.compile(r"<[^>]*+>")
@@ -36,14 +35,10 @@ def lost_points(results: Iterable[Result]) -> Iterator[str]:
             yield ". ".join(filter(None, (about, result.why_given, comment)))
 
 
-def comment_html(opening: str, lines: Iterable[str]) -> str:
-    """Return a comment in one line of at most LIMIT characters: `opening`, which begins with Grade, then the lines."""
-    first = f"<p>{_escape(opening)}</p>"
-    items = [f"<li>{_escape(line)}</li>" for line in lines]
-    room = LIMIT - len(first) - 100  # for the list's tags, the mark, and the line that counts the rest
-    shown = sum(length <= room for length in accumulate(map(len, items)))
-    more = [f"<li>... and {len(items) - shown} more</li>"] if shown < len(items) else []
-    text = protected(first + (f"<ul>{''.join([*items[:shown], *more])}</ul>" if items else ""))
+def comment_html(opening: str, lines: Sequence[str]) -> str:
+    """Return a comment in one line: `opening`, which begins with Grade, then a list of lines, of many the first."""
+    items = "".join(f"<li>{_escape(line)}</li>" for line in first_lines(lines, MAX_LINES))
+    text = protected(f"<p>{_escape(opening)}</p>" + f"<ul>{items}</ul>" * bool(items))
     return f"{text}<!-- grader {_hash(text)} -->"
 
 

@@ -4,8 +4,8 @@ Moodle, "Upload multiple feedback files in a zip" (mod/assign/feedback/file/impo
 `name_participant_type_plugin_` has the files of one student; before Moodle 4.1 only with the last underscore.
 
 Canvas, "Upload Submissions" (app/models/abstract_assignment.rb, infer_comment_context_from_filename): the first two
-numbers between underscores, or after `anon` the next two words, are the user and an attachment of the newest
-submission; LATE is ignored. The student sees the file under the attachment's name, each member of a group, too.
+numbers between underscores are the user and an attachment of the newest submission. The student sees the file under the
+attachment's name, each member of a group, too.
 """
 
 import re
@@ -17,9 +17,6 @@ from grader.classroom.roster import Student
 from grader.files.zip_writing import tar_gz_of, zip_of
 
 Names = tuple[dict[str, str], dict[str, str]]  # by the student's key: the path in the zip, or why there is none
-_MAX_NAME = 60
-# Can be read in one way: doejane_LATE_12345_678_robot.urdf, LATE_anon_7kQzB_678_robot.urdf; a third number cannot.
-_PLAIN = re.compile(r"(?:[^_0-9][^_]*(?:_LATE)?_[0-9]+|(?:LATE_)?anon_[^_]+)_[0-9]+_(?![0-9]+_).+", re.DOTALL)
 _NOT_UTF8 = re.compile(r"[\ud800-\udfff]")  # no name that Canvas has given, and no zip can have it
 _ARCHIVES = (".zip", ".tar.gz", ".tgz")
 
@@ -29,7 +26,7 @@ def moodle_names(students: Collection[Student], report: str) -> Names:
     names, without, counts = dict[str, str](), dict[str, str](), Counter(student.moodle for student in students)
     for student in students:
         if student.moodle and counts[student.moodle] == 1:
-            names[student.key] = f"{_moodle_folder(student)}/{report}"
+            names[student.key] = f"Participant_{student.moodle}_assignfeedback_file_/{report}"
         elif student.moodle:
             without[student.key] = f"another student has participant number {student.moodle}, too"
         else:
@@ -39,18 +36,15 @@ def moodle_names(students: Collection[Student], report: str) -> Names:
 
 def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], report: str) -> Names:
     """Return the names for students and the paths of their files; a group that has the same files shares one."""
-    names, without, users = dict[str, str](), dict[str, str](), defaultdict[tuple[str, ...], set[str]](set)
+    names, users, ending = dict[str, str](), defaultdict[tuple[str, ...], set[str]](set), PurePosixPath(report).suffix
     for student, paths in submissions:
-        users[paths] |= {student.canvas} - {""}
-    ending = PurePosixPath(report).suffix
-    why = f"submitted no {ending} file or archive by whose name Canvas finds the student"
+        users[paths].add(student.canvas)
     for student, paths in submissions:
         files = [PurePosixPath(path).name for path in paths if path.lower().endswith((ending, *_ARCHIVES))]
         if certain := [file for file in files if _is_certain(file, users[paths])]:
             names[student.key] = min(certain, key=lambda file: (not file.lower().endswith(ending), file))
-        else:
-            without[student.key] = why
-    return names, without
+    why = f"submitted no {ending} file or archive by whose name Canvas finds the student"
+    return names, {student.key: why for student, _ in submissions if student.key not in names}
 
 
 def write_feedback(reports: Mapping[str, bytes], names: Mapping[str, str], report: str) -> tuple[bytes, dict[str, str]]:
@@ -64,21 +58,12 @@ def write_feedback(reports: Mapping[str, bytes], names: Mapping[str, str], repor
     return zip_of(files), without
 
 
-def _moodle_folder(student: Student) -> str:
-    """Return the folder of a student, with the letters, digits and spaces of the name: an underscore ends it."""
-    letters = (letter if letter.isalnum() or letter in "-'" else " " for letter in student.name or student.key)
-    words = "".join(letters).split()
-    return f"{' '.join(words)[:_MAX_NAME].strip() or 'Participant'}_{student.moodle}_assignfeedback_file_"
-
-
 def _is_certain(file: str, users: Collection[str]) -> bool:
-    """Return whether Canvas finds one of the users by a file's name; without users, whether it has one reading."""
-    words = [word for word in file.split("_") if word != "LATE"]
-    if not words or words[-1].startswith("link") or file.startswith("._") or _NOT_UTF8.search(file):
-        return False
-    ids = words[1:3] if words[0] == "anon" else [word for word in words if re.fullmatch("[0-9]+", word)][:2]
-    is_found = len(ids) == 2 and ids[1].isdecimal()
-    return is_found and (ids[0] in users or (not users and _PLAIN.fullmatch(file) is not None))
+    """Return whether Canvas finds one of the users by a file's name."""
+    words = file.split("_")
+    ids = [word for word in words if re.fullmatch("[0-9]+", word)]
+    is_ignored = words[-1].startswith("link") or file.startswith("._") or _NOT_UTF8.search(file)
+    return len(ids) > 1 and ids[0] in users and not is_ignored
 
 
 def _packed(name: str, report: str, data: bytes) -> bytes:

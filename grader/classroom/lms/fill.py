@@ -5,28 +5,27 @@ as a change, and Moodle's worksheets have rounded grades. So rows of students wi
 """
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import ROUND_FLOOR, Decimal
-from operator import itemgetter
 from typing import NamedTuple
 
 from grader.classroom.lms.comments import is_own_comment
-from grader.classroom.lms.forms import IDS, TEST_STUDENT, WHO, Form
+from grader.classroom.lms.forms import IDS, Form
 from grader.classroom.lms.owners import ClassGrade, match_rows
 from grader.classroom.roster import Student
 from grader.classroom.tables import Table, TableRow, read_table
+from grader.classroom.typed_names import number_in
 from grader.errors import InputError
 from grader.text import enumerated, first_lines, format_points, named, people_text, printable
 
 Note = tuple[str, str, str]  # a kind, which begins the message, who is concerned, and why
-_OPEN, _REFUSED = "without a grade", "the LMS would refuse the grade"
+_OPEN, _KEPT, _REFUSED = "without a grade", "kept the comment", "the LMS would refuse the grade"
 _UNKNOWN, _MISSING = "in the file, but not in the class", "in the class, but not in the file"
-_AMBIGUOUS = "ambiguous"
-_INCOMPLETE = (_REFUSED, _UNKNOWN, _MISSING, _AMBIGUOUS)
+_TEST_STUDENT = re.compile(r"(?i)student, test|test student|.*_previewuser\d*")  # of Canvas and Blackboard
 _NOT_GRADED = frozenset({"", "-", "needs grading"})  # the last in Blackboard
+_POINTS_ROW = "Points Possible"  # in the first cell, of Canvas
 _COMMA = re.compile(r"[0-9],[0-9]{1,2}$")
-_READ_ONLY = re.compile(r"\(.+\)")  # "(read only)" as the points possible in Canvas, in the user's language
-_NUMBER = re.compile(r"-?[0-9][0-9.,]*")
 _WORD = re.compile(r"[^\W\d_]+|\d+")
 _MAX_CHANGES, _MAX_REASONS, _MAX_NAMED, _MAX_COLUMNS = 40, 50, 3, 20
 
@@ -45,119 +44,113 @@ class FillOptions(NamedTuple):
 class Filled(NamedTuple):
     """A filled file and what importing it does; it is complete if each row has its student, and each grade its row.
 
-    `rows` are the students as the file has them, by the key of the student of the class.
+    `numbers` are the ids of students in Moodle as the file has them, by the key of the student of the class.
     """
 
     data: bytes = b""
     lines: Sequence[str] = ()
     is_complete: bool = True
-    rows: Mapping[str, Student] = {}
+    numbers: Mapping[str, str] = {}
 
 
 class _GradeFile(NamedTuple):
     """A grade file: the columns by role (`grade` is that of the lab), and its maximum as it is written."""
 
     table: Table
+    form: Form
     roles: dict[str, int]
+    people: dict[TableRow, Student]
     maximum: str
-    students: list[tuple[TableRow, Student]]
+
+    def changed(self, row: TableRow, grade: ClassGrade) -> tuple[TableRow | None, list[Note]]:
+        """Return a row with its grade and comment, or None; and notes on it, a change's without a kind."""
+        new, who = _cell(grade, self), self.who(row)
+        at, comment_at = self.roles["grade"], self.roles.get("comment")
+        if why := next(self._why_not(row, new, grade.why_open or "has no grade"), None):
+            return None, [(why[0], who, why[1])]
+        notes, old, comment = list[Note](), row.value(at), row.value(comment_at)
+        if old.casefold() != new.casefold() and (number_in(old) is None or number_in(old) != number_in(new)):
+            notes += [("", who, f"was {old}, becomes {new}")] if old.casefold() not in _NOT_GRADED else []
+            row = self.table.changed(row, at, new)
+        if comment_at is not None and grade.comment not in ("", comment):
+            if not comment or is_own_comment(comment):
+                return self.table.changed(row, comment_at, grade.comment), notes
+            notes.append((_KEPT, who, f"a person wrote or changed it in {self.form.lms}"))
+        return row, notes
+
+    def _why_not(self, row: TableRow, new: str, why_open: str) -> Iterator[tuple[str, str]]:
+        """Yield why a row cannot get a grade, each reason with its kind."""
+        titles = self.table.titles
+        if not new:
+            yield _OPEN, why_open
+        if len(row.cells) != len(titles):
+            yield _OPEN, f"the row has {len(row.cells)} cells and the header {len(titles)}"
+        for role, words in self.form.locked.items():
+            cell = row.value(self.roles.get(role))
+            if cell.casefold() in words.split() and cell.casefold() != new.casefold():
+                yield _OPEN, f"{titles[self.roles[role]]!r} is {cell!r} in {self.form.lms}"
+        if self.form.above and (number_in(new) or 0) > (number_in(self.maximum) or 0):
+            yield _REFUSED, f"{new} points are above the maximum of {self.maximum}: {self.form.above}"
+
+    def who(self, row: TableRow) -> str:
+        """Return the number of a row, and the name or an id of its student."""
+        return f"row {row.number}, {next(filter(None, self.people[row]))}"
 
 
 def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOptions) -> Filled:
     """Return a grade file with the grades in the column of the lab; raises InputError if it is not such a file."""
     file = _read(data, form, options)
-    header = file.table.titles[file.roles["grade"]]
+    people, titles = [*file.people.values()], file.table.titles
+    header = titles[file.roles["grade"]]
     warnings = _check_maximum(file.maximum, f"{header!r} in {form.lms}", options)
-    cells = [_cell(grade, form, file.maximum) for grade in grades]
-    names = [named(one.student.key, one.student.name) for one in grades]
-    of_row, doubtful = match_rows([one for _, one in file.students], [one.student for one in grades], form.lms)
-    rows: dict[int, TableRow | None] = {row.number: row for row in file.table.rows}
+    of_row = match_rows(people, [one.student for one in grades], form.lms)
+    rows: dict[TableRow, TableRow | None] = {row: row for row in file.table.rows}
     notes = list[Note]()
-    for index, (row, one) in enumerate(file.students):
-        who = f"row {row.number}, {one.name or next(filter(None, (getattr(one, name) for name in IDS)), '')}"
-        at, could = of_row.get(index), people_text([names[at] for at in doubtful.get(index, ())], _MAX_NAMED)
-        rows[row.number] = None
-        if at is not None:
-            rows[row.number], some = _filled_row(file, form, row, grades[at], cells[at])
-            notes += ((kind, who, why) for kind, why in some)
-        elif could:
-            notes.append((_AMBIGUOUS, who, f"could be {could}"))
-        elif not TEST_STUDENT.fullmatch(one.name):
-            notes.append((_UNKNOWN, who, "no student of the class matches this id, address or name"))
-    matched = {*of_row.values()}.union(*doubtful.values())
-    missing = [name for at, name in enumerate(names) if cells[at] and at not in matched]
-    notes += ((_MISSING, name, "has a grade or an excuse, but no row in the file") for name in missing)
+    for index, (row, one) in enumerate(file.people.items()):
+        rows[row] = None
+        if index in of_row:
+            rows[row], some = file.changed(row, grades[of_row[index]])
+            notes += some
+        elif not _TEST_STUDENT.fullmatch(one.name or one.login):
+            notes.append((_UNKNOWN, file.who(row), "no student certainly has this id, address or name"))
+    rest = [grades[at] for at in sorted({*range(len(grades))}.difference(of_row.values()))]
+    missing = (one for one in rest if _cell(one, file))
+    notes += ((_MISSING, named(*one.student[:2]), "has a grade or an excuse, but no certain row") for one in missing)
     kept = [row for row in rows.values() if row is not None]
+    graded = [rows[row] is not row for row in file.people if rows[row] is not None]
     if options.only and "maximum" not in file.roles:
-        places = sorted({*file.roles.values()})
-        kept = [row._replace(cells=tuple(row.cells[at] for at in places if at < len(row.cells))) for row in kept]
-    graded = [rows[row.number] is not row for row, _ in file.students if rows[row.number] is not None]
-    count = f"column {header!r}: {sum(graded)} filled in, {len(graded) - sum(graded)} already the same"
-    notes.sort(key=lambda note: note[0] not in _INCOMPLETE)
-    changes = [f"{who}: {why}" for kind, who, why in notes if not kind]
-    lines = [count, *first_lines(changes, _MAX_CHANGES), *by_reason(filter(itemgetter(0), notes)), *warnings]
-    own = {grades[at].student.key: file.students[index][1] for index, at in of_row.items()}
-    data = file.table._replace(rows=tuple(kept)).encoded()
-    return Filled(data, [*map(printable, lines)], all(note[0] not in _INCOMPLETE for note in notes), own)
+        places = {*file.roles.values(), *(at for at, title in enumerate(titles) if title.lower() in form.kept)}
+        kept = [row._replace(cells=tuple(cell for at, cell in enumerate(row.cells) if at in places)) for row in kept]
+    lines = [f"column {header!r}: {sum(graded)} filled in, {len(graded) - sum(graded)} already the same"]
+    lines += first_lines([f"{who}: {why}" for kind, who, why in notes if not kind], _MAX_CHANGES)
+    lines += [*by_reason(note for note in notes if note[0]), *warnings]
+    is_complete = all(note[0] in ("", _OPEN, _KEPT) for note in notes)
+    numbers = {grades[at].student.key: people[index].moodle for index, at in of_row.items()}
+    return Filled(file.table._replace(rows=tuple(kept)).encoded(), [*map(printable, lines)], is_complete, numbers)
 
 
 def by_reason(notes: Iterable[Note]) -> list[str]:
     """Return a line for each reason: who has it, of several how many and the first of them."""
-    names: dict[tuple[str, str], list[str]] = {}
+    names = defaultdict[tuple[str, str], list[str]](list)
     for kind, who, why in notes:
-        names.setdefault((kind, why), []).append(who)
+        names[kind, why].append(who)
     groups = (
         (*key, f"{len(who)} ({people_text(who, _MAX_NAMED)})" if who[1:] else who[0]) for key, who in names.items()
     )
-    return first_lines([f"{kind}: {who}: {why}" for kind, why, who in groups], _MAX_REASONS)
+    return first_lines([printable(f"{kind}: {who}: {why}") for kind, why, who in groups], _MAX_REASONS)
 
 
-def _cell(grade: ClassGrade, form: Form, like: str) -> str:
-    """Return the points, rounded down, for 99.996 of 100 is not the maximum; `like` may have a comma. Or an excuse."""
+def _cell(grade: ClassGrade, file: _GradeFile) -> str:
+    """Return the points, rounded down, for 99.996 of 100 is not the maximum, with the file's comma; or an excuse."""
     if grade.total is None:
-        return form.excuse if grade.is_excused else ""
+        return file.form.excuse if grade.is_excused else ""
     text = format(grade.total.quantize(Decimal("0.01"), ROUND_FLOOR), "f")
-    return text.replace(".", ",") if _COMMA.search(like) else text
-
-
-def _why_not(file: _GradeFile, form: Form, row: TableRow, new: str, why_open: str) -> tuple[str, str] | None:
-    """Return why a row does not get a grade: the kind of the reason, and the reason."""
-    titles = file.table.titles
-    if not new:
-        return _OPEN, why_open or "has no grade"
-    if len(row.cells) != len(titles):
-        return _OPEN, f"the row has {len(row.cells)} cells and the header {len(titles)}"
-    for role, words in form.locked.items():
-        cell = row.value(file.roles.get(role))
-        if cell.casefold() in words and cell.casefold() != new.casefold():
-            return _OPEN, f"{titles[file.roles[role]]!r} is {cell!r} in {form.lms}"
-    if form.above and (read_points(new) or 0) > (read_points(file.maximum) or 0):
-        return _REFUSED, f"{new} points are above the maximum of {file.maximum}: {form.above}"
-    return None
-
-
-def _filled_row(
-    file: _GradeFile, form: Form, row: TableRow, grade: ClassGrade, new: str
-) -> tuple[TableRow | None, list[tuple[str, str]]]:
-    """Return a row with its grade and comment, None if it gets no grade; and notes on it, a change's without a kind."""
-    if why := _why_not(file, form, row, new, grade.why_open):
-        return None, [why]
-    notes, old = list[tuple[str, str]](), row.value(file.roles["grade"])
-    if old.casefold() != new.casefold() and (read_points(old) is None or read_points(old) != read_points(new)):
-        notes += [("", f"was {old}, becomes {new}")] if old.casefold() not in _NOT_GRADED else []
-        row = file.table.changed(row, file.roles["grade"], new)
-    column = file.roles.get("comment")
-    comment = row.value(column)
-    if column is None or grade.comment in ("", comment):
-        return row, notes
-    if comment and not is_own_comment(comment):
-        return row, [*notes, ("kept the comment", f"a person wrote or changed it in {form.lms}")]
-    return file.table.changed(row, column, grade.comment), notes
+    return text.replace(".", ",") if _COMMA.search(file.maximum) else text
 
 
 def _check_maximum(text: str, what: str, options: FillOptions) -> list[str]:
     """Return a warning about an unknown maximum; raises InputError for another one: 9.33 of 100 is not 9.33 of 10."""
-    maximum = read_points(text)
+    maximum = number_in(text)
     if maximum is not None and maximum != options.out_of and not options.any_maximum:
         others = f"{format_points(maximum)}, but that of the rubric is {format_points(options.out_of)}"
         advice = "change it in the LMS and export again, or pass --any-maximum to write the points unchanged"
@@ -165,60 +158,57 @@ def _check_maximum(text: str, what: str, options: FillOptions) -> list[str]:
     return [] if maximum is not None else [f"the file does not state the maximum of {what}"]
 
 
-def read_points(text: str) -> Decimal | None:
-    """Return the points in a cell, or None; the last comma or point is decimal (Canvas gradebook_importer.rb)."""
-    text = re.sub(r"\s", "", text)
-    if not _NUMBER.fullmatch(text):
-        return None
-    *whole, last = re.split("[.,]", text)
-    return Decimal("".join(whole) + "." + (last or "0") if whole else last)
-
-
 def _read(data: bytes, form: Form, options: FillOptions) -> _GradeFile:
     """Return a grade file; raises InputError if it is another file, or if the column of the lab is ambiguous."""
     table = read_table(data, options.shown)
-    titles, roles = [*enumerate(table.titles)], form.roles(table.titles)
-    if any(roles.keys().isdisjoint(needed.split()) for needed in form.needed):
-        has = _list(table.titles) or "nothing"
+    titles, roles = table.titles, form.roles(table.titles)
+    if not (roles.keys() >= {*form.needed} and roles.keys() & {*IDS}):
+        has = _list(titles) or "nothing"
         raise InputError(f"{options.shown} is not a grade file of {form.lms}: its first row has {has}")
-    points = next((row for row in table.rows[1:] if form.points_row and form.points_row in row.value(0)), None)
-    columns = {at: found for at, title in titles if (found := form.grade.fullmatch(title))}
+    points = next((row for row in table.rows[1:] if _POINTS_ROW in row.value(0)), TableRow(0, 0, (), ""))
+    columns = {at: found for at, title in enumerate(titles) if (found := form.grade.fullmatch(title))}
     if "maximum" in roles:
         columns = {at: found for at, found in columns.items() if at + 1 == roles["maximum"]}
-    if points is not None:
-        columns = {at: found for at, found in columns.items() if not _READ_ONLY.fullmatch(points.value(at))}
     grade = roles["grade"] = _choose(columns, form, options)
-    rows = [row for row in table.rows[1:] if row is not points and any(row.value(roles.get(role)) for role in WHO)]
-    maximum = columns[grade].groupdict().get("maximum") or (points.value(grade) if points else "")
-    maximum = maximum or next(filter(None, (row.value(roles.get("maximum")) for row in rows)), "")
-    return _GradeFile(table, roles, maximum, [(row, form.student(row, roles)) for row in rows])
+    people = {row: one for row in table.rows[1:] if row is not points and any((one := _student(row, roles))[:7])}
+    places = (columns[grade].groupdict().get("maximum"), points.value(grade))
+    maxima = (*places, *(row.value(roles.get("maximum")) for row in people))
+    return _GradeFile(table, form, roles, people, next(filter(None, maxima), ""))
+
+
+def _student(row: TableRow, roles: Mapping[str, int]) -> Student:
+    """Return the student in a row."""
+    login, sis, email, canvas, moodle, name = (row.value(roles.get(role)).removeprefix("#") for role in (*IDS, "name"))
+    return Student("", name, email, login, sis, canvas, re.split(r"\D", moodle)[-1])  # of Participant 123
 
 
 def _choose(columns: Mapping[int, re.Match[str]], form: Form, options: FillOptions) -> int:
     """Return the column that is named, else the one whose title is most like the title or the id of the lab."""
-    wanted = options.column.strip()
-    is_any = "maximum" in form.columns and not wanted
-    ranks = {at: [True] if is_any else _likeness(found, wanted, options.names) for at, found in columns.items()}
-    best = max(ranks.values(), default=[])
-    found = [at for at, rank in ranks.items() if rank == best and any(rank)]
+    names = [options.column.strip()] if options.column.strip() else options.names
+    ranks = {at: rank for at, one in columns.items() if (rank := _likeness(one, options)) is not None}
+    found = [at for at, rank in ranks.items() if rank == min(ranks.values())]
+    if "maximum" in form.columns and not options.column:
+        found = [*columns]
     if len(found) == 1:
         return found[0]
     listed = _list([columns[at][0] for at in found or columns])
     advice = f"choose one with --column: {listed}" if listed else f"create it in {form.lms}, and export again"
-    what = repr(wanted) if wanted else f"for {' or '.join(map(repr, options.names))}"
+    what = f"{'' if options.column.strip() else 'for '}{' or '.join(map(repr, names))}"
     raise InputError(f"{options.shown} has {'several columns' if found else 'no column'} {what}; {advice}")
 
 
-def _likeness(found: re.Match[str], wanted: str, names: Sequence[str]) -> list[bool]:
-    """Return whether a column is the wanted one: by its header, or by its title or number.
+def _likeness(found: re.Match[str], options: FillOptions) -> int | None:
+    """Return how much a column is like the lab, 0 is best: it has the header, title or number that is wanted.
 
-    Of none, whether its title is, or contains, each of some names, in this order; last, whether it is part of one.
+    Else its title is, or contains, each of the lab's names, in this order; last, it is part of one.
     """
-    if wanted:
-        return [wanted == found[0], wanted in (found["title"], found.groupdict().get("number"))]
-    own, known = _words(found["title"]), [_words(name) for name in names]
-    tests = (test for name in known for test in (own.replace(" ", "") == name.replace(" ", ""), name in own))
-    return [*tests, any(own in name for name in known)]
+    if wanted := options.column.strip():
+        tests = [wanted in (found[0], found["title"], found.groupdict().get("number"))]
+    else:
+        own, known = _words(found["title"]), [_words(name) for name in options.names]
+        tests = [is_so for name in known for is_so in (own.replace(" ", "") == name.replace(" ", ""), name in own)]
+        tests.append(any(own in name for name in known))
+    return tests.index(True) if True in tests else None
 
 
 def _words(text: str) -> str:

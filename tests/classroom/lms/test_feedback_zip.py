@@ -8,8 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from grader.classroom.lms.feedback_zip import canvas_names, moodle_names, write_feedback
 from grader.classroom.roster import Student
@@ -32,24 +30,11 @@ def test_a_file_name_that_is_not_utf_8() -> None:
     assert (names, [*without]) == ({}, ["bob"])
 
 
-@given(st.text(max_size=90))
-def test_moodle_reads_the_participant_in_any_folder(name: str) -> None:
-    """After the first underscore, with one more behind the plug-in for old versions; it is not hidden and not too long."""
-    names, _ = moodle_names([Student("key", name, moodle="77")], "lab.md")
-    folder, file = names["key"].split("/")
-    assert folder.split("_", 4)[1:] == ["77", "assignfeedback", "file", ""]
-    assert file == "lab.md"
-    assert not set(folder) & set('/\\:*?"<>|&`\n')
-    assert folder.isprintable()
-    assert not folder.startswith((".", "~", " ", "_"))
-    assert len(folder) < 100
-
-
 def test_participants() -> None:
     """One of two students, or none at all, is no number."""
     students = [Student("a", "Ann", moodle="1"), Student("b", moodle="2"), Student("c", moodle="2"), Student("d")]
     names, without = moodle_names(students, "r.html")
-    assert names == {"a": "Ann_1_assignfeedback_file_/r.html"}
+    assert names == {"a": "Participant_1_assignfeedback_file_/r.html"}
     assert without["b"] == without["c"] == "another student has participant number 2, too"
     assert without["d"] == "has no participant number, and no row of a grading worksheet (--into)"
 
