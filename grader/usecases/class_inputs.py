@@ -17,7 +17,7 @@ from grader.errors import InputError
 from grader.files.reading import read_capped, sha256_of
 from grader.grading.rubric import Rubric, load_rubric
 from grader.submission.opening import open_submission
-from grader.text import printable_path
+from grader.text import enumerated, printable_path
 from grader.usecases.rubrics import DEFAULT_RUBRIC, files_of
 from grader.usecases.saves import read_arguments
 from grader.usecases.terminal import Warn
@@ -86,7 +86,10 @@ def read_inputs(options: ClassOptions, warn: Warn) -> ClassInputs:
     roster = None
     if options.roster or roster_file.exists():
         roster = read_roster(_read(roster_file), printable_path(roster_file))
-    return ClassInputs(folder, _updated(options, settings, folder, rubric), rubric, roster)
+    inputs = ClassInputs(folder, _updated(options, settings, folder, rubric), rubric, roster)
+    if not options.paths and (gone := [printable_path(root) for root in inputs.near_roots if not root.exists()]):
+        raise InputError(f"{enumerated(gone)} of the last run cannot be found: name the new PATH, or all of several")
+    return inputs
 
 
 def _updated(options: ClassOptions, settings: ClassSettings, folder: Path, rubric: Rubric) -> ClassSettings:
