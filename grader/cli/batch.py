@@ -96,8 +96,19 @@ def batch(
     for kind in formats:
         if kind.needs == "identity":
             raise GraderError(f"{kind} is for one repository: use `grader grade` there")
-    lists = tuple(part or ()), tuple(arg or ()), tuple(ignore_file or ())
-    options = ClassOptions(tuple(paths or ()), gradebook, rubric, roster, due, layout, assignment, *lists, max_size)
+    options = ClassOptions(
+        paths=tuple(paths or ()),
+        gradebook=gradebook,
+        rubric=rubric,
+        roster=roster,
+        due=due,
+        layout=layout,
+        assignment=assignment,
+        part=tuple(part or ()),
+        argument=tuple(arg or ()),
+        ignore_file=tuple(ignore_file or ()),
+        max_size=max_size,
+    )
     request = ClassRequest(
         options, jobs, timeout, force, cluster, reports, formats, answers, verbose=verbose, output_format=output_format
     )

@@ -32,7 +32,6 @@ _NOTHING = Outcome("skipped", "not graded, because nothing was submitted")
 _MOVED = (
     "The submission has moved or changed since it was graded, so this report has no details: run `grader batch` again."
 )
-_Task = tuple[str, str, bool]  # a student, the name of the file, and whether hints are searched
 
 
 class ReportRun(NamedTuple):
@@ -46,6 +45,14 @@ class ReportRun(NamedTuple):
     formats: tuple[Format, ...]
     answers: Path | None = None
     time: str = ""
+
+
+class _Task(NamedTuple):
+    """A report to write: the student and the name of the file; without hints if their search was lost."""
+
+    key: str
+    name: str
+    has_hints: bool = True
 
 
 def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True) -> Report:
@@ -139,7 +146,7 @@ def render_reports(
     with Processes(workers, timeout) as executor, terminal.show_class("writing reports") as show:
         show(Progress(len(files)))
         queue = Queue(executor, workers, partial(_write_some, run), _without_hints, _lost, _TASK_SIZE)
-        for results in queue.results((key, name, True) for key, name in files.items()):
+        for results in queue.results(_Task(*item) for item in files.items()):
             lost |= {key: why for key, why in results if why}
             done += len(results)
             show(Progress(len(files), graded=done))
@@ -148,7 +155,7 @@ def render_reports(
 
 def _without_hints(task: _Task, _: WorkerError) -> _Task | None:
     """Return a lost task without the search for hints, which may be the cause."""
-    return (*task[:2], False) if task[2] else None
+    return task._replace(has_hints=False) if task.has_hints else None
 
 
 def _lost(task: _Task, error: Exception) -> tuple[str, str]:
@@ -156,18 +163,18 @@ def _lost(task: _Task, error: Exception) -> tuple[str, str]:
     if isinstance(error, InputError | RubricError):
         raise error
     is_known = isinstance(error, WorkerError | MachineError)
-    return task[0], str(error) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
+    return task.key, str(error) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
 
 
 def _write_some(run: ReportRun, tasks: Sequence[_Task]) -> list[tuple[str, str]]:
     """Write the reports of some students, in a worker; return the students."""
     book = _class(run)
-    for key, name, has_hints in tasks:
-        report = report_of(book, book.grade(key), has_hints=has_hints)
-        picture = address(f"{name}.{Format.SVG.ending}") if Format.SVG in run.formats else ""
+    for task in tasks:
+        report = report_of(book, book.grade(task.key), has_hints=task.has_hints)
+        picture = address(f"{task.name}.{Format.SVG.ending}") if Format.SVG in run.formats else ""
         for kind in run.formats:
-            save(Path(run.folder, f"{name}.{kind.ending}"), render(report, kind, picture=picture))
-    return [(key, "") for key, _, _ in tasks]
+            save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind, picture=picture))
+    return [(task.key, "") for task in tasks]
 
 
 @lru_cache(maxsize=1)
