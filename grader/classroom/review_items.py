@@ -1,7 +1,7 @@
 """What a person decides: the items of a class, each a criterion of the students whose answer is the same."""
 
 from collections import defaultdict
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from typing import NamedTuple
 
 from grader.classroom.graded import Graded, digest_of
@@ -86,11 +86,11 @@ def review_items(book: Class, *, is_anonymous: bool = False) -> dict[Place, Revi
     groups: defaultdict[Place, list[Member]] = defaultdict(list)
     keys = sorted(book.keys, key=digest_of) if is_anonymous else book.keys
     order, counting = {key: at for at, key in enumerate(keys, 1)}, book.marks.counting
-    # Several files are a submission named after the student, so digests of members differ, and with them the keys.
-    of_files: dict[tuple[int, tuple[str, ...]], Mapping[str, str]] = {}
-    graded = (one for one in book.results.all() if one.verdict != "unreadable" and one.student in book.run.totals)
+    graded = [one for one in book.results.all() if one.verdict != "unreadable" and one.student in book.run.totals]
+    # Several files are a submission named after the student, so digests of members differ, and with them the keys:
+    of_files = {(one.root, one.paths): one.answers for one in graded}  # in any order of the items the same
     for one in sorted(graded, key=lambda one: order[one.student]):
-        answers = of_files.setdefault((one.root, one.paths), one.answers)
+        answers = of_files[one.root, one.paths]
         student, number = book.student(one.student, one), order[one.student] * is_anonymous
         for name in one.results if (one.student, TOTAL) not in counting else ():
             mark = counting.get((one.student, name))
