@@ -68,7 +68,7 @@ class MarkImport(NamedTuple):
             where, named = (row["criterion"], row["answer"]), {*row.get("students", "").split("; ")}
             if some := [key for key in self.answers.get(where, ()) if key in named or named.isdisjoint(keys)]:
                 return some
-            raise InputError(f"no student without a final mark has this answer to {where[0]} now: remove the row")
+            raise InputError(f"no student has this answer to {where[0]} now: remove the row")
         if cell in keys or as_number(cell, tuple(keys)):
             return [known("student", cell, keys)]
         return [find_typed(self.students, cell, "; `grades.csv` lists all students").key]
