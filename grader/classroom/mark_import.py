@@ -63,13 +63,12 @@ class MarkImport(NamedTuple):
             yield {**row, "student": student}
 
     def _students(self, row: Cells) -> Sequence[str]:
-        if "answer" in row:
-            answer = row["criterion"], row["answer"]
-            if answer not in self.answers:
-                raise InputError(f"no student has this answer to {row['criterion']} now: write the sheet again")
-            named = row.get("students", "").split("; ")
-            return [key for key in self.answers[answer] if key in named] or self.answers[answer]
         cell, keys = row["student"], {one.key: one for one in self.students}
+        if "answer" in row:
+            where, named = (row["criterion"], row["answer"]), {*row.get("students", "").split("; ")}
+            if some := [key for key in self.answers.get(where, ()) if key in named or named.isdisjoint(keys)]:
+                return some
+            raise InputError(f"no student has this answer to {where[0]} now: remove the row")
         if cell in keys or as_number(cell, tuple(keys)):
             return [known("student", cell, keys)]
         return [find_typed(self.students, cell, "; `grades.csv` lists all students").key]

@@ -1,7 +1,7 @@
 """What a person decides: the items of a class, each a criterion of the students whose answer is the same."""
 
 from collections import defaultdict
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from typing import NamedTuple
 
 from grader.classroom.graded import Graded, digest_of
@@ -76,23 +76,23 @@ class ReviewFilter(NamedTuple):
         )
 
 
-def review_items(book: Class, *, is_anonymous: bool = False) -> dict[Place, ReviewItem]:
+def review_items(book: Class, *, is_anonymous: bool = False, with_final: bool = False) -> dict[Place, ReviewItem]:
     """Return what needs manual grading, and what else has a mark: in the rubric's order, each criterion by student.
 
     Those without an answer are the last item of a criterion. Unreadable submissions are omitted: they need a fix, not
-    points. So are students with a final mark or an excuse, and criteria that the rubric adjusts. Students of one
-    submission have the same answers. The numbers and the order of anonymous students say nothing about their names.
+    points. So are criteria that the rubric adjusts, and students with a final mark or an excuse, unless `with_final`.
+    Students of one submission have the same answers. Numbers and order of anonymous students tell nothing of names.
     """
     groups: defaultdict[Place, list[Member]] = defaultdict(list)
     keys = sorted(book.keys, key=digest_of) if is_anonymous else book.keys
     order, counting = {key: at for at, key in enumerate(keys, 1)}, book.marks.counting
-    # Several files are a submission named after the student, so digests of members differ, and with them the keys.
-    of_files: dict[tuple[int, tuple[str, ...]], Mapping[str, str]] = {}
-    graded = (one for one in book.results.all() if one.verdict != "unreadable" and one.student in book.run.totals)
+    graded = [one for one in book.results.all() if one.verdict != "unreadable" and one.student in book.run.totals]
+    # Several files are a submission named after the student, so digests of members differ, and with them the keys:
+    of_files = {(one.root, one.paths): one.answers for one in graded}  # in any order of the items the same
     for one in sorted(graded, key=lambda one: order[one.student]):
-        answers = of_files.setdefault((one.root, one.paths), one.answers)
+        answers = of_files[one.root, one.paths]
         student, number = book.student(one.student, one), order[one.student] * is_anonymous
-        for name in one.results if (one.student, TOTAL) not in counting else ():
+        for name in one.results if with_final or (one.student, TOTAL) not in counting else ():
             mark = counting.get((one.student, name))
             if name in answers or mark is not None:
                 member = Member(student, one, mark or book.marks.comments.get((one.student, name)), number)

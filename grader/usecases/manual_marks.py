@@ -57,8 +57,8 @@ def mark_missing(gradebook: Path, row: Cells) -> str:
 def import_marks(gradebook: Path, file: Path, by: str) -> str:
     """Append the marks in a CSV file; return how many. Raises InputError, and records none, if a row is wrong."""
     book = Class(gradebook)
-    answers = {place: [one.student.key for one in item.members] for place, item in review_items(book).items()}
-    reader = _reader(book)._replace(answers=answers)
+    items = review_items(book, with_final=True).items()
+    reader = _reader(book)._replace(answers={at: [one.student.key for one in item.members] for at, item in items})
     new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file))
     _append(book, new, by)
     return f"{printable_path(file)}: {len(new)} recorded, {same} the same as before\n"

@@ -81,14 +81,18 @@ def test_the_sheet_has_what_there_is_to_read(book: Path) -> None:
 
 
 def test_a_sheet_marks_those_whom_it_names(book: Path) -> None:
-    """Not those with the same answer who are in another section, or marked already; without names all of them."""
+    """Not those with the same answer who are in another section, or marked already; without names all of them.
+
+    A final mark, or an excuse, which came after the sheet does not stop the import.
+    """
     assert grader("mark", "u7701", "essay", "4", "--gradebook", book, "--by", "Lee").returncode == 0
     [row] = sheet_of(book, "--section", "Lab A", "--criterion", "essay")
     file = book.parent / "filled.csv"
+    assert grader("mark", "u7703", "total", "excused", "--gradebook", book, "--by", "Mo").returncode == 0
     for students, points in ((row["students"], "4"), ("", "2")):
         file.write_text(f"criterion,answer,points,students\nessay,{row['answer']},2,{students}\n")
         assert grader("mark", "--import", file, "--gradebook", book).returncode == 0
-        assert [mark[2] for mark in marks_in(book)] == [points, "2"]
+        assert [mark[2] for mark in marks_in(book)] == [points, "2", "excused"]
 
 
 def test_a_sheet_is_never_overwritten(book: Path) -> None:

@@ -25,6 +25,7 @@ _UNKNOWN, _MISSING = "in the file, but not in the class", "in the class, but not
 _TEST_STUDENT = re.compile(r"(?i)student, test|test student|.*_previewuser\d*")  # of Canvas and Blackboard
 _NOT_GRADED = frozenset({"", "-", "needs grading"})  # the last in Blackboard
 _POINTS_ROW = "Points Possible"  # in the first cell, of Canvas
+_THOUSANDS = re.compile(r"\s|[.,](?=.*[.,])")  # in 1.000,00: the last comma or point is decimal
 _COMMA = re.compile(r"[0-9],[0-9]{1,2}$")
 _WORD = re.compile(r"[^\W\d_]+|\d+")
 _MAX_CHANGES, _MAX_REASONS, _MAX_NAMED, _MAX_COLUMNS = 40, 50, 3, 20
@@ -173,7 +174,7 @@ def _read(data: bytes, form: Form, options: FillOptions) -> _GradeFile:
     people = {row: one for row in table.rows[1:] if row is not points and any((one := _student(row, roles))[:7])}
     places = (columns[grade].groupdict().get("maximum"), points.value(grade))
     maxima = (*places, *(row.value(roles.get("maximum")) for row in people))
-    return _GradeFile(table, form, roles, people, next(filter(None, maxima), ""))
+    return _GradeFile(table, form, roles, people, _THOUSANDS.sub("", next(filter(None, maxima), "")))
 
 
 def _student(row: TableRow, roles: Mapping[str, int]) -> Student:

@@ -51,7 +51,7 @@ CANVAS = Form(
     {"canvas": "id", "section": "section"},
     ("canvas", "section"),
     re.compile(r"(?P<title>.*\S)\s+\((?P<number>[0-9]+)\)", re.DOTALL),
-    kept=("integration id", "root account"),
+    kept=("lastname", "firstname", "integration id", "root account"),
     excuse="EX",
     locked={"grade": "ex n/a"},
 )
