@@ -43,7 +43,7 @@ def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], repor
         files = [PurePosixPath(path).name for path in paths if path.lower().endswith((ending, *_ARCHIVES))]
         if certain := [file for file in files if _is_certain(file, users[paths])]:
             names[student.key] = min(certain, key=lambda file: (not file.lower().endswith(ending), file))
-    why = f"submitted no {ending} file or archive by whose name Canvas finds the student"
+    why = f"submitted no {ending} file or archive with the Canvas user id in its name"
     return names, {student.key: why for student, _ in submissions if student.key not in names}
 
 
