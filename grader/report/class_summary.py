@@ -46,7 +46,7 @@ def render_class(found: ClassStatistics, console: Console, *, verbose: bool = Fa
     sections = (
         ("Common mistakes", mistakes, 8, ""),
         ("Equal work", equal, 4, EQUAL_NOTE),
-        ("Needs a person", attention, 4, ""),
+        ("Needs attention", attention, 4, ""),
     )
     for title, lines, indent, note in sections:
         if lines:
@@ -89,7 +89,7 @@ def percent(share: float) -> str:
 
 
 def attention_line(reason: Reason, who: Sequence[tuple[str, str]], *, verbose: bool = False) -> str:
-    """Return the students who need a person for one reason, each with a detail."""
+    """Return the students who need attention for one reason, each with a detail."""
     names = [f"{name} ({detail})" if detail else name for name, detail in who]
     return f"{reason[:1].upper()}{reason[1:]} ({len(who)}): {people_text(names, len(who) if verbose else _MAX_NAMED)}"
 
