@@ -1,4 +1,4 @@
-"""Name the reports of a class as an LMS gives them to its students, and write them into a zip.
+"""Name the reports of a class as an LMS expects them, and write them into a zip.
 
 Moodle, "Upload multiple feedback files in a zip" (mod/assign/feedback/file/importziplib.php): the folder
 `name_participant_type_plugin_` has the files of one student; before Moodle 4.1 only with the last underscore.
