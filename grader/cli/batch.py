@@ -62,10 +62,9 @@ def batch(
 ) -> str:
     """Grade a class into a gradebook, in parallel.
 
-    A gradebook is a folder of plain files: grades.csv has the grades, marks/ has the marks of each grader. Rerun the
-    command to resume, or to grade new and changed submissions: it needs no PATH and no option again. Submissions are
-    isolated: a crash or timeout affects only its own submission. Exits 0 when every submission has a result, whatever
-    the grades.
+    A gradebook is a folder of plain files: grades.csv has the grades, marks/ the manual marks. Rerun the command to
+    resume, or to grade new and changed submissions: it needs no PATH and no option again. Submissions are isolated: a
+    crash or timeout affects only its own submission. Exits 0 when every submission has a result, whatever the grades.
 
     Examples:
 
