@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
 DOCS = Path(__file__).resolve().parent
-SAMPLES = DOCS.parent / "submissions/lab6"
+SAMPLES, CLASS = DOCS.parent / "submissions/lab6", DOCS.parent / "submissions/class"
 FOLDER = DOCS / "screenshots"
 STUDENT = "lidar-buried"
-SIZE = {"width": 1100, "height": 740}
+SIZE = {"width": 1140, "height": 740}
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 
 
@@ -59,7 +59,7 @@ def main() -> None:
         grader("grade", SAMPLES / STUDENT, "--part", "task1", "--save", f"html={page}")
         take(started, page, "student")
         book, pages = Path(folder, "grades"), Path(folder, "pages")
-        grader("batch", SAMPLES, "--gradebook", book, "--part", "task1")
+        grader("batch", CLASS / "files", "--roster", CLASS / "roster.csv", "--gradebook", book)
         grader("export", "html", "--gradebook", book, "--output", pages)
         take(started, pages / "index.html", "class")
 

@@ -41,7 +41,7 @@ class Snapshot(NamedTuple):
 
 
 def snapshot(folder: Path, number: int | None) -> Snapshot:
-    """Return a run of a gradebook, by default the newest one with the grades of now. Raises InputError."""
+    """Return a run of a gradebook, by default the newest one with the current grades. Raises InputError."""
     book = Class(folder)
     if number is None:
         grades = {one.student.key: (one.student.name, one.published) for one in book}

@@ -28,7 +28,7 @@ def is_gradebook(folder: Path) -> bool:
 
 
 def check_gradebook(folder: Path) -> None:
-    """Raise InputError if a path is no gradebook."""
+    """Raise InputError if a path is not a gradebook."""
     shown = printable_path(folder)
     if folder.is_file() and read_start(folder, len(_SQLITE)) == _SQLITE:
         raise InputError(f"{shown} is a gradebook of an earlier version: grade the class again, into a folder")
@@ -39,14 +39,14 @@ def check_gradebook(folder: Path) -> None:
             f"there is no gradebook {shown}: `grader batch PATH --gradebook {shell_quoted(folder)}` makes it"
         )
     if not is_gradebook(folder):
-        raise InputError(f"{shown} is no gradebook: it has no {CLASS_FILE}")
+        raise InputError(f"{shown} is not a gradebook: it has no {CLASS_FILE}")
 
 
 def check_free(folder: Path) -> None:
     """Raise InputError unless a path is a gradebook, an empty folder, or absent."""
     is_begun = is_gradebook(folder) or (folder / _LOCK).exists()  # a first run may have been killed
     if folder.is_dir() and not is_begun and any(folder.iterdir()):
-        raise InputError(f"{printable_path(folder)} is no gradebook and not empty: name another folder")
+        raise InputError(f"{printable_path(folder)} is not empty and not a gradebook: name another folder")
     if folder.exists() and not folder.is_dir():
         check_gradebook(folder)
 

@@ -1,7 +1,6 @@
 """The grades of a class, computed from the results, the rubric, the roster and the marks of people."""
 
 from collections.abc import Iterator, Mapping
-from datetime import datetime
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -10,7 +9,7 @@ from grader import __version__
 from grader.checks.outcome import Outcome, Status
 from grader.classroom import folder as names
 from grader.classroom.graded import Graded, Run
-from grader.classroom.lateness import Lateness, lateness, read_time
+from grader.classroom.lateness import Lateness, lateness
 from grader.classroom.marks import Mark, Marks, read_marks
 from grader.classroom.results import Results
 from grader.classroom.roster import Roster, Student, read_roster
@@ -49,7 +48,7 @@ class Class:
         if run is None and not self.results.runs:
             raise InputError(f"nothing is graded yet in {printable_path(folder)}: run `grader batch PATH`")
         self.run: Run = run or self.results.runs[-1]
-        self.due: datetime | None = read_time(self.settings.due) if self.settings.due else None
+        self.due = self.settings.deadline(folder)
         self._on_roster = {one.key: one for one in self.roster.students} if self.roster is not None else {}
         self.keys = sorted({*self._on_roster, *self.results.students})
         self.marks: Marks = read_marks(folder / names.MARKS, self.keys, self.rubric)

@@ -28,7 +28,7 @@ class ClassSubmission(NamedTuple):
 
 
 def one_each(folder: ClassFolder, entries: Iterable[Entry], root: int) -> Iterator[ClassSubmission]:
-    """Yield one submission for each student that the names of files tell."""
+    """Yield one submission for each student whom the file names identify."""
     of_student: dict[tuple[Student, str], list[Entry]] = defaultdict(list)
     for entry in entries:
         of_student[entry.student, entry.name].append(entry)

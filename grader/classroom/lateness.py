@@ -46,14 +46,14 @@ def lateness(
     return Lateness(days, reduced - score, reason)
 
 
-def read_time(text: str) -> datetime:
+def read_time(text: str, where: str = "") -> datetime:
     """Return a deadline that is written as ISO 8601; a date alone means the end of that day. Raises InputError."""
     with suppress(ValueError):
         return datetime.combine(date.fromisoformat(text.strip()), time.max)
     try:
         return datetime.fromisoformat(text.strip())
     except ValueError:
-        raise InputError(f"{text!r} is not a date or time: write it as 2026-11-20T23:59+01:00") from None
+        raise InputError(f"{where}{text!r} is not a date or time: write it as 2026-11-20T23:59+01:00") from None
 
 
 def time_text(when: datetime | str, zone: tzinfo | None = None) -> str:

@@ -1,4 +1,4 @@
-"""The layouts of a class: what the names in a folder or zip tell of each submission. No submission is opened.
+"""The layouts of a class: what the names in a folder or zip say about each submission. No submission is opened.
 
 - folders: a folder, archive or URDF for each student, with or without a prefix (GitHub's `lab6-{login}/`).
 - Canvas (canvas-lms, lib/content_zipper.rb): `{name}[_LATE]_{user id}_{upload}_{file}`, `[LATE_]anon_{5 letters}_...`;

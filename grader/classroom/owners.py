@@ -1,4 +1,4 @@
-"""Whose each submission of a class is: a student's by an id or a full name, a visitor's, or nobody's for certain."""
+"""Match the submissions of a class with students: by the roster's column `submission`, ids, names and groups."""
 
 import os
 from collections import defaultdict
@@ -25,7 +25,7 @@ class Intake(NamedTuple):
     """The submissions of a class in the order of their keys, and lines for the user.
 
     `unclear` are the keys of students with possible submissions of which none counts. `unmatched` says which
-    submissions are certainly nobody's on the roster, and which row of it assigns them; `notes` says what was chosen,
+    submissions match no student for certain, and which row of the roster assigns them; `notes` says what was chosen,
     `ignored` what in the folders is no submission.
     """
 
@@ -38,7 +38,7 @@ class Intake(NamedTuple):
 
 
 class Owners:
-    """Whose each submission is: a student's, by the index on the roster, a visitor's, or nobody's for certain."""
+    """The submission of each student, by the index on the roster; those that match none; those that are ambiguous."""
 
     def __init__(self, roster: Roster | None, roots: Sequence[tuple[ClassListing, str]]) -> None:
         self.people, self.roots = People(roster.students if roster is not None else ()), roots

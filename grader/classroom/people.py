@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from grader.classroom.roster import Student, plain
 
-# What tells whose a submission is: an id of the LMS, another id as it is spelt, in another spelling or a name; a group.
+# What identifies the student: an id of the LMS, another id as it is spelt, in another spelling or a name; a group.
 _LMS_ID, _EXACT, _WORD, GROUP, _UNCLEAR = range(5)
 _MAX_WORDS = 8
 

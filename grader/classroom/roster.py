@@ -197,7 +197,7 @@ def _duplicates(students: Mapping[int, Student]) -> Iterator[tuple[int, str]]:
             other = first.setdefault(word if field == "key" else word.casefold(), line) if word else line
             if other != line and line not in wrong:
                 wrong.add(line)
-                yield line, f"has the {title} {word} of line {other}"
+                yield line, f"repeats the {title} {word} of line {other}"
 
 
 def iso_time(text: str) -> str:

@@ -5,9 +5,11 @@ import os
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from grader.classroom.lateness import read_time
 from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT, read_capped
 from grader.names import did_you_mean
@@ -44,6 +46,10 @@ class ClassSettings:
         """Return the real paths of the submissions."""
         return tuple((folder / path).resolve() for path in self.submissions)
 
+    def deadline(self, folder: Path) -> datetime | None:
+        """Return the deadline. Raises InputError."""
+        return read_time(self.due, f"{printable_path(folder / CLASS_FILE)}: ") if self.due else None
+
     def with_roots(self, folder: Path, paths: tuple[Path, ...]) -> "ClassSettings":
         """Return the settings with other submissions, relative to the gradebook where that is possible."""
         return replace(self, submissions=tuple(relative(path, folder) for path in paths))
@@ -73,7 +79,7 @@ def read_settings(folder: Path) -> ClassSettings:
         parts = value if isinstance(value, list) else value.values() if isinstance(value, dict) else ()
         if type(value) is not wanted or not all(isinstance(part, str) for part in parts):
             names = {list: "a list of texts", dict: "a table of texts", int: "a number", str: "a text"}
-            raise InputError(f"{shown}: {key} is {names[wanted]}")
+            raise InputError(f"{shown}: {key} should be {names[wanted]}")
     given: dict[str, Any] = {key: tuple(value) if isinstance(value, list) else value for key, value in data.items()}
     return ClassSettings(**given)
 

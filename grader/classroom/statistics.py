@@ -40,12 +40,12 @@ class Mistake(NamedTuple):
 
 
 class ClassStatistics(NamedTuple):
-    """The figures of a class. Visitors who are not on the roster, and what has gone, are in `attention` only.
+    """The figures of a class. Students who are not on the roster, or have gone, are in `attention` only.
 
     A grade counts if it is a final mark, or that of a graded submission, after marks, adjustments and the late penalty;
     points that still need manual grading are not in it yet, and `open` is the number of such grades. `tenths` are the
-    keys of the students in each tenth of the maximum, which itself is in the last one. `attention` are those for whom a
-    person is needed, each with details; `names` are those of all students by key.
+    keys of the students in each tenth of the maximum, which itself is in the last one. `attention` are those who need
+    attention, each with details; `names` are those of all students by key.
     """
 
     rubric: Rubric

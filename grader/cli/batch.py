@@ -20,10 +20,10 @@ from grader.report.formats import Format, OutputFormat
 from grader.workers import forks
 
 Layout = Literal["auto", "folders", "canvas", "moodle", "teams", "nbgrader"]
-_PATH = "A folder with an entry for each student, or the zip of an LMS; of a class of several sections name all."
+_PATH = "A folder with an entry for each student, or the zip of an LMS; name those of all sections."
 _GRADEBOOK = "The gradebook, a folder; default: ID-grades, with the rubric's id."
 _RUBRIC = "The rubric: an id or a .toml file; default: that of the last run, else lab6."
-_IGNORE = "A robot or package that the course handed out: not equal work; repeatable."
+_IGNORE = "A starter file, excluded from equal work; repeatable."
 _REPORTS = "The folder of the reports; default: reports in the gradebook."
 _TIMEOUT = "Time limit for each submission."
 
@@ -62,7 +62,7 @@ def batch(
 ) -> str:
     """Grade a class into a gradebook, in parallel.
 
-    A gradebook is a folder of plain files: grades.csv has the grades, marks/ what people give. Rerun the command to
+    A gradebook is a folder of plain files: grades.csv has the grades, marks/ the manual marks. Rerun the command to
     resume, or to grade new and changed submissions: it needs no PATH and no option again. Submissions are isolated: a
     crash or timeout affects only its own submission. Exits 0 when every submission has a result, whatever the grades.
 

@@ -13,7 +13,7 @@ from grader.usecases.writing import write_stdout
 _TARGETS = ("csv", *FORMS, "json", "html")
 _INTO = "The gradebook or worksheet that the LMS exported."
 _OUTPUT = "The file to write (default: standard output); with html, the folder (default: the gradebook)."
-_STRICT = "Write nothing if a row or a student is unmatched, or the LMS would refuse a grade."
+_STRICT = "Write nothing if a row or student is unmatched, a mark does not count, or the LMS would refuse a grade."
 _PENDING = "Also export grades with points that need manual grading."
 _MAXIMUM = "Export points unchanged, even if the LMS has another maximum."
 _ONLY = "Omit the columns of other assignments."
@@ -57,9 +57,8 @@ def export(
     A grade is the final mark of `grader mark STUDENT total`, else the sum of automatic points and manual marks minus
     the late penalty. For Canvas, Moodle, Blackboard and Brightspace, give the file that the LMS exported with --into.
     Only the grade cells (and Moodle's feedback) change. Rows without a grade are omitted, so that the import overwrites
-    no other grade. The maximum in the file must be the rubric's. Exits 1 if --strict finds an unmatched row or student,
-    or a grade that the LMS would refuse. With html, the folder contains a page for each student, and the class's page
-    index.html, which is for graders only.
+    no other grade. The maximum in the file must be the rubric's. Exits 1 if --strict writes nothing. With html, the
+    folder contains a page for each student, and the class's page index.html, which is for graders only.
 
     Examples:
 
@@ -71,11 +70,11 @@ def export(
 
     Recipes:
 
-      Publish in Canvas: --into and --only, then import the file. Upload the zip of --feedback with "Upload
-      Submissions".
+      Publish in Canvas: --into and --only, then import the file. "Upload Submissions" takes the zip of --feedback.
 
-      Publish in Moodle: --into, then "Upload grading worksheet". Upload the zip of --feedback with "Upload multiple
-      feedback files".
+      Publish in Moodle: --into, then "Upload grading worksheet".
+
+      Feedback in Moodle: --feedback, then "Upload multiple feedback files in a zip".
     """
     options = locals()  # named like the fields of the request
     from grader.usecases.export import ExportRequest

@@ -10,7 +10,7 @@ from grader.cli.terminal import TERMINAL, screen
 from grader.report.formats import OutputFormat
 
 _FIRST = "The gradebook, in place of the first argument."
-_VERBOSE = "Name all students who need a person (terminal)."
+_VERBOSE = "Name all students who need attention (terminal)."
 
 
 def stats(
@@ -31,7 +31,7 @@ def stats(
 
     Recipes:
 
-      Who still needs a person, by name: --verbose.
+      Who still needs attention, by name: --verbose.
 
       A criterion that is wrong: fix the rubric, and rerun `grader batch --rubric FILE`.
     """

@@ -21,7 +21,7 @@ def mark(
     criterion: Annotated[str, typer.Argument(metavar="CRITERION|total|deadline", help=_CRITERION)] = "",
     points: Annotated[str, typer.Argument(metavar="[POINTS|TIME|excused|-]", help=_POINTS)] = "",
     comment: Annotated[str, typer.Option(metavar="TEXT", help="For the student.")] = "",
-    missing: Annotated[bool, typer.Option("--missing", help="All who submitted nothing, not STUDENT.")] = False,
+    missing: Annotated[bool, typer.Option("--missing", help="All students without a submission.")] = False,
     file: Annotated[Path | None, typer.Option("--import", metavar="CSV", help="The marks of many students.")] = None,
     by: ByOption = "",
 ) -> str:

@@ -46,7 +46,7 @@ def render_class(found: ClassStatistics, console: Console, *, verbose: bool = Fa
     sections = (
         ("Common mistakes", mistakes, 8, ""),
         ("Equal work", equal, 4, EQUAL_NOTE),
-        ("Needs a person", attention, 4, ""),
+        ("Needs attention", attention, 4, ""),
     )
     for title, lines, indent, note in sections:
         if lines:
@@ -89,7 +89,7 @@ def percent(share: float) -> str:
 
 
 def attention_line(reason: Reason, who: Sequence[tuple[str, str]], *, verbose: bool = False) -> str:
-    """Return the students who need a person for one reason, each with a detail."""
+    """Return the students who need attention for one reason, each with a detail."""
     names = [f"{name} ({detail})" if detail else name for name, detail in who]
     return f"{reason[:1].upper()}{reason[1:]} ({len(who)}): {people_text(names, len(who) if verbose else _MAX_NAMED)}"
 
@@ -97,10 +97,11 @@ def attention_line(reason: Reason, who: Sequence[tuple[str, str]], *, verbose: b
 def _print_criteria(rows: Sequence[CriterionFigures], console: Console) -> None:
     optional = [name for name in ("carried", "marked", "pending", "errored") if any(row.counts[name] for row in rows)]
     columns = ["passed", "failed", *optional]
-    table = Table(box=None, pad_edge=False, padding=(0, 1), header_style="bold")
+    table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), header_style="bold")
     table.add_column("criterion", no_wrap=True)
     for name in ("points", *columns, "share"):
-        table.add_column("not deducted" if name == "carried" else name, justify="right", no_wrap=True)
+        title = "not deducted" if name == "carried" else name
+        table.add_column(title, justify="right", no_wrap=name != "carried")
     for row in rows:
         name = printable(f"{row.criterion.id}{' (bonus)' * row.criterion.bonus}")
         counts = (str(row.counts[column]) for column in columns)

@@ -1,4 +1,4 @@
-"""What `grader batch` prints: a table of the class, one row a student, then the mean and what needs a person."""
+"""What `grader batch` prints: a table of the class, one row a student, then the mean and what needs attention."""
 
 from collections import Counter, defaultdict
 from collections.abc import Sequence

@@ -79,8 +79,7 @@ def read_inputs(options: ClassOptions, warn: Warn) -> ClassInputs:
         )
     if not (options.paths or settings.submissions):
         raise InputError("name the PATH of the submissions, a folder or the zip of an LMS")
-    if settings.due and options.due is None:
-        due = read_time(settings.due)
+    if options.due is None and (due := settings.deadline(folder)) is not None:
         warn(f"deadline of the last run: {time_text(due, due.tzinfo)} (--due changes it)")
     roster_file = options.roster or (folder / names.ROSTER)
     roster = None

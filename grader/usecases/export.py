@@ -69,7 +69,8 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
     warn_of_ignored(book, terminal.warn)
     exported = _exported(request, book, terminal)
     if request.strict and (book.marks.ignored or not exported.is_complete):
-        terminal.warn("nothing was written, because of --strict: marks do not count, or rows or students are unmatched")
+        why = "rows or students are unmatched, marks do not count, or the LMS would refuse a grade"
+        terminal.warn(f"nothing was written, because of --strict: {why}")
         return b"", ExitCode.FAILED
     if request.feedback is not None:
         save_bytes(request.feedback, _feedback(request, book, exported.numbers, terminal), roots)

@@ -155,7 +155,7 @@ def _executor(request: ClassRequest, inputs: ClassInputs) -> Iterator[tuple[Exec
 
 
 def write_grades(book: Class, grades: Iterable[StudentGrade] | None = None) -> None:
-    """Write the grades of a class, by default those of now, into its gradebook. Raises InputError."""
+    """Write the grades of a class, by default the current ones, into its gradebook. Raises InputError."""
     table = write_table(*grade_table(book, book if grades is None else grades))
     save(book.folder / names.GRADES, table, book.settings.roots(book.folder), _PRIVATE)
 

@@ -17,7 +17,7 @@ from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import DEADLINE, TOTAL
-from grader.text import by_name, counted_points, format_points, named, printable, printable_path
+from grader.text import by_name, counted, counted_points, format_points, named, printable, printable_path
 from grader.usecases.grade_class import write_grades
 from grader.usecases.terminal import Warn
 
@@ -42,7 +42,7 @@ def give_mark(gradebook: Path, row: Cells, warn: Warn) -> str:
 
 
 def mark_missing(gradebook: Path, row: Cells) -> str:
-    """Give all who certainly submitted nothing, and have no final mark, one; return how many. Raises InputError."""
+    """Give a final mark to all students who submitted nothing and have none; return how many. Raises InputError."""
     if row["criterion"] != TOTAL or row["points"] in ("", WITHDRAWN):
         raise InputError(f"write it as --missing {TOTAL} POINTS")
     book = Class(gradebook)
@@ -51,7 +51,7 @@ def mark_missing(gradebook: Path, row: Cells) -> str:
     marks = [mark for key in missing for mark in reader.marks_in({**_EMPTY, **row, "student": key})]
     if marks:
         _append(book, marks, row["by"])
-    return f"{len(missing)} of {len(book.keys)} submitted nothing, and have the final mark {row['points']} now\n"
+    return f"final mark {row['points']} for {len(missing)} of {counted(len(book.keys), 'student')}\n"
 
 
 def import_marks(gradebook: Path, file: Path, by: str) -> str:

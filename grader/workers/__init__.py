@@ -1,1 +1,1 @@
-"""Tasks in other processes: an executor whose tasks end in any case, a queue, and how far it is. Knows no class."""
+"""Tasks in other processes: an executor whose tasks always end, a queue, and progress. Independent of classes."""

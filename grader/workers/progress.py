@@ -1,4 +1,4 @@
-"""How far a pass over a class is."""
+"""The progress of a run over a class."""
 
 from dataclasses import dataclass, replace
 

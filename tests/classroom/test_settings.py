@@ -33,11 +33,11 @@ def test_what_is_written_is_read(tmp_path_factory: pytest.TempPathFactory, setti
     [
         ("due = ", "class.toml is not TOML"),
         ('layuot = "x"', "unknown key 'layuot'; did you mean 'layout'?"),
-        ("due = 2026-11-20", "due is a text"),
-        ('submissions = "x"', "submissions is a list of texts"),
-        ("parts = [1]", "parts is a list of texts"),
-        ("max_size = true", "max_size is a number"),
-        ("arguments = { a = 1 }", "arguments is a table of texts"),
+        ("due = 2026-11-20", "due should be a text"),
+        ('submissions = "x"', "submissions should be a list of texts"),
+        ("parts = [1]", "parts should be a list of texts"),
+        ("max_size = true", "max_size should be a number"),
+        ("arguments = { a = 1 }", "arguments should be a table of texts"),
         (b"\xff", "class.toml is not TOML"),
     ],
 )
@@ -50,6 +50,12 @@ def test_a_mistake_is_one_line(text: str | bytes, why: str, tmp_path: Path) -> N
     assert "\n" not in str(raised.value)
 
 
+def test_a_wrong_deadline_names_its_file(tmp_path: Path) -> None:
+    """A person may have written it there."""
+    with pytest.raises(InputError, match=r"class\.toml: '20\.11\.2026' is not a date or time"):
+        ClassSettings(due="20.11.2026").deadline(tmp_path)
+
+
 def test_only_an_empty_folder_becomes_a_gradebook(tmp_path: Path) -> None:
     """Others, files and gradebooks of SQLite are refused; a new one is private."""
     with pytest.raises(InputError, match="there is no gradebook"):
@@ -58,7 +64,7 @@ def test_only_an_empty_folder_becomes_a_gradebook(tmp_path: Path) -> None:
     assert (tmp_path / "book").stat().st_mode & 0o777 == 0o700
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "notes.txt").touch()
-    with pytest.raises(InputError, match="is no gradebook and not empty"):
+    with pytest.raises(InputError, match="is not empty and not a gradebook"):
         check_free(tmp_path / "full")
     (tmp_path / "old.db").write_bytes(b"SQLite format 3\0")
     with pytest.raises(InputError, match="a gradebook of an earlier version"):

@@ -1,4 +1,4 @@
-"""Name the reports of a class as an LMS gives them to its students, and write them into a zip.
+"""Name the reports of a class as an LMS expects them, and write them into a zip.
 
 Moodle, "Upload multiple feedback files in a zip" (mod/assign/feedback/file/importziplib.php): the folder
 `name_participant_type_plugin_` has the files of one student; before Moodle 4.1 only with the last underscore.
@@ -43,7 +43,7 @@ def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], repor
         files = [PurePosixPath(path).name for path in paths if path.lower().endswith((ending, *_ARCHIVES))]
         if certain := [file for file in files if _is_certain(file, users[paths])]:
             names[student.key] = min(certain, key=lambda file: (not file.lower().endswith(ending), file))
-    why = f"submitted no {ending} file or archive by whose name Canvas finds the student"
+    why = f"submitted no {ending} file or archive with the Canvas user id in its name"
     return names, {student.key: why for student, _ in submissions if student.key not in names}
 
 

@@ -113,10 +113,10 @@ def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOpt
             rows[row], some = file.changed(row, grades[of_row[index]])
             notes += some
         elif not _TEST_STUDENT.fullmatch(one.name or one.login):
-            notes.append((_UNKNOWN, file.who(row), "no student certainly has this id, address or name"))
+            notes.append((_UNKNOWN, file.who(row), "matches no student for certain"))
     rest = [grades[at] for at in sorted({*range(len(grades))}.difference(of_row.values()))]
     missing = (one for one in rest if _cell(one, file))
-    notes += ((_MISSING, named(*one.student[:2]), "has a grade or an excuse, but no certain row") for one in missing)
+    notes += ((_MISSING, named(*one.student[:2]), "has a grade or an excuse, but matches no row") for one in missing)
     kept = [row for row in rows.values() if row is not None]
     graded = [rows[row] is not row for row in file.people if rows[row] is not None]
     if options.only and "maximum" not in file.roles:

@@ -1,4 +1,4 @@
-"""Find out whose the rows of a grade file are: ids decide over names, and nothing is guessed."""
+"""Match the rows of a grade file with students: ids decide over names, and nothing is guessed."""
 
 from collections import defaultdict
 from collections.abc import Sequence

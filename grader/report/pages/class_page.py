@@ -125,7 +125,7 @@ def _groups(grades: Sequence[StudentGrade], found: ClassStatistics) -> dict[str,
         labels = (
             (one.status, True),
             (f"section {one.student.section or '(none)'}", has_sections),
-            ("need a person", one.concerns),
+            ("need attention", one.concerns),
             ("need manual grading", one.pending),
             ("late", one.late.days and not one.has_final),
             ("a final mark", one.final_points is not None),

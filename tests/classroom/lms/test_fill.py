@@ -137,7 +137,7 @@ def test_a_large_class_has_few_lines() -> None:
     assert lines[0] == "column 'Lab 6 (98765)': 49 filled in, 1 already the same"
     assert lines[1:3] == ["row 3, Student 0: was 1, becomes 0.00", "row 5, Student 2: was 1, becomes 2.00"]
     assert lines[41] == "... and 9 more"
-    why = "no student certainly has this id, address or name"
+    why = "matches no student for certain"
     assert lines[42:] == [
         "without a grade: 100 (row 53, Student 50; row 54, Student 51; row 55, Student 52 and 97 more): open",
         f"in the file, but not in the class: 50 (row 153, Student 150; row 154, Student 151; row 155, Student 152 and 47 more): {why}",
