@@ -72,7 +72,9 @@ class ReviewPage:
         with suppress(ValueError, RecursionError):
             sent = json.loads(body)
         match sent if at >= 0 else None:
-            case {"do": "mark", "points": str(points), "comment": str(comment), "shown": str(shown)}:
+            case {"do": "mark", "points": str(points), "comment": str(comment), "shown": str(shown)} if at < len(
+                session.places
+            ):
                 return self._mark(at, points, comment.strip(), shown)
             case {"do": "filter", "criterion": str(criterion), "section": str(section), "state": str(state)} if (
                 state in STATES

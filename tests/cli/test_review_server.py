@@ -242,6 +242,7 @@ def test_a_body_of_another_form_is_refused(review: Review, book: Path) -> None:
     others: tuple[object, ...] = (None, [], "mark", {}, {"do": "delete"}, {"do": ["mark"]}, {"do": "mark"})
     for sent in (*others, *wrong):
         assert review.post("1", sent).status == 400
+    assert review.post("end", {"do": "mark", "points": "1", "comment": "", "shown": ""}).status == 400
     own = {"Content-Type": "application/json", "Origin": f"http://{HOST}:{review.port}"}
     assert review.ask("POST", f"/{review.token}/1", own, b"[" * 60_000).status == 400
     assert marks_in(book) == []
