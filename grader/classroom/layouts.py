@@ -157,10 +157,15 @@ def entries_of(folder: ClassFolder, layout: str) -> Iterator[Entry]:
             yield one._replace(student=student)
 
 
+def names_in(children: Children) -> dict[str, re.Match[str]]:
+    """Return the names of the layout `folders` in a folder, each with what it tells; a folder ends in a slash."""
+    names = [f"{name}/" for name in children.folders if name not in BUILD_FOLDERS] + children.files
+    return {name: found for name in names if (found := PATTERNS["folders"].fullmatch(name))}
+
+
 def _folders(folder: ClassFolder) -> Iterator[Entry]:
     """Yield each folder, archive and URDF, without the prefix of the assignment in its name."""
-    names = [f"{name}/" for name in folder.children.folders if name not in BUILD_FOLDERS] + folder.children.files
-    read = {name: found for name in names if (found := PATTERNS["folders"].fullmatch(name))}
+    read = names_in(folder.children)
     folder.ignore(name for name in folder.names if not {name, f"{name}/"} & read.keys())
     logins = {found["login"] for found in read.values()}
     prefix, tops = _prefix(logins, folder), {found["login"] for found in read.values() if not found["upload"]}

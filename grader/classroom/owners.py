@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from grader.classroom.grouping import ClassSubmission
+from grader.classroom.layouts import names_in
 from grader.classroom.listing import ClassListing
 from grader.classroom.people import GROUP, People
 from grader.classroom.roster import Roster, Student, plain
@@ -97,7 +98,7 @@ class Owners:
     def _holds_students(self, one: ClassSubmission) -> bool:
         """Return whether two students or more have submissions in a folder: it is a section, not a team's work."""
         inner = self.roots[one.root][0].children(one.paths[0], 1000)
-        return sum(self.people.knows(name.partition(".")[0]) for name in inner.folders + inner.files) > 1
+        return sum(self.people.knows(found["login"]) for found in names_in(inner).values()) > 1
 
     def _assign(self, found: Iterable[ClassSubmission]) -> None:
         """Give students what the roster's column `submission` names."""
