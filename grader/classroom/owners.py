@@ -145,13 +145,13 @@ class Owners:
         self._unmatched.append(f"{self._shown(one)} {reason}; to assign it, {advice}")
 
     def intake(self, layout: str) -> Intake:
-        """Return what was found, with the LMS's name and ids."""
+        """Return what was found, of a student on the roster only the LMS's name and ids: other names are anyone's."""
         students, found = self.people.students, list[ClassSubmission]()
         unclear = frozenset(students[index].key for index in self._unclear - self._owned.keys())
         while self._owned:  # of a large class not all is kept twice
             index, one = self._owned.popitem()
             name = "" if one.student.canvas else one.student.name
-            own = one.student._replace(key=students[index].key, name=name)
+            own = one.student._replace(key=students[index].key, name=name, login="")
             found.append(one._replace(student=own))
         twice = {one for one, other in pairwise(sorted(one.student.key for one in self._visitors)) if one == other}
         taken = {plain(one.key) for one in students}
