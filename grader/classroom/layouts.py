@@ -123,17 +123,11 @@ def readings_of(name: str, layout: str) -> list[Entry]:
 
 
 def _entry(found: re.Match[str]) -> Entry:
-    text = {
-        "canvas": "",
-        "moodle": "",
-        "login": "",
-        "name": found.string[: found.start()],
-        **found.groupdict(default=""),
-    }
+    text = {"name": found.string[: found.start()], **dict.fromkeys(("canvas", "moodle", "login"), "")}
+    text |= found.groupdict(default="")
     name, canvas, moodle = text["name"], text["canvas"], text["moodle"]
-    student = Student(
-        text["login"] or "_".join(filter(None, (name, canvas, moodle))), name, canvas=canvas, moodle=moodle
-    )
+    key = text["login"] or "_".join(filter(None, (name, canvas, moodle)))
+    student = Student(key, name, canvas=canvas, moodle=moodle)
     if "plugin" in text:
         return Entry(found.string, student, plugin=text["plugin"], file=text["file"])
     upload, is_late = int(text["upload"] or 0), bool(text["late"]) or found[0].startswith("LATE")
