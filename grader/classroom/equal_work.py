@@ -72,9 +72,9 @@ def equal_work(results: Iterable[Graded], handed_out: Iterable[str]) -> list[Equ
     known, works = {*handed_out}, [one for one in results if one.work]
     most = max(_MAX_SHARING, len(works) // 10)
     found: dict[tuple[str, ...], str] = {}
-    own = [one for one in works if known.isdisjoint(map(one.work.get, _LABELS))]
+    own = [one for one in works if known.isdisjoint((one.work.get("urdf"), one.work.get("robot")))]
     for kind, label in _LABELS.items():
-        for group in _groups((one.work[kind], one) for one in own if kind in one.work):
+        for group in _groups((one.work[kind], one) for one in own if one.work.get(kind, "") not in {"", *known}):
             is_rare = len(group) <= most and len({one.work.get("robot") for one in group}) > 1
             if kind != "written" or is_rare:
                 found.setdefault(_keys(group), label)

@@ -63,19 +63,20 @@ def _files(
 
     An empty folder, such as that of an empty text, counts only if there is nothing else.
     """
-    named: dict[str, str] = {}
+    named, full = dict[str, str](), list[str]()
     tops = {folder.start + one.path: one for one in kept}
     for top, one in tops.items() if len(kept) > 1 else ():
         part = f"{one.plugin}/" if one.plugin else ""
         paths = _files_below(folder.listing, top) if one.path in folders else [top]
         named |= {path: part + (path[len(top) + 1 :] or one.file or one.path) for path in paths}
-    full = [top for top in tops if any(f"{path}/".startswith(f"{top}/") for path in named)] or [*tops]
-    if len(full) > 1 and named:
+        full += [top] * bool(paths)
+    if len(full) > 1:
         return tuple(named), tuple(named.values())
-    only = tops[full[0]]
+    top = next(iter(full or tops))
+    only = tops[top]
     if only.path not in folders:
-        return (full[0],), (only.file,) if only.file else ()
-    return (full[0] if only.ending or only.upload else _only_file(folder.listing, full[0]),), ()
+        return (top,), (only.file,) if only.file else ()
+    return (top if only.ending or only.upload else _only_file(folder.listing, top),), ()
 
 
 def _only_file(listing: ClassListing, top: str) -> str:

@@ -123,17 +123,11 @@ def readings_of(name: str, layout: str) -> list[Entry]:
 
 
 def _entry(found: re.Match[str]) -> Entry:
-    text = {
-        "canvas": "",
-        "moodle": "",
-        "login": "",
-        "name": found.string[: found.start()],
-        **found.groupdict(default=""),
-    }
+    text = {"name": found.string[: found.start()], **dict.fromkeys(("canvas", "moodle", "login"), "")}
+    text |= found.groupdict(default="")
     name, canvas, moodle = text["name"], text["canvas"], text["moodle"]
-    student = Student(
-        text["login"] or "_".join(filter(None, (name, canvas, moodle))), name, canvas=canvas, moodle=moodle
-    )
+    key = text["login"] or "_".join(filter(None, (name, canvas, moodle)))
+    student = Student(key, name, canvas=canvas, moodle=moodle)
     if "plugin" in text:
         return Entry(found.string, student, plugin=text["plugin"], file=text["file"])
     upload, is_late = int(text["upload"] or 0), bool(text["late"]) or found[0].startswith("LATE")
@@ -157,10 +151,15 @@ def entries_of(folder: ClassFolder, layout: str) -> Iterator[Entry]:
             yield one._replace(student=student)
 
 
+def names_in(children: Children) -> dict[str, re.Match[str]]:
+    """Return the names of the layout `folders` in a folder, each with what it tells; a folder ends in a slash."""
+    names = [f"{name}/" for name in children.folders if name not in BUILD_FOLDERS] + children.files
+    return {name: found for name in names if (found := PATTERNS["folders"].fullmatch(name))}
+
+
 def _folders(folder: ClassFolder) -> Iterator[Entry]:
     """Yield each folder, archive and URDF, without the prefix of the assignment in its name."""
-    names = [f"{name}/" for name in folder.children.folders if name not in BUILD_FOLDERS] + folder.children.files
-    read = {name: found for name in names if (found := PATTERNS["folders"].fullmatch(name))}
+    read = names_in(folder.children)
     folder.ignore(name for name in folder.names if not {name, f"{name}/"} & read.keys())
     logins = {found["login"] for found in read.values()}
     prefix, tops = _prefix(logins, folder), {found["login"] for found in read.values() if not found["upload"]}

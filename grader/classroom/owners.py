@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from grader.classroom.grouping import ClassSubmission
+from grader.classroom.layouts import names_in
 from grader.classroom.listing import ClassListing
 from grader.classroom.people import GROUP, People
 from grader.classroom.roster import Roster, Student, plain
@@ -97,7 +98,7 @@ class Owners:
     def _holds_students(self, one: ClassSubmission) -> bool:
         """Return whether two students or more have submissions in a folder: it is a section, not a team's work."""
         inner = self.roots[one.root][0].children(one.paths[0], 1000)
-        return sum(self.people.knows(name.partition(".")[0]) for name in inner.folders + inner.files) > 1
+        return sum(self.people.knows(found["login"]) for found in names_in(inner).values()) > 1
 
     def _assign(self, found: Iterable[ClassSubmission]) -> None:
         """Give students what the roster's column `submission` names."""
@@ -144,13 +145,13 @@ class Owners:
         self._unmatched.append(f"{self._shown(one)} {reason}; to assign it, {advice}")
 
     def intake(self, layout: str) -> Intake:
-        """Return what was found, with the LMS's name and ids."""
+        """Return what was found, of a student on the roster only the LMS's name and ids: other names are anyone's."""
         students, found = self.people.students, list[ClassSubmission]()
         unclear = frozenset(students[index].key for index in self._unclear - self._owned.keys())
         while self._owned:  # of a large class not all is kept twice
             index, one = self._owned.popitem()
             name = "" if one.student.canvas else one.student.name
-            own = one.student._replace(key=students[index].key, name=name)
+            own = one.student._replace(key=students[index].key, name=name, login="")
             found.append(one._replace(student=own))
         twice = {one for one, other in pairwise(sorted(one.student.key for one in self._visitors)) if one == other}
         taken = {plain(one.key) for one in students}

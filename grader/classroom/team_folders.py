@@ -4,7 +4,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 
-from grader.classroom.layouts import PATTERNS, ClassFolder, Entry, entries_of
+from grader.classroom.layouts import ClassFolder, Entry, entries_of, names_in
 from grader.classroom.people import People
 from grader.classroom.roster import Student, iso_time
 from grader.errors import InputError
@@ -81,9 +81,8 @@ def _students(lab: ClassFolder, team: str, words: Collection[str]) -> set[str]:
     is a package or has the name of a part. The folder of the only member alone stays with the rest of the repository.
     """
     people, folders = lab.people, lab.children.folders
-    names = (f"{name}/" if name in folders else name for name in lab.names)
-    read = filter(None, map(PATTERNS["folders"].fullmatch, names))
-    known = {found.string.rstrip("/") for found in read if people.knows(found["login"], team)}
+    read = names_in(lab.children).items()
+    known = {name.rstrip("/") for name, found in read if people.knows(found["login"], team)}
     others = {name for name in folders if name not in known and not is_part(name, words)}
     is_package = any(lab.listing.has(f"{lab.start}{name}/package.xml") for name in folders)
     are_students = not (people.students or is_package) and 1 < len(others) == len(folders)

@@ -146,8 +146,8 @@ def test_any_names_are_accepted_and_can_be_assigned(names: list[str], is_twice: 
         for one in found.submissions:
             place = f"{'ab'[one.root]}/class.zip/{one.paths[0]}" if is_twice else one.paths[0]
             given = read_class(targets, Roster((Student("nobody", submission=place),)))
-            paths = [(it.student.key, it.root, it.paths) for it in given.submissions if it.student.is_on_roster]
-            assert paths == [("nobody", one.root, one.paths)]
+            own = next(it for it in given.submissions if it.student.is_on_roster)
+            assert (own.student.key, own.student.login, own.root, own.paths) == ("nobody", "", one.root, one.paths)
 
 
 def test_names_that_are_not_utf_8_can_be_opened(tmp_path: Path) -> None:
@@ -190,12 +190,15 @@ def test_the_list_of_ignored_files_is_bounded(tmp_path: Path) -> None:
 
 
 def test_a_large_class_takes_linear_work(tmp_path: Path) -> None:
-    """Each submission takes few lines of Python, also with a roster and in a class with as many groups."""
+    """Each submission takes few calls, also in a class with as many groups, and each of one student's files."""
     for index in range(2_000):
         (tmp_path / f"student{index:05}.urdf").touch()
     students = tuple(Student(f"Student{index:05}", group=f"g{index}") for index in range(2_000))
     with limited_work(500 * 2_000):
         assert len(read_class([tmp_path], Roster(students)).submissions) == 2_000
+    uploads = packed(f"{tmp_path}/zip", [f"doejane_101_{5000 + index}_{index}.png" for index in range(2_000)])
+    with limited_work(500 * 2_000):
+        assert len(read_class([uploads], None, "canvas").submissions[0].paths) == 2_000
 
 
 def test_students_cannot_affect_others() -> None:

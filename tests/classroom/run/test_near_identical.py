@@ -65,13 +65,13 @@ def test_how_the_robot_is_written_counts(old: str, new: str, found: list[object]
 
 
 def test_the_robot_that_was_handed_out(tmp_path: Path) -> None:
-    """The reference, and what --ignore-file names, with other Gazebo elements are no equal work."""
+    """The reference, and what --ignore-file names, with other Gazebo elements are no equal work; the same file is."""
     handout = OWN.replace("0.05", "0.06")
     (tmp_path / "start.urdf").write_text(handout, encoding="utf-8")
     given = {"ann": URDF, "bob": URDF, "eve": handout, "joe": handout}
     robots = {name: with_colours(urdf, f"Gazebo/{name}") for name, urdf in given.items()}
-    assert equal(tmp_path, **robots) == [("eve joe", PARTS)]
-    assert equal(tmp_path, "--ignore-file", tmp_path / "start.urdf") == []
+    assert equal(tmp_path, **robots, kim=robots["bob"]) == [("bob kim", "the same file"), ("eve joe", PARTS)]
+    assert equal(tmp_path, "--ignore-file", tmp_path / "start.urdf") == [("bob kim", "the same file")]
 
 
 def test_what_many_share_was_handed_out(tmp_path: Path) -> None:
