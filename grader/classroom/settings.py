@@ -25,9 +25,9 @@ _ARGUMENTS = "arguments"
 class ClassSettings:
     """The inputs and settings of a class. Paths are relative to the gradebook; `due` is ISO 8601, empty for none.
 
-    `max_size` is in bytes. `rubric` is the copy of the rubric. The hashes are those of the copies as they were made,
-    empty without one; another hash of the file means that somebody edited the copy. `handed_out` are hashes of work
-    that the course handed out, which is no equal work.
+    `max_size` is in bytes. `rubric` is the copy of the rubric, which an edit may break: its id is known all the same.
+    The hashes are those of the copies as they were made, empty without one; another hash of the file means that
+    somebody edited the copy. `handed_out` are hashes of work that the course handed out, which is no equal work.
     """
 
     submissions: tuple[str, ...] = ()
@@ -37,6 +37,7 @@ class ClassSettings:
     parts: tuple[str, ...] = ()
     max_size: int = URDF_LIMIT
     rubric: str = ""
+    rubric_id: str = ""
     rubric_hash: str = ""
     roster_hash: str = ""
     handed_out: tuple[str, ...] = ()

@@ -73,9 +73,9 @@ def read_inputs(options: ClassOptions, warn: Warn) -> ClassInputs:
     settings = ClassSettings() if is_new else read_settings(folder)
     if rubric is None:
         rubric = load_rubric(DEFAULT_RUBRIC if is_new else folder / settings.rubric)
-    elif not is_new and (recorded := load_rubric(folder / settings.rubric)).id != rubric.id:
+    elif (recorded := settings.rubric_id) not in ("", rubric.id):
         raise InputError(
-            f"{printable_path(folder)} is the gradebook of {recorded.id}, not of {rubric.id}: name another folder"
+            f"{printable_path(folder)} is the gradebook of {recorded}, not of {rubric.id}: name another folder"
         )
     if not (options.paths or settings.submissions):
         raise InputError("name the PATH of the submissions, a folder or the zip of an LMS")
@@ -129,7 +129,8 @@ def keep_inputs(inputs: ClassInputs, options: ClassOptions, warn: Warn) -> Class
         settings = replace(settings, roster_hash=sha256_of(data))
     if options.rubric is not None or not settings.rubric:
         _warn_of_edits(folder / settings.rubric, (settings.rubric_hash, rubric.sha256), rubric.path, warn)
-        settings = replace(settings, rubric=_copy_rubric(folder, rubric), rubric_hash=rubric.sha256)
+        copy = _copy_rubric(folder, rubric)
+        settings = replace(settings, rubric=copy, rubric_id=rubric.id, rubric_hash=rubric.sha256)
     if not (folder / CLASS_FILE).exists() or settings != read_settings(folder):
         save(folder / CLASS_FILE, settings_text(settings), inputs.roots, _PRIVATE)
     return replace(inputs, settings=settings, rubric=load_rubric(folder / settings.rubric))

@@ -15,7 +15,7 @@ TEXT = st.text(st.characters(codec="utf-8"), max_size=8)
 TEXTS = st.lists(TEXT, max_size=3).map(tuple)
 SETTINGS = st.builds(
     ClassSettings, submissions=TEXTS, layout=TEXT, assignment=TEXT, due=TEXT, parts=TEXTS, max_size=st.integers(1, 2**40),
-    rubric=TEXT, rubric_hash=TEXT, roster_hash=TEXT, handed_out=TEXTS, arguments=st.dictionaries(TEXT, TEXT, max_size=2),
+    rubric=TEXT, rubric_id=TEXT, rubric_hash=TEXT, roster_hash=TEXT, handed_out=TEXTS, arguments=st.dictionaries(TEXT, TEXT, max_size=2),
 )  # fmt: skip
 
 
