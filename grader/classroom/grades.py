@@ -50,7 +50,8 @@ class Class:
         self.run: Run = run or self.results.runs[-1]
         self.due = self.settings.deadline(folder)
         self._on_roster = {one.key: one for one in self.roster.students} if self.roster is not None else {}
-        self.keys = sorted({*self._on_roster, *self.results.students})
+        others = (key for key in self.results.students if self.roster is None or key in self.run.totals)
+        self.keys = sorted({*self._on_roster, *others})  # a submission may have been assigned since
         self.marks: Marks = read_marks(folder / names.MARKS, self.keys, self.rubric)
         self._marked = {student for student, _ in (*self.marks.counting, *self.marks.comments)}
         self._is_outdated = (self.run.rubric, self.run.version) != (self.rubric.sha256, __version__)

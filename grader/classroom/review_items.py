@@ -81,7 +81,7 @@ def review_items(book: Class, *, is_anonymous: bool = False, with_final: bool = 
 
     Those without an answer are the last item of a criterion. Unreadable submissions are omitted: they need a fix, not
     points. So are criteria that the rubric adjusts, and students with a final mark or an excuse, unless `with_final`.
-    Students of one submission have the same answers. Numbers and order of anonymous students tell nothing of names.
+    Students of one submission have the same answers. Numbers and order of anonymous students reveal no names.
     """
     groups: defaultdict[Place, list[Member]] = defaultdict(list)
     keys = sorted(book.keys, key=digest_of) if is_anonymous else book.keys

@@ -40,7 +40,7 @@ class Mistake(NamedTuple):
 
 
 class ClassStatistics(NamedTuple):
-    """The figures of a class. Students who are not on the roster, or have gone, are in `attention` only.
+    """The figures of a class. Students who are not on the roster, or whose submission is gone, are in `attention` only.
 
     A grade counts if it is a final mark, or that of a graded submission, after marks, adjustments and the late penalty;
     points that still need manual grading are not in it yet, and `open` is the number of such grades. `tenths` are the

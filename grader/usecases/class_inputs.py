@@ -87,7 +87,9 @@ def read_inputs(options: ClassOptions, warn: Warn) -> ClassInputs:
         roster = read_roster(_read(roster_file), printable_path(roster_file))
     inputs = ClassInputs(folder, _updated(options, settings, folder, rubric), rubric, roster)
     if not options.paths and (gone := [printable_path(root) for root in inputs.near_roots if not root.exists()]):
-        raise InputError(f"{enumerated(gone)} of the last run cannot be found: name the new PATH, or all of several")
+        raise InputError(
+            f"{enumerated(gone)} of the last run cannot be found: name the new PATH; of several sections, name all"
+        )
     return inputs
 
 
