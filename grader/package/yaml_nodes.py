@@ -11,6 +11,8 @@ from grader.source import Location, Source
 _MAX_EVENTS = 100_000
 _MAX_ALIASES = 1000
 _MAX_DEPTH = 200  # the parser gets slower with each open bracket
+_DEEP = "the file is too deeply nested"
+_TOO_DEEP = "exceeded maximum nesting depth"  # of newer versions of libyaml, which look ahead of the events
 
 
 class YamlFault(Exception):
@@ -64,12 +66,14 @@ def read_yaml(data: bytes, path: str) -> YamlNode:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         location = _location(source, mark) if mark else Location(path, 1, 1)
+        if error.problem == _TOO_DEEP:
+            raise YamlFault(_DEEP, Location(path, 1, 1)) from None
         message = " ".join(filter(None, (error.context, error.problem)))
         raise YamlFault(message or "this is not YAML", location) from None
     except yaml.YAMLError as error:  # such as characters that YAML forbids
         raise YamlFault(" ".join(str(error).split())[:200], Location(path, 1, 1)) from None
     except RecursionError:
-        raise YamlFault("the file is too deeply nested", Location(path, 1, 1)) from None
+        raise YamlFault(_DEEP, Location(path, 1, 1)) from None
 
 
 def _location(source: Source, mark: Any) -> Location:
@@ -99,7 +103,7 @@ def _compose(events: Iterator[yaml.Event], source: Source) -> YamlNode:
         if isinstance(event, yaml.CollectionStartEvent):
             open_nodes.append((node, []))
             if len(open_nodes) > _MAX_DEPTH:
-                raise YamlFault("the file is too deeply nested", node.location)
+                raise YamlFault(_DEEP, Location(source.path, 1, 1))
     return root
 
 

@@ -1,40 +1,56 @@
-"""A report as annotations of its files: workflow commands for GitHub, and Code Climate's JSON for GitLab.
+"""A report as annotations of its files for GitHub: failed criteria, most points first, then unreported problems.
 
 GitHub shows ten annotations of each type in a step and drops the others silently, so the last of a type counts the
 rest.
 https://docs.github.com/actions/reference/workflow-commands-for-github-actions
-https://docs.gitlab.com/ci/testing/code_quality/#code-quality-report-format
 """
 
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
+from functools import cache
+from typing import NamedTuple
 
 from grader.grading.report import Report
-from grader.report.content import note_lines, provenance, score_text, summary_lines
-from grader.report.findings import Finding, Level, findings
-from grader.report.json_data import to_json_list
-from grader.report.locations import RepositoryLocation
-from grader.report.order import alike, status_of
-from grader.source import Base
-from grader.text import printable
+from grader.problems import Severity
+from grader.report.content import note_lines, other_problems, provenance, score_text, summary_lines
+from grader.report.details import remarks_on, result_details, sentence
+from grader.report.locations import RepositoryLocation, SourceOf, archive_around, in_repository, location_text
+from grader.report.order import FailedCriterion, alike, earned_text, failures, is_failure, points_of, status_of
+from grader.source import Base, Location
+from grader.text import counted_points, printable
 
 _MAX_ANNOTATIONS = 10  # of each type
 _MAX_MESSAGE = 4000  # characters
-# The names of each level: GitHub's command, Code Climate's severity.
-_NAMES: dict[Level, tuple[str, str]] = {
-    "error": ("error", "major"),
-    "warning": ("warning", "minor"),
-    "note": ("notice", "info"),
-}
+_COMMANDS: dict[Severity, str] = {"error": "error", "warning": "warning", "note": "notice"}
+_ORDER = tuple(_COMMANDS)
+
+
+class _Finding(NamedTuple):
+    """One thing to fix.
+
+    `rule` is the id of the criterion or the code of the problem, `text` is printable and has several lines, `lost`
+    includes the points of criteria that are skipped because of it. Without a `location` the whole submission is meant.
+    """
+
+    rule: str
+    level: Severity
+    text: str
+    location: RepositoryLocation | None = None
+    lost: Decimal = Decimal(0)
+
+    @property
+    def cost(self) -> str:
+        """The lost points between parentheses; empty if none are lost."""
+        return f" ({counted_points(self.lost)} lost)" if self.lost else ""
 
 
 def render_github(report: Report, base: Base) -> str:
     """Return the annotations of a report: the score as a notice, then the findings, most points first."""
-    found = findings(report, base)
+    found = _findings(report, base)
     if base.is_outside:  # a file of the repository may have the same path
         found = [finding._replace(location=None) for finding in found]
     lines = [command("notice", None, f"{score_text(report)}: {printable(report.rubric.title)}", _overview(report))]
-    for level, (name, _) in _NAMES.items():
+    for level, name in _COMMANDS.items():
         some = [finding for finding in found if finding.level == level]
         room = _MAX_ANNOTATIONS - (level == "note")
         listed = some if len(some) <= room else [*some[: room - 1], _rest(some[room - 1 :])]
@@ -42,7 +58,56 @@ def render_github(report: Report, base: Base) -> str:
     return "".join(lines)
 
 
-def _rest(found: Sequence[Finding]) -> Finding:
+def _findings(report: Report, base: Base) -> list[_Finding]:
+    """Return what to fix; `base` is where the submission is in its repository."""
+    source_of = cache(report.submission.source)  # reads each file once
+    found = [_of_criterion(failure, report, source_of, base) for failure in failures(report)]
+    found += _undecided_finding(report)
+    found += _remarks(report)
+    for problem in sorted(other_problems(report), key=lambda problem: _ORDER.index(problem.severity)):
+        text = _text([printable(problem.message)], problem.location, base)
+        location = in_repository(problem.location, source_of(problem.location.path), base)
+        found.append(_Finding(problem.code, problem.severity, text, location))
+    return found
+
+
+def _of_criterion(failure: FailedCriterion, report: Report, source_of: SourceOf, base: Base) -> _Finding:
+    result, skipped, is_bonus = failure.result, failure.skipped, failure.result.criterion.bonus
+    details = result_details(result, report)
+    lines = [*details.words, *details.advice, details.expected]
+    lines += [f"Extra credit: {earned_text(result)}."] if is_bonus else []
+    lines += [f"Skipped because of it: {len(skipped)} more, {points_of(skipped)}."] if skipped else []
+    where = details.location
+    location = in_repository(where, source_of(where.path), base) if where is not None else None
+    level: Severity = "note" if result.why_given or is_bonus else "error"
+    return _Finding(failure.id, level, _text(lines, where, base), location, failure.lost)
+
+
+def _undecided_finding(report: Report) -> Iterator[_Finding]:
+    """Yield one finding for all automatic criteria that need manual grading here, with the reasons."""
+    results = report.pending_automatic
+    if results:
+        reasons = dict.fromkeys(sentence(result.outcome.message) for result in results)
+        names = ", ".join(result.criterion.id for result in results)
+        text = "\n".join((*reasons, f"Could not be decided ({points_of(results)}): {names}"))
+        yield _Finding(results[0].criterion.id, "warning", text)
+
+
+def _remarks(report: Report) -> Iterator[_Finding]:
+    """Yield a note for each criterion that is adjusted, or has a comment and is no failure."""
+    for result in report.results:
+        remarks = remarks_on(result, report) if not is_failure(result) else ()
+        if remarks:
+            yield _Finding(result.criterion.id, "note", "\n".join(remarks))
+
+
+def _text(lines: list[str], where: Location | None, base: Base) -> str:
+    """Return the lines, and the location where that is in a macro, or not in a file of the repository."""
+    is_hidden = where is not None and (base.archive or base.is_outside or archive_around(where.path) or where.calls)
+    return "\n".join((*lines, *([f"In {location_text(where)}."] if where is not None and is_hidden else [])))
+
+
+def _rest(found: Sequence[_Finding]) -> _Finding:
     names = ", ".join(dict.fromkeys(finding.rule for finding in found))
     lost = sum((finding.lost for finding in found), Decimal(0))
     text = f"See the report for: {names}"
@@ -81,18 +146,3 @@ def _position(location: RepositoryLocation | None) -> Iterator[tuple[str, str]]:
 
 def _data(text: str) -> str:
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
-
-
-def render_codeclimate(report: Report, base: Base) -> str:
-    """Return the findings of a report; an empty list if there is nothing to fix."""
-    return to_json_list([_issue(finding, finding.location or finding.fallback) for finding in findings(report, base)])
-
-
-def _issue(finding: Finding, location: RepositoryLocation) -> dict[str, object]:
-    return {
-        "description": finding.text.replace("\n", " ") + finding.cost or finding.rule,
-        "check_name": finding.rule,
-        "fingerprint": finding.fingerprint,
-        "severity": _NAMES[finding.level][1],
-        "location": {"path": printable(location.path), "lines": {"begin": location.line or 1}},
-    }

@@ -44,12 +44,10 @@ class Format(_Row):
     MARKDOWN = "markdown", "markdown:render_markdown", "picture", "md"
     JSON = "json", "as_json:render_json"
     JUNIT = "junit", "junit:render_junit", "base", "xml"
-    SARIF = "sarif", "sarif:render_sarif", "base"
     GITHUB = "github", "annotations:render_github", "base", "github.txt"
     GRADESCOPE = "gradescope", "platforms:render_gradescope", "", "gradescope.json"
     CLASSROOM50 = "classroom50", "platforms:render_classroom50", "identity", "classroom50.json"
     HTML = "html", "pages.student:render_html"
-    CODECLIMATE = "codeclimate", "annotations:render_codeclimate", "base", "codeclimate.json"
     SVG = "svg", "drawing:render_svg"
 
 

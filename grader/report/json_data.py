@@ -21,12 +21,6 @@ def to_json(data: Mapping[str, Any]) -> str:
     return _harmless(f"{{\n{lines}\n}}\n")
 
 
-def to_json_list(data: Sequence[Mapping[str, Any]]) -> str:
-    """Return a list of objects as JSON text, a line for each."""
-    lines = ",\n".join(f" {_ENCODER.encode(item)}" for item in data)
-    return _harmless(f"[\n{lines}\n]\n" if lines else "[]\n")
-
-
 def _harmless(text: str) -> str:
     """Return JSON with escapes for unprintable characters, and for what GitHub's runner takes for a command."""
     if not text.isascii() or "\x7f" in text:

@@ -19,7 +19,6 @@ _AROUND = 2  # lines of the source before and after the marked one
 _MAX_WIDTH = 160  # characters of a line on a page
 _MARGIN = 4  # characters before the marked part, if the line is cut
 _MAX_CALLS = 3  # macros of xacro that are named
-_MAX_TEXT = 500  # characters of a line: a whole file may be one line
 _MAX_LENGTH = 200  # the same for a diff: of a longer line only the old and the new text are in it
 _MAX_LINES = 40  # of a diff
 
@@ -35,16 +34,13 @@ class Excerpt(NamedTuple):
 class RepositoryLocation(NamedTuple):
     """A location as seen from the repository's root, from 1; `end` is the column after the marked part.
 
-    Without a line it is the whole file. `text` is the source line, `meant` the part of it that is meant, empty if it is
-    too long.
+    Without a line it is the whole file.
     """
 
     path: str
     line: int | None = None
     column: int = 1
     end: int = 1
-    text: str = ""
-    meant: str = ""
 
 
 def width_of(line: str, column: int) -> int:
@@ -123,10 +119,8 @@ def in_repository(where: Location, source: Source | None, base: Base) -> Reposit
     path = base.folder + where.path
     if source is None:
         return RepositoryLocation(path, where.line, where.column, where.column)
-    line = source.line(where.line)
-    start, width = where.column - 1, width_of(line, where.column)
-    meant = line[start : start + width] if width <= _MAX_TEXT else ""
-    return RepositoryLocation(path, where.line, where.column, where.column + width, line.strip()[:_MAX_TEXT], meant)
+    width = width_of(source.line(where.line), where.column)
+    return RepositoryLocation(path, where.line, where.column, where.column + width)
 
 
 def diff_lines(edits: Sequence[Edit], source_of: SourceOf) -> list[str]:

