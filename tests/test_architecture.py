@@ -39,7 +39,7 @@ LIBRARIES = {
     "ast": {"static_python", "package", "mutation"},
     "docx": {"documents"},
     "pypdf": {"documents"},
-    "numpy": {"robot"},
+    "numpy": {"drawing", "robot"},
     "tomllib": {"grading", "bundle", "package", "classroom"},
     "pebble": {"workers"},
     "distributed": {"classroom"},

@@ -1,121 +1,148 @@
-"""The drawing of a robot as an SVG element, and as the file of a report: three views at one scale, a key of the signs.
+"""The drawing of a robot as SVG: three views at one scale, a key of the signs, and the failed criteria.
 
-The element needs no style sheet, script or other file. A page that contains it adds `DARK_RULES` for dark mode.
+It needs no script or other file. A page that contains it adds `STYLE` to its own rules.
 """
 
-from collections.abc import Iterable, Sequence
-from statistics import median
-from typing import Any
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from textwrap import wrap
 
-from lxml import etree
-
-from grader.drawing.curves import Curve, Edge, inner_edges
-from grader.drawing.picture import Picture, picture_of, plain_picture
-from grader.drawing.sheet import WIDTH, Panel, Seen, framed_links, projection, sheet_of, with_fronts
+from grader.drawing.picture import Callout, Picture, picture_of, plain_picture
+from grader.drawing.views import WIDTH, Panel, Sheet, from_back_to_front, lifted_ground, sheet_of
 from grader.grading.report import Report
 from grader.report.content import bonus_line, grade_line, score_text, summary
 from grader.report.details import remarks_on
-from grader.report.drawing_key import description, put_key, put_legend, why_no_picture
-from grader.report.drawing_signs import ViewSigns
+from grader.report.drawing_signs import Signs, wheel_sign
+from grader.report.drawing_words import description, heading, why_no_picture
 from grader.report.inspection import Inspection, effect
-from grader.report.svg_elements import DARK_RULES, LINE, SVG, colour, edge_look, path_data, put, put_lines, wrap
-from grader.text import printable
+from grader.report.svg_elements import STYLE, badge, circle, escaped, path, polygon, segment, text
+from grader.text import counted_points, printable
 
-_FONT = "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"
-_THICKNESS = 0.05  # of an edge, as a share of the size of a shape
-_THIN, _THICK = 0.3, 1.3  # pixels
-_HIDDEN = 0.7  # of the thickness of a visible edge
-_MAX_NAME, _MAX_TITLE = 60, 200  # characters
+_LEFT, _LINE, _ROW, _INDENT = 14.0, 15.0, 18.0, 26.0  # pixels
+_LETTER_WIDTH = 6.8  # pixels, on average, of a font that is wider than most
+_WIDTH = WIDTH - 2.0 * _LEFT
+_MAX_NAME, _MAX_TITLE, _MAX_TEXT, _MAX_LINES = 60, 200, 1000, 6
 _NO_SHAPES = "No visual can be drawn: only frames of links are shown."
-_NAMESPACES: Any = {None: SVG}  # a default namespace, which the types do not know
 
 
-def drawing_element(picture: Picture, title: str = "", top: float = 0.0, *, legend: bool = True) -> Any:
-    """Return the drawing of a robot, with `top` pixels left free above it; `legend` lists the criteria below it.
+def drawing_element(picture: Picture, title: str = "", *, legend: bool = True, above: Sequence[str] = ()) -> str:
+    """Return the drawing of a robot as an SVG element; `above` are lines above it, `legend` lists the criteria below.
 
     Screen readers read the title, and a description of the callouts.
     """
-    root = _root(title or "Three views of the robot", description(picture))
-    sheet = sheet_of(picture, top)
-    titles = put(root, "g", "faint")
-    notes = picture.scene.missing if picture.scene.bodies else (*picture.scene.missing, _NO_SHAPES)
-    for panel in sheet.panels:
-        put(titles, "text", "", {"x": panel.left + 14.0, "y": panel.top + 14.0}, panel.view.title)
-        _put_view(put(root, "g"), panel, picture)
-    put_key(put(root, "g"), sheet, picture, legend=legend)
-    return _set_size(root, WIDTH, put_legend(root, sheet.height, picture.callouts, notes) if legend else sheet.height)
+    shown = title or "Three views of the robot"
+    sheet = sheet_of(picture, _height(above) if title else 0.0)
+    parts = [f"<g>{''.join(_view(panel, picture))}</g>" for panel in sheet.panels]
+    parts += _key(sheet, picture, legend=legend)
+    height = sheet.height
+    if legend:
+        notes = picture.scene.missing if picture.scene.bodies else (*picture.scene.missing, _NO_SHAPES)
+        height, below = _legend(sheet.height, picture.callouts, notes)
+        parts += below
+    return _svg(shown, description(picture), height, [*(_headline(title, above) if title else ()), *parts])
 
 
-def _set_size(root: Any, width: float, height: float) -> Any:
-    """Set the size of a drawing, and of its background, in pixels."""
-    root.set("viewBox", f"0 0 {width:g} {height:.0f}")
-    root.set("width", f"{width:g}")
-    root.set("height", f"{height:.0f}")
-    for paper in root.iterfind(f"{{{SVG}}}rect"):
-        paper.set("height", f"{height:.0f}")
-    return root
+def _svg(title: str, words: str, height: float, parts: Iterable[str]) -> str:
+    size = f'viewBox="0 0 {WIDTH:g} {height:.0f}" width="{WIDTH:g}" height="{height:.0f}"'
+    said = f"<title>{escaped(title[:_MAX_TITLE])}</title><desc>{escaped(words)}</desc>"
+    paper = f'<rect class="paper" width="{WIDTH:g}" height="{height:.0f}"/>'
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" class="drawing" role="img" {size}>{said}{paper}{"".join(parts)}</svg>'
+    )
 
 
-def _root(title: str, words: str) -> Any:
-    """Return the root of a drawing, without its size."""
-    looks = {"class": "drawing", "role": "img", "font-family": _FONT, "font-size": "12"}
-    root = etree.Element(f"{{{SVG}}}svg", looks, nsmap=_NAMESPACES)
-    put(root, "title", text=title[:_MAX_TITLE])
-    if words:
-        put(root, "desc", text=words)
-    put(root, "rect", "paper", {"width": WIDTH, "height": 0})
-    return root
+def _view(panel: Panel, picture: Picture) -> Iterator[str]:
+    """Yield a view: the ground, the shapes from back to front, then the signs."""
+    yield text("faint", (panel.left + _LEFT, panel.top + _LEFT), panel.title)
+    signs = Signs(panel, picture)
+    yield from signs.grounds()
+    outlines = [(body, panel.outline(picture.scene, body)) for body in from_back_to_front(picture.scene, panel)]
+    for body, corners in outlines:
+        red, green, blue, alpha = body.rgba
+        # As WCAG 2.2 defines it, with a plain gamma: dark edges on light colours, light edges on dark ones.
+        is_dark = alpha >= 0.5 and 0.2126 * red**2.2 + 0.7152 * green**2.2 + 0.0722 * blue**2.2 <= 0.18
+        fill = "".join(f"{round(255.0 * value):02x}" for value in (red, green, blue))
+        looks = f'fill="#{fill}" fill-opacity="{alpha:.2g}" stroke="{"#e8eaed" if is_dark else "#1c1f23"}"'
+        name = escaped(body.link[:_MAX_NAME])
+        yield f'<polygon {looks} points="{polygon(corners)[1:-1].replace("L", " ")}"><title>{name}</title></polygon>'
+    if len(outlines) > 1:  # what a shape hides shows through
+        yield path("hidden", "".join(polygon(corners) for _, corners in outlines))
+    yield from signs.all()
 
 
-def _put_view(group: Any, panel: Panel, picture: Picture) -> None:
-    signs = ViewSigns(panel, picture)
-    signs.add_ground()
-    signs.put(group)
-    _put_bodies(group, panel, projection(picture.scene, panel.view))
-    _add_robot_signs(signs, framed_links(picture))
-    signs.add_callouts()
-    signs.put(group)
+def _key(sheet: Sheet, picture: Picture, *, legend: bool) -> Iterator[str]:
+    """Yield the scale bar, and the meaning of each sign; with a `legend` the criteria are listed below it."""
+    left, top = sheet.key[0] + 8.0, sheet.key[1] + 20.0
+    length, words = sheet.bar
+    ends = (segment((x, top - 4.0), (x, top + 4.0)) for x in (left, left + length))
+    yield path("ground", segment((left, top), (left + length, top)) + "".join(ends))
+    yield text("text", (left + length + 8.0, top + 4.0), words)
+    for row, (look, meaning) in enumerate(_meanings(picture, legend=legend), 1):
+        x, y = left, top + 6.0 + row * _ROW
+        yield _sign(look, x, y)
+        yield text("faint", (x + 34.0, y + 4.0), meaning)
 
 
-def _add_robot_signs(signs: ViewSigns, framed: Iterable[str]) -> None:
-    signs.add_outlines()
-    signs.add_frames(framed)
-    signs.add_wheels()
-    signs.add_letters()
+def _meanings(picture: Picture, *, legend: bool) -> Iterator[tuple[str, str]]:
+    """Yield the signs of a drawing with their meanings."""
+    travels = [wheel.travel is not None for wheel in picture.scene.wheels]
+    if any(callout.point is not None for callout in picture.callouts):
+        yield "badge", f"points lost{': see below' if legend else ''}"
+    if picture.outlines or picture.frames or lifted_ground(picture) is not None:
+        yield "reference", "reference solution"
+    if any(travels):
+        yield "arrow", "driving direction, positive turn"
+    if not all(travels):
+        yield "slash", "wheel does not roll"
+    yield "axes", "frame of a link: x, y, z"
+    if len(picture.scene.bodies) > 1:
+        yield "hidden", "hidden edge"
 
 
-def _put_bodies(group: Any, panel: Panel, bodies: Sequence[Seen]) -> None:
-    """Add the shapes from back to front, then lighter the edges that others hide. Small shapes have thinner edges."""
-    sizes = [panel.scale * max(high - low for low, high in seen.extents) for seen in bodies]
-    width = min(max(median(sizes or [0.0]) * _THICKNESS, _THIN), _THICK)
-    hidden: dict[str, list[Curve]] = {}
-    for seen, fronts in with_fronts(bodies):
-        inner = inner_edges(seen.body.shape, seen.pose)
-        _put_body(group, panel, seen, inner, width)
-        # What may be hidden is drawn again, whole, in the look for the colour of the shape that is around it.
-        covered = [*(seen.outline if fronts else ()), *(it.curve for it in inner if fronts or not it.faces_viewer)]
-        for curve, extents in ((curve, curve.extents()) for curve in covered):
-            around = next((other for other in fronts if other.encloses(extents)), seen)
-            hidden.setdefault(edge_look(around.body.rgba), []).append(curve)
-    for look, curves in sorted(hidden.items()):
-        d = path_data(panel, curves)
-        put(group, "path", look, {"d": d, "stroke-width": width * _HIDDEN, "stroke-opacity": "0.5"})
+def _sign(look: str, x: float, y: float) -> str:
+    match look:
+        case "badge":
+            return badge((x + 12.0, y), 1)
+        case "arrow":
+            return path("arrow", wheel_sign((x - 3.0, y), (1.0, 0.0, 0.0)))
+        case "slash":
+            return path("arrow", wheel_sign((x + 12.0, y), None))
+        case "axes":
+            ends = (("x", segment((x + 6.0, y + 5.0), (x + 20.0, y + 5.0))), ("y", circle((x + 6.0, y + 5.0), 2.5)))
+            lines = (*ends, ("z", segment((x + 6.0, y + 5.0), (x + 6.0, y - 9.0))))
+            return "".join(path(f"axis-{name}", data) for name, data in lines)
+    return path(look, segment((x, y), (x + 26.0, y)))
 
 
-def _put_body(group: Any, panel: Panel, seen: Seen, inner: Sequence[Edge], width: float) -> None:
-    """Add a shape with its visible edges."""
-    look, looks = edge_look(seen.body.rgba), {"stroke-width": width}
-    d = path_data(panel, seen.outline, closed=True)
-    body = put(group, "path", look, {"d": d, **colour(seen.body.rgba), **looks})
-    put(body, "title", text=seen.body.link[:_MAX_NAME])
-    # The inner edges have a path of their own: in that of the outline they would make holes in what it fills.
-    if visible := path_data(panel, (edge.curve for edge in inner if edge.faces_viewer)):
-        put(group, "path", look, {"d": visible, **looks})
+def _legend(top: float, callouts: Sequence[Callout], notes: Sequence[str]) -> tuple[float, list[str]]:
+    """Return the failed criteria of each callout, and notes, below `top`, and where they end."""
+    if not callouts and not notes:
+        return top, []
+    parts = [path("rule", segment((_LEFT, top + 8.0), (WIDTH - _LEFT, top + 8.0)))]
+    left, y = _LEFT + _INDENT, top + 28.0
+    for callout in callouts:
+        parts.append(badge((_LEFT + 9.0, y - 4.0), callout.number))
+        lost = [
+            f"{result.criterion.id} ({counted_points(result.criterion.points)}): {result.outcome.message}"
+            for result in callout.results
+        ]
+        for look, words in (("strong", heading(callout)), *(("text", words) for words in lost)):
+            some = _lines(words, WIDTH - _LEFT - left)
+            parts += (text(look, (left, y + n * _LINE), line) for n, line in enumerate(some))
+            y += _LINE * len(some)
+        y += 6.0
+    for line in (line for note in notes for line in _lines(note, WIDTH - _LEFT - left)):
+        parts.append(text("text", (left, y), line))
+        y += _LINE
+    return y + 2.0, parts
 
 
-_STYLE = f"svg{{max-width:100%;height:auto}}@media screen and (prefers-color-scheme:dark){{{DARK_RULES}}}"
-_LEFT, _TITLE = 14.0, 28.0  # pixels
-_WIDTH = WIDTH - 2.0 * _LEFT
+def _lines(words: str, width: float, most: int = _MAX_LINES) -> list[str]:
+    """Return a text in at most some lines of a width in pixels, with a number and its unit on one line."""
+    whole = re.sub(r"(?<=\d) (?=(?:m|mm|degrees)\b)", "\xa0", printable(words[:_MAX_TEXT]))
+    room = max(1, int(width / _LETTER_WIDTH))
+    lines = wrap(whole, room, max_lines=most, placeholder=" ...", break_on_hyphens=False)
+    return [line.replace("\xa0", " ") for line in lines]
 
 
 def render_svg(report: Report) -> str:
@@ -137,16 +164,21 @@ def inspection_svg(inspection: Inspection) -> str:
 
 
 def _file(picture: Picture | None, title: str, words: Iterable[str], reason: str) -> str:
-    lines = [line for text in filter(None, words) for line in wrap(text, _WIDTH)]
-    lines += [] if picture is not None else ["", *wrap(reason, _WIDTH)]
-    top = _TITLE + LINE * len(lines) + 8.0
-    empty = _set_size(_root(title, reason), WIDTH, top)
-    root = drawing_element(picture, title, top) if picture is not None else empty
-    put_lines(put(root, "g", "title"), _LEFT, _TITLE - 2.0, _WIDTH / 1.5, title, 1)
-    faint = put(root, "g", "faint")
-    for number, line in enumerate(lines, 1):
-        put(faint, "text", "", {"x": _LEFT, "y": _TITLE + LINE * number}, line)
-    style = etree.Element(f"{{{SVG}}}style")
-    style.text = _STYLE
-    root.find(f"{{{SVG}}}rect").addprevious(style)
-    return etree.tostring(root, encoding="unicode") + "\n"
+    above = [line for part in filter(None, words) for line in _lines(part, _WIDTH)]
+    if picture is not None:
+        drawn = drawing_element(picture, title, above=above)
+    else:
+        above += ["", *_lines(reason, _WIDTH)]
+        drawn = _svg(title, reason, _height(above), _headline(title, above))
+    start, rest = drawn.split("<title>", 1)
+    return f"{start}<style>svg{{max-width:100%;height:auto}}{STYLE}</style><title>{rest}\n"
+
+
+def _headline(title: str, above: Sequence[str]) -> list[str]:
+    shown = _lines(title, _WIDTH / 1.5, 1)
+    lines = [text("faint", (_LEFT, 2.0 * _LEFT + _LINE * number), line) for number, line in enumerate(above, 1)]
+    return [*(text("title", (_LEFT, 26.0), line) for line in shown), *lines]
+
+
+def _height(above: Sequence[str]) -> float:
+    return 2.0 * _LEFT + _LINE * len(above) + 8.0

@@ -22,7 +22,7 @@ def test_drawing_follows_dark_mode_and_prints_on_white(
     opened = open_pages(DRAWING, color_scheme=scheme, viewport={"width": 600, "height": 900})
     page = opened.page
     assert page.evaluate(FILL, ".paper") == paper
-    assert page.evaluate(FILL, "path[fill='#00ff00']") == "rgb(0, 255, 0)"
+    assert page.evaluate(FILL, "polygon[fill='#00ff00']") == "rgb(0, 255, 0)"
     page.emulate_media(media="print")
     assert page.evaluate(FILL, ".paper") == LIGHT
     opened.check()

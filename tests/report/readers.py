@@ -206,12 +206,21 @@ def page_text(text: str) -> str:
     return str(root.text_content())
 
 
-_SVG_ELEMENTS = {"svg", "title", "desc", "style", "rect", "g", "path", "text", "tspan"}
+_SVG_ELEMENTS = {"svg", "title", "desc", "style", "rect", "g", "path", "polygon", "text"}
 _SVG_ATTRIBUTES = {
-    "class", "d", "fill", "fill-opacity", "font-family", "font-size", "font-weight", "height", "paint-order", "role", "stroke",
-    "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "stroke-opacity", "stroke-width", "text-anchor", "viewBox", "width",
-    "x", "y",
-}  # fmt: skip
+    "class",
+    "d",
+    "fill",
+    "fill-opacity",
+    "height",
+    "points",
+    "role",
+    "stroke",
+    "viewBox",
+    "width",
+    "x",
+    "y",
+}
 
 
 def read_svg(text: str) -> Any:
@@ -226,7 +235,7 @@ def read_svg(text: str) -> Any:
 
 
 def svg_text(text: str) -> str:
-    return "\n".join(filter(None, (element.text for element in read_svg(text).iter("{*}text", "{*}tspan", "{*}desc"))))
+    return "\n".join(filter(None, (element.text for element in read_svg(text).iter("{*}text", "{*}desc"))))
 
 
 def gradescope_text(text: str) -> str:

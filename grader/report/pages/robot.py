@@ -5,7 +5,6 @@ from itertools import islice
 from math import degrees, pi
 from typing import Any, NamedTuple
 
-from lxml import etree
 from markupsafe import Markup
 
 from grader import __version__
@@ -19,7 +18,7 @@ from grader.report.locations import source_lines
 from grader.report.order import alike
 from grader.report.pages.model import picture_data
 from grader.report.pages.shell import Assets, render_page
-from grader.report.svg_elements import DARK_RULES
+from grader.report.svg_elements import STYLE
 from grader.robot.model import Box, Cylinder, Joint
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Transform
@@ -107,7 +106,6 @@ def _joints_of(scene: Scene) -> Iterator[tuple[int, Joint]]:
 
 
 _SCRIPTS = "kinematics.js solids.js painter.js camera.js scene.js labels.js driving.js viewer.js controls.js"
-RULES = f"@media screen and (prefers-color-scheme: dark) {{{DARK_RULES}}}"  # of the views
 
 
 def render_robot_page(
@@ -119,7 +117,6 @@ def render_robot_page(
         return render_page(template, {**values, "robot": None, "views": ""}, {}, assets)
     scene = picture.scene
     sliders, links = [*_sliders(scene)], [*_links(scene)]
-    element = drawing_element(picture, legend=False)
     view = {
         "picture": picture,
         "sliders": sliders[:_MAX_LISTED],
@@ -129,10 +126,10 @@ def render_robot_page(
         "words": _words(picture, len(sliders)),
         "can_drive": any(wheel.is_free for wheel in scene.wheels),
     }
-    views = Markup(etree.tostring(element, encoding="unicode"))  # noqa: S704  an element tree, whose text is escaped
+    views = Markup(drawing_element(picture, legend=False))  # noqa: S704  an element, whose text is escaped
     starts = [{"joint": one.name, "value": one.value * one.scale} for one in sliders if not one.follows]
     robot = {**picture_data(picture), "sliders": starts}
-    assets = Assets("robot.css student.css", " ".join((_SCRIPTS, *scripts)), RULES)
+    assets = Assets("robot.css student.css", " ".join((_SCRIPTS, *scripts)), STYLE)
     return render_page(template, {**values, "robot": view, "views": views}, {**robot, **data}, assets)
 
 

@@ -8,7 +8,7 @@ from grader.drawing.picture import picture_of
 from grader.grading.report import Report, Result
 from grader.report import content
 from grader.report.details import STATUS_WORDS, SYMBOLS, Details, result_details, skipped_text
-from grader.report.drawing_key import why_no_picture
+from grader.report.drawing_words import why_no_picture
 from grader.report.locations import SourceLine, diff_lines, location_text, source_lines
 from grader.report.order import (
     CriteriaGroup,
