@@ -32,7 +32,7 @@ LAYERS = (
 LIBRARIES = {
     "typer": {"cli"},
     "rich": {"cli", "report", "usecases"},
-    "lxml": {"xml", "report", "mutation"},  # a report may be XML; a robot is rewritten as a tree
+    "lxml": {"documents", "xml", "report", "mutation"},  # of Word; a report may be XML; a robot is rewritten as a tree
     "jinja2": {"report"},
     "markupsafe": {"report"},
     "yaml": {"package", "xacro"},

@@ -159,7 +159,7 @@ LIMITS: dict[str, dict[str, tuple[float, ...]]] = {
     },
     "rubric-test.md": {"(default: {}, sampled": (signature(run_test).parameters["mutants"].default,)},
     "grade-a-class.md": {
-        "up to {} MiB and {} megapixels": (pictures.MAX_BYTES / MIB, pictures.MAX_PIXELS / 1_000_000),
+        "up to {} MiB": (pictures.MAX_BYTES / MIB,),
     },
 }
 

@@ -11,9 +11,9 @@ from fnmatch import translate
 from functools import lru_cache
 from math import ceil
 from tempfile import TemporaryFile
-from types import MappingProxyType, ModuleType
+from types import MappingProxyType
 
-from grader.documents import converter, embedded_pictures
+from grader.documents import converter
 from grader.documents.document import CONVERTED, Document, Unread, made_of
 from grader.documents.headings import Heading, Pattern, find_headings
 from grader.documents.labels import stem
@@ -129,12 +129,8 @@ class DocumentCollection:
         except UnicodeDecodeError:
             return data.decode("cp1252", "replace")
 
-    def pictures(self, file: File) -> list[tuple[int, bytes]]:
-        """Return the pictures in a Word or PDF file, each with its position in the text. Raises InputError."""
-        return list(embedded_pictures.unpacked(self._convert(file, embedded_pictures)))
-
-    def _convert(self, file: File, script: ModuleType = converter) -> bytes:
-        """Return the text or the pictures of a Word or PDF file, from a separate process within the remaining time."""
+    def _convert(self, file: File) -> bytes:
+        """Return the text of a Word or PDF file, from a separate process within the remaining time."""
         budget = f"the Word and PDF files take longer than {MAX_SECONDS:g} s in all"
         late = InputError(f"{file.path} was not read: {budget}; needs manual grading")
         if self._seconds <= 0:
@@ -144,7 +140,7 @@ class DocumentCollection:
         command = [
             sys.executable,
             "-P",
-            str(script.__file__),
+            str(converter.__file__),
             file.suffix[1:],
             str(ceil(self._seconds)),
             str(os.getpid()),

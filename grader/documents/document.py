@@ -1,10 +1,9 @@
-"""A document as lines of text, with its pages and the positions of its pictures."""
+"""A document as lines of text, with its pages and marks for its pictures."""
 
 from bisect import bisect_right
 from typing import NamedTuple
 
 from grader.documents import converter
-from grader.documents.headings import Heading
 from grader.files.tree import File
 
 MAX_LINES = 2000  # of one document
@@ -26,27 +25,12 @@ class Document(NamedTuple):
         """Return the page of a line, counted from 1, if it is known."""
         return bisect_right(self.pages, line) or None
 
-    def has_picture(self, heading: Heading | None = None) -> bool:
-        """Return whether there is a picture, below a heading or, in a PDF, on one of its pages."""
-        if heading is None:
-            return converter.PICTURE in self.lines
-        return bool(self.pictures(heading.start, heading.end))
-
-    def pictures(self, start: int, end: int) -> list[int]:
-        """Return the numbers of the pictures between two lines, from 0; in a PDF, of the pages with these lines."""
-        if self.file.suffix == ".pdf":
+    def has_picture(self, start: int = 0, end: int | None = None) -> bool:
+        """Return whether there is a picture between two lines; in a PDF, on the pages with these lines."""
+        if self.file.suffix == ".pdf" and end is not None:
             first, last = self.page(start) or 1, self.page(max(start, end - 1)) or 1
             start, end = self.pages[first - 1], (*self.pages, len(self.lines))[last]
-        return [number for number, index in enumerate(self._marks) if start <= index < end]
-
-    def picture_words(self, number: int) -> str:
-        """Return the location of a picture in words."""
-        page = self.page(self._marks[number])
-        return f"page {page} of {self.file.path}" if page else f"picture {number + 1} in {self.file.path}"
-
-    @property
-    def _marks(self) -> list[int]:
-        return [index for index, line in enumerate(self.lines) if line == converter.PICTURE]
+        return converter.PICTURE in self.lines[start:end]
 
 
 class Unread(NamedTuple):

@@ -152,7 +152,7 @@ def _is_certain(wanted: Label, document: Document, head: Heading) -> bool:
     """Return whether a picture is below a heading that names a step in words: "18." may be a line of the handout."""
     names = read_label(head.text[:_MAX_SHOWN])
     is_named = bool(names.steps) or names.task is not None or not (wanted.steps or wanted.task is not None)
-    return is_named and document.has_picture(head)
+    return is_named and document.has_picture(head.start, head.end)
 
 
 def _is_about(wanted: Label, head: Heading) -> bool:

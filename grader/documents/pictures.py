@@ -1,14 +1,16 @@
 """Pictures and PDF files that a browser shows safely. Their type is that of their bytes, never of their names."""
 
 import re
+from collections.abc import Iterator
+from tempfile import TemporaryFile
 from typing import NamedTuple
 
-from grader.documents.image_size import image_size
 from grader.errors import FileError, InputError
+from grader.files.archive import read_archive
 from grader.files.tree import File
 
 MAX_BYTES = 20 * 1024 * 1024
-MAX_PIXELS = 100_000_000  # a browser needs 4 bytes of memory for each
+_MAX_DOCUMENT = 32 * 1024 * 1024
 # Sizes of the second header of a BMP file. The signature "BM" alone could also begin a text.
 _DIB_SIZES = frozenset({12, 40, 52, 56, 64, 108, 124})
 
@@ -66,22 +68,12 @@ _START = 1024  # bytes in which a format that is not shown is recognised
 
 
 class EmbeddedPicture(NamedTuple):
-    """A picture of a submission: where it is, its type, width and height in pixels, and its bytes.
-
-    A PDF has no size; its `page` is the one to show first.
-    """
+    """A picture or PDF of a submission: where it is, its type, and its bytes; `page` of a PDF is shown first."""
 
     where: str
     kind: ImageType
-    width: int
-    height: int
     data: bytes
     page: int = 1
-
-    @property
-    def words(self) -> str:
-        """The location and the size in pixels."""
-        return f"{self.where} ({self.width} x {self.height} pixels)" if self.width else self.where
 
 
 class NotShown(NamedTuple):
@@ -114,21 +106,30 @@ def read_picture(file: File) -> EmbeddedPicture | NotShown:
 
 
 def verified(data: bytes, where: str) -> EmbeddedPicture | NotShown:
-    """Return a picture after its format and size are verified, or why it is not shown."""
+    """Return a picture after its format is verified, or why it is not shown."""
     kind = image_type(data)
     if kind is None:
         what = next((words for signature, words in _NOT_SHOWN if signature.match(data[:_START])), "")
         reason = f"its content is {what}" if what else "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF"
         return NotShown(where, f"{reason}: open it yourself, with care")
-    size = image_size(data) if kind is not PDF else (0, 0)
-    if size is None:
-        return NotShown(where, f"its {kind.name} header is damaged: open it yourself")
     if len(data) > MAX_BYTES:
         return NotShown(where, _too_large(len(data)))
-    if size[0] * size[1] > MAX_PIXELS:
-        limit = f"more than {MAX_PIXELS // 1_000_000} megapixels, the limit"
-        return NotShown(where, f"it has {size[0]} x {size[1]} pixels, {limit}: open it yourself, with care")
-    return EmbeddedPicture(where, kind, *size, data)
+    return EmbeddedPicture(where, kind, data)
+
+
+def pictures_in_word(file: File) -> Iterator[EmbeddedPicture | NotShown]:
+    """Yield the pictures of a Word file in the order of their names, which is that of their insertion."""
+    try:
+        stored = TemporaryFile()  # noqa: SIM115  its tree closes it
+        stored.write(file.read(_MAX_DOCUMENT))
+        tree = read_archive(stored, "zip", file.path)
+    except InputError as error:
+        yield NotShown(file.path, error.reason if isinstance(error, FileError) else str(error))
+        return
+    media = [one for one in tree.files.values() if one.path.startswith("word/media/")]
+    for one in sorted(media, key=lambda one: (len(one.name), one.name)):
+        shown = read_picture(one)
+        yield shown._replace(where=f"{one.name} in {file.path}")
 
 
 def _too_large(size: int) -> str:

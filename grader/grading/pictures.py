@@ -7,9 +7,7 @@ from grader.documents.collection import DocumentCollection
 from grader.documents.document import CONVERTED, Document
 from grader.documents.evidence import headed
 from grader.documents.evidence_files import EvidenceFile
-from grader.documents.headings import Heading
-from grader.documents.pictures import EmbeddedPicture, NotShown, read_picture, verified
-from grader.errors import InputError
+from grader.documents.pictures import EmbeddedPicture, NotShown, pictures_in_word, read_picture
 from grader.files.tree import File
 from grader.grading.report import Report, Result
 from grader.submission.submission import Submission
@@ -21,9 +19,8 @@ _MAX_PICTURES, _MAX_BYTES = 40, 96 * 1024 * 1024  # of one criterion
 def pictures_of(result: Result, submission: Submission) -> tuple[EmbeddedPicture | NotShown, ...]:
     """Return the pictures and PDF files of a criterion that needs manual grading, and the files that are not shown.
 
-    In a document, these are the pictures below the heading that names the evidence, or in the answer; without such a
-    heading all pictures. If no file is named for the evidence, all files of evidence are searched; if no answer was
-    found, all PDF files.
+    Of a Word file these are all of its pictures; a PDF opens on the page of the evidence or the answer. If no file is
+    named for the evidence, all files of evidence are searched; if no answer was found, all PDF files.
     """
     paths = _files(result) or tuple(
         labelled.file.path
@@ -103,67 +100,27 @@ def _at(path: str, result: Result, submission: Submission) -> Iterator[EmbeddedP
     file = submission.whole_tree.files.get(path) or submission.tree.files.get(path)
     if file is None:
         yield NotShown(path, "it is no longer in the submission")
-    elif file.suffix not in CONVERTED:
-        yield read_picture(file)
-    elif file.suffix == ".pdf":
-        yield from _in_pdf(file, result, submission.readable_documents)
-    elif submission.readable_documents is None:
-        yield NotShown(path, "documents of this submission are not read: open it yourself")
+    elif file.suffix == ".docx":
+        yield from pictures_in_word(file)
     else:
-        yield from _in_document(file, result, submission.readable_documents)
+        shown = read_picture(file)
+        if isinstance(shown, EmbeddedPicture) and file.suffix == ".pdf":
+            shown = shown._replace(page=_page(file, result, submission.readable_documents))
+        yield shown
 
 
-def _in_pdf(file: File, result: Result, documents: DocumentCollection | None) -> Iterator[EmbeddedPicture | NotShown]:
-    """Yield the pictures in a PDF that belong to a criterion, and the PDF, which the browser opens on their page."""
+def _page(file: File, result: Result, documents: DocumentCollection | None) -> int:
+    """Return the page of a PDF with the answer, or with the heading that names the evidence; the first without one."""
     document = documents.document(file) if documents is not None else None
-    page = 1
-    if documents is not None and isinstance(document, Document):
-        has_pictures = _is_evidence(result) or PICTURE in str(result.outcome.measured)
-        found = _in_document(file, result, documents) if has_pictures else ()
-        yield from (one for one in found if isinstance(one, EmbeddedPicture))
-        page = document.page(_spans(document, result, documents)[0][0]) or 1
-    shown = read_picture(file)
-    yield shown._replace(page=page) if isinstance(shown, EmbeddedPicture) else shown
-
-
-def _in_document(file: File, result: Result, documents: DocumentCollection) -> Iterator[EmbeddedPicture | NotShown]:
-    document = documents.document(file)
-    if not isinstance(document, Document):
-        yield NotShown(file.path, document.reason if document is not None else "it has no answers")
-        return
-    numbers = {number for start, end in _spans(document, result, documents) for number in document.pictures(start, end)}
-    try:
-        found = [found for found in documents.pictures(file) if found[0] in numbers] if numbers else []
-    except InputError as error:
-        yield NotShown(file.path, str(error))
-        return
-    for number, data in found:
-        if data:  # else a copy of a picture that is shown
-            yield verified(data, document.picture_words(number))
-    if numbers != {number for number, _ in found} or not numbers:
-        reason = "it has pictures that cannot be extracted" if numbers else "no picture was found in it"
-        yield NotShown(file.path, f"{reason}: open it yourself")
-
-
-def _spans(document: Document, result: Result, documents: DocumentCollection) -> list[tuple[int, int]]:
-    """Return the ranges of lines whose pictures belong to a criterion: the first line, and the line after the last."""
-    criterion, outcome = result.criterion, result.outcome
+    if documents is None or not isinstance(document, Document):
+        return 1
+    outcome, start = result.outcome, 0
     if isinstance(outcome.measured, str) and outcome.location is not None:
         start = outcome.location.line - 1
-        return [(start, start + len(outcome.measured.split("\n")))]
-    heads: list[tuple[Document, Heading]] = []
-    if _is_evidence(result):
-        heads = headed(documents, criterion.arguments["names"])
-    spans = [(head.start, _last(document, head)) for other, head in heads if other is document]
-    return spans or [(0, len(document.lines))]
-
-
-def _last(document: Document, head: Heading) -> int:
-    """Return the end of the lines below a heading, without empty lines at the end, which may be on the next page."""
-    end = head.end
-    while end > head.start + 1 and not document.lines[end - 1].strip():
-        end -= 1
-    return end
+    elif _is_evidence(result):
+        heads = headed(documents, result.criterion.arguments["names"])
+        start = next((head.start for other, head in heads if other is document), 0)
+    return document.page(start) or 1
 
 
 def _limit(found: Iterable[EmbeddedPicture | NotShown]) -> Iterator[EmbeddedPicture | NotShown]:

@@ -94,8 +94,7 @@ _RESULT = Record(
     },
     ADDITIONS.optional,
 )
-_SIZES = each(nullable(COUNT), "width height")
-_EXHIBIT = Record({"path": TEXT, "size": TOTAL, **_SIZES, "heading": TEXT, "page": nullable(COUNT)})
+_EXHIBIT = Record({"path": TEXT, "size": TOTAL, "heading": TEXT, "page": nullable(COUNT)})
 
 
 def _package(submission: Any) -> str | None:

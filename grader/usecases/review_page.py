@@ -10,7 +10,7 @@ from typing import Any
 from grader.classroom.grades import Class
 from grader.classroom.mark_files import is_open_in_libreoffice
 from grader.classroom.review_items import STATES, ReviewFilter
-from grader.documents.pictures import EmbeddedPicture
+from grader.documents.pictures import PDF, EmbeddedPicture
 from grader.errors import GraderError
 from grader.report.pages import review as pages
 from grader.text import counted, printable_path
@@ -57,7 +57,9 @@ class ReviewPage:
                 pictures = enumerate(open_item(book, session.item_at(at)).pictures, 1)
                 found = {str(which): one for which, one in pictures}.get(number)
                 if isinstance(found, EmbeddedPicture):
-                    return Response(found.data, found.kind.media_type, policy=SANDBOX if found.height else _PDF_POLICY)
+                    return Response(
+                        found.data, found.kind.media_type, policy=_PDF_POLICY if found.kind is PDF else SANDBOX
+                    )
         return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
 
     def _place(self, at: int) -> dict[str, Any]:

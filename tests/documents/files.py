@@ -25,23 +25,20 @@ def pdf(*pages: Sequence[str], by_word: bool = False) -> bytes:
     return _written(objects)
 
 
-def docx(*paragraphs: str, row: Sequence[str] = (), styles: Sequence[str] = ()) -> bytes:
+def docx(*paragraphs: str, row: Sequence[str] = ()) -> bytes:
     """Return a Word file of paragraphs followed by a table of one row.
 
-    A paragraph `[picture]` is a picture, and one that begins with a form feed is on a new page. `styles` are those of the first
-    paragraphs: the name of a style, "bold", or nothing.
+    A paragraph `[picture]` is a picture, and one that begins with a form feed is on a new page.
     """
     document = pytest.importorskip("docx").Document()
-    for text, style in zip(paragraphs, [*styles, *[""] * len(paragraphs)], strict=False):
-        paragraph = document.add_paragraph(style=style if style not in ("", "bold") else None)
-        run = paragraph.add_run()
+    for text in paragraphs:
+        run = document.add_paragraph().add_run()
         if text.startswith("\f"):
             _child(run, "w:lastRenderedPageBreak")
         if text == PICTURE:
             _child(run, "w:drawing")
         else:
             run.add_text(text.removeprefix("\f"))
-        run.bold = style == "bold"
     if row:
         table = document.add_table(rows=1, cols=len(row))
         for cell, text in zip(table.rows[0].cells, row, strict=True):

@@ -1,6 +1,5 @@
 """Answers under the headings that students use, in every kind of document, and how a heading is matched to a question."""
 
-import io
 import re
 from collections.abc import Mapping, Sequence
 
@@ -127,57 +126,6 @@ def test_the_heading_or_page_in_a_word_file_is_named() -> None:
     one, two = both({"a.docx": paged})
     assert one.message == "The answer on page 2 of a.docx, needs manual grading"
     assert two.message == "The answer on page 3 of a.docx, needs manual grading"
-
-
-def test_styles_of_word() -> None:
-    """Heading styles, bold paragraphs and numbered lists of Word are headings, although their text has neither sign nor number."""
-    data = docx("Task 1", "Step 15", VANISHES, "Task 2", "Step 1", "no", "Step 2", NODES, "Conclusion", "All went well.",
-                styles=["Heading 1", "Heading 2", "", "Heading 1", "bold", "", "bold", "", "Heading 1"])  # fmt: skip
-    one, two = both({"a.docx": data})
-    assert one.measured == f"## Step 15\n{VANISHES}"
-    assert two.measured == f"**Step 2**\n{NODES}"
-    listed = docx("Task 2", "It builds.", NODES, "It runs.", styles=["", *["List Number"] * 3])
-    assert str(ask({"a.docx": listed}, SECOND).measured) == f"1. It builds.\n2. {NODES}\n3. It runs."
-
-
-def numbered(text: str, *items: tuple[int, str], level: str = "", override: str = "") -> bytes:
-    """Return a Word file with these paragraphs in list 77, each with its level; `text` is that of the numbers of level 0."""
-    from docx.oxml import parse_xml
-    from docx.oxml.ns import nsdecls
-
-    document = pytest.importorskip("docx").Document()
-    root = document.part.numbering_part.element
-    levels = (
-        f'<w:lvl w:ilvl="0"><w:start w:val="15"/><w:numFmt w:val="decimal"/><w:lvlText w:val="{text}"/></w:lvl>{level}'
-    )
-    root.insert(0, parse_xml(f'<w:abstractNum {nsdecls("w")} w:abstractNumId="88">{levels}</w:abstractNum>'))
-    root.append(parse_xml(f'<w:num {nsdecls("w")} w:numId="77"><w:abstractNumId w:val="88"/>{override}</w:num>'))
-    for depth, line in items:
-        paragraph = document.add_paragraph(line)
-        if depth >= 0:
-            number = f'<w:ilvl w:val="{depth}"/><w:numId w:val="77"/>'
-            paragraph._p.get_or_add_pPr().append(parse_xml(f"<w:numPr {nsdecls('w')}>{number}</w:numPr>"))
-    data = io.BytesIO()
-    document.save(data)
-    return data.getvalue()
-
-
-def test_numbers_that_word_writes() -> None:
-    """A number and the text around it are those that Word shows: start, levels, bullets, lists that begin anew."""
-    ending = (-1, "Task 2: Step 2")
-    first = numbered("Step %1.", (0, VANISHES), (0, "no"), ending)
-    assert ask({"a.docx": first}, FIRST).measured == f"Step 15. {VANISHES}"
-    deep = '<w:lvl w:ilvl="1"><w:numFmt w:val="decimal"/><w:lvlText w:val="%1.%2)"/></w:lvl>'
-    below = numbered("Step %1.", (0, "See below"), (1, VANISHES), (1, "So."), (0, "no"), (1, "no"), ending, level=deep)
-    assert ask({"a.docx": below}, FIRST).measured == f"Step 15. See below\n15.1) {VANISHES}\n15.2) So."
-    assert ask({"a.docx": below}, ("Why?", ["step 16"])).measured == "Step 16. no\n16.1) no"
-    anew = '<w:lvlOverride w:ilvl="0"><w:startOverride w:val="2"/></w:lvlOverride>'
-    again = numbered("%1.", (-1, "Task 2"), (0, NODES), override=anew)
-    assert ask({"a.docx": again}, SECOND).measured == f"2. {NODES}"
-    bullets = numbered("%1.", (-1, "Task 1: Step 15"), (1, VANISHES), level=deep.replace("decimal", "bullet"))
-    assert ask({"a.docx": bullets}, FIRST).measured == f"Task 1: Step 15\n{VANISHES}"
-    damaged = numbered("%1.", (-1, "Task 1: Step 15"), (5, VANISHES))
-    assert ask({"a.docx": damaged}, FIRST).measured == f"Task 1: Step 15\n{VANISHES}"
 
 
 def test_the_same_report_twice() -> None:

@@ -8,10 +8,12 @@ from grader.documents import pictures
 from grader.documents.pictures import EmbeddedPicture, NotShown, image_type, read_picture, verified
 from grader.errors import FileError
 from grader.files.tree import File
-from tests.documents.test_image_size import HEADERS
 from tests.work import limited_work
 
-SHOWN = {name: header for name, (header, _) in HEADERS.items() if not name.startswith("TIFF")}
+SHOWN = {
+    "PNG": b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "JPEG": b"\xff\xd8\xff\xe0", "GIF": b"GIF89a\x80\2\xe0\1",
+    "WebP": b"RIFF\0\0\0\0WEBPVP8 ", "BMP": b"BM" + bytes(12) + (40).to_bytes(4, "little"),
+}  # fmt: skip
 SCRIPT = b"<script>alert(1)</script>"
 NOT_SHOWN = {
     "HTML": (b"<!DOCTYPE html><html>" + SCRIPT, "its content is HTML, which can contain scripts"),
@@ -25,15 +27,12 @@ NOT_SHOWN = {
         b"<?xml version='1.0'?><?xml-stylesheet href='a'?><!-- <a> <b> --><!DOCTYPE svg [<!ENTITY a 'b'>]>\n<svg>",
         "its content is SVG, which can contain scripts",
     ),
-    "TIFF": (HEADERS["TIFF turned by its orientation"][0], "its content is TIFF, which browsers do not show"),
+    "TIFF": (b"II*\0" + bytes(20), "its content is TIFF, which browsers do not show"),
     "HEIC": (b"\0\0\0\x18ftypheic\0\0\0\0mif1heic", "its content is HEIC, which browsers do not show"),
     "a video": (b"\0\0\0\x18ftypisom\0\0\0\0isomavc1", "its content is a video"),
     "a shell script": (b"#!/bin/sh\nrm -rf ~\n", "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF"),
     "text that begins like a BMP": (b"BMW" + b" drives" * 20, "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF"),
     "nothing": (b"", "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF"),
-    "a PNG without a header": (b"\x89PNG\r\n\x1a\n" + SCRIPT, "its PNG header is damaged"),
-    "a JPEG without a frame": (b"\xff\xd8\xff\xe0" + SCRIPT, "its JPEG header is damaged"),
-    "a GIF of no size": (b"GIF89a\0\0\0\0", "its GIF header is damaged"),
 }  # fmt: skip
 
 
@@ -60,9 +59,7 @@ def test_pictures_are_shown(name: str) -> None:
     assert isinstance(found, EmbeddedPicture)
     assert found.kind.name in name
     assert found.kind.media_type == f"image/{found.kind.name.lower()}"
-    assert {found.width, found.height} == {640, 480}
     assert (found.where, found.data) == ("screen.png", SHOWN[name])
-    assert found.words == f"screen.png ({found.width} x {found.height} pixels)"
 
 
 @pytest.mark.parametrize("name", NOT_SHOWN)
@@ -82,16 +79,6 @@ def test_hostile_markup_is_read_in_linear_time(part: bytes) -> None:
         assert isinstance(verified(part * 400, "screen.png"), NotShown)
 
 
-@pytest.mark.parametrize(
-    ("size", "is_shown"), [((10_000, 10_000), True), ((10_000, 10_001), False), ((2**31 - 1, 1), False)]
-)
-def test_a_decompression_bomb_is_not_shown(size: tuple[int, int], is_shown: bool) -> None:
-    """A picture of more than 100 megapixels needs too much memory, however small its file is."""
-    found = verified(png(*size), "screen.png")
-    assert isinstance(found, EmbeddedPicture) == is_shown
-    assert is_shown or "megapixels, the limit: open it yourself, with care" in str(found)
-
-
 def test_large_files_are_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
     """Neither one that says that it is large, nor one that is larger than it says."""
     monkeypatch.setattr(pictures, "MAX_BYTES", 1024)
@@ -107,10 +94,3 @@ def test_a_picture_with_markup_in_it_keeps_its_type() -> None:
     kind = image_type(b"GIF89a" + struct.pack("<HH", 10, 10) + b"/*" + SCRIPT)
     assert kind is not None
     assert kind.media_type == "image/gif"
-
-
-def test_a_pdf_has_no_size() -> None:
-    """It is for the browser's viewer; its words are its place alone."""
-    found = verified(b"%PDF-1.4\n", "report.pdf")
-    assert isinstance(found, EmbeddedPicture)
-    assert (found.kind.media_type, found.width, found.words) == ("application/pdf", 0, "report.pdf")
