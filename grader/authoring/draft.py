@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from grader.authoring.ignored import ignored_mutants
-from grader.authoring.oddities import Doubts, oddities
 from grader.authoring.rubric_text import Head, criterion_ids, rubric_text, toml_literal
 from grader.checks.measures.fact import THE_FILE, THE_PACKAGE, THE_ROBOT, Fact, Measure, Omission, Solution
 from grader.checks.outcome import Outcome
@@ -19,16 +18,14 @@ from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, read_rubric
 
 MAX_FACTS = 2000  # more than the largest robots have; criteria cost the square of their number
-_SEE_BELOW = "the reference does not pass it (see below)"
 
 
 class RubricDraft(NamedTuple):
-    """A rubric that its reference passes, as bytes and loaded; what it omits, and what looks odd in the reference."""
+    """A rubric that its reference passes, as bytes and loaded, and what it omits."""
 
     data: bytes
     rubric: Rubric
     omissions: tuple[Omission, ...]
-    oddities: tuple[str, ...]
 
 
 def draft(solution: Solution, head: Head, path: Path) -> RubricDraft:
@@ -40,21 +37,17 @@ def draft(solution: Solution, head: Head, path: Path) -> RubricDraft:
         )
     facts = _usable([it for it in found if isinstance(it, Fact)])
     omissions = [*_omissions(found)]
-    ignored, doubts = list(ignored_mutants(solution)), Doubts()
+    ignored = list(ignored_mutants(solution))
     while True:
         rows = criterion_ids(facts)
         data = rubric_text(head, rows, ignored).encode()
         rubric = read_rubric(data, path)
         lost = _losses(rubric)
         if not lost:
-            return RubricDraft(data, rubric, tuple(omissions), (*oddities(solution), *doubts.lines()))
+            return RubricDraft(data, rubric, tuple(omissions))
         for name, outcome in lost.items():
-            fact, is_odd = rows[name], rows[name].is_doubtful and outcome.status == "failed"
-            if is_odd:
-                doubts.add(fact, outcome)
-            if not fact.otherwise:
-                why = outcome.mistake if outcome.status == "pending" else outcome.message
-                omissions.append(Omission(name, _SEE_BELOW if is_odd else why))
+            if not rows[name].otherwise:
+                omissions.append(Omission(name, outcome.mistake if outcome.status == "pending" else outcome.message))
         kept = (
             [fact] if name not in lost else [replace(instead, about=fact.about) for instead in fact.otherwise]
             for name, fact in rows.items()

@@ -151,7 +151,7 @@ def run_test(
     """Test a rubric on variants of its reference and on samples.
 
     The reference and its equivalents must keep full marks; every mutant must lose points. Mutants that get full marks
-    are listed with a suggestion.
+    are listed with their diff.
 
     Exit codes: 0 no correct robot loses points, all samples are as expected, and the score reaches --fail-under; 1
     otherwise; 2 the rubric is broken or has no reference; 3 a check is faulty.

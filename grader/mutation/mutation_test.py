@@ -6,12 +6,10 @@ from fnmatch import fnmatchcase
 from random import Random
 from typing import Literal, NamedTuple
 
-from grader.checks.registry import check_names, usable_check
 from grader.grading.criterion import Criterion
 from grader.mutation.mutants import Mutant, mutants, with_visuals
 from grader.mutation.package_mutants import package_mutants
 from grader.mutation.result import Loss, MutantResults, Survivor, hunk
-from grader.mutation.suggestions import suggestion
 from grader.mutation.trial import Trial
 from grader.package.package import MANIFEST
 from grader.submission.urdf import Read
@@ -63,14 +61,12 @@ ShowStep = Callable[[], None]  # shows that one more mutant is graded
 
 
 class MutantOutcome(NamedTuple):
-    """What the criteria made of a mutant: those that fail, those that measure another value, and the faulty ones."""
+    """What the criteria made of a mutant: those that fail, and the faulty ones."""
 
     mutant: Mutant
     fate: Literal["caught", "same", "survived", "faulty"]
     failed: tuple[str, ...] = ()
-    tolerated: tuple[str, ...] = ()
     faults: Mapping[str, str] = {}
-    verdict: str = ""
 
 
 GradeAll = Callable[[Sequence[Mutant]], Iterable[MutantOutcome]]  # in any order
@@ -91,8 +87,7 @@ def outcome_of(trial: Trial, mutant: Mutant) -> MutantOutcome:
     elif trial.is_same(mutant, submission):
         fate = "same"
     failed = tuple(found.criterion.id for found in results if found.outcome.status == "failed")
-    changed = (found.criterion.id for found in results if trial.is_changed(found))
-    return MutantOutcome(mutant, fate, failed, tuple(changed), faults, submission.verdict or "")
+    return MutantOutcome(mutant, fate, failed, faults)
 
 
 class MutationTest:
@@ -105,7 +100,6 @@ class MutationTest:
         self.caught = self.same = 0
         self.survivors: list[Survivor] = []
         self.faults: list[Loss] = []
-        self.checks = [check for name in check_names() if (check := usable_check(name)) is not None]
         self.idle = dict.fromkeys(trial.tested)
 
     def run(self, step: ShowStep, grade_all: GradeAll | None = None) -> MutantResults:
@@ -127,7 +121,6 @@ class MutationTest:
             tuple(found for found in self.survivors if found.reason),
             self._unused_patterns(),
             tuple(self.idle),
-            tuple(self.trial.margins.values()),
             tuple(self.faults),
         )
 
@@ -152,12 +145,10 @@ class MutationTest:
             self.idle.pop(name, None)
 
     def _survivor(self, outcome: MutantOutcome) -> Survivor:
-        mutant, rubric, urdf = outcome.mutant, self.trial.rubric, self.trial.reference.urdf
-        robot = urdf.reading.robot if isinstance(urdf, Read) else None
-        verdict = outcome.verdict if outcome.verdict != self.trial.reference.verdict else ""
-        clause = suggestion(mutant, rubric, robot, verdict, outcome.tolerated, self.checks)
-        reasons = (row.reason for row in rubric.ignored if any(_is_match(mutant, pattern) for pattern in row.mutants))
-        return Survivor(mutant, self._diff(mutant), clause, next(reasons, ""))
+        mutant = outcome.mutant
+        ignored = self.trial.rubric.ignored
+        reasons = (row.reason for row in ignored if any(_is_match(mutant, pattern) for pattern in row.mutants))
+        return Survivor(mutant, self._diff(mutant), next(reasons, ""))
 
     def _diff(self, mutant: Mutant) -> str:
         if mutant.renamed:

@@ -14,7 +14,6 @@ from grader.grading.hints.trials import is_worse
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric
 from grader.mutation.mutants import Mutant
-from grader.mutation.result import Margin, margin_of
 from grader.mutation.sameness import is_same_robot
 from grader.submission.editing import content, with_files, with_urdf
 from grader.submission.submission import Submission
@@ -99,15 +98,6 @@ class Trial:
     def text(self, path: str) -> str:
         """Return the text of a file of the reference."""
         return (content(self.reference, path) or b"").decode("utf-8", "surrogateescape")
-
-    @cached_property
-    def margins(self) -> Mapping[str, Margin]:
-        """The tolerances of the criteria, and how much of each the reference uses."""
-        return {name: margin for name in self.tested if (margin := margin_of(self.expected[name]))}
-
-    def is_changed(self, result: Result) -> bool:
-        """Return whether a criterion measures another value than that of the reference."""
-        return result.criterion.id in self.margins and self.margins[result.criterion.id].is_changed(result)
 
     def submission(self, mutant: Mutant) -> Submission | None:
         """Return the reference with a mistake; None where nothing of it can be read any more."""

@@ -6,13 +6,11 @@ from os.path import commonprefix
 
 from grader import __version__
 from grader.grading.criterion import worth
-from grader.mutation.result import Loss, Margin, MutantResults, RubricTest, Survivor
+from grader.mutation.result import Loss, MutantResults, RubricTest, Survivor
 from grader.report.as_json import SCORE
 from grader.report.json_data import (
     COUNT,
-    FLAG,
     GRADER,
-    POINTS,
     RUBRIC,
     TEXT,
     TOTAL,
@@ -43,7 +41,7 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
     lines += _losses("These equivalents of the reference lose points:", test.equivalents.losses)
     lines += _losses("These samples differ from their expected.toml:", test.samples.different if test.samples else ())
     lines += _losses("On these mutants a check is faulty:", test.mutants.faults)
-    lines += [*_survivors(test.mutants.survivors), *_idle(test.mutants), *_near(test.mutants.margins)]
+    lines += [*_survivors(test.mutants.survivors), *_idle(test.mutants)]
     percent = int(test.mutants.score * 10) / 10  # rounded down: 100 only where nothing survived
     lines += ["", f"Mutation score: {percent:g} %"]
     text = "\n".join(folded for line in lines for folded in _fold(printable(line), width))
@@ -106,21 +104,20 @@ def _losses(title: str, losses: Sequence[Loss]) -> Iterator[str]:
 
 
 def _survivors(survivors: Sequence[Survivor]) -> Iterator[str]:
-    """Yield the survivors by what may catch them, the most frequent first."""
-    groups = alike(survivors, lambda survivor: survivor.suggestion)
+    """Yield the survivors by family, the most frequent first."""
+    groups = sorted(alike(survivors, lambda survivor: survivor.mutant.family), key=lambda group: -len(group[1]))
     if groups:
         yield from ("", "These mutants of the reference get full marks:")
-    ordered = sorted(groups, key=lambda group: -len(group[1]))
-    for suggestion, group in ordered[:_MAX_GROUPS]:
-        yield from ("", f"{counted(len(group), 'mutant')}: {suggestion}")
+    for family, group in groups[:_MAX_GROUPS]:
+        yield from ("", f"{family}: {counted(len(group), 'mutant')}")
         for survivor in group[:_MAX_OF_GROUP]:
             yield from (f"  {survivor.mutant.id}", *_diff(survivor.diff))
         if len(group) > _MAX_OF_GROUP:
             yield f"  ... and {len(group) - _MAX_OF_GROUP} more"
-    hidden = sum(len(group) for _, group in ordered[_MAX_GROUPS:])
+    hidden = sum(len(group) for _, group in groups[_MAX_GROUPS:])
     if hidden:
         yield from ("", f"... and {counted(hidden, 'other mutant')}")
-    if hidden or any(len(group) > _MAX_OF_GROUP for _, group in ordered):
+    if hidden or any(len(group) > _MAX_OF_GROUP for _, group in groups):
         yield "--format json lists all. To accept one, add it to [[test.ignore]] with a reason."
 
 
@@ -146,33 +143,12 @@ def _idle(found: MutantResults) -> Iterator[str]:
         yield from ("", f"The pattern {pattern!r} of [[test.ignore]] matches no mutant.")
 
 
-def _near(margins: Sequence[Margin]) -> Iterator[str]:
-    for margin in margins:
-        if margin.is_near:
-            off, limit = _length(margin.reference, margin), _length(margin.tolerance, margin)
-            yield from ("", f"The reference is near the limit of {margin.criterion}: {off} off, {limit} allowed.")
-
-
-def _length(value: float, margin: Margin) -> str:
-    if margin.unit == "m":
-        return f"{value * 1000:.3g} mm"
-    return f"{value:.3g} {margin.unit}".rstrip()
-
-
 _LOSSES = Many(Record({"name": TEXT, "criteria": mapping(TEXT), "diff": TEXT}))
 _SURVIVOR = Record(
     {
         **inner("mutant", {**each(TEXT, "id family path"), "line": COUNT}),
-        **each(TEXT, "diff suggestion"),
+        "diff": TEXT,
         "reason": (nullable(TEXT), lambda survivor: survivor.reason or None),
-    }
-)
-_MARGIN = Record(
-    {
-        "criterion": TEXT,
-        "unit": (nullable(TEXT), lambda margin: margin.unit or None),
-        **each(POINTS, "tolerance reference"),
-        "is_near": FLAG,
     }
 )
 _MUTANTS = Record(
@@ -198,7 +174,7 @@ RUBRIC_TEST = Record(
         **inner("mutants", each(Many(_SURVIVOR), "survivors ignored")),
         "faults": (_LOSSES, "mutants.faults"),
         "unused_patterns": (array(TEXT), "mutants.unused"),
-        **inner("mutants", {"idle": array(TEXT), "margins": Many(_MARGIN)}),
+        **inner("mutants", {"idle": array(TEXT)}),
     }
 )
 

@@ -125,7 +125,6 @@ def _lines(file: Path, made: RubricDraft) -> Iterator[str]:
     if made.rubric.reference.startswith(("..", "/")):
         yield f"note: the reference is {made.rubric.reference}, outside the rubric's folder: move both together"
     yield from (f"omitted: {line}" for line in _omission_lines(made.omissions))
-    yield from (f"odd: {line}" for line in made.oddities)
     yield f"next: grader rubric test {shell_quoted(file)}"
 
 

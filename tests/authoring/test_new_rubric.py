@@ -1,6 +1,6 @@
-"""`grader rubric new`: what it writes tests all of the reference, and no reference is too large or too odd for it.
+"""`grader rubric new`: what it writes tests all of the reference, and no reference is too large for it.
 
-What it writes, omits, calls odd and refuses is in `tests/corpus/authoring`.
+What it writes, omits and refuses is in `tests/corpus/authoring`.
 """
 
 import json

@@ -54,20 +54,17 @@ def test_a_shipped_rubric_catches_every_mutant(name: str) -> None:
     assert found["samples"] == {"tried": own, "skipped": 0, "different": []}
 
 
-def test_survivors_are_listed_with_their_diff_and_a_suggestion(tmp_path: Path) -> None:
-    """Grouped by what may catch them; the exit code is 0 because no correct robot loses points."""
+def test_survivors_are_listed_with_their_diff(tmp_path: Path) -> None:
+    """Grouped by family; the exit code is 0 because no correct robot loses points."""
     done = command(write_rubric(tmp_path), "--mutants", 300)
     text = done.stdout.decode()
     assert done.returncode == 0
     assert "\nThese mutants of the reference get full marks:\n" in text
-    assert " mutants: no criterion looks at it; try frame_at" in text
+    assert "\nnumber +0.05: " in text
     assert "      --- birch.urdf\n      +++ birch.urdf\n      @@ -" in text
     arm = data(tmp_path / "arm.toml", "--mutants", 5000)
     listed = {row["id"]: row for row in arm["survivors"]}
     row = listed["number x10: joint base_plate/origin xyz.z"]
-    assert row["suggestion"] == "no criterion looks at it; try frame_at or kinematics_match_reference"
-    passing = listed["number x10: joint finger_joint/origin xyz.x"]["suggestion"]
-    assert passing.startswith("tool-frame passes nevertheless; try kinematics_match_reference")
     assert (
         '-    <origin xyz="0 0 0.11" rpy="0 0 3.14159"/>\n+    <origin xyz="0 0 1.1" rpy="0 0 3.14159"/>' in row["diff"]
     )

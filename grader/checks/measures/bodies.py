@@ -41,7 +41,7 @@ def _collisions_as_shown(link: Link) -> Iterator[Fact]:
     """Yield that the collision shapes of a link are those that it shows, or else what they are."""
     if link.collisions and len(link.collisions) <= MAX_SHAPES and _is_shown(link):
         title = f"The collision shapes of {link.name} are those that it shows"
-        fact = Fact(link.name, "collision", title, "collision_matches_visual", {"link": link.name}, is_doubtful=True)
+        fact = Fact(link.name, "collision", title, "collision_matches_visual", {"link": link.name})
         yield replace(fact, otherwise=tuple(_each_collision(link)))
 
 
@@ -74,8 +74,8 @@ def _inertia(link: Link, inertial: Inertial) -> Fact:
     fact = Fact(link.name, "inertia", title, "inertia_plausible", {"link": link.name})
     shapes = [shape.geometry for shape in (link.collisions or link.visuals)]
     if not shapes or any(isinstance(shape, Mesh) for shape in shapes):
-        return replace(fact, otherwise=tuple(_numbers_of(link.name, inertial)), is_doubtful=bool(shapes))
-    loose = replace(fact, arguments={**fact.arguments, "tolerance": _LOOSE_INERTIA}, is_doubtful=True)
+        return replace(fact, otherwise=tuple(_numbers_of(link.name, inertial)))
+    loose = replace(fact, arguments={**fact.arguments, "tolerance": _LOOSE_INERTIA})
     return replace(fact, otherwise=(loose,))
 
 

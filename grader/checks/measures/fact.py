@@ -66,7 +66,7 @@ class Fact:
     """A fact of the reference that one check can test: a criterion without its points.
 
     `subject` and `aspect` make its id, `about` is its heading. `otherwise` are the facts that count instead if
-    the reference does not pass it; `is_doubtful` is set where it may then be wrong.
+    the reference does not pass it.
     """
 
     subject: str
@@ -77,7 +77,6 @@ class Fact:
     about: str = ""
     of_package: bool = False
     otherwise: tuple["Fact", ...] = ()
-    is_doubtful: bool = False
 
 
 @dataclass(frozen=True, slots=True)
