@@ -21,7 +21,8 @@ DOCS = ROOT / "docs"
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 REPOSITORY = PROJECT["urls"]["Repository"]
 OUTSIDE = [ROOT / name for name in ("CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md")]
-PAGES = {page: page.name for page in [*DOCS.glob("*.md"), *OUTSIDE]}
+OFF_SITE = DOCS / "decisions.md"  # for contributors
+PAGES = {page: page.name for page in [*DOCS.glob("*.md"), *OUTSIDE] if page != OFF_SITE}
 FOLDERS = [DOCS, DOCS / "screenshots", ROOT / "tests/corpus/reports/drawings/expected/files"]
 PICTURES = {
     picture: picture.name for folder in FOLDERS for picture in folder.iterdir() if picture.suffix in (".svg", ".png")

@@ -29,7 +29,8 @@ from grader.workers import pool
 from tests.command_line import ROOT, run
 
 MIB = 1024 * 1024
-PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
+BESIDE = [*(ROOT / "rubrics").glob("*/README.md"), *(ROOT / "tests").glob("*.md"), ROOT / "benchmarks/README.md"]
+PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), *BESIDE])
 GENERATED = runpy.run_path(str(ROOT / "docs" / "make.py"))["pages"]()
 
 
@@ -39,7 +40,7 @@ def test_a_generated_page_is_current(name: str) -> None:
     assert (ROOT / "docs" / name).read_text(encoding="utf-8") == GENERATED[name], "run python docs/make.py"
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_links_are_files(page: Path) -> None:
     """Every relative link of a page is a file of the project."""
     for target in re.findall(r"\]\(([^)#]+)", page.read_text(encoding="utf-8")):
@@ -54,7 +55,7 @@ def anchors(page: Path) -> set[str]:
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_anchors_are_headings(page: Path) -> None:
     """Every link to a section of a page leads to a heading of that page."""
     for target, anchor in re.findall(r"\]\(([^)#]*)#([^)]+)\)", page.read_text(encoding="utf-8")):
@@ -62,14 +63,14 @@ def test_anchors_are_headings(page: Path) -> None:
             assert anchor in anchors(page.parent / target if target else page), f"{page.name}: {target}#{anchor}"
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_codes_and_criteria_exist(page: Path) -> None:
     """Every problem code on a page is in the catalogue."""
     codes = set(re.findall(r"(?:URDF|XACRO|PKG|LCH|RVZ)\d{3}", page.read_text(encoding="utf-8")))
     assert all(f"- `{code}` (" in GENERATED["problems.md"] for code in codes)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_code_blocks_can_be_parsed(page: Path) -> None:
     """Every block of YAML or TOML is valid, so it was not wrapped like prose."""
     for kind, block in re.findall(r"^ *```(yaml|toml)\n(.*?)^ *```", page.read_text(encoding="utf-8"), re.S | re.M):
@@ -120,7 +121,7 @@ def test_every_dependency_has_a_reason_and_a_licence() -> None:
     project, extras = whole["project"], whole["project"]["optional-dependencies"]
     of_users = [*project["dependencies"], *extras["documents"], *extras["cluster"]]
     of_developers = chain(*extras.values(), *whole["dependency-groups"].values())
-    for page, needed in (("decisions", [*of_users, *of_developers]), ("dependencies", of_users)):
+    for page, needed in (("decisions", [*of_users, *of_developers]), ("installation", of_users)):
         text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
         names = {re.split(r"[<>=,;\[]", requirement)[0] for requirement in needed}
         assert [name for name in sorted(names) if not re.search(rf"\| .*\b{name}\b.*\|", text)] == []
@@ -173,9 +174,9 @@ def test_limits_are_those_of_the_code(page: str, phrase: str) -> None:
 
 def test_points_are_those_of_the_rubrics() -> None:
     """The pages of the labs have the points of each part, and the README those of Lab 6."""
-    for name, path in shipped_rubrics().items():
+    for path in shipped_rubrics().values():
         rubric = load_rubric(str(path))
-        page = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
+        page = path.with_name("README.md").read_text(encoding="utf-8")
         for part in rubric.parts:
             points = sum(criterion.points for criterion in rubric.criteria if criterion.part == part.id)
             assert re.search(rf"^\| `{part.id}` \|.*\| {points}(, manual)? \|$", page, re.MULTILINE), part
@@ -187,7 +188,7 @@ def test_points_are_those_of_the_rubrics() -> None:
 
 def test_the_lab_page_names_every_criterion() -> None:
     """Each criterion of the rubric has a row; the two wheels share rows."""
-    text = (ROOT / "docs" / "lab6.md").read_text(encoding="utf-8")
+    text = (ROOT / "rubrics/lab6/README.md").read_text(encoding="utf-8")
     for criterion in load_rubric("lab6").criteria:
         name = re.sub(r"^(left|right)(?=-wheel)", "…", criterion.id)
         assert f"| `{name}`" in text, criterion.id
@@ -207,9 +208,9 @@ def test_the_changelog_knows_the_version() -> None:
     assert f"## [{__version__}]" in text or "## [Unreleased]" in text
 
 
-def test_every_test_that_the_security_page_names_exists() -> None:
+def test_every_test_that_the_table_of_attacks_names_exists() -> None:
     """Each row names tests, files of tests, or tables of the corpus; `::name` is in the file that is named before."""
-    text = (ROOT / "docs" / "security.md").read_text(encoding="utf-8")
+    text = (ROOT / "tests" / "security.md").read_text(encoding="utf-8")
     named = re.findall(r"`(?=::|\w+/)([\w/]+/test_\w+\.py)?(?:::(\w+))?`", text)
     tables = re.findall(r"`(corpus/[\w/-]+\.toml)`", text)
     assert [table for table in tables if not (ROOT / "tests" / table).is_file()] == []

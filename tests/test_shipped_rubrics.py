@@ -57,11 +57,11 @@ def test_a_lab_has_samples_and_a_page(rubric: Rubric) -> None:
     correct = [name for name in own if name.rpartition("/")[2].startswith(("equivalent-", "reference"))]
     assert len(correct) >= 8
     assert len(own) - len(correct) >= 25
-    page = (ROOT / f"docs/{rubric.id}.md").read_text(encoding="utf-8")
+    page = (ROOT / f"rubrics/{rubric.id}/README.md").read_text(encoding="utf-8")
     assert rubric.solution is not None
     needed = [*(part.id for part in rubric.parts), *(link.name for link in rubric.solution.robot.robot.links)]
     assert [name for name in needed if f"`{name}`" not in page] == []
-    assert f"docs/{rubric.id}.md" in (ROOT / "README.md").read_text(encoding="utf-8")
+    assert f"rubrics/{rubric.id}/README.md" in (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 def test_a_mistake_costs_what_it_is_worth() -> None:

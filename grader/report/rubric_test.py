@@ -6,6 +6,7 @@ from os.path import commonprefix
 
 from grader import __version__
 from grader.grading.criterion import worth
+from grader.mutation.mutants import Mutant
 from grader.mutation.result import Loss, MutantResults, RubricTest, Survivor
 from grader.report.as_json import SCORE
 from grader.report.json_data import (
@@ -104,12 +105,12 @@ def _losses(title: str, losses: Sequence[Loss]) -> Iterator[str]:
 
 
 def _survivors(survivors: Sequence[Survivor]) -> Iterator[str]:
-    """Yield the survivors by family, the most frequent first."""
-    groups = sorted(alike(survivors, lambda survivor: survivor.mutant.family), key=lambda group: -len(group[1]))
+    """Yield the survivors by the element or attribute that they change, the most frequent first."""
+    groups = sorted(alike(survivors, lambda survivor: _place(survivor.mutant)), key=lambda group: -len(group[1]))
     if groups:
         yield from ("", "These mutants of the reference get full marks:")
-    for family, group in groups[:_MAX_GROUPS]:
-        yield from ("", f"{family}: {counted(len(group), 'mutant')}")
+    for place, group in groups[:_MAX_GROUPS]:
+        yield from ("", f"{place}: {counted(len(group), 'mutant')}")
         for survivor in group[:_MAX_OF_GROUP]:
             yield from (f"  {survivor.mutant.id}", *_diff(survivor.diff))
         if len(group) > _MAX_OF_GROUP:
@@ -119,6 +120,11 @@ def _survivors(survivors: Sequence[Survivor]) -> Iterator[str]:
         yield from ("", f"... and {counted(hidden, 'other mutant')}")
     if hidden or any(len(group) > _MAX_OF_GROUP for _, group in groups):
         yield "--format json lists all. To accept one, add it to [[test.ignore]] with a reason."
+
+
+def _place(mutant: Mutant) -> str:
+    """Return what a mutant changes: material/color@rgba, setup.py."""
+    return "/".join(mutant.tags[mutant.tags[:1] == ("robot",) :]).replace("/@", "@") or mutant.family
 
 
 def _diff(diff: str) -> list[str]:
