@@ -1,1 +1,4 @@
-"""The content of pictures of a robot: shapes, frames, driving directions of wheels, failed criteria."""
+"""A robot as a picture: what is shown of it, and where in three views.
+
+It imports `grading` and below, and knows no format. Begin with `scene.py`, then `picture.py` and `views.py`.
+"""

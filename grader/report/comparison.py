@@ -1,12 +1,9 @@
 """The changes of a report since the submission was last graded, as plain lines."""
 
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from decimal import Decimal
 
-from grader.edits import edited
 from grader.grading.report import Report, Result
-from grader.source import Edit
 from grader.text import format_points, printable, signed_points
 
 _STATUSES = {
@@ -27,44 +24,6 @@ def comparison_lines(before: Report, after: Report) -> list[str]:
     if not rows:
         return [f"{score}; only other parts of the report changed"]
     return [score, *(f"{change}: {_criteria_text(criteria)}" for change, criteria in rows)]
-
-
-def hinted_texts(report: Report) -> dict[str, str]:
-    """Return the text of each file that hints change, as it is now."""
-    paths = {edit.path for result in report.results if result.hint is not None for edit in result.hint.edits}
-    sources = {path: report.submission.source(path) for path in paths}
-    return {path: source.text for path, source in sources.items() if source is not None}
-
-
-def applied_hints(before: Report, texts: Mapping[str, str], after: Report) -> list[str]:
-    """Return the earlier hints that were applied: all their edits are in the files, and what they gain passes now.
-
-    `texts` are those of the files before.
-    """
-    passed = {result.criterion.id for result in after.results if result.outcome.status == "passed"}
-    hints = [result.hint for result in before.results if result.hint is not None]
-    applied = dict.fromkeys(
-        hint.message
-        for hint in hints
-        if hint.edits and passed.issuperset(hint.gains) and _is_applied(hint.edits, texts, after)
-    )
-    return [printable(f"hint applied: {message}") for message in applied]
-
-
-def _is_applied(edits: Sequence[Edit], texts: Mapping[str, str], after: Report) -> bool:
-    """Return whether edits are in the files, perhaps elsewhere: every word that they add and remove is."""
-    for path in {edit.path for edit in edits}:
-        some, old = [edit for edit in edits if edit.path == path], texts.get(path, "")
-        new = edited(old, path, [edit for edit in some if not edit.renamed])
-        source = after.submission.source(next((edit.renamed for edit in some if edit.renamed), path))
-        if new is None or source is None:
-            return False
-        was, wanted, now = (Counter(text.split()) for text in (old, new, source.text))
-        if any(now[word] < wanted[word] for word in wanted - was) or any(
-            now[word] > wanted[word] for word in was - wanted
-        ):
-            return False
-    return True
 
 
 def unchanged_line(report: Report) -> str:

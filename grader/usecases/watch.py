@@ -15,7 +15,7 @@ from grader.errors import GraderError, InputError, MachineError, RubricError
 from grader.files.folder import is_looked_at
 from grader.grading.report import Report
 from grader.grading.rubric import find_rubric, shipped_rubrics
-from grader.report.comparison import applied_hints, comparison_lines, hinted_texts, unchanged_line
+from grader.report.comparison import comparison_lines, unchanged_line
 from grader.report.console import wrapped
 from grader.report.formats import Format, render
 from grader.report.screen import draw
@@ -28,9 +28,8 @@ from grader.usecases.terminal import Terminal, Warn
 _POLL = 0.1  # seconds between two looks
 _SHARE = 10  # a look at many files is followed by a pause of this many times its own time
 _Stamp = tuple[int, ...] | None
-# The report that was shown last, all of its text, whatever the terminal's width, and the texts of files that its hints
-# change.
-_Shown = tuple[Report, str, dict[str, str]]
+# The report that was shown last, and all of its text, whatever the terminal's width.
+_Shown = tuple[Report, str]
 
 
 def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
@@ -109,13 +108,13 @@ def _show_error(path: str, error: GraderError, warn: Warn) -> None:
 
 def _show(report: Report, last: _Shown | None, terminal: Terminal, *, verbose: bool, has_changed: bool) -> _Shown:
     """Show the whole report, then what changed; of a report that is the same, one line at most."""
-    shown = report, render(report, Format.TERMINAL, verbose=True), hinted_texts(report)
+    shown = report, render(report, Format.TERMINAL, verbose=True)
     if last is not None and shown[1] == last[1]:
         if has_changed:
             terminal.print(f"{unchanged_line(report)}\n")
         return shown
     screen = terminal.screen()
-    lines = [*comparison_lines(last[0], report), *applied_hints(last[0], last[2], report)] if last is not None else []
+    lines = comparison_lines(last[0], report) if last is not None else []
     changes = draw(lambda console: _print_lines(lines, console), screen) if lines else ""
     terminal.print(render(report, Format.TERMINAL, screen=screen, verbose=verbose) + changes)
     return shown

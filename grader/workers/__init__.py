@@ -1,1 +1,4 @@
-"""Tasks in other processes: an executor whose tasks always end, a queue, and progress. Independent of classes."""
+"""Tasks in other processes: an executor whose tasks always end, a queue, and progress.
+
+It knows nothing of classes or grading. Begin with `pool.py`.
+"""

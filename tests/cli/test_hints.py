@@ -9,9 +9,8 @@ import pytest
 
 from grader.grading.hints.search import HintSearch
 from grader.grading.levels import LEVELS
-from grader.report.comparison import applied_hints, hinted_texts
 from tests.command_line import run
-from tests.samples import ROOT, SAMPLES
+from tests.samples import ROOT
 
 MISTAKES = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 REFERENCE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
@@ -327,29 +326,3 @@ def test_a_fault_of_one_family_costs_no_other_hint(
         done.stderr
         == b"grader: some hints are missing: the grader itself failed (ZeroDivisionError); please report it\n"
     )
-
-
-def test_a_hint_that_was_applied_is_named() -> None:
-    """It is applied if its edit is in the file, and what it gains passes now."""
-    from grader.grading.grade import grade
-    from grader.grading.hints.hinting import hinted
-    from grader.submission.opening import read_submission
-
-    sample = SAMPLES["several-mistakes"].alone
-    submission = sample.open()
-    before = hinted(sample.grade(), submission, "edit").report
-    text = MISTAKES.read_text()
-    green = text.replace("0 1 0 1", "0 0.6 0 1")
-    after = grade(sample.rubric, read_submission(green.encode(), identity="a", path="my_robot.urdf"))
-    texts = hinted_texts(before)
-    assert applied_hints(before, texts, after) == [
-        'hint applied: Change `rgba="0 1 0 1"` to `rgba="0 0.6 0 1"` (line 6).'
-    ]
-    otherwise = text.replace("0 1 0 1", "0.0 0.60 0 1")
-    assert (
-        applied_hints(
-            before, texts, grade(sample.rubric, read_submission(otherwise.encode(), identity="a", path="my_robot.urdf"))
-        )
-        == []
-    )
-    assert applied_hints(after._replace(), texts, after) == []
