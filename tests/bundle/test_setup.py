@@ -15,9 +15,9 @@ from tests.wheels import offline
 pytestmark = pytest.mark.exhaustive
 
 WORD = """
-import docx, pypdf
+import pypdf
 from importlib.metadata import distribution
-print(*(distribution(each).locate_file("") for each in ("pypdf", "python-docx", "numpy", "lxml")))
+print(*(distribution(each).locate_file("") for each in ("pypdf", "numpy", "lxml")))
 """
 # The tools of a base image, for a PATH with other Pythons than this one.
 TOOLS = ("bash", "env", "dirname", "cat", "rm", "touch")
@@ -47,7 +47,7 @@ def test_from_the_zip_to_a_grade(bundle: Path, tmp_path: Path) -> None:
     assert done.stdout.endswith("setup.sh: the grader is ready\n")
     assert "lab6" in done.stdout
     installed = subprocess.run([root / "venv/bin/python", "-I", "-c", WORD], capture_output=True, text=True, check=True)
-    assert installed.stdout.count(str(root / "venv")) == 4
+    assert installed.stdout.count(str(root / "venv")) == 3
     (tmp_path / "again").mkdir()
     autograder = Autograder(tmp_path / "again", source, root / "venv")
     autograder.submit("reference")
