@@ -5,14 +5,15 @@ edits to a submission.
 """
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from math import isclose
 from os.path import commonprefix
 from typing import NamedTuple, Protocol, runtime_checkable
 
 from grader import markup
 from grader.source import Edit, Edits, Location, Source
 
-_SAME = 1e-5  # numbers that differ by less are the same
+_SAME = 1e-3  # relative: -1.57 is -pi/2
 _PIECE = re.compile(r"(\s*)(\S+)")
 
 
@@ -57,11 +58,11 @@ class Expanded(Protocol):
     def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
         """Return the calls of the macro that an edit is in, each with the macro's name; nothing outside of macros."""
 
-    def adapted(self, tag: int, xml: str) -> str:
-        """Return the text of an element as it is inserted in or instead of the one with this index."""
+    def numbers(self, tag: int, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
+        """Return the numbers from which an attribute is computed, each with what makes the edit of its definition."""
 
-    def corrections(self, names: Sequence[str], numbers: Sequence[str]) -> list[Proposal]:
-        """Return edits that may correct what xacro refuses; `names` and `numbers` are those of a reference."""
+    def corrections(self, names: Sequence[str]) -> list[Proposal]:
+        """Return edits that may correct what xacro refuses; `names` are those of a reference."""
 
 
 def _change_size(old: str, new: str) -> int:
@@ -138,9 +139,9 @@ def _merge_one(old: str, new: str) -> str:
         before, after = float(old), float(new)
     except ValueError:
         return new
-    if abs(before - after) < _SAME:
+    if isclose(before, after, rel_tol=_SAME, abs_tol=_SAME / 100):
         return old
-    if abs(before + after) < _SAME:
+    if isclose(before, -after, rel_tol=_SAME):
         return old.lstrip("-") if before < 0 else f"-{old.lstrip('+')}"
     return new
 
@@ -156,52 +157,6 @@ def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
         pieces += (text[position:start], edit.new)
         position = start + len(edit.old)
     return "".join((*pieces, text[position:]))
-
-
-def composed(text: str, path: str, first: Iterable[Edit], second: Iterable[Edit]) -> Edits:
-    """Return the edits of a text that do what `first` does, and then `second`, whose places are those after `first`.
-
-    An edit that touches an earlier one becomes one edit with it.
-    """
-    before, middle = Source(path, text), Source(path, edited(text, path, first) or "")
-    spans: list[_Span] = []
-    shift = 0
-    for start, edit in _offsets(before, first):
-        spans.append(_Span(start + shift, start + shift + len(edit.new), None, len(edit.new) - len(edit.old)))
-        shift += spans[-1].growth
-    spans += [_Span(start, start + len(edit.old), edit.new) for start, edit in _offsets(middle, second)]
-    shift = 0
-    found: list[Edit] = []
-    for group in _touching(spans):
-        low, high, growth = group[0].start, max(span.end for span in group), sum(span.growth for span in group)
-        new = middle.text[low:high]
-        for start, end, other, _ in reversed(group):
-            new = new if other is None else new[: start - low] + other + new[end - low :]
-        found.append(before.edit(low - shift, high - shift - growth, new))
-        shift += growth
-    return tuple(found)
-
-
-class _Span(NamedTuple):
-    """A part of the text after the first edits: `new` replaces it, or it is new itself and so much longer."""
-
-    start: int
-    end: int
-    new: str | None
-    growth: int = 0
-
-
-def _touching(spans: Iterable[_Span]) -> list[list[_Span]]:
-    """Return spans in groups: those that a later edit touches are together with it."""
-    groups: list[list[_Span]] = []
-    for span in sorted(spans, key=lambda span: span[:2]):
-        last = groups[-1] if groups else []
-        is_later = any(it.new is not None for it in (span, *last))
-        if is_later and any(it.end >= span.start for it in last):
-            last.append(span)
-        else:
-            groups.append([span])
-    return groups
 
 
 def _offsets(source: Source, edits: Iterable[Edit]) -> list[tuple[int, Edit]]:

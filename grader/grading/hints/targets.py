@@ -1,7 +1,6 @@
 """The links that a criterion depends on: those that its arguments name, and those on the chains between them."""
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from grader.errors import MissingElement, NotDecided
 from grader.grading.criterion import Criterion
@@ -12,25 +11,19 @@ from grader.robot.selectors import selected_link, texts_in
 _MAX_LINKS, _MAX_CHAIN = 40, 12
 
 
-class Targets(NamedTuple):
-    """Links that decide criteria: whose shapes count, whose parent joints move them, and that criteria name."""
-
-    shown: tuple[str, ...]
-    moved: tuple[str, ...]
-
-
-def targets_of(criteria: Iterable[Criterion], robot: Robot, reference: Robot) -> Targets:
-    """Return the links whose joints and shapes decide criteria."""
-    shown: dict[str, None] = {}
-    moved: dict[str, None] = {}
+def links_of(criteria: Iterable[Criterion], robot: Robot, reference: Robot) -> list[str] | None:
+    """Return the links whose joints and shapes decide criteria; None if all may."""
+    found: dict[str, None] = {}
     posed = Configuration(robot)
-    for criterion in criteria:
+    for criterion in (it for it in criteria if it.check.subject in ("urdf", "robot")):
         given = (selected(posed, name) for name in texts_in(criterion.arguments))
         named = [name for name in given if reference.has_link(name) or robot.has_link(name)]
-        shown |= dict.fromkeys(named)
-        moved |= dict.fromkeys(_between(posed, named) if len(named) > 1 else named)
-        moved |= dict.fromkeys(moving_child(posed, name) for name in named)
-    return Targets(tuple(shown)[:_MAX_LINKS], tuple(moved)[:_MAX_LINKS])
+        if not named:
+            return None
+        found |= dict.fromkeys(named)
+        found |= dict.fromkeys(_between(posed, named) if len(named) > 1 else named)
+        found |= dict.fromkeys(moving_child(posed, name) for name in named)
+    return [*found][:_MAX_LINKS]
 
 
 def selected(posed: Configuration, name: str) -> str:

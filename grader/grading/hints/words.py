@@ -1,9 +1,9 @@
 """What a hint says, at each level: nothing, where to look, what is wrong there, or the edit."""
 
-from collections.abc import Callable
+from collections.abc import Sequence
 
 from grader.edits import Expanded
-from grader.grading.hints.search import FoundHint
+from grader.grading.hints.trials import FoundHint
 from grader.grading.levels import HintLevel
 from grader.source import Edit, Location
 from grader.submission.editing import content, creates
@@ -16,32 +16,34 @@ _MAX_LINES = 6
 _MAX_TEXT = 240  # characters of a changed text
 
 
-def message(found: FoundHint, level: HintLevel, submission: Submission, entry: Callable[[FoundHint], str]) -> str:
-    """Return the hint in a sentence, which need not name the URDF. `entry` is where an earlier one is shown."""
-    own, names = _own_edits(found), list(dict.fromkeys(map(entry, found.after)))
-    earlier = f"the edit{'s' if len(names) > 1 else ''} for {enumerated(names, _MAX_NAMED)}"
-    if not own:
-        return f"Make {earlier}."
-    if level == "edit":
-        changes = _moves(own, submission) or [_change(edit, submission) for edit in own[:_MAX_NAMED]]
-        changes += [counted(len(own) - _MAX_NAMED, "more edit")] * (len(own) > _MAX_NAMED)
+def message(found: FoundHint, level: HintLevel, submission: Submission, earlier: Sequence[str]) -> str:
+    """Return the hint in a sentence, which need not name the URDF. `earlier` are criteria whose hints come first."""
+    if found.words:
+        text = found.words if level == "edit" else found.proposal.cause if level == "cause" else "a part is missing"
+    elif level == "edit":
+        edits = found.edits
+        changes = _moves(edits, submission) or [_change(edit, submission) for edit in edits[:_MAX_NAMED]]
+        changes += [counted(len(edits) - _MAX_NAMED, "more edit")] * (len(edits) > _MAX_NAMED)
         source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
         text = enumerated(changes, _MAX_NAMED + 1)
-        text += _calls(own, source, submission.path) if isinstance(source, Expanded) else ""
+        text += _calls(edits, source, submission.path) if isinstance(source, Expanded) else ""
     elif level == "cause":
-        text = f"check {_places(own, submission)}: {found.proposal.cause}"
+        text = f"check {_places(found.edits, submission)}: {found.proposal.cause}"
     else:
-        text = f"check {_texts_to_check(own, submission)}"
-    return f"After {earlier}, {text}." if names else f"{text[0].upper()}{text[1:]}."
+        text = f"check {_texts_to_check(found.edits, submission)}"
+    if earlier:
+        several = "s" * (len(set(earlier)) > 1)
+        return f"After the edit{several} for {enumerated(list(dict.fromkeys(earlier)), _MAX_NAMED)}, {text}."
+    return f"{text[0].upper()}{text[1:]}."
 
 
-def _texts_to_check(edits: list[Edit], submission: Submission) -> str:
+def _texts_to_check(edits: Sequence[Edit], submission: Submission) -> str:
     """Return the texts to look at, each with its line."""
     texts = [f"{_quote(edit.old)} ({_where(edit, submission)})" for edit in edits if edit.old]
     return enumerated(texts, _MAX_NAMED) if texts else _places(edits, submission)
 
 
-def _places(edits: list[Edit], submission: Submission) -> str:
+def _places(edits: Sequence[Edit], submission: Submission) -> str:
     """Return the lines to look at: lines 65 and 73; of another file with its name."""
     files: dict[str, list[int]] = {}
     for edit in edits:
@@ -55,7 +57,7 @@ def _places(edits: list[Edit], submission: Submission) -> str:
     return "; ".join(texts) or "which files are missing"
 
 
-def _calls(edits: list[Edit], source: Expanded, main: str | None) -> str:
+def _calls(edits: Sequence[Edit], source: Expanded, main: str | None) -> str:
     """Return where the macros of xacro that edits are in are called, if that is more than once."""
     calls = dict.fromkeys(call for edit in edits for call in source.calls(edit))
     macros = {macro: [_at(place, main) for name, place in calls if name == macro] for macro, _ in calls}
@@ -71,15 +73,7 @@ def _at(place: Location | Edit, main: str | None) -> str:
     return f"line {place.line}" if place.path == main else f"line {place.line} of {place.path}"
 
 
-def _own_edits(found: FoundHint) -> list[Edit]:
-    """Return the edits that are not those of an earlier hint."""
-    if not found.proposal.edits:
-        return []
-    earlier = {edit for before in found.after for edit in before.edits}
-    return [edit for edit in found.edits if edit not in earlier]
-
-
-def _moves(edits: list[Edit], submission: Submission) -> list[str]:
+def _moves(edits: Sequence[Edit], submission: Submission) -> list[str]:
     """Return the change in words if a text is moved: removed at one place, and inserted at another one."""
     texts = {" ".join((edit.old + edit.new).split()) for edit in edits}
     if len(edits) != 2 or len(texts) > 1 or {bool(edit.old) for edit in edits} != {True, False}:

@@ -17,7 +17,6 @@ from grader.package.launch.model import Launch
 from grader.package.package import MANIFEST, SETUP, Package
 from grader.source import Edit, Edits, Source
 from grader.static_python.parse import SyntaxFault
-from grader.xml.syntax import syntax_proposals
 
 _BRACKETS = ("()", "[]", "{}")
 _QUOTES = str.maketrans("“”„‘’‚", "\"\"\"'''")
@@ -172,9 +171,6 @@ def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str 
         text = wanted if ending == other else in_xml(task, like) if ending == ".xml" else ""
         trees = markup_tree(source), markup_tree(Source(source.path, text))
         yield from (it._replace(rank=int(ending != other)) for it in tree_proposals(source, trees, what))
-    if ending == ".xml":
-        for it in syntax_proposals(source, is_urdf=False, is_strict=True):
-            yield it._replace(cause=f"{it.cause} in {what}", action=f"{it.action} in {what}")
     if kind == "launch":
         yield from launch_paths(task, task.launch(path, source), source)
     elif kind == SETUP:

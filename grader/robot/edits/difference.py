@@ -3,15 +3,14 @@
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
+from typing import NamedTuple
 
 from grader.difference import Node, Step, paired, steps
-from grader.robot.edits.additions import Additions
-from grader.robot.edits.draft import Draft
+from grader.robot.edits.draft import Draft, escaped
 from grader.robot.edits.elements import Set, child_of, end_of
-from grader.robot.edits.numbers import format_number, values_of
-from grader.robot.edits.pieces import ENDS, SOLVED, STRUCTURE, Piece, PieceMaker, normal, unique
+from grader.robot.edits.pieces import ENDS, STRUCTURE, Piece, PieceMaker, normal, twins_of, unique
 from grader.xml.parsing import Element
-from grader.xml.urdf_format import PARTS, TAGS
+from grader.xml.urdf_format import CHILDREN, TAGS
 
 _AXIS = ("1 0 0", "revolute", "continuous", "prismatic", "planar")
 
@@ -59,36 +58,43 @@ def _is_default(node: Node, *, is_moving: bool) -> bool:
     return node.tag == "origin" and not node.values
 
 
+class MissingPart(NamedTuple):
+    """A link or joint of the reference that a robot does not have: nothing writes it."""
+
+    tag: str
+    link: str  # that it is, or that the joint moves
+    joint_type: str = ""
+    parent: str = ""
+
+
 class RobotDifference(PieceMaker):
     """A robot and the reference's, paired; `known` are names that may be told, because the reference has them."""
 
     def __init__(self, draft: Draft, reference: Draft) -> None:
         super().__init__(draft, reference)
         self._names = _translation(draft, reference)
-        self.additions = Additions(self, self._names)
-
-    @cached_property
-    def names(self) -> list[str]:
-        """The links of the reference."""
-        return [link.name for link in self.reference.robot.links]
-
-    @cached_property
-    def numbers(self) -> list[str]:
-        """The numbers of the reference, each once."""
-        values = (
-            values_of(str(text))
-            for element in self.reference.root.iter()
-            for name, text in element.attrib.items()
-            if PARTS.get(str(name))
-        )
-        return list(dict.fromkeys(format_number(abs(value)) for found in values for value in found if value))
+        self.missing: list[MissingPart] = []
 
     @cached_property
     def pieces(self) -> list[Piece]:
         """The pieces, each once: values first, then what moves, is added and is removed."""
-        own, like = self._tree(self.draft, {}), self._tree(self.reference, self._names)
-        found_steps = steps(own, like)
+        found_steps = steps(self._tree(self.draft, {}), self._tree(self.reference, self._names))
         return unique([*self._pieces(found_steps), *self._joint_names(), *self._ends()])
+
+    @property
+    def whole_links(self) -> Iterator[Piece]:
+        """Where each link and what it shows are, together, and all values of each link."""
+        links: dict[str, list[Set]] = {}
+        for piece in self.pieces:
+            own = links.setdefault(piece.link, [])
+            own += [one for one in piece.sets if one not in own and one.attribute not in ("name", "link")]
+        for link, sets in links.items():
+            poses = [one for one in sets if "origin" in (one.tag, one.owner.tag) or "axis" in (one.tag, one.owner.tag)]
+            for those, what in ((poses, "the frame of {!r} and what it shows"), (sets, "the values of {!r}")):
+                places = {(one.owner, one.tag) for one in those if one.owner.tag not in ("collision", "inertial")}
+                if link in self.known and len(places) > 1:
+                    cause = what.format(link)
+                    yield Piece(cause, f"correct {cause}", link, tuple(those), (), STRUCTURE)
 
     def _joint_names(self) -> Iterator[Piece]:
         """Rename joints as in the reference, also where they are mimicked."""
@@ -108,42 +114,50 @@ class RobotDifference(PieceMaker):
             names = [end_of(joint, role) for role in ENDS]
             likes = [self.reference.joint_of(name) for name in names]
             if any(like is not None and [end_of(like, role) for role in ENDS] == names[::-1] for like in likes):
-                ends = [(child_of(joint, role), other) for role, other in zip(ENDS, ENDS[::-1], strict=True)]
-                edits = tuple(it for end, other in ends if end is not None for it in self.draft.rename_tag(end, other))
-                cause, action = "parent and child of {} are swapped", "swap parent and child of {}"
-                yield self.piece(joint, cause, action, edits, rank=STRUCTURE)
+                sets = tuple(Set(joint, role, "link", name) for role, name in zip(ENDS, names[::-1], strict=True))
+                cause, action = "parent and child of {} are exchanged", "exchange parent and child of {}"
+                yield self.piece(joint, cause, action, sets=sets, rank=STRUCTURE)
 
     def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
         children = [child for child in draft.root if isinstance(child.tag, str)]
         nodes = [node_of(child, names) for child in children[: 3 * _MAX_LINKS]]
+        is_nameless = draft is self.reference and self.draft.root.get("name") is None
+        values = {"name": draft.root.get("name") or ""} if is_nameless else {}
         version = draft.root.get("version")
-        return Node("robot", (), {"version": version} if version not in (None, "1.0") else {}, nodes, draft.root)
+        values |= {"version": version} if version not in (None, "1.0") else {}
+        return Node("robot", (), values, nodes, draft.root)
 
     def _pieces(self, found: Sequence[Step]) -> Iterator[Piece]:
-        added = [
-            step.like for step in found if step.like is not None and step.verb == "add" and step.own.tag == "robot"
-        ]
-        removed = [step.own for step in found if step.verb == "remove"]
         is_set = lambda step: id(step.own) if step.verb in ("set", "unset") else None  # noqa: E731
         for _, group in groupby(found, key=is_set):
             those = [*group]
             if those[0].verb in ("set", "unset"):
                 yield from self._of_values(those)
         for step in found:
+            own, like = step.own, step.like
             match step.verb:
                 case "rename":
-                    edits = self.draft.rename_attribute(step.own.of, step.name, step.other)
+                    edits = self.draft.rename_attribute(own.of, step.name, step.other)
                     cause = f"the name of the attribute {step.other} of {{}}"
-                    yield self.piece(step.own.of, cause, f"rename {step.name} of {{}} to {step.other}", edits)
-                case "retag" if step.like is not None:
-                    edits, tag = self.draft.rename_tag(step.own.of, step.like.tag), f"<{step.like.tag}>"
-                    yield self.piece(step.own.of, f"the name of the tag {tag}", f"rename the tag to {tag}", edits)
-                case "move" if step.parent is not None and step.like is not None:
-                    yield self.moved(step.own.of, step.parent.of)
-                case "add" if step.like is not None:
-                    yield from self.additions.pieces(step, added, removed)
+                    yield self.piece(own.of, cause, f"rename {step.name} of {{}} to {step.other}", edits)
+                case "retag" if like is not None:
+                    edits, tag = self.draft.rename_tag(own.of, like.tag), f"<{like.tag}>"
+                    yield self.piece(own.of, f"the name of the tag {tag}", f"rename the tag to {tag}", edits)
+                case "move" if step.parent is not None and like is not None:
+                    yield self.moved(own.of, step.parent.of)
+                case "add" if like is not None and own.tag != "robot":
+                    yield from self._inner(own.of, like.of)
+                case "add" if like is not None and like.tag in ("link", "joint"):
+                    self._miss(like.of)
                 case "remove":
-                    yield from self._remove(step.own)
+                    yield from self._remove(own)
+
+    def _miss(self, like: Element) -> None:
+        if like.tag == "link":
+            self.missing.append(MissingPart("link", like.get("name") or ""))
+        else:
+            ends = (end_of(like, "child"), like.get("type") or "", end_of(like, "parent"))
+            self.missing.append(MissingPart("joint", *ends))
 
     def _of_values(self, found: Sequence[Step]) -> Iterator[Piece]:
         """Yield the values of one element: each alone, and all together."""
@@ -172,11 +186,57 @@ class RobotDifference(PieceMaker):
         element, tag = node.of, node.tag
         if tag in ("origin", "axis"):
             defaults = dict.fromkeys(node.values, "1 0 0" if tag == "axis" else "0 0 0")
-            yield from (self.of_sets([Set(element, "", name, value)], SOLVED) for name, value in defaults.items())
+            yield from self.each([Set(element, "", name, value) for name, value in defaults.items()])
+        elif tag in ("link", "joint", "material") and not self._is_twice(element):
             return
-        if element.getparent() is not None and element.getparent().tag != "geometry":  # there the shape is replaced
+        elif element.getparent() is not None and element.getparent().tag != "geometry":  # there the shape is replaced
             cause = f"an extra <{tag}>: {{}}" if tag not in ("link", "joint") else f"an extra {tag}"
             yield self.piece(element, cause, f"remove the extra <{tag}>", self.draft.remove(element), rank=STRUCTURE)
+
+    def _is_twice(self, element: Element) -> bool:
+        """Return whether another element has the same name, or another joint the same child."""
+        tag, parent = str(element.tag), element.getparent()
+        keys = [
+            {it.get("name"), end_of(it, "child") or None} - {None}
+            for it in (parent if parent is not None else ())
+            if it.tag == tag
+        ]
+        own = {element.get("name"), end_of(element, "child") or None} - {None}
+        return sum(not own.isdisjoint(other) for other in keys) > 1
+
+    def _inner(self, parent: Element, element: Element) -> Iterator[Piece]:
+        """Add an element to another one: values of an origin or axis, another shape, or the element as it is."""
+        tag, own = str(element.tag), child_of(parent, str(element.tag))
+        if tag in ("origin", "axis"):  # one with default values only does not count
+            values = {str(key): str(value) for key, value in element.attrib.items()}
+            mine = {name: own.get(name) if own is not None else None for name in values}
+            off = [name for name, value in values.items() if normal(tag, name, mine[name]) != normal(tag, name, value)]
+            yield from self.each([Set(parent, tag, name, values[name]) for name in off])
+            return
+        if parent.tag == "robot" or tag in ("link", "joint"):
+            return
+        cause, action = f"the <{tag}> of {{}} is missing", f"add the <{tag}> of {{}}"
+        shape = next((it for it in parent if parent.tag == "geometry" and it.tag in CHILDREN["geometry"]), None)
+        text = self._text(element)
+        if shape is None:
+            edits = self.draft.insert(parent, text)
+        else:
+            alike = [it for geometry in twins_of(parent) for it in geometry if _is_equal(it, shape)]
+            edits = tuple(edit for it in (shape, *alike) for edit in self.draft.replace(it, text))
+            cause, action = "the shape of {}", f"make the shape of {{}} a {tag}"
+        yield self.piece(parent, cause, action, edits)
+
+    def _text(self, element: Element) -> str:
+        """Return an element of the reference with the robot's names, an undefined material with its colour."""
+        name = element.get("name") or ""
+        own = self._names["material" if element.tag == "material" else "joint"]
+        text = self.reference.text(element)
+        for old, new in own.items():
+            text = text.replace(f'"{old}"', f'"{escaped(new)}"') if element.tag in ("material", "mimic") else text
+        defined = self.reference.material(name)
+        if element.tag == "material" and defined is not None and self.draft.material(own.get(name, name)) is None:
+            return self.reference.text(defined)
+        return text
 
 
 def rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
@@ -201,3 +261,7 @@ def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
     called = {like.values.get("name", ""): own_node.values.get("name") for own_node, like in pairs.both}
     names["material"] = {name: own_name for name, own_name in called.items() if own_name}
     return names
+
+
+def _is_equal(one: Element, other: Element) -> bool:
+    return (one.tag, sorted(one.attrib.items())) == (other.tag, sorted(other.attrib.items()))

@@ -1,6 +1,6 @@
 """The edits of the elements of a robot in the text that they are written in."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cached_property
 
 from grader import markup
@@ -31,21 +31,18 @@ class Draft(RobotElements):
         """The source if xacro expanded it: an element is not written there as it is read."""
         return self.source if isinstance(self.source, Expanded) else None
 
-    def corrections(self, names: Sequence[str], numbers: Sequence[str]) -> list[Proposal]:
-        """Return edits that may correct what xacro refuses; `names` and `numbers` are those of a reference."""
-        return self._expanded.corrections(names, numbers) if self._expanded is not None else []
+    def corrections(self, names: Sequence[str]) -> list[Proposal]:
+        """Return edits that may correct what xacro refuses; `names` are those of a reference."""
+        return self._expanded.corrections(names) if self._expanded is not None else []
 
-    def _adapt(self, element: Element, xml: str) -> str:
-        return self._expanded.adapted(self._tags[element], xml) if self._expanded is not None else xml
-
-    def siblings(self, element: Element) -> list[Element]:
-        """Return the elements that come from the same text of xacro, with this one."""
-        tag = self._tags[element]
-        return [self._elements[it] for it in (self._expanded.siblings(tag) if self._expanded is not None else [tag])]
+    def numbers(self, element: Element, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
+        """Return the numbers from which xacro computes an attribute, each with what makes the edit of it."""
+        return self._expanded.numbers(self._tags[element], attribute) if self._expanded is not None else []
 
     def _siblings(self, element: Element, attribute: str, sets: Iterable[Set]) -> dict[Element, str]:
         """Return the values that are set for the elements that come from the same text as one."""
-        same = [it for it in self.siblings(element) if it is not element]
+        tag = self._tags[element]
+        same = [self._elements[it] for it in (self._expanded.siblings(tag) if self._expanded is not None else [])]
         return {it: one.value for it in same for one in sets if one.attribute == attribute and one.element is it}
 
     def ways(self, sets: Collection[Set]) -> list[Edits]:
@@ -72,7 +69,8 @@ class Draft(RobotElements):
         added = [self.add_attributes(element, values) for element, values in attributes.items()]
         added += [self.insert(owner, empty_element(tag, values)) for (owner, tag), values in children.items()]
         rest = tuple(edit for edits in added for edit in edits)
-        return [tuple(dict.fromkeys((*edits, *rest))) for edits in found[:_MAX_WAYS]]
+        ways = (dict.fromkeys((*edits, *rest)) for edits in found[:_MAX_WAYS])
+        return [tuple(edit for edit in way if edit.old != edit.new) for way in ways]
 
     def _ways_of(self, element: Element, attribute: str, value: str, others: Mapping[Element, str]) -> list[Edits]:
         """Return the ways to give an attribute another text, and elements that come from the same text others."""
@@ -117,22 +115,16 @@ class Draft(RobotElements):
             edits += (source.edit(closing, tail, f"</{new}>"),)
         return edits
 
-    def wrap(self, element: Element, tag: str) -> Edits:
-        """Return the edits that put an element into a new one."""
-        source, start = self.source.element(self._tags[element])
-        end = markup.element_end(source.text, start)
-        return source.edit(start, start, f"<{tag}>"), source.edit(end, end, f"</{tag}>")
-
     def add_attributes(self, element: Element, values: Mapping[str, str]) -> Edits:
         """Return the edit that adds attributes to an element."""
         source, start = self.source.element(self._tags[element])
         end = markup.name_end(source.text, start)
         added = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
-        return (source.edit(start, end, f"{source.text[start:end]}{self._adapt(element, added)}"),)
+        return (source.edit(start, end, f"{source.text[start:end]}{added}"),)
 
     def insert(self, parent: Element, xml: str) -> Edits:
         """Return the edit that inserts an element as the first child of another one."""
-        return (with_child(*self.source.element(self._tags[parent]), self._adapt(parent, xml)),)
+        return (with_child(*self.source.element(self._tags[parent]), xml),)
 
     def append(self, xml: str) -> Edits:
         """Return the edit that inserts an element after the last one of the robot."""

@@ -1,16 +1,15 @@
 """The elements of a robot, each with its name in words and its place in the text."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Collection, Iterator
 from typing import NamedTuple, Self
 
 from grader.edits import element_text
 from grader.robot.model import Joint, Robot
 from grader.robot.reader import Reading
 from grader.robot.tree import parent_joints
-from grader.source import Location, Source
-from grader.xml.parsing import Element, make_element
+from grader.source import Source
+from grader.xml.parsing import Element
 
 _COMMENT = re.compile(r"[ \t]*<!--.*?-->", re.DOTALL)
 
@@ -43,9 +42,9 @@ class RobotElements:
     @classmethod
     def of(cls, reading: Reading) -> Self | None:
         """Return the elements of a robot that could be read."""
-        if reading.root is None or reading.robot is None:
+        if reading.elements is None or reading.robot is None:
             return None
-        return cls(reading.root, reading.robot, reading.source)
+        return cls(reading.elements, reading.robot, reading.source)
 
     def links(self) -> Iterator[Element]:
         """Yield the links."""
@@ -113,37 +112,6 @@ class RobotElements:
     def line(self, element: Element) -> int:
         """Return the line of an element, from 1."""
         return self.source.tag(self._tags[element]).line
-
-    def places(self) -> dict[Location, tuple[Element, str | None]]:
-        """Return the element, and the attribute, that is at each place of the file."""
-        found: dict[Location, tuple[Element, str | None]] = {}
-        for element, tag in self._tags.items():
-            found.setdefault(self.source.tag(tag), (element, None))
-            for attribute in map(str, element.keys()):
-                found.setdefault(self.source.tag(tag, attribute), (element, attribute))
-        return found
-
-    @contextmanager
-    def supposing(self, sets: Iterable[Set]) -> Iterator[None]:
-        """Give the elements themselves other values for a while, not their text."""
-        before: list[tuple[Element, str, str | None]] = []
-        added: list[Element] = []
-        for one in sets:
-            element = one.element
-            if element is None:
-                element = make_element(one.tag, {}, one.owner)
-                added.append(element)
-            before.append((element, one.attribute, element.get(one.attribute)))
-            element.set(one.attribute, one.value)
-        try:
-            yield
-        finally:
-            for element, attribute, value in reversed(before):
-                element.attrib.pop(attribute)
-                if value is not None:
-                    element.set(attribute, value)
-            for element in added:
-                element.getparent().remove(element)  # type: ignore[union-attr]
 
 
 def end_of(joint: Element, role: str) -> str:

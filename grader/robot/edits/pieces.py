@@ -12,15 +12,15 @@ from grader.xml.urdf_format import TAGS
 
 ENDS = ("parent", "child")
 
-# The ranks of pieces: values of the reference; numbers that are solved for; another structure; numbers that no person
-# would write; conventions of a whole robot.
-KNOWN, SOLVED, STRUCTURE, FITTED, CONVENTION = range(5)
+# The ranks of pieces: values of a sibling of the student's own design; the reference's; the student's own, corrected;
+# several at once, or another structure.
+SIBLING, REFERENCE, OWN, STRUCTURE = range(4)
 
 
 class Piece(NamedTuple):
     """An edit that may undo a mistake: values to set, or edits of the text; what is wrong, what to do, and the link.
 
-    The `rank` orders pieces: the reference's own values come first, what fits comes later.
+    The `rank` orders pieces that gain as much.
     """
 
     cause: str
@@ -28,21 +28,17 @@ class Piece(NamedTuple):
     link: str
     sets: tuple[Set, ...] = ()
     edits: Edits = ()
-    rank: int = 0
-    element: Element | None = None  # that it changes
-    is_mistake: bool = False  # that people make, such as a sign: all its numbers belong together
+    rank: int = REFERENCE
 
 
 Numbers = tuple[list[str], Values, Values]  # what changes, the old numbers, the new ones
 
 
 class _Words(NamedTuple):
-    """The words of a change. `is_mistake`: it undoes a known one; `is_turned`: it sets several angles, undoing none."""
+    """The words of a change."""
 
     cause: str
     action: str
-    is_mistake: bool = False
-    is_turned: bool = False
 
 
 def _words(sets: Sequence[Set], tag: str) -> _Words:
@@ -64,10 +60,8 @@ def _words_of_numbers(changes: Sequence[Numbers], unit: str) -> _Words:
     parts = [part for change in changes for part in change[0]]
     old = tuple(value for change in changes for value in change[1])
     new = tuple(value for change in changes for value in change[2])
-    cause, action, is_mistake = words_of_change("{} of [place]", parts, unit, old, new)
-    is_turned = unit == "rad" and sum(a != b for a, b in zip(old, new, strict=False)) > 1
-    cause, action = (text.replace("[place]", "{}") for text in (cause, action))
-    return _Words(cause, action, is_mistake, is_turned and not is_mistake)
+    cause, action = words_of_change("{} of [place]", parts, unit, old, new)
+    return _Words(*(text.replace("[place]", "{}") for text in (cause, action)))
 
 
 class PieceMaker:
@@ -86,26 +80,20 @@ class PieceMaker:
         edits: Edits = (),
         *,
         sets: tuple[Set, ...] = (),
-        rank: int = 0,
+        rank: int = REFERENCE,
         link: str = "",
         tag: str = "",
     ) -> Piece:
         """Return a piece that changes an element, or its child with a tag; {} in the texts stands for its name."""
         place = self.draft.describe(element, tag, self.known)
         cause, action = (text.replace("{}", place) for text in (cause, action))
-        return Piece(cause, action, link or self.draft.link_of(element), sets, edits, rank, element)
+        return Piece(cause, action, link or self.draft.link_of(element), sets, edits, rank)
 
-    def of_sets(self, sets: Sequence[Set], rank: int = 0) -> Piece:
+    def of_sets(self, sets: Sequence[Set], rank: int = REFERENCE) -> Piece:
         """Return the piece that sets values of one element, named by what is wrong with them."""
         first = sets[0]
-        tag = first.tag or str(first.owner.tag)
-        words = _words(sets, tag)
-        if tag in ENDS:
-            rank = STRUCTURE
-        elif words.is_turned or (first.element is None and rank == SOLVED):
-            rank = FITTED
-        piece = self.piece(first.owner, words.cause, words.action, sets=self.with_twins(sets), rank=rank, tag=first.tag)
-        return piece._replace(is_mistake=words.is_mistake)
+        words = _words(sets, first.tag or str(first.owner.tag))
+        return self.piece(first.owner, *words, sets=self.with_twins(sets), rank=rank, tag=first.tag)
 
     def each(self, sets: Sequence[Set]) -> Iterator[Piece]:
         """Yield the pieces that set each value alone, and all together."""

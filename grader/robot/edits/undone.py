@@ -1,0 +1,43 @@
+"""The edits that write a rejected file as it is read: tags closed, words that surely stand for others."""
+
+from collections.abc import Iterator
+
+from grader.edits import Proposal
+from grader.robot.edits.draft import Draft
+from grader.robot.edits.elements import Set
+from grader.robot.meant import Word
+from grader.robot.reader import Reading
+from grader.source import Edits
+from grader.xml.tinyxml2.recovery import Recovery
+
+
+def undone_proposals(reading: Reading) -> Iterator[Proposal]:
+    """Yield the edits of the tags and of the words for which ROS 2 or xacro rejects a file, then of both together."""
+    found: list[Proposal] = []
+    if reading.root is None or reading.recovered is not None:
+        recovery = Recovery(reading.source.text)
+        recovery.run()
+        edits = tuple(reading.source.edit(*change) for change in recovery.changes)
+        found.append(Proposal(edits, "the syntax of tags", "correct the tags"))
+    draft = Draft.of(reading)
+    if draft is not None and reading.undone:
+        edits = tuple(edit for word in reading.undone for edit in _of_word(draft, word))
+        several = "s" * (len(reading.undone) > 1)
+        found.append(
+            Proposal(edits, f"the spelling of {several and 'some '}word{several}", f"correct the word{several}")
+        )
+    yield from (it for it in found if it.edits)
+    if len(found) > 1:
+        edits = tuple(edit for it in found for edit in it.edits)
+        yield Proposal(edits, " and ".join(it.cause for it in found), " and ".join(it.action for it in found))
+
+
+def _of_word(draft: Draft, word: Word) -> Edits:
+    """Return the edits of a word: of a tag, of an attribute's name, or of its value."""
+    element, attribute = word.element, word.attribute
+    if attribute is None:
+        return draft.rename_tag(element, word.tag)
+    if attribute in word.attributes:
+        return draft.ways([Set(element, "", attribute, word.attributes[attribute])])[0]
+    new = next(name for name in word.attributes if name not in element.attrib)
+    return draft.rename_attribute(element, attribute, new)
