@@ -7,7 +7,6 @@ proves becomes a `FoundHint`, and in a report a `Hint`. All of them together are
 from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import suppress
 from decimal import Decimal
-from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.edits import Proposal
@@ -17,7 +16,7 @@ from grader.grading.hints.targets import links_of
 from grader.grading.hints.trials import FoundHint, NoTrialsLeft, Results, Trials, costs_of, gains_of, is_worse
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
-from grader.robot.edits.pieces import Piece
+from grader.robot.edits.pieces import OWN, Piece
 from grader.robot.edits.undone import undone_proposals
 from grader.robot.edits.variants import of_own, of_siblings
 from grader.source import Edits
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
 
 _MAX_WAYS = 3  # of a piece in xacro
 _MAX_PROVEN = 4  # edits that seem to gain as much, of which the first that is proven is taken
-_RESERVE = 30  # gradings for the edits of the package
+_RESERVE = 20  # gradings for proofs
 
 
 class _Tried(NamedTuple):
@@ -55,7 +54,7 @@ class HintSearch:
         self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing
         self.results: Results = trials.results  # with all edits
         self._after = self.results
-        self.is_complete = False
+        self.is_complete = self._is_cut = False
 
     @property
     def edits(self) -> Edits:
@@ -68,7 +67,7 @@ class HintSearch:
             if self.trials.left:
                 for family in (self._of_reference, self._of_package, self._of_own, self._of_links, self._of_reference):
                     self._take(family)
-                self.is_complete = True
+                self.is_complete = not self._is_cut
         with self.trials.isolated():
             known = {name for found in self.found for name in found.gains}
             lost = {name: points for name, points in costs_of(self.trials.results).items() if name not in known}
@@ -85,6 +84,9 @@ class HintSearch:
         tried: list[_Tried] = []
         with self.trials.isolated():
             for proposal in family([self._criteria[name] for name in lost]) if lost else ():
+                if self.trials.left < _RESERVE:
+                    self._is_cut = True
+                    break
                 results = self.trials.graded((*self.edits, *proposal.edits), lost)
                 passes = frozenset(name for name, result in results.items() if result.outcome.status == "passed")
                 tried += [_Tried(proposal, passes)] * bool(passes)
@@ -114,7 +116,7 @@ class HintSearch:
             gains = together if is_late else alone
             if not together or not set(gains) <= {*together, *(it for found in self.found for it in found.gains)}:
                 return False
-        if not wanted & gains.keys():
+        if not wanted & gains.keys() or (best.proposal.rank >= OWN and self._is_half(best.proposal.link)):
             return False
         known = {name for found in self.found for name in found.gains}
         gains = {name: points for name, points in gains.items() if name not in known} or gains
@@ -123,6 +125,11 @@ class HintSearch:
         self.found.append(FoundHint(best.proposal, gains, "one of several" if is_tie else "preferred", is_late))
         self.results = self._after
         return True
+
+    def _is_half(self, link: str) -> bool:
+        """Return whether criteria about a link still fail: then a number that the reference does not have is not it."""
+        about = (name for name, result in self._after.items() if result.is_lost)
+        return bool(link) and any(self._criteria[name].arguments.get("link") == link for name in about)
 
     def _gains(self, before: Edits, edits: Edits, against: Results) -> dict[str, Decimal]:
         """Return what edits gain, from scratch; nothing where a criterion is worse with them."""
@@ -169,9 +176,7 @@ class HintSearch:
         if self._difference is not None:
             robots = [criterion for criterion in lost if criterion.check.subject == "robot"]
             links = self._links(robots) if robots else []
-            yield from islice(
-                self._proposals(of_own(self._difference, links or ())), max(self.trials.left - _RESERVE, 0)
-            )
+            yield from self._proposals(of_own(self._difference, links or ()))
 
     def _of_package(self, lost: list[Criterion]) -> Iterator[Proposal]:
         own = [criterion for criterion in lost if criterion.check.subject not in ("urdf", "robot")]

@@ -14,9 +14,10 @@ _SAME = 1e-6
 
 
 class Mistake(NamedTuple):
-    """What a person does to a number: the units in which it happens, the correct number, the cause and what to do."""
+    """What a person does to numbers: the units, the size from which it is likely, how to undo it, cause and action."""
 
     units: tuple[str, ...]
+    least: float
     correct: Callable[[float], float]
     cause: str
     action: str
@@ -24,13 +25,13 @@ class Mistake(NamedTuple):
 
 _LENGTHS, _ANGLES, _ANY = ("m",), ("rad", "rad or m"), ()
 _MISTAKES = (
-    Mistake(_ANY, lambda value: -value, "the sign of {}", "negate {}"),
-    Mistake(_ANGLES, radians, "the unit of {}: degrees, not radians", "convert {} to radians"),
-    Mistake(_LENGTHS, lambda value: value / 1000, "the unit of {}: millimetres, not metres", "convert {} to metres"),
-    Mistake(_LENGTHS, lambda value: value / 100, "the unit of {}: centimetres, not metres", "convert {} to metres"),
-    Mistake(("1",), lambda value: value / 255, "the range of {}: 0..255, not 0..1", "write {} in 0..1"),
-    Mistake(_LENGTHS, lambda value: value / 2, "{}: twice the correct value", "halve {}"),
-    Mistake(_LENGTHS, lambda value: value * 2, "{}: half of the correct value", "double {}"),
+    Mistake(_ANY, 0.0, lambda value: -value, "the sign of {}", "negate {}"),
+    Mistake(_ANGLES, 6.3, radians, "the unit of {}: degrees, not radians", "convert {} to radians"),
+    Mistake(_LENGTHS, 3, lambda value: value / 1000, "the unit of {}: millimetres, not metres", "convert {} to metres"),
+    Mistake(_LENGTHS, 3, lambda value: value / 100, "the unit of {}: centimetres, not metres", "convert {} to metres"),
+    Mistake(("1",), 1.1, lambda value: value / 255, "the range of {}: 0..255, not 0..1", "write {} in 0..1"),
+    Mistake(_LENGTHS, 0.0, lambda value: value / 2, "{}: twice the correct value", "halve {}"),
+    Mistake(_LENGTHS, 0.0, lambda value: value * 2, "{}: half of the correct value", "double {}"),
 )
 
 
@@ -60,11 +61,11 @@ def _with_article(part: str) -> str:
 def plausible(unit: str, old: Values) -> Iterator[Values]:
     """Yield numbers that a person may have meant: another sign, another unit, twice or half of it, another order."""
     for mistake in _MISTAKES:
-        if not mistake.units or unit in mistake.units:
-            for index in (index for index, value in enumerate(old) if value):
+        if max(map(abs, old), default=0.0) >= mistake.least and (not mistake.units or unit in mistake.units):
+            for index in (index for index, value in enumerate(old) if value and not (mistake.least and len(old) > 1)):
                 yield (*old[:index], mistake.correct(old[index]), *old[index + 1 :])
-            if sum(map(bool, old)) > 1:
-                yield tuple(mistake.correct(value) if value else value for value in old)
+            if mistake.least and len(old) > 1:
+                yield tuple(map(mistake.correct, old))
     for one, other in combinations(range(len(old)), 2):
         if old[one] != old[other]:
             pair = {one: old[other], other: old[one]}

@@ -57,23 +57,33 @@ def _mirrored(values: Values) -> Iterator[Values]:
 
 
 def of_own(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
-    """Yield the numbers of links as they may be meant; where xacro computes them, the numbers that they come from."""
+    """Yield the numbers of links as they may be meant, where they are not the reference's.
+
+    Where xacro computes them, the numbers that they come from.
+    """
     seen: set[object] = set()
     for link in links:
-        for _, element in _parts(difference, link):
-            numbers = TAGS[str(element.tag)].attributes
+        like = dict(reversed([*_parts_of_reference(difference, link)]))
+        for path, element in _parts(difference, link):
+            tag = str(element.tag)
+            numbers = TAGS[tag].attributes
             single = [name for name, known in numbers.items() if len(known.parts) == 1 and element.get(name)]
             if len(single) == 2:
                 pair = zip(single, single[::-1], strict=True)
                 yield difference.of_sets([Set(element, "", one, element.get(other) or "") for one, other in pair], OWN)
             for name, known in numbers.items():
+                given = like[path].get(name) if path in like else None
+                if normal(tag, name, element.get(name)) == normal(tag, name, given):
+                    continue
+                is_size = known.unit == "m" and tag != "origin"
                 defined = difference.draft.numbers(element, name)
                 for values in () if defined else plausible(known.unit, values_of(element.get(name))):
-                    yield difference.of_sets([Set(element, "", name, format_numbers(values))], OWN)
+                    if not is_size or min(values) > 0.0:
+                        yield difference.of_sets([Set(element, "", name, format_numbers(values))], OWN)
                 for text, edits_with in defined:
                     for values in plausible(known.unit, values_of(text)):
                         edits = edits_with(format_number(values[0]))
-                        if edits and edits not in seen:
+                        if edits and edits not in seen and not (is_size and values[0] <= 0.0):
                             seen.add(edits)
                             cause = f"a number from which the {name} of {{}} is computed"
                             yield difference.piece(element, cause, f"correct {cause}", edits, rank=OWN)
