@@ -16,7 +16,7 @@ from grader.grading.hints.targets import links_of
 from grader.grading.hints.trials import FoundHint, NoTrialsLeft, Results, Trials, costs_of, gains_of, is_worse
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
-from grader.robot.edits.pieces import OWN, Piece
+from grader.robot.edits.pieces import REFERENCE, STRUCTURE, Piece
 from grader.robot.edits.undone import undone_proposals
 from grader.robot.edits.variants import of_own, of_siblings
 from grader.source import Edits
@@ -116,7 +116,7 @@ class HintSearch:
             gains = together if is_late else alone
             if not together or not set(gains) <= {*together, *(it for found in self.found for it in found.gains)}:
                 return False
-        if not wanted & gains.keys() or (best.proposal.rank >= OWN and self._is_half(best.proposal.link)):
+        if not wanted & gains.keys() or (best.proposal.rank not in (REFERENCE, STRUCTURE) and self._is_half(best.proposal.link)):
             return False
         known = {name for found in self.found for name in found.gains}
         gains = {name: points for name, points in gains.items() if name not in known} or gains
@@ -143,11 +143,15 @@ class HintSearch:
         """Yield the edits of the text that pieces of these links stand for."""
         assert self._draft is not None
         for piece in pieces:
-            if links is None or piece.link in links:
+            if links is None or piece.link in links or not self._is_known(piece.link):
                 ways = self._draft.ways(piece.sets)[:_MAX_WAYS] if piece.sets else [piece.edits]
                 for way, edits in enumerate(ways):
                     if edits:
                         yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank, way)
+
+    def _is_known(self, link: str) -> bool:
+        """Return whether the reference has a link: another one may be any of them."""
+        return self._difference is not None and self._difference.reference.robot.has_link(link)
 
     def _links(self, lost: Iterable[Criterion]) -> list[str] | None:
         """Return the links on which criteria depend; None if all may."""
@@ -164,7 +168,7 @@ class HintSearch:
             yield from self._draft.corrections([link.name for link in self._difference.reference.robot.links])
             links = self._links(lost)
             yield from self._proposals(of_siblings(self._difference, links or ()))
-            yield from self._proposals(self._difference.pieces, links and {*links, ""})
+            yield from self._proposals(self._difference.pieces, links)
 
     def _of_links(self, lost: list[Criterion]) -> Iterator[Proposal]:
         """Yield all values of the reference of a link and its joint."""

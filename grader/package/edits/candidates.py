@@ -6,15 +6,14 @@ from contextlib import AbstractContextManager
 from itertools import islice
 from typing import Any
 
-from grader.edits import Proposal, composed, edited
-from grader.package.edits.paths import in_xml, launch_paths, setup_paths
+from grader.edits import Proposal, edited
+from grader.package.edits.paths import launch_paths, setup_paths
 from grader.package.edits.python_file import PythonFile
 from grader.package.edits.python_tree import python_tree
 from grader.package.edits.task import WHAT, PackageTask, change, file_proposals, package_names
 from grader.package.edits.trees import markup_tree, tree_proposals
 from grader.package.edits.wording import respellings, reword, undefined_names
-from grader.package.launch.model import Launch
-from grader.package.package import MANIFEST, SETUP, Package
+from grader.package.package import SETUP, Package
 from grader.source import Edit, Edits, Source
 from grader.static_python.parse import SyntaxFault
 
@@ -23,8 +22,6 @@ _QUOTES = str.maketrans("“”„‘’‚", "\"\"\"'''")
 _MAX_TRIES, _MAX_PARSED = 250, 512 * 1024  # edits that are parsed, and characters
 _MAX_FOUND = 10
 _MAX_MADE, _MAX_PROPOSALS = 100, 24  # for one kind of files
-_MAX_MISTAKES = 3  # in one launch file
-_MAX_FIRST = 2
 
 
 def repairs(file: PythonFile, what: str) -> Iterator[Proposal]:
@@ -119,39 +116,8 @@ def _of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
     yield from file_proposals(task, "urdf") if kind in (SETUP, "launch") else ()
     path, like = task.file(task.package, kind), task.file(task.reference, kind)
     source = task.source(path)
-    # With the build type alone, the package could not be built.
-    is_alone = kind == MANIFEST and SETUP not in task.files
-    needed = [edit for it in file_proposals(task, SETUP) for edit in it.edits] if is_alone else []
     if source is not None and path is not None:
-        made = _further if kind == "launch" else _of_text
-        yield from (it._replace(edits=(*it.edits, *needed)) for it in made(task, kind, source, path, like) if it.edits)
-
-
-def _further(
-    task: PackageTask, kind: str, source: Source, path: str, like: str | None, depth: int = _MAX_MISTAKES
-) -> Iterator[Proposal]:
-    """Yield the edits of a launch file; after those that leave fewer mistakes in it, also the edits of the others."""
-    reference = task.reference.launch(like) if task.reference is not None and like is not None else None
-    wanted = _node_names(reference) if reference is not None else set()
-
-    def left(text: Source) -> tuple[bool, int]:
-        launch = task.launch(path, text)
-        return launch.syntax is not None, len(launch.faults) + len(wanted - _node_names(launch))
-
-    found = [it for it in islice(_of_text(task, kind, source, path, like), _MAX_MADE) if it.edits]
-    yield from found
-    afters = {it: Source(source.path, edited(source.text, source.path, it.edits) or "") for it in found if depth > 1}
-    ranks = {it: left(after) for it, after in afters.items()}
-    better = [it for it in ranks if (False, 0) < ranks[it] < left(source)]
-    for first in sorted(better, key=lambda it: (ranks[it], it.size))[:_MAX_FIRST]:
-        for second in _further(task, kind, afters[first], path, like, depth - 1):
-            edits = composed(source.text, source.path, first.edits, second.edits)
-            cause, action = f"{first.cause} and {second.cause}", f"{first.action} and {second.action}"
-            yield Proposal(edits, cause, action, rank=max(first.rank, second.rank))
-
-
-def _node_names(launch: Launch) -> set[tuple[str, str]]:
-    return {(it.package, it.executable) for it in launch.nodes}
+        yield from (it for it in _of_text(task, kind, source, path, like) if it.edits)
 
 
 def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str | None) -> Iterator[Proposal]:
@@ -168,9 +134,8 @@ def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str 
         yield from repairs(own, what)
         yield from undefined_names(own, what)
     else:
-        text = wanted if ending == other else in_xml(task, like) if ending == ".xml" else ""
-        trees = markup_tree(source), markup_tree(Source(source.path, text))
-        yield from (it._replace(rank=int(ending != other)) for it in tree_proposals(source, trees, what))
+        trees = markup_tree(source), markup_tree(Source(source.path, wanted if ending == other else ""))
+        yield from tree_proposals(source, trees, what)
     if kind == "launch":
         yield from launch_paths(task, task.launch(path, source), source)
     elif kind == SETUP:

@@ -14,7 +14,7 @@ from grader.package.launch.places import ENDINGS, is_in_launch_folder, is_launch
 from grader.package.package import MANIFEST, PYTHON_LIMIT, SETUP, Package
 from grader.source import Edit, Source
 
-Verb = Literal["set", "add", "remove", "rename", "syntax", "create", "file"]
+Verb = Literal["set", "add", "remove", "rename", "syntax", "file"]
 # What is wrong and what to do, by the kind of the step; the first gives no answer away.
 _WORDS: Mapping[Verb, tuple[str, str]] = {
     "set": ("{}", "correct {}"),
@@ -22,7 +22,6 @@ _WORDS: Mapping[Verb, tuple[str, str]] = {
     "remove": ("{}", "remove {}"),
     "rename": ("the spelling of {}", "correct the spelling of {}"),
     "syntax": ("a syntax error{}", "correct the syntax{}"),
-    "create": ("{} is missing", "create {}"),
     "file": ("the name of {}", "rename {}"),
 }
 _RVIZ_LIMIT = 512 * 1024
@@ -72,11 +71,6 @@ class PackageTask:
             return text
         return re.sub(rf"(?<![\w.]){re.escape(self.reference.name)}(?![\w.])", lambda _: self.package.name, text)
 
-    def created(self, path: str, like: str | None) -> list[Edit]:
-        """Return the edit that creates a file like the reference's; none where it exists, or the reference has none."""
-        text = self.wanted(like)
-        return [Edit(self.package.path(path), 1, 1, "", text)] if text is not None and path not in self.files else []
-
     def renamed(self, path: str, new: str) -> Edit:
         """Return the edit that gives a file another path."""
         return Edit(self.package.path(path), 1, 1, "", "", renamed=self.package.path(new))
@@ -113,7 +107,7 @@ def change(edits: Iterable[Edit], verb: Verb, name: str, what: str = "") -> Prop
 
 
 def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
-    """Yield edits that give a file the name that it has in the reference, or create it."""
+    """Yield edits that give a file the name that it has in the reference."""
     likes = {task.named(path): path for path in (task.reference.tree.files if task.reference is not None else ())}
     names = {posixpath.basename(path) for path in likes} | task.given
     wanted = {path: like for path, like in likes.items() if kind_of(path) == kind}
@@ -123,15 +117,6 @@ def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
             continue
         own = [it for it in task.files if kind in (kind_of(it), posixpath.dirname(it)) or it.startswith(f"{folder}/")]
         yield from _rename(task, kind, name, [it for it in own if posixpath.basename(it) not in names])
-        if path not in task.files and kind != "urdf" and (path == kind or SETUP in task.files):
-            what = WHAT.get(kind, kind if path == kind else "a file of the resource index")
-            yield change(_create(task, path, wanted), "create", what)
-
-
-def _create(task: PackageTask, path: str, wanted: Mapping[str, str]) -> list[Edit]:
-    """Return the edits that create a file of the reference; with setup.py the other files that it needs."""
-    needed = [path, *(other for other in wanted if path == SETUP != other)]
-    return [edit for new in needed for edit in task.created(new, wanted[new])]
 
 
 def _is_named(path: str, name: str, kind: str) -> bool:

@@ -87,7 +87,7 @@ class RobotDifference(PieceMaker):
         links: dict[str, list[Set]] = {}
         for piece in self.pieces:
             own = links.setdefault(piece.link, [])
-            own += [one for one in piece.sets if one not in own and one.attribute not in ("name", "link")]
+            own += [one for one in piece.sets if one not in own and one.attribute != "name"]
         for link, sets in links.items():
             poses = [one for one in sets if "origin" in (one.tag, one.owner.tag) or "axis" in (one.tag, one.owner.tag)]
             for those, what in ((poses, "the frame of {!r} and what it shows"), (sets, "the values of {!r}")):

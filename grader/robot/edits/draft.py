@@ -1,5 +1,6 @@
 """The edits of the elements of a robot in the text that they are written in."""
 
+import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cached_property
 
@@ -20,6 +21,7 @@ from grader.xml.parsing import Element
 from grader.xml.urdf_format import PARTS
 
 _ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
+_NAMELESS = re.compile(r"""\s*=\s*(?:"[^"<>]*"|'[^'<>]*')""")
 _MAX_WAYS = 6
 
 
@@ -116,10 +118,15 @@ class Draft(RobotElements):
         return edits
 
     def add_attributes(self, element: Element, values: Mapping[str, str]) -> Edits:
-        """Return the edit that adds attributes to an element."""
+        """Return the edit that adds attributes to an element, instead of a value without a name: <origin="0 0 1"/>."""
         source, start = self.source.element(self._tags[element])
         end = markup.name_end(source.text, start)
+        nameless = _NAMELESS.match(source.text, end)
+        if nameless is None and not markup.is_whole(source.text, start):
+            return ()
         added = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
+        if nameless is not None:
+            return (source.edit(end, nameless.end(), added),)
         return (source.edit(start, end, f"{source.text[start:end]}{added}"),)
 
     def insert(self, parent: Element, xml: str) -> Edits:

@@ -176,5 +176,6 @@ def normal(tag: str, attribute: str, text: str | None) -> str:
     known = TAGS[tag].attributes.get(attribute) if tag in TAGS else None
     if text is None:
         text = known.default or "" if known is not None else ""
-    values = values_of(text) if known is not None and known.parts else ()
+    is_read = known is not None and known.parts and (len(known.parts) > 1 or text == text.rstrip())
+    values = values_of(text) if is_read else ()
     return " ".join(f"{value + 0.0:.6g}" for value in values) if values else text

@@ -14,7 +14,7 @@ from grader.xml.tinyxml2.recovery import Recovery
 def undone_proposals(reading: Reading) -> Iterator[Proposal]:
     """Yield the edits of the tags and of the words for which ROS 2 or xacro rejects a file, then of both together."""
     found: list[Proposal] = []
-    if reading.root is None or reading.recovered is not None:
+    if reading.verdict == "rejected" and not reading.undone:
         recovery = Recovery(reading.source.text)
         recovery.run()
         edits = tuple(reading.source.edit(*change) for change in recovery.changes)
