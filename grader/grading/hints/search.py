@@ -18,7 +18,7 @@ from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.pieces import REFERENCE, STRUCTURE, Piece
 from grader.robot.edits.undone import undone_proposals
-from grader.robot.edits.variants import of_own, of_siblings
+from grader.robot.edits.variants import in_another_unit, of_own, of_siblings
 from grader.source import Edits
 from grader.submission.raw_xacro import raw_xacro_proposals
 from grader.submission.urdf import Read
@@ -53,7 +53,7 @@ class HintSearch:
         self.found: list[FoundHint] = []
         self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing
         self.results: Results = trials.results  # with all edits
-        self._after = self.results
+        self._after: Results = self.results
         self.is_complete = self._is_cut = False
 
     @property
@@ -116,7 +116,9 @@ class HintSearch:
             gains = together if is_late else alone
             if not together or not set(gains) <= {*together, *(it for found in self.found for it in found.gains)}:
                 return False
-        if not wanted & gains.keys() or (best.proposal.rank not in (REFERENCE, STRUCTURE) and self._is_half(best.proposal.link)):
+        if not wanted & gains.keys() or (
+            best.proposal.rank not in (REFERENCE, STRUCTURE) and self._is_half(best.proposal.link)
+        ):
             return False
         known = {name for found in self.found for name in found.gains}
         gains = {name: points for name, points in gains.items() if name not in known} or gains
@@ -167,6 +169,7 @@ class HintSearch:
         if self._difference is not None and self._draft is not None and subjects & {"urdf", "robot"}:
             yield from self._draft.corrections([link.name for link in self._difference.reference.robot.links])
             links = self._links(lost)
+            yield from self._proposals(in_another_unit(self._difference))
             yield from self._proposals(of_siblings(self._difference, links or ()))
             yield from self._proposals(self._difference.pieces, links)
 

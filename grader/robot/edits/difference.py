@@ -1,6 +1,6 @@
 """The difference between a robot and the reference's, cut into pieces: each is an edit that may undo a mistake."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
 from typing import NamedTuple
@@ -79,7 +79,8 @@ class RobotDifference(PieceMaker):
     def pieces(self) -> list[Piece]:
         """The pieces, each once: values first, then what moves, is added and is removed."""
         found_steps = steps(self._tree(self.draft, {}), self._tree(self.reference, self._names))
-        return unique([*self._pieces(found_steps), *self._joint_names(), *self._ends()])
+        found = [*self._pieces(found_steps)]
+        return unique([*found, *_together(found), *self._materials(), *self._joint_names(), *self._ends()])
 
     @property
     def whole_links(self) -> Iterator[Piece]:
@@ -90,11 +91,32 @@ class RobotDifference(PieceMaker):
             own += [one for one in piece.sets if one not in own and one.attribute != "name"]
         for link, sets in links.items():
             poses = [one for one in sets if "origin" in (one.tag, one.owner.tag) or "axis" in (one.tag, one.owner.tag)]
-            for those, what in ((poses, "the frame of {!r} and what it shows"), (sets, "the values of {!r}")):
+            carried = [it for it in self.draft.joints() if end_of(it, "parent") == link]
+            after = [one for own in links.values() for one in own if {one.owner, one.owner.getparent()} & {*carried}]
+            frame, what = "the frame of {!r} and what it shows", "the values of {!r}"
+            for those, text in ((poses, frame), (poses + after, f"{frame} and carries"), (sets, what)):
                 places = {(one.owner, one.tag) for one in those if one.owner.tag not in ("collision", "inertial")}
                 if link in self.known and len(places) > 1:
-                    cause = what.format(link)
-                    yield Piece(cause, f"correct {cause}", link, tuple(those), (), STRUCTURE)
+                    cause = text.format(link)
+                    yield Piece(cause, f"correct {cause}", link, tuple(dict.fromkeys(those)), (), STRUCTURE)
+
+    def _materials(self) -> Iterator[Piece]:
+        """Give what a link shows the colour of the reference, where no material of the robot has it."""
+        for used in self.draft.root.iter("material"):
+            link = self.reference.link(self.draft.link_of(used))
+            names = [it.get("name") or "" for it in link.iter("material")] if link is not None else []
+            like = self.reference.material(names[0]) if names else None
+            colour = child_of(like, "color") if like is not None else None
+            if like is None or colour is None:
+                continue
+            if not any(it.get("name") == used.get("name") for it in self.draft.root.iterchildren("material")):
+                yield self.of_sets([Set(used, "color", "rgba", colour.get("rgba") or "")])
+            elif (
+                self.draft.material(names[0]) is None
+                and self.draft.material(self._names["material"].get(names[0], "")) is None
+            ):
+                edits = self.draft.replace(used, self.reference.text(like))
+                yield self.piece(used, "the material of {}", "correct the material of {}", edits)
 
     def _joint_names(self) -> Iterator[Piece]:
         """Rename joints as in the reference, also where they are mimicked."""
@@ -170,7 +192,14 @@ class RobotDifference(PieceMaker):
             text = values.pop("")
             edits = self.draft.write_text(element, text)
             yield self.piece(element, "the text of {}", f"set the text of {{}} to {text}", edits)
-        yield from self.each([Set(element, "", name, value) for name, value in values.items()])
+        if not self._is_loose(element):
+            yield from self.each([Set(element, "", name, value) for name, value in values.items()])
+
+    def _is_loose(self, element: Element) -> bool:
+        """Return whether an element names a parent of the student's own that no joint holds yet: that is what lacks."""
+        name = element.get("link") or ""
+        is_own = element.tag == "parent" and self.draft.link(name) is not None and name not in self.known
+        return is_own and self.draft.joint_of(name) is None
 
     def _rename(self, element: Element, name: str) -> Iterator[Piece]:
         """Rename a link with all that names it, or alone; a joint; a material where it is used or defined."""
@@ -237,6 +266,21 @@ class RobotDifference(PieceMaker):
         if element.tag == "material" and defined is not None and self.draft.material(own.get(name, name)) is None:
             return self.reference.text(defined)
         return text
+
+
+def _together(found: Iterable[Piece]) -> Iterator[Piece]:
+    """Yield the changes in one element together: what moves into it, and the texts in it."""
+    groups: dict[Element | None, list[Piece]] = {}
+    for piece in found:
+        groups.setdefault(piece.around if piece.edits else None, []).append(piece)
+    for element, pieces in groups.items():
+        if element is not None and len(pieces) > 1:
+            cause, action = (
+                " and ".join(dict.fromkeys(texts))
+                for texts in zip(*((it.cause, it.action) for it in pieces), strict=True)
+            )
+            edits = tuple(edit for piece in pieces for edit in piece.edits)
+            yield pieces[0]._replace(cause=cause, action=action, edits=edits, rank=STRUCTURE)
 
 
 def rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:

@@ -71,8 +71,10 @@ class Draft(RobotElements):
         added = [self.add_attributes(element, values) for element, values in attributes.items()]
         added += [self.insert(owner, empty_element(tag, values)) for (owner, tag), values in children.items()]
         rest = tuple(edit for edits in added for edit in edits)
-        ways = (dict.fromkeys((*edits, *rest)) for edits in found[:_MAX_WAYS])
-        return [tuple(edit for edit in way if edit.old != edit.new) for way in ways]
+        return [
+            tuple(edit for edit in dict.fromkeys((*edits, *rest)) if edit.old != edit.new)
+            for edits in found[:_MAX_WAYS]
+        ]
 
     def _ways_of(self, element: Element, attribute: str, value: str, others: Mapping[Element, str]) -> list[Edits]:
         """Return the ways to give an attribute another text, and elements that come from the same text others."""
@@ -82,7 +84,8 @@ class Draft(RobotElements):
         if self._expanded is not None:
             return self._expanded.rewrites(attribute, wanted)
         source, start = self.source.element(tag)
-        return [(with_attribute(source, start, attribute, escaped(value)),)]
+        is_there = markup.attribute(source.text, start, attribute) is not None
+        return [(with_attribute(source, start, attribute, escaped(value)),)] if is_there else []
 
     def write_text(self, element: Element, text: str) -> Edits:
         """Return the edit that gives an element another text; none where it has children, or xacro evaluates it."""

@@ -10,6 +10,7 @@ from grader.text import enumerated
 
 Values = tuple[float, ...]
 
+LARGE = 3.0  # metres: no part of a robot for a desk is as large
 _SAME = 1e-6
 
 
@@ -27,8 +28,12 @@ _LENGTHS, _ANGLES, _ANY = ("m",), ("rad", "rad or m"), ()
 _MISTAKES = (
     Mistake(_ANY, 0.0, lambda value: -value, "the sign of {}", "negate {}"),
     Mistake(_ANGLES, 6.3, radians, "the unit of {}: degrees, not radians", "convert {} to radians"),
-    Mistake(_LENGTHS, 3, lambda value: value / 1000, "the unit of {}: millimetres, not metres", "convert {} to metres"),
-    Mistake(_LENGTHS, 3, lambda value: value / 100, "the unit of {}: centimetres, not metres", "convert {} to metres"),
+    Mistake(
+        _LENGTHS, LARGE, lambda value: value / 1000, "the unit of {}: millimetres, not metres", "convert {} to metres"
+    ),
+    Mistake(
+        _LENGTHS, LARGE, lambda value: value / 100, "the unit of {}: centimetres, not metres", "convert {} to metres"
+    ),
     Mistake(("1",), 1.1, lambda value: value / 255, "the range of {}: 0..255, not 0..1", "write {} in 0..1"),
     Mistake(_LENGTHS, 0.0, lambda value: value / 2, "{}: twice the correct value", "halve {}"),
     Mistake(_LENGTHS, 0.0, lambda value: value * 2, "{}: half of the correct value", "double {}"),

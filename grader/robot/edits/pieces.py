@@ -29,6 +29,7 @@ class Piece(NamedTuple):
     sets: tuple[Set, ...] = ()
     edits: Edits = ()
     rank: int = REFERENCE
+    around: Element | None = None  # the element in which the text changes
 
 
 Numbers = tuple[list[str], Values, Values]  # what changes, the old numbers, the new ones
@@ -87,7 +88,7 @@ class PieceMaker:
         """Return a piece that changes an element, or its child with a tag; {} in the texts stands for its name."""
         place = self.draft.describe(element, tag, self.known)
         cause, action = (text.replace("{}", place) for text in (cause, action))
-        return Piece(cause, action, link or self.draft.link_of(element), sets, edits, rank)
+        return Piece(cause, action, link or self.draft.link_of(element), sets, edits, rank, element.getparent())
 
     def of_sets(self, sets: Sequence[Set], rank: int = REFERENCE) -> Piece:
         """Return the piece that sets values of one element, named by what is wrong with them."""
@@ -131,7 +132,8 @@ class PieceMaker:
         was = element.getparent()
         cause = f"<{element.tag}> is inside <{was.tag if was is not None else ''}>; it belongs in <{parent.tag}>"
         edits = (*self.draft.remove(element), *there)
-        return self.piece(element, cause, f"move <{element.tag}> into <{parent.tag}>", edits)
+        piece = self.piece(element, cause, f"move <{element.tag}> into <{parent.tag}>", edits)
+        return piece._replace(around=parent)
 
 
 def twins_of(owner: Element) -> list[Element]:

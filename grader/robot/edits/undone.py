@@ -38,6 +38,6 @@ def _of_word(draft: Draft, word: Word) -> Edits:
     if attribute is None:
         return draft.rename_tag(element, word.tag)
     if attribute in word.attributes:
-        return draft.ways([Set(element, "", attribute, word.attributes[attribute])])[0]
+        return next(iter(draft.ways([Set(element, "", attribute, word.attributes[attribute])])), ())
     new = next(name for name in word.attributes if name not in element.attrib)
     return draft.rename_attribute(element, attribute, new)

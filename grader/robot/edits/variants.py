@@ -2,10 +2,11 @@
 
 import re
 from collections.abc import Iterable, Iterator
+from math import inf
 
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.elements import Set
-from grader.robot.edits.numbers import Values, format_number, format_numbers, plausible, values_of
+from grader.robot.edits.numbers import LARGE, Values, format_number, format_numbers, plausible, values_of
 from grader.robot.edits.pieces import OWN, SIBLING, Piece, normal
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import TAGS
@@ -71,19 +72,40 @@ def of_own(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]
             if len(single) == 2:
                 pair = zip(single, single[::-1], strict=True)
                 yield difference.of_sets([Set(element, "", one, element.get(other) or "") for one, other in pair], OWN)
-            for name, known in numbers.items():
+            for name in numbers:
                 given = like[path].get(name) if path in like else None
-                if normal(tag, name, element.get(name)) == normal(tag, name, given):
-                    continue
-                is_size = known.unit == "m" and tag != "origin"
-                defined = difference.draft.numbers(element, name)
-                for values in () if defined else plausible(known.unit, values_of(element.get(name))):
-                    if not is_size or min(values) > 0.0:
-                        yield difference.of_sets([Set(element, "", name, format_numbers(values))], OWN)
-                for text, edits_with in defined:
-                    for values in plausible(known.unit, values_of(text)):
-                        edits = edits_with(format_number(values[0]))
-                        if edits and edits not in seen and not (is_size and values[0] <= 0.0):
-                            seen.add(edits)
-                            cause = f"a number from which the {name} of {{}} is computed"
-                            yield difference.piece(element, cause, f"correct {cause}", edits, rank=OWN)
+                if normal(tag, name, element.get(name)) != normal(tag, name, given):
+                    found = (piece for piece in _of_number(difference, element, name) if piece.edits not in seen)
+                    for piece in found:
+                        seen |= {piece.edits} if piece.edits else set()
+                        yield piece
+
+
+def _of_number(difference: RobotDifference, element: Element, name: str) -> Iterator[Piece]:
+    unit = TAGS[str(element.tag)].attributes[name].unit
+    least = 0.0 if unit == "m" and element.tag != "origin" else -inf  # of a size
+    defined = difference.draft.numbers(element, name)
+    for values in () if defined else plausible(unit, values_of(element.get(name))):
+        if min(values) > least:
+            yield difference.of_sets([Set(element, "", name, format_numbers(values))], OWN)
+    for text, edits_with in defined:
+        for (value,) in plausible(unit, values_of(text)):
+            edits = edits_with(format_number(value))
+            if edits and value > least:
+                cause = f"a number from which the {name} of {{}} is computed"
+                yield difference.piece(element, cause, f"correct {cause}", edits, rank=OWN)
+
+
+def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
+    """Yield all lengths in metres, for a robot of which they are all in centimetres or millimetres."""
+    found: list[tuple[Element, str, Values]] = []
+    for element in difference.draft.root.iter():
+        for name, known in TAGS[str(element.tag)].attributes.items() if element.tag in TAGS else ():
+            values = values_of(element.get(name)) if known.unit == "m" else ()
+            found += [(element, name, values)] * any(values)
+    is_large = any(max(values) >= LARGE for element, _, values in found if element.tag != "origin")
+    for factor, unit in ((100.0, "centimetres"), (1000.0, "millimetres")) if is_large else ():
+        metres = [(it, name, tuple(value / factor for value in values)) for it, name, values in found]
+        sets = tuple(Set(it, "", name, format_numbers(values)) for it, name, values in metres)
+        cause = f"the unit of all lengths: {unit}, not metres"
+        yield Piece(cause, "convert all lengths to metres", "", sets, (), OWN)
