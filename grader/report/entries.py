@@ -97,8 +97,6 @@ def _head(failure: FailedCriterion, details: Details, page: Page) -> Text:
     status = status_of(failure.result)
     text = Text.assemble(page.mark(status), " ", (printable(failure.id), "bold"))
     text.append(f"  {failure.cost}", STYLES[status])
-    if failure.skipped and page.is_tight:
-        text.append(f" with {len(failure.skipped)} skipped", "yellow")
     if details.location is not None:
         where = details.location._replace(calls=()) if page.is_tight else details.location
         text.append(f"  {location_text(where)}", "dim")

@@ -80,7 +80,7 @@ class RobotDifference(PieceMaker):
         """The pieces, each once: values first, then what moves, is added and is removed."""
         found_steps = steps(self._tree(self.draft, {}), self._tree(self.reference, self._names))
         found = [*self._pieces(found_steps)]
-        return unique([*found, *_together(found), *self._materials(), *self._joint_names(), *self._ends()])
+        return unique([*found, *_together(found), *self._materials(), *self._joint_names()])
 
     @property
     def whole_links(self) -> Iterator[Piece]:
@@ -129,16 +129,6 @@ class RobotDifference(PieceMaker):
             yield self.piece(joint, "the name of a joint", "correct the name of a joint", sets=sets, rank=STRUCTURE)
         if len(every) > 1:
             yield Piece("the names of joints", "correct the names of joints", "", tuple(every), (), STRUCTURE)
-
-    def _ends(self) -> Iterator[Piece]:
-        """Exchange the parent and the child of a joint."""
-        for joint in self.draft.joints():
-            names = [end_of(joint, role) for role in ENDS]
-            likes = [self.reference.joint_of(name) for name in names]
-            if any(like is not None and [end_of(like, role) for role in ENDS] == names[::-1] for like in likes):
-                sets = tuple(Set(joint, role, "link", name) for role, name in zip(ENDS, names[::-1], strict=True))
-                cause, action = "parent and child of {} are exchanged", "exchange parent and child of {}"
-                yield self.piece(joint, cause, action, sets=sets, rank=STRUCTURE)
 
     def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
         children = [child for child in draft.root if isinstance(child.tag, str)]
