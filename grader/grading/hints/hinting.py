@@ -50,10 +50,12 @@ def hinted(report: Report, submission: Submission, level: HintLevel, *, keep_edi
     shown = {name: found for found in reversed(search.found) for name in found.gains}
     entries = {id(found): _entry(found, shown, results, costs) for found in search.found}
     hints: dict[str, Hint] = {}
-    for name, found in {**shown, **search.missing}.items():
+    for name, one in {**shown, **search.missing}.items():
         with trials.isolated():
-            entry = entries.get(id(found), name)
-            earlier = [entries[id(it)] for it in search.found[: search.found.index(found)]] if found.is_late else []
+            entry = entries.get(id(one), name)
+            before = search.found[: search.found.index(one)] if one.is_late else []
+            found = _first_at(one, results[entry].outcome.location)
+            earlier = [entries[id(it)] for it in before]
             text = message(found, level, submission, earlier)
             hints[name] = _hint(found, text, entry, results[name], keeps_edits=keep_edits or level == "edit")
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
@@ -87,6 +89,13 @@ def _entry(
         return name not in costs, not is_there, results[name].criterion.check.subject != "urdf", -cost
 
     return min([name for name in found.gains if shown.get(name) is found] or found.gains, key=rank)
+
+
+def _first_at(found: FoundHint, where: Location | None) -> FoundHint:
+    """Return a hint with the edits in the line of the failure first."""
+    place = (where.path, where.line) if where is not None else None
+    edits = sorted(found.edits, key=lambda it: ((it.path, it.line) != place, it.path, it.line, it.column))
+    return found._replace(proposal=found.proposal._replace(edits=tuple(edits)))
 
 
 def _hint(found: FoundHint, text: str, shown_by: str, result: Result, *, keeps_edits: bool) -> Hint:

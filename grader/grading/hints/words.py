@@ -6,7 +6,7 @@ from grader.edits import Expanded
 from grader.grading.hints.trials import FoundHint
 from grader.grading.levels import HintLevel
 from grader.source import Edit, Location
-from grader.submission.editing import content, creates
+from grader.submission.editing import content
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import counted, enumerated
@@ -74,9 +74,15 @@ def _at(place: Location | Edit, main: str | None) -> str:
 
 
 def _moves(edits: Sequence[Edit], submission: Submission) -> list[str]:
-    """Return the change in words if a text is moved: removed at one place, and inserted at another one."""
+    """Return two changes in words if they exchange texts, or if a text is removed at one place and added at another."""
+    if len(edits) != 2:
+        return []
+    first, second = edits
+    if first.old and (first.old, first.new) == (second.new, second.old):
+        places = (f"{_quote(edit.old)} ({_where(edit, submission)})" for edit in edits)
+        return [f"exchange {' and '.join(places)}"]
     texts = {" ".join((edit.old + edit.new).split()) for edit in edits}
-    if len(edits) != 2 or len(texts) > 1 or {bool(edit.old) for edit in edits} != {True, False}:
+    if len(texts) > 1 or {bool(edit.old) for edit in edits} != {True, False}:
         return []
     old, new = sorted(edits, key=lambda edit: not edit.old)
     return [f"move {_quote(old.old)} ({_where(old, submission)}) to {_insertion(new, submission)}"]
@@ -86,28 +92,29 @@ def _change(edit: Edit, submission: Submission) -> str:
     old, new = _quote(edit.old), _quote(edit.new)
     if edit.renamed:
         return f"rename `{edit.path}` to `{edit.renamed}`"
-    if creates(submission, edit):
-        return f"create {'' if edit.new else 'the empty file '}`{edit.path}` (--fix writes it)"
     if not edit.old:
-        return f"insert {new} ({_insertion(edit, submission)})"
+        return f"add {new} {_insertion(edit, submission)}"
     where = _where(edit, submission)
+    added = edit.new.removeprefix(edit.old).strip()
+    if edit.old.startswith("<") and edit.new.startswith(edit.old) and "<" not in added:
+        return f"add {_quote(added)} to `{edit.old}>` ({where})"
     return f"change {old} to {new} ({where})" if edit.new else f"remove {old} ({where})"
 
 
 def _insertion(edit: Edit, submission: Submission) -> str:
-    """Return the line before or after which a text is inserted, or the column, if more of that line follows."""
-    is_below = edit.new.lstrip(" \r").startswith("\n") and not _line(edit, submission)[edit.column - 1 :].strip()
-    side, at = "before " if edit.new.endswith("\n") else "after " if is_below else "", _at(edit, submission.path)
-    return f"{side}{at}" if side else f"{at}, column {edit.column}"
+    """Return the line before, after or in which a text is added."""
+    line, at = _line(edit, submission), _at(edit, submission.path)
+    if edit.new.endswith("\n") or not line[: edit.column - 1].strip():
+        return f"before {at}"
+    return f"{'in' if line[edit.column - 1 :].strip() else 'after'} {at}"
 
 
 def _where(edit: Edit, submission: Submission) -> str:
-    """Return the line of an edit; the column too if its text is there several times."""
+    """Return the line of an edit, and which of the texts in it is meant if it is there several times."""
     line = _line(edit, submission)
     number = line.count(edit.old) if edit.old else 0
     nth = line.count(edit.old, 0, edit.column - 1) + 1
-    which = f", column {edit.column}: number {nth} of {number}" if number > 1 else ""
-    return f"{_at(edit, submission.path)}{which}"
+    return f"{_at(edit, submission.path)}{f', number {nth} of {number}' if number > 1 else ''}"
 
 
 def _line(edit: Edit, submission: Submission) -> str:
