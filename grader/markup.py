@@ -54,11 +54,6 @@ def head_end(text: str, start: int) -> tuple[int, bool]:
     return found.end(), found[3] == "/" or found[2].endswith("/")
 
 
-def is_whole(text: str, start: int) -> bool:
-    """Return whether there is a start tag at an offset, to its >."""
-    return _HEAD.match(text, start) is not None
-
-
 def element_end(text: str, start: int) -> int:
     """Return the offset after the end tag of the element at an offset; the end of the text where that is missing."""
     position, is_empty = head_end(text, start)

@@ -71,7 +71,10 @@ class HintSearch:
         with self.trials.isolated():
             known = {name for found in self.found for name in found.gains}
             lost = {name: points for name, points in costs_of(self.trials.results).items() if name not in known}
-            self.missing = missing_hints(self._difference, self._criteria, self.trials.results, lost)
+            is_readable = self._reading is not None and self._reading.root is not None
+            self.missing = missing_hints(
+                self._difference, self._criteria, self.trials.results, lost, is_readable=is_readable
+            )
         return self
 
     @property
@@ -167,7 +170,7 @@ class HintSearch:
             yield from undone_proposals(self._reading)
             yield from raw_xacro_proposals(self.trials.submission)
         if self._difference is not None and self._draft is not None and subjects & {"urdf", "robot"}:
-            yield from self._draft.corrections([link.name for link in self._difference.reference.robot.links])
+            yield from self._draft.corrections(self._difference.names)
             links = self._links(lost)
             yield from self._proposals(in_another_unit(self._difference))
             yield from self._proposals(of_siblings(self._difference, links or ()))

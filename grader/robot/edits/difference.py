@@ -75,6 +75,11 @@ class RobotDifference(PieceMaker):
         self._names = _translation(draft, reference)
         self.missing: list[MissingPart] = []
 
+    @property
+    def names(self) -> list[str]:
+        """The links of the reference."""
+        return [link.name for link in self.reference.robot.links]
+
     @cached_property
     def pieces(self) -> list[Piece]:
         """The pieces, each once: values first, then what moves, is added and is removed."""
@@ -206,7 +211,7 @@ class RobotDifference(PieceMaker):
         if tag in ("origin", "axis"):
             defaults = dict.fromkeys(node.values, "1 0 0" if tag == "axis" else "0 0 0")
             yield from self.each([Set(element, "", name, value) for name, value in defaults.items()])
-        elif tag in ("link", "joint", "material") and not self._is_twice(element):
+        elif element.getparent() is self.draft.root and not self._is_twice(element):
             return
         elif element.getparent() is not None and element.getparent().tag != "geometry":  # there the shape is replaced
             cause = f"an extra <{tag}>: {{}}" if tag not in ("link", "joint") else f"an extra {tag}"

@@ -1,6 +1,5 @@
 """The edits of the elements of a robot in the text that they are written in."""
 
-import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cached_property
 
@@ -18,10 +17,10 @@ from grader.edits import (
 from grader.robot.edits.elements import RobotElements, Set
 from grader.source import Edits
 from grader.xml.parsing import Element
+from grader.xml.tinyxml2.recovery import broken_tag
 from grader.xml.urdf_format import PARTS
 
 _ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
-_NAMELESS = re.compile(r"""\s*=\s*(?:"[^"<>]*"|'[^'<>]*')""")
 _MAX_WAYS = 6
 
 
@@ -84,8 +83,9 @@ class Draft(RobotElements):
         if self._expanded is not None:
             return self._expanded.rewrites(attribute, wanted)
         source, start = self.source.element(tag)
-        is_there = markup.attribute(source.text, start, attribute) is not None
-        return [(with_attribute(source, start, attribute, escaped(value)),)] if is_there else []
+        if broken_tag(source.text, start):
+            return [edits] if (edits := self.add_attributes(element, {attribute: value})) else []
+        return [(with_attribute(source, start, attribute, escaped(value)),)]
 
     def write_text(self, element: Element, text: str) -> Edits:
         """Return the edit that gives an element another text; none where it has children, or xacro evaluates it."""
@@ -121,15 +121,16 @@ class Draft(RobotElements):
         return edits
 
     def add_attributes(self, element: Element, values: Mapping[str, str]) -> Edits:
-        """Return the edit that adds attributes to an element, instead of a value without a name: <origin="0 0 1"/>."""
+        """Return the edit that adds attributes to an element, or writes a broken tag with them."""
         source, start = self.source.element(self._tags[element])
         end = markup.name_end(source.text, start)
-        nameless = _NAMELESS.match(source.text, end)
-        if nameless is None and not markup.is_whole(source.text, start):
-            return ()
+        broken = broken_tag(source.text, start)
+        if broken:
+            given = {str(name): str(value) for name, value in element.attrib.items()}
+            new = empty_element(str(element.tag), {**given, **values})
+            new = new if broken.endswith("/>") else f"{new[:-2]}>"
+            return (source.edit(start, start + len(broken), new),) if broken.endswith(">") else ()
         added = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
-        if nameless is not None:
-            return (source.edit(end, nameless.end(), added),)
         return (source.edit(start, end, f"{source.text[start:end]}{added}"),)
 
     def insert(self, parent: Element, xml: str) -> Edits:

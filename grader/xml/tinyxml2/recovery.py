@@ -20,7 +20,7 @@ _ATTRIBUTE = re.compile(
     r"""
     (?<![\w:.-])([A-Za-z_][\w:.-]*+)\s*+=\s*+(?:
         "([^"]*)"? | '([^']*)'?    # link="base", or link="base at the end of the tag
-      | [“”]([^“”]*)[“”]
+      | [“”„]([^“”„]*)[“”„]
       | ([^\s"'“”=]+)              # link=base
     )
     """,
@@ -201,6 +201,16 @@ class Recovery:
         if self.changes and self.changes[-1][1] == start == end:
             start, end, new = *self.changes[-1][:2], self.changes.pop()[2] + new
         self.changes.append((start, end, new))
+
+
+def broken_tag(text: str, start: int) -> str:
+    """Return the broken tag at an offset; empty if it is not broken."""
+    try:
+        read_tag(text, start, lambda *_: None)
+    except MalformedTagError:
+        found = _BROKEN.match(text, start)
+        return found[0].rstrip() if found is not None else ""
+    return ""
 
 
 def _corrected(tag: ReadTag, rest: str) -> str:
