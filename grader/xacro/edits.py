@@ -12,7 +12,6 @@ import yaml
 from grader import markup
 from grader.edits import merged, with_attribute
 from grader.source import Edits, Source
-from grader.static_python.closed_values import ExpressionFails, OutOfBudget, Undetermined
 from grader.xacro.scopes import Definition, ScopePlace, XacroScope
 from grader.xacro.texts import Texts
 from grader.xacro.written import TextChange, Use, Written, definition_text, edits_of, find_text
@@ -131,13 +130,6 @@ class Rewriter:
         text = find_text(place, attribute, scope)
         return [it for it in self.definitions(text) if _NUMBER.fullmatch(it.text)] if text is not None else []
 
-    def value(self, text: str, scope: XacroScope) -> str | None:
-        """Return what a text is in the expanded file; None if it has no value."""
-        try:
-            return self._texts.text(text, scope)
-        except (ExpressionFails, Undetermined, OutOfBudget, RecursionError):
-            return None
-
 
 def _parts(text: Written, use: Use) -> list[tuple[Written, str, str]]:
     """Return the parts of a text that should be others, each with what it is and should be: words, or the whole."""
@@ -170,12 +162,6 @@ def _in_yaml(file: Source, keys: Sequence[str], new: str, scope: XacroScope) -> 
     start, end = node.start_mark.index, node.end_mark.index
     written = Written(file, start, file.text[start:end], scope, (start, end))
     return TextChange(written, new)
-
-
-def at_call(place: ScopePlace, name: str, value: str) -> Edits:
-    """Return the edit that gives a macro call an argument."""
-    source, start = place.source.element(place.tag)
-    return (with_attribute(source, start, name, value),)
 
 
 def conditions(source: Source, known: Sequence[str], near: Callable[[str, Sequence[str]], str | None]) -> list[Edits]:

@@ -107,11 +107,10 @@ class ExpandedSource(Source):
         """
         from grader.edits import Proposal
         from grader.names import near
-        from grader.xacro.corrections import Corrector, Refusal, well_formed
+        from grader.xacro.corrections import corrections
         from grader.xacro.edits import conditions
 
-        refusals = [Refusal(*refused) for refused in self._expander.refused]
-        found = [*well_formed(Source(self.path, self.text)), *Corrector(self.documents).corrections(refusals)]
+        found = [*corrections(Source(self.path, self.text), self.documents, self._expander.refused)]
         words = {word for name in names for word in name.split("_")}
         given = sorted(words)
         for document in self.documents.values():

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from grader.package.package import Package
 
 _MAX_WAYS = 3  # of a piece in xacro
-_MAX_PROVEN = 4  # edits that seem to gain as much, of which the first that is proven is taken
 _RESERVE = 20  # gradings for proofs
 
 

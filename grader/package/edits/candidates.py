@@ -11,15 +11,11 @@ from grader.package.edits.paths import launch_paths, setup_paths
 from grader.package.edits.python_file import PythonFile
 from grader.package.edits.python_tree import python_tree
 from grader.package.edits.task import WHAT, PackageTask, file_proposals, package_names
-from grader.package.edits.trees import markup_tree, tree_proposals
+from grader.package.edits.trees import tree_proposals
 from grader.package.edits.wording import respellings, reword, undefined_names
 from grader.package.package import SETUP, Package
 from grader.source import Edits, Source
 
-_BRACKETS = ("()", "[]", "{}")
-_QUOTES = str.maketrans("“”„‘’‚", "\"\"\"'''")
-_MAX_TRIES, _MAX_PARSED = 250, 512 * 1024  # edits that are parsed, and characters
-_MAX_FOUND = 10
 _MAX_MADE, _MAX_PROPOSALS = 100, 24  # for one kind of files
 
 
@@ -79,9 +75,6 @@ def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str 
         trees = python_tree(own, own), python_tree(PythonFile(Source(source.path, wanted)), own)
         yield from tree_proposals(source, trees, what, own.needs)
         yield from undefined_names(own, what)
-    else:
-        trees = markup_tree(source), markup_tree(Source(source.path, wanted if ending == other else ""))
-        yield from tree_proposals(source, trees, what)
     if kind == "launch":
         yield from launch_paths(task, task.launch(path, source), source)
     elif kind == SETUP:
