@@ -7,11 +7,10 @@ from itertools import islice
 from typing import Any
 
 from grader.edits import Proposal
+from grader.package.edits.entries import missing_entries
 from grader.package.edits.paths import launch_paths, setup_paths
 from grader.package.edits.python_file import PythonFile
-from grader.package.edits.python_tree import python_tree
 from grader.package.edits.task import WHAT, PackageTask, file_proposals, package_names
-from grader.package.edits.trees import tree_proposals
 from grader.package.edits.wording import respellings, reword, undefined_names
 from grader.package.package import SETUP, Package
 from grader.source import Edits, Source
@@ -72,8 +71,7 @@ def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str 
     if wanted and (ending == other or is_python):
         yield from reword(source, wanted, what)
     if is_python:
-        trees = python_tree(own, own), python_tree(PythonFile(Source(source.path, wanted)), own)
-        yield from tree_proposals(source, trees, what, own.needs)
+        yield from missing_entries(own, PythonFile(Source(source.path, wanted)), what)
         yield from undefined_names(own, what)
     if kind == "launch":
         yield from launch_paths(task, task.launch(path, source), source)

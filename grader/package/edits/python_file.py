@@ -131,10 +131,10 @@ class PythonFile:
             self._plain[node] = ast.unparse(tree) if tree is not None else code
         return self._plain[node]
 
-    def needs(self, code: str) -> list[Edit]:
-        """Return the edit without which an expression would have unknown names."""
+    def names_in(self, code: str) -> set[str]:
+        """Return the names in an expression."""
         tree = _expression(code)
-        return self.with_imports(sorted({it.id for it in ast.walk(tree) if isinstance(it, ast.Name)}) if tree else ())
+        return {it.id for it in ast.walk(tree) if isinstance(it, ast.Name)} if tree else set()
 
     @cached_property
     def bound(self) -> frozenset[str]:
