@@ -1,17 +1,13 @@
-"""Edits of the text of a file: made for its elements, put together, and applied.
-
-What to edit is decided in `robot.edits`, `xacro.edits`, `package.edits` and `xml.syntax`; `submission.editing` applies
-edits to a submission.
-"""
+"""Edits of the text of a file: made for its elements, and applied; `submission.editing` applies them to files."""
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable
 from math import isclose
 from os.path import commonprefix
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple
 
 from grader import markup
-from grader.source import Edit, Edits, Location, Source
+from grader.source import Edit, Edits, Source
 
 _SAME = 1e-3  # relative: -1.57 is -pi/2
 _PIECE = re.compile(r"(\s*)(\S+)")
@@ -40,29 +36,6 @@ class Proposal(NamedTuple):
     def size(self) -> int:
         """How much text changes: the number of edits counts more than their length."""
         return sum(100 + _change_size(edit.old, edit.new) for edit in self.edits)
-
-
-@runtime_checkable
-class Expanded(Protocol):
-    """A source of xacro: its elements come from other texts, several perhaps from one in a macro."""
-
-    def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> list[Edits]:
-        """Return the ways to give an attribute (or, without a name, the text) of expanded elements other values.
-
-        `wanted` has the values that the reader sees and should see, by the indices of the elements.
-        """
-
-    def siblings(self, tag: int) -> list[int]:
-        """Return the indices of the elements that come from the same text as this one."""
-
-    def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
-        """Return the calls of the macro that an edit is in, each with the macro's name; nothing outside of macros."""
-
-    def numbers(self, tag: int, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
-        """Return the numbers from which an attribute is computed, each with what makes the edit of its definition."""
-
-    def corrections(self, names: Sequence[str]) -> list[Proposal]:
-        """Return edits that may correct what xacro refuses; `names` are those of a reference."""
 
 
 def _change_size(old: str, new: str) -> int:

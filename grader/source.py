@@ -27,8 +27,8 @@ class Location(NamedTuple):
 class Edit(NamedTuple):
     """A change of the text of one file: `old`, which stands at a place, becomes `new`, and nothing else changes.
 
-    Line and column count from 1, as in a Location. A file that does not exist is created with the text `new`. With
-    `renamed`, the file gets this path instead.
+    Line and column count from 1, as in a Location. With `renamed`, the file
+    gets this path instead.
     """
 
     path: str
@@ -49,6 +49,8 @@ Certainty = Literal["only", "preferred", "one of several"]
 
 class Source:
     """The text of one file, in which locations are computed on demand: most never are."""
+
+    is_expanded = False  # whether xacro made its elements of other texts
 
     def __init__(self, path: str, text: str, tags: list[int] | None = None) -> None:
         """`tags` holds the offset of each start tag in document order; without it the text must be well-formed XML."""

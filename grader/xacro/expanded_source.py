@@ -4,7 +4,6 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from grader.markup import element_end
 from grader.source import Edit, Edits, Location, Source
 from grader.xacro.expander import Expander
 from grader.xacro.nodes import XacroNode
@@ -19,6 +18,8 @@ _READING_OF_SHORT = 1_500  # parts
 
 class ExpandedSource(Source):
     """The text of a xacro file; its start tags are the expanded elements. Methods that make edits import them late."""
+
+    is_expanded = True
 
     def __init__(self, source: Source, nodes: list[XacroNode], expander: Expander, work: int) -> None:
         super().__init__(source.path, source.text)
@@ -118,16 +119,15 @@ class ExpandedSource(Source):
             found += [Proposal(edits, "a text in a condition", "correct the text in the condition") for edits in edited]
         return list({correction.edits: correction for correction in reversed(found)}.values())[::-1]
 
-    def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
-        """Return the calls of the macro that an edit is in, each with the macro's name; nothing outside of macros."""
-        found: tuple[int, tuple[tuple[str, Location], ...]] = (-1, ())
-        for name, body, calls in self._expander.uses.values():
-            source, start = body.source.element(body.tag)
-            if source.path == edit.path and start <= source.offset(edit.line, edit.column) < element_end(
-                source.text, start
-            ):
-                found = max(found, (start, tuple((name, call.at()) for call in calls.values())), key=lambda it: it[0])
-        return found[1]
+    def calls(self, edit: Edit) -> dict[str, list[Location]]:
+        """Return the calls of the macros that an edit is in, by their names."""
+        found: dict[str, dict[Location, None]] = {}
+        for node in self._nodes if edit.old else ():
+            place = node.place.at(next((it for it in node.attributes if it and edit.old.startswith(f"{it}=")), None))
+            if node.place.calls and place[:3] == edit[:3]:
+                name, call = node.place.calls[-1]
+                found.setdefault(name, {})[call.at()] = None
+        return {name: [*calls] for name, calls in found.items()}
 
     @cached_property
     def _rewriter(self) -> "Rewriter":

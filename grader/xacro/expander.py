@@ -77,9 +77,6 @@ class Expander:
         self.undetermined: list[Open] = []
         self.refused: list[tuple[XacroFails, ScopePlace, str | None]] = []  # what may be corrected, and where
         self.calls: tuple[tuple[str, ScopePlace], ...] = ()
-        self.uses: dict[
-            tuple[str, int], tuple[str, ScopePlace, dict[tuple[str, int], ScopePlace]]
-        ] = {}  # of macros, with calls
         self._listed: set[tuple[str, str, int, str | None]] = set()
         self._is_expanded = False
         self._length = 0  # of the expanded document
@@ -170,12 +167,6 @@ class Expander:
             if error.unknown is not None and error.unknown.meant is not None:
                 self.misspelt.append(Misspelt(error.unknown, place, location))
         return ""
-
-    def use(self, name: str, body: ScopePlace, call: ScopePlace) -> None:
-        """Note that a macro is called."""
-        self.budget.charge(len(self.calls))
-        _, _, calls = self.uses.setdefault((body.source.path, body.tag), (name, body, {}))
-        calls[call.source.path, call.tag] = call
 
     def _is_new(self, message: str, place: ScopePlace, attribute: str | None) -> bool:
         """Return whether something is to be listed: once for each place in the source, for all calls of a macro."""

@@ -1,8 +1,8 @@
 """What a hint says, at each level: nothing, where to look, what is wrong there, or the edit."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, cast
 
-from grader.edits import Expanded
 from grader.grading.hints.trials import FoundHint
 from grader.grading.levels import HintLevel
 from grader.source import Edit, Location
@@ -10,6 +10,9 @@ from grader.submission.editing import content
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import counted, enumerated
+
+if TYPE_CHECKING:
+    from grader.xacro.expanded_source import ExpandedSource
 
 _MAX_NAMED = 4  # criteria and edits that are named
 _MAX_LINES = 6
@@ -26,7 +29,8 @@ def message(found: FoundHint, level: HintLevel, submission: Submission, earlier:
         changes += [counted(len(edits) - _MAX_NAMED, "more edit")] * (len(edits) > _MAX_NAMED)
         source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
         text = enumerated(changes, _MAX_NAMED + 1)
-        text += _calls(edits, source, submission.path) if isinstance(source, Expanded) else ""
+        is_expanded = source is not None and source.is_expanded
+        text += _calls(edits, cast("ExpandedSource", source), submission.path) if is_expanded else ""
     elif level == "cause":
         text = f"check {_places(found.edits, submission)}: {found.proposal.cause}"
     else:
@@ -57,16 +61,14 @@ def _places(edits: Sequence[Edit], submission: Submission) -> str:
     return "; ".join(texts) or "which files are missing"
 
 
-def _calls(edits: Sequence[Edit], source: Expanded, main: str | None) -> str:
+def _calls(edits: Sequence[Edit], source: "ExpandedSource", main: str | None) -> str:
     """Return where the macros of xacro that edits are in are called, if that is more than once."""
-    calls = dict.fromkeys(call for edit in edits for call in source.calls(edit))
-    macros = {macro: [_at(place, main) for name, place in calls if name == macro] for macro, _ in calls}
-    uses = [
-        f"the macro {macro} is called in {enumerated(places, _MAX_NAMED)}"
-        for macro, places in macros.items()
-        if len(places) > 1
-    ]
-    return f" ({'; '.join(uses)})" if uses else ""
+    macros = {name: calls for edit in edits for name, calls in source.calls(edit).items() if len(calls) > 1}
+    texts = (
+        f"the macro {name} is called in {enumerated([_at(call, main) for call in calls], _MAX_NAMED)}"
+        for name, calls in macros.items()
+    )
+    return f" ({'; '.join(texts)})" if macros else ""
 
 
 def _at(place: Location | Edit, main: str | None) -> str:

@@ -1,11 +1,10 @@
 """The edits of the elements of a robot in the text that they are written in."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from functools import cached_property
+from typing import TYPE_CHECKING, cast
 
 from grader import markup
 from grader.edits import (
-    Expanded,
     Proposal,
     merged,
     with_attribute,
@@ -20,6 +19,9 @@ from grader.xml.parsing import Element
 from grader.xml.tinyxml2.recovery import broken_tag
 from grader.xml.urdf_format import PARTS
 
+if TYPE_CHECKING:
+    from grader.xacro.expanded_source import ExpandedSource
+
 _ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
 _MAX_WAYS = 6
 
@@ -27,10 +29,10 @@ _MAX_WAYS = 6
 class Draft(RobotElements):
     """A robot that is being edited."""
 
-    @cached_property
-    def _expanded(self) -> Expanded | None:
+    @property
+    def _expanded(self) -> "ExpandedSource | None":
         """The source if xacro expanded it: an element is not written there as it is read."""
-        return self.source if isinstance(self.source, Expanded) else None
+        return cast("ExpandedSource", self.source) if self.source.is_expanded else None
 
     def corrections(self, names: Sequence[str]) -> list[Proposal]:
         """Return edits that may correct what xacro refuses; `names` are those of a reference."""
