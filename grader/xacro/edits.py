@@ -44,62 +44,63 @@ class Rewriter:
         """Return the ways to change an attribute (or, without a name, the text) for its uses, the best first."""
         text = find_text(place, attribute, uses[0].scope)
         changed = [use for use in uses if use.old != use.new]
-        if text is None:
+        if text is None or not changed:
             return []
-        if "$" not in text.text:
-            return self._literal(text, changed)
-        pairs = [(use, part) for use in changed for part in _parts(text, use)]
-        found = [(self._definition(part, use.scope, old, new), new) for use, (part, old, new) in pairs]
-        ways: list[Edits] = []
-        if any(change is not None for change, _ in found):
-            changes = [it or TextChange(part[0], new) for (it, new), (_, part) in zip(found, pairs, strict=True)]
-            of_parts = {change.written: change.new for change in changes}
-            if all(of_parts[change.written] == change.new for change in changes):
-                ways += filter(None, [edits_of(changes)])
-        return [*ways, *self._literal(text, changed)]
+        found: list[TextChange] = []
+        has_definition = False
+        for use in changed if "$" in text.text else ():
+            for part, old, new in _parts(text, use):
+                changes = self._definitions(part, use.scope, old, new)
+                has_definition |= bool(changes)
+                found += changes or [TextChange(part, new)]
+        by_place = {change.written[:3]: change for change in found}
+        is_one = all(by_place[change.written[:3]].new == change.new for change in found)
+        edits = edits_of(by_place.values()) if has_definition and is_one else None
+        return [*filter(None, [edits]), *self._literal(text, changed)]
 
     def _literal(self, text: Written, changed: Sequence[Use]) -> list[Edits]:
         """Return the edit that writes a value where it is used; none where uses differ, or a YAML file gives it."""
-        if len({use.new for use in changed}) != 1 or self._is_of_yaml(text):
+        around = {_around(text, use) for use in changed}
+        if len(around) == 1 and "" not in around:
+            edits = edits_of([TextChange(text, around.pop())])
+            return [edits] if edits else []
+        if len({use.new for use in changed}) != 1 or any(_LOADED.match(it.text) for it in self.definitions(text)):
             return []
         parts = _parts(text, changed[0])
-        one = parts if len(parts) == 1 else [(text, "", changed[0].new)]
-        written, _, new = one[0]
-        edits = edits_of([TextChange(written, new if "$" in written.text else merged(written.text, new))])
+        if len(parts) == 2 and parts[0][1:] == parts[1][:0:-1]:  # two expressions are exchanged
+            edits = edits_of([TextChange(parts[0][0], parts[1][0].text), TextChange(parts[1][0], parts[0][0].text)])
+        else:
+            written, _, new = parts[0] if len(parts) == 1 else (text, "", changed[0].new)
+            edits = edits_of([TextChange(written, new if "$" in written.text else merged(written.text, new))])
         return [edits] if edits else []
 
-    def _is_of_yaml(self, text: Written) -> bool:
-        return any(_LOADED.match(it.text) for it in self.definitions(text))
-
-    def _definition(
+    def _definitions(
         self, text: Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
-    ) -> TextChange | None:
-        """Return the change of what defines the one name in a text, with which the text has another value."""
+    ) -> list[TextChange]:
+        """Return the changes of what defines the one name in a text, with which the text has another value."""
         found = _ALONE.fullmatch(text.text)
         before, after = (found["before"], found["after"]) if found else ("", "")
         is_inside = new.startswith(before) and new.endswith(after) and len(new) > len(before) + len(after)
         if found is None or not depth or not is_inside:
-            return None
+            return []
         inner, was = (it[len(before) : len(it) - len(after)] for it in (new, old))
         if found["sign"]:
             inner, was = (it[1:] if it.startswith("-") else f"-{it}" for it in (inner, was))
-        definition = (
-            self._of_name(found["name"], scope) if found["name"] else self._texts.defaults.get(found["argument"])
-        )
-        if definition is None:
-            return None
+        name = found["argument"]
+        definition = self._texts.defaults.get(name) if name else self._of_name(found["name"], scope)
+        own = definition_text(definition) if definition is not None else None
+        if definition is None or own is None:
+            return []
         if found["keys"]:
             file = self._yaml_file(definition.text) if _LOADED.match(definition.text) else None
-            return (
-                _in_yaml(file, [a or b or c for a, b, c in _KEY.findall(found["keys"])], inner, scope) if file else None
-            )
-        own = definition_text(definition)
-        if own is None:
-            return None
+            keys = [a or b or c for a, b, c in _KEY.findall(found["keys"])]
+            return _in_yaml(file, keys, inner, scope) if file is not None else []
         if "$" in own.text:
-            return self._definition(own, definition.scope, was, inner, depth - 1)
+            parts = _parts(own, Use(definition.scope, was, inner))
+            changes = [self._definitions(part, definition.scope, a, b, depth - 1) for part, a, b in parts]
+            return [change for several in changes for change in several] if all(changes) else []
         is_quoted = own.text[:1] == "'" == own.text[-1:]
-        return TextChange(own, f"'{inner}'" if is_quoted else merged(own.text, inner))
+        return [TextChange(own, f"'{inner}'" if is_quoted else merged(own.text, inner))]
 
     def _of_name(self, name: str, scope: XacroScope) -> Definition | None:
         holder = scope.holder(name)
@@ -140,6 +141,16 @@ def _parts(text: Written, use: Use) -> list[tuple[Written, str, str]]:
     return [part for part in zip(tokens, old, new, strict=True) if not is_equal(*part[1:])]
 
 
+def _around(text: Written, use: Use) -> str:
+    """Return a text with another one around its only expression, whose value stays: ${side}_joint; empty if it goes."""
+    found = _ALONE.fullmatch(text.text)
+    if found is None or not (found["before"] or found["after"]):
+        return ""
+    value = use.old[len(found["before"]) : len(use.old) - len(found["after"])]
+    expression = text.text[len(found["before"]) : len(text.text) - len(found["after"])]
+    return use.new.replace(value, expression) if value.isidentifier() and use.new.count(value) == 1 else ""
+
+
 def is_equal(one: str, other: str) -> bool:
     """Return whether two texts are equal, or are the same number."""
     try:
@@ -148,20 +159,20 @@ def is_equal(one: str, other: str) -> bool:
         return False
 
 
-def _in_yaml(file: Source, keys: Sequence[str], new: str, scope: XacroScope) -> TextChange | None:
+def _in_yaml(file: Source, keys: Sequence[str], new: str, scope: XacroScope) -> list[TextChange]:
     """Return the change of the scalar at a path of keys in a YAML file."""
     try:
         node = yaml.compose(file.text, Loader=yaml.SafeLoader)
     except (yaml.YAMLError, RecursionError):
-        return None
+        return []
     for key in keys:
         pairs = node.value if isinstance(node, yaml.MappingNode) else []
         node = next((value for name, value in pairs if name.value == key), None)
     if not isinstance(node, yaml.ScalarNode) or node.style:
-        return None
+        return []
     start, end = node.start_mark.index, node.end_mark.index
     written = Written(file, start, file.text[start:end], scope, (start, end))
-    return TextChange(written, new)
+    return [TextChange(written, new)]
 
 
 def conditions(source: Source, known: Sequence[str], near: Callable[[str, Sequence[str]], str | None]) -> list[Edits]:

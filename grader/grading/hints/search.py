@@ -132,8 +132,16 @@ class HintSearch:
 
     def _is_half(self, link: str) -> bool:
         """Return whether criteria about a link still fail: then a number that the reference does not have is not it."""
-        about = (name for name, result in self._after.items() if result.is_lost)
-        return bool(link) and any(self._criteria[name].arguments.get("link") == link for name in about)
+        lost = (self._criteria[name] for name, result in self._after.items() if result.is_lost)
+        return bool(link) and any(link in self._own_chain(criterion.arguments.get("link")) for criterion in lost)
+
+    def _own_chain(self, link: object) -> Iterator[str]:
+        """Yield the link of a criterion, and those above it that only the student's robot has."""
+        parents = {joint.child: joint.parent for joint in self._draft.robot.joints} if self._draft is not None else {}
+        while isinstance(link, str):
+            yield link
+            above = parents.pop(link, "")
+            link = above if above and not self._is_known(above) else None
 
     def _gains(self, before: Edits, edits: Edits, against: Results) -> dict[str, Decimal]:
         """Return what edits gain, from scratch; nothing where a criterion is worse with them."""
@@ -148,10 +156,9 @@ class HintSearch:
         assert self._draft is not None
         for piece in pieces:
             if links is None or piece.link in links or not self._is_known(piece.link):
-                ways = self._draft.ways(piece.sets)[:_MAX_WAYS] if piece.sets else [piece.edits]
-                for way, edits in enumerate(ways):
-                    if edits:
-                        yield Proposal(edits, piece.cause, piece.action, piece.link, piece.rank, way)
+                for way, edits in enumerate(self._draft.ways(piece.sets)[:_MAX_WAYS]):
+                    if edits or piece.edits:
+                        yield Proposal((*edits, *piece.edits), piece.cause, piece.action, piece.link, piece.rank, way)
 
     def _is_known(self, link: str) -> bool:
         """Return whether the reference has a link: another one may be any of them."""

@@ -18,8 +18,11 @@ def missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[Pr
     known = {own.plain(it) for it in _items(own)}
     missing = [it for it in _items(like) if like.plain(it) not in known]
     several: list[str] = []
+    spare = {
+        _executable(own, value) or "-": name for name, value in own.values.items() if own.plain(value) not in known
+    }
     for item in missing:
-        code = like.written(item, own.bound)
+        code = spare.get(_executable(like, item) or "", "") or like.written(item, own.bound)
         several.append(code)
         yield from _adding(own, [code], what)
     if len(several) > 1:
@@ -31,6 +34,12 @@ def _adding(own: PythonFile, codes: Sequence[str], what: str) -> Iterator[Propos
     if edit is not None:
         needs = own.with_imports(sorted({name for code in codes for name in own.names_in(code)}))
         yield change([*needs, edit], "add", what)
+
+
+def _executable(file: PythonFile, code: ast.expr) -> str | None:
+    """Return what a node starts."""
+    given = keyword(code, "executable") if isinstance(code, ast.Call) else None
+    return file.plain(given.value) if given is not None else None
 
 
 def _list(file: PythonFile) -> ast.expr | None:

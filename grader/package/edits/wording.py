@@ -24,6 +24,7 @@ _TOKEN = re.compile(r"\w+|[ \t]+|\r?\n|.", re.DOTALL)
 _MAX_DIFFERENCES, _MAX_TOKENS = 6, 3000
 _SUBSTITUTIONS = ("find-pkg-share", "var", "env", "command", "dirname")
 _SUBSTITUTION = re.compile(rf"(?<=\$\()(?!(?:{'|'.join(_SUBSTITUTIONS)})\b)[\w-]+")
+_SINGLE, _TYPOGRAPHIC = "‘’‚", re.compile("[‘’‚“”„]")
 _PROGRAM = re.compile(r"(?:(?<=['\"]xacro)|(?<=['\"]cat))(?=['\"$])")
 
 
@@ -41,6 +42,8 @@ def respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Pro
     for word, guess in islice(((word, guess) for word, guess in guesses if guess), _MAX_WORDS):
         yield change([source.edit(*place.span(), guess) for place in places[word]], "rename", "a word", what)
     yield from _replace_words(source, _PROGRAM, [" "], what)
+    quotes = [source.edit(*it.span(), "'" if it[0] in _SINGLE else '"') for it in _TYPOGRAPHIC.finditer(source.text)]
+    yield change(quotes, "syntax", "", what)
     yield from () if source.path.endswith(".py") else _replace_words(source, _SUBSTITUTION, _SUBSTITUTIONS, what)
 
 

@@ -85,7 +85,7 @@ class RobotDifference(PieceMaker):
         """The pieces, each once: values first, then what moves, is added and is removed."""
         found_steps = steps(self._tree(self.draft, {}), self._tree(self.reference, self._names))
         found = [*self._pieces(found_steps)]
-        return unique([*found, *_together(found), *self._materials(), *self._joint_names()])
+        return unique([*found, *self._together(found), *self._materials(), *self._joint_names()])
 
     @property
     def whole_links(self) -> Iterator[Piece]:
@@ -100,10 +100,30 @@ class RobotDifference(PieceMaker):
             after = [one for own in links.values() for one in own if {one.owner, one.owner.getparent()} & {*carried}]
             frame, what = "the frame of {!r} and what it shows", "the values of {!r}"
             for those, text in ((poses, frame), (poses + after, f"{frame} and carries"), (sets, what)):
-                places = {(one.owner, one.tag) for one in those if one.owner.tag not in ("collision", "inertial")}
-                if link in self.known and len(places) > 1:
-                    cause = text.format(link)
-                    yield Piece(cause, f"correct {cause}", link, tuple(dict.fromkeys(those)), (), STRUCTURE)
+                changed = {(one.owner, one.tag): one for one in those if one.owner.tag not in ("collision", "inertial")}
+                if link in self.known and len(changed) > 1:
+                    pieces = [self.of_sets([one]) for one in changed.values()]
+                    cause, action = text.format(link), f"correct {text.format(link)}"
+                    if len(pieces) == len(those) == 2:
+                        cause, action = (
+                            f"{one} and {two}" for one, two in zip(*(it[:2] for it in pieces), strict=True)
+                        )
+                    yield Piece(cause, action, link, tuple(dict.fromkeys(those)), (), STRUCTURE)
+
+    def _together(self, found: Iterable[Piece]) -> Iterator[Piece]:
+        """Yield all changes in one element of the robot; in a link or joint, those that are no values."""
+        groups: dict[Element | None, list[Piece]] = {}
+        for piece in found:
+            owner = self.draft.owner(piece.around) if piece.around is not None else None
+            is_plain = owner is not None and owner.tag in ("link", "joint", "material", "robot")
+            groups.setdefault(owner if piece.edits or not is_plain else None, []).append(piece)
+        for element, pieces in groups.items():
+            if element is not None and element is not self.draft.root and len(pieces) > 1:
+                texts = zip(*((it.cause, it.action) for it in pieces), strict=True)
+                cause, action = (" and ".join(dict.fromkeys(those)) for those in texts)
+                edits = tuple(edit for piece in pieces for edit in piece.edits)
+                sets = tuple(one for piece in pieces for one in piece.sets)
+                yield Piece(cause, action, pieces[0].link, sets, edits, STRUCTURE)
 
     def _materials(self) -> Iterator[Piece]:
         """Give what a link shows the colour of the reference, where no material of the robot has it."""
@@ -261,21 +281,6 @@ class RobotDifference(PieceMaker):
         if element.tag == "material" and defined is not None and self.draft.material(own.get(name, name)) is None:
             return self.reference.text(defined)
         return text
-
-
-def _together(found: Iterable[Piece]) -> Iterator[Piece]:
-    """Yield the changes in one element together: what moves into it, and the texts in it."""
-    groups: dict[Element | None, list[Piece]] = {}
-    for piece in found:
-        groups.setdefault(piece.around if piece.edits else None, []).append(piece)
-    for element, pieces in groups.items():
-        if element is not None and len(pieces) > 1:
-            cause, action = (
-                " and ".join(dict.fromkeys(texts))
-                for texts in zip(*((it.cause, it.action) for it in pieces), strict=True)
-            )
-            edits = tuple(edit for piece in pieces for edit in piece.edits)
-            yield pieces[0]._replace(cause=cause, action=action, edits=edits, rank=STRUCTURE)
 
 
 def rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:

@@ -1,7 +1,7 @@
 """The edits of the elements of a robot in the text that they are written in."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, cast
+from typing import Any
 
 from grader import markup
 from grader.edits import (
@@ -19,9 +19,6 @@ from grader.xml.parsing import Element
 from grader.xml.tinyxml2.recovery import broken_tag
 from grader.xml.urdf_format import PARTS
 
-if TYPE_CHECKING:
-    from grader.xacro.expanded_source import ExpandedSource
-
 _ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
 _MAX_WAYS = 6
 
@@ -30,22 +27,26 @@ class Draft(RobotElements):
     """A robot that is being edited."""
 
     @property
-    def _expanded(self) -> "ExpandedSource | None":
+    def _expanded(self) -> Any:
         """The source if xacro expanded it: an element is not written there as it is read."""
-        return cast("ExpandedSource", self.source) if self.source.is_expanded else None
+        return self.source if self.source.is_expanded else None
 
     def corrections(self, names: Sequence[str]) -> list[Proposal]:
         """Return edits that may correct what xacro refuses; `names` are those of a reference."""
-        return self._expanded.corrections(names) if self._expanded is not None else []
+        found: list[Proposal] = self._expanded.corrections(names) if self._expanded is not None else []
+        return found
 
     def numbers(self, element: Element, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
         """Return the numbers from which xacro computes an attribute, each with what makes the edit of it."""
-        return self._expanded.numbers(self._tags[element], attribute) if self._expanded is not None else []
+        if self._expanded is None:
+            return []
+        found: list[tuple[str, Callable[[str], Edits]]] = self._expanded.numbers(self._tags[element], attribute)
+        return found
 
     def _siblings(self, element: Element, attribute: str, sets: Iterable[Set]) -> dict[Element, str]:
         """Return the values that are set for the elements that come from the same text as one."""
         tag = self._tags[element]
-        same = [self._elements[it] for it in (self._expanded.siblings(tag) if self._expanded is not None else [])]
+        same: list[Element] = [self._elements[it] for it in (self._expanded.siblings(tag) if self._expanded else [])]
         return {it: one.value for it in same for one in sets if one.attribute == attribute and one.element is it}
 
     def ways(self, sets: Collection[Set]) -> list[Edits]:
@@ -83,7 +84,8 @@ class Draft(RobotElements):
         wanted = {tag: (element.get(attribute) or "", escaped(value))}
         wanted |= {self._tags[it]: (it.get(attribute) or "", escaped(text)) for it, text in others.items()}
         if self._expanded is not None:
-            return self._expanded.rewrites(attribute, wanted)
+            ways: list[Edits] = self._expanded.rewrites(attribute, wanted)
+            return ways
         source, start = self.source.element(tag)
         if broken_tag(source.text, start):
             return [edits] if (edits := self.add_attributes(element, {attribute: value})) else []
@@ -93,7 +95,7 @@ class Draft(RobotElements):
         """Return the edit that gives an element another text; none where it has children, or xacro evaluates it."""
         tag = self._tags[element]
         wanted = {tag: ((element.text or "").strip(), escaped(text))}
-        ways = self._expanded.rewrites("", wanted) if self._expanded is not None else ()
+        ways: list[Edits] = self._expanded.rewrites("", wanted) if self._expanded is not None else []
         if ways:
             return ways[0]
         source, start = self.source.element(tag)

@@ -29,7 +29,7 @@ class Piece(NamedTuple):
     sets: tuple[Set, ...] = ()
     edits: Edits = ()
     rank: int = REFERENCE
-    around: Element | None = None  # the element in which the text changes
+    around: Element | None = None  # the element that changes
 
 
 Numbers = tuple[list[str], Values, Values]  # what changes, the old numbers, the new ones
@@ -88,7 +88,7 @@ class PieceMaker:
         """Return a piece that changes an element, or its child with a tag; {} in the texts stands for its name."""
         place = self.draft.describe(element, tag, self.known)
         cause, action = (text.replace("{}", place) for text in (cause, action))
-        return Piece(cause, action, link or self.draft.link_of(element), sets, edits, rank, element.getparent())
+        return Piece(cause, action, link or self.draft.link_of(element), sets, edits, rank, element)
 
     def of_sets(self, sets: Sequence[Set], rank: int = REFERENCE) -> Piece:
         """Return the piece that sets values of one element, named by what is wrong with them."""
@@ -153,8 +153,8 @@ def unique(pieces: Iterable[Piece]) -> list[Piece]:
     """Return the pieces that change something, each once."""
     found: dict[object, Piece] = {}
     for piece in pieces:
-        found.setdefault(piece.sets or piece.edits, piece)
-    return [piece for changed, piece in found.items() if changed]
+        found.setdefault((piece.sets, piece.edits), piece)
+    return [piece for piece in found.values() if piece.sets or piece.edits]
 
 
 def _value(element: Element | None, tag: str, attribute: str) -> str:

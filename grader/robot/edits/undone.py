@@ -17,7 +17,7 @@ def undone_proposals(reading: Reading) -> Iterator[Proposal]:
     if reading.verdict == "rejected" and not reading.undone:
         recovery = Recovery(reading.source.text)
         recovery.run()
-        edits = tuple(reading.source.edit(*change) for change in recovery.changes)
+        edits = tuple(reading.source.edit(*change) for change in recovery.changes if not recovery.is_lossy)
         found.append(Proposal(edits, "the syntax of tags", "correct the tags"))
     draft = Draft.of(reading)
     if draft is not None and reading.undone:

@@ -63,6 +63,7 @@ def of_own(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]
     Where xacro computes them, the numbers that they come from.
     """
     seen: set[object] = set()
+    is_alone = difference.draft is difference.reference
     for link in links:
         like = dict(reversed([*_parts_of_reference(difference, link)]))
         for path, element in _parts(difference, link):
@@ -74,7 +75,7 @@ def of_own(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]
                 yield difference.of_sets([Set(element, "", one, element.get(other) or "") for one, other in pair], OWN)
             for name in numbers:
                 given = like[path].get(name) if path in like else None
-                if normal(tag, name, element.get(name)) != normal(tag, name, given):
+                if is_alone or normal(tag, name, element.get(name)) != normal(tag, name, given):
                     found = (piece for piece in _of_number(difference, element, name) if piece.edits not in seen)
                     for piece in found:
                         seen |= {piece.edits} if piece.edits else set()

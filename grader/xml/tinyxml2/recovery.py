@@ -72,6 +72,7 @@ class Recovery:
         self._offsets: list[int] = []
         self._assumed: list[NoteDifference] = []
         self.changes: list[tuple[int, int, str]] = []  # with which the text is what is read: from offset to offset
+        self.is_lossy = False  # whether a text in a tag has no place in what is read
         self._end_of_tag = 0
         self._open: list[ReadTag] = []
 
@@ -126,7 +127,9 @@ class Recovery:
                 "close" if found["close"] else "empty" if rest.endswith("/") else "open"
             )
             tag, end = ReadTag(found["name"], form, attributes, start), found.end()
-            self._change(start, start + len(found[0].rstrip()), _corrected(tag, rest))
+            corrected = _corrected(tag, rest)
+            self.is_lossy |= "=" in rest and "=" not in corrected and tag.form != "close"
+            self._change(start, start + len(found[0].rstrip()), corrected)
             if tag.form != "close":
                 what = f"with {enumerated(list(map(short, attributes)))}" if attributes else "without attributes"
                 self._assume(
