@@ -16,6 +16,7 @@ from grader.grading.hints.targets import links_of
 from grader.grading.hints.trials import FoundHint, NoTrialsLeft, Results, Trials, costs_of, gains_of, is_worse
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
+from grader.robot.edits.groups import whole_elements, whole_links
 from grader.robot.edits.pieces import REFERENCE, STRUCTURE, Piece
 from grader.robot.edits.undone import undone_proposals
 from grader.robot.edits.variants import in_another_unit, of_own, of_siblings
@@ -185,7 +186,9 @@ class HintSearch:
     def _of_links(self, lost: list[Criterion]) -> Iterator[Proposal]:
         """Yield all values of the reference of a link and its joint."""
         if self._difference is not None and any(criterion.check.subject == "robot" for criterion in lost):
-            yield from self._proposals(self._difference.whole_links, self._links(lost))
+            links = self._links(lost)
+            yield from self._proposals(whole_links(self._difference), links)
+            yield from self._proposals(whole_elements(self._difference), links)
 
     def _of_own(self, lost: list[Criterion]) -> Iterator[Proposal]:
         """Yield the student's own numbers with another sign, order or unit."""

@@ -1,61 +1,19 @@
 """The difference between a robot and the reference's, cut into pieces: each is an edit that may undo a mistake."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
 from typing import NamedTuple
 
-from grader.difference import Node, Step, paired, steps
+from grader.difference import Node, Step, steps
 from grader.robot.edits.draft import Draft, escaped
 from grader.robot.edits.elements import Set, child_of, end_of
+from grader.robot.edits.nodes import node_of, translation, wanted_value
 from grader.robot.edits.pieces import ENDS, STRUCTURE, Piece, PieceMaker, normal, twins_of, unique
 from grader.xml.parsing import Element
-from grader.xml.urdf_format import CHILDREN, TAGS
+from grader.xml.urdf_format import CHILDREN
 
-_AXIS = ("1 0 0", "revolute", "continuous", "prismatic", "planar")
-
-
-# The attributes that name a joint or a material, which a student may call otherwise.
-_NAMES = {("mimic", "joint"): "joint", ("joint", "name"): "joint", ("material", "name"): "material"}
 _MAX_LINKS = 400  # of a robot: more are not compared
-
-
-def wanted_value(step: Step) -> str | None:
-    """Return the value that a step sets: that of the reference, else the default; None if there is none."""
-    if step.verb == "set" and step.like is not None:
-        return step.like.values[step.name]
-    known = TAGS[step.own.tag].attributes.get(step.name) if step.own.tag in TAGS else None
-    return known.default or None if known is not None else None
-
-
-def node_of(element: Element, names: Mapping[str, Mapping[str, str]] | None = None) -> Node:
-    """Return the node of an element, without values and elements that are the default."""
-    tag = str(element.tag)
-    values = {}
-    for name, value in element.attrib.items():
-        text = normal(tag, str(name), str(value))
-        if tag in TAGS and str(name) in TAGS[tag].attributes and text == normal(tag, str(name), None):
-            continue
-        values[str(name)] = (names or {}).get(_NAMES.get((tag, str(name)), ""), {}).get(text, text)
-    if tag not in TAGS and not len(element) and (element.text or "").strip():
-        values[""] = (element.text or "").strip()
-    children = [node_of(child, names) for child in element if isinstance(child.tag, str)]
-    is_moving = tag != "joint" or element.get("type") in _AXIS[1:]
-    children = [child for child in children if not _is_default(child, is_moving=is_moving)]
-    return Node(tag, _keys(element, values), values, children, element)
-
-
-def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
-    name = values.get("name", "") or values.get("reference", "")
-    if element.tag == "joint" and element.getparent() is not None and child_of(element, "child") is not None:
-        return end_of(element, "child"), name
-    return (name,) if name and element.tag not in ("visual", "collision") else ()
-
-
-def _is_default(node: Node, *, is_moving: bool) -> bool:
-    if node.tag == "axis":
-        return not is_moving or node.values.get("xyz", "1 0 0") == "1 0 0"
-    return node.tag == "origin" and not node.values
 
 
 class MissingPart(NamedTuple):
@@ -72,7 +30,7 @@ class RobotDifference(PieceMaker):
 
     def __init__(self, draft: Draft, reference: Draft) -> None:
         super().__init__(draft, reference)
-        self._names = _translation(draft, reference)
+        self._names = translation(draft, reference)
         self.missing: list[MissingPart] = []
 
     @property
@@ -85,45 +43,7 @@ class RobotDifference(PieceMaker):
         """The pieces, each once: values first, then what moves, is added and is removed."""
         found_steps = steps(self._tree(self.draft, {}), self._tree(self.reference, self._names))
         found = [*self._pieces(found_steps)]
-        return unique([*found, *self._together(found), *self._materials(), *self._joint_names()])
-
-    @property
-    def whole_links(self) -> Iterator[Piece]:
-        """Where each link and what it shows are, together, and all values of each link."""
-        links: dict[str, list[Set]] = {}
-        for piece in self.pieces:
-            own = links.setdefault(piece.link, [])
-            own += [one for one in piece.sets if one not in own and one.attribute != "name"]
-        for link, sets in links.items():
-            poses = [one for one in sets if "origin" in (one.tag, one.owner.tag) or "axis" in (one.tag, one.owner.tag)]
-            carried = [it for it in self.draft.joints() if end_of(it, "parent") == link]
-            after = [one for own in links.values() for one in own if {one.owner, one.owner.getparent()} & {*carried}]
-            frame, what = "the frame of {!r} and what it shows", "the values of {!r}"
-            for those, text in ((poses, frame), (poses + after, f"{frame} and carries"), (sets, what)):
-                changed = {(one.owner, one.tag): one for one in those if one.owner.tag not in ("collision", "inertial")}
-                if link in self.known and len(changed) > 1:
-                    pieces = [self.of_sets([one]) for one in changed.values()]
-                    cause, action = text.format(link), f"correct {text.format(link)}"
-                    if len(pieces) == len(those) == 2:
-                        cause, action = (
-                            f"{one} and {two}" for one, two in zip(*(it[:2] for it in pieces), strict=True)
-                        )
-                    yield Piece(cause, action, link, tuple(dict.fromkeys(those)), (), STRUCTURE)
-
-    def _together(self, found: Iterable[Piece]) -> Iterator[Piece]:
-        """Yield all changes in one element of the robot; in a link or joint, those that are no values."""
-        groups: dict[Element | None, list[Piece]] = {}
-        for piece in found:
-            owner = self.draft.owner(piece.around) if piece.around is not None else None
-            is_plain = owner is not None and owner.tag in ("link", "joint", "material", "robot")
-            groups.setdefault(owner if piece.edits or not is_plain else None, []).append(piece)
-        for element, pieces in groups.items():
-            if element is not None and element is not self.draft.root and len(pieces) > 1:
-                texts = zip(*((it.cause, it.action) for it in pieces), strict=True)
-                cause, action = (" and ".join(dict.fromkeys(those)) for those in texts)
-                edits = tuple(edit for piece in pieces for edit in piece.edits)
-                sets = tuple(one for piece in pieces for one in piece.sets)
-                yield Piece(cause, action, pieces[0].link, sets, edits, STRUCTURE)
+        return unique([*found, *self._materials(), *self._joint_names()])
 
     def _materials(self) -> Iterator[Piece]:
         """Give what a link shows the colour of the reference, where no material of the robot has it."""
@@ -289,22 +209,6 @@ def rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
     ends = [(joint, role) for joint in draft.joints() for role in ENDS if end_of(joint, role) == old]
     sets = (*(Set(link, "", "name", new) for link in own), *(Set(joint, role, "link", new) for joint, role in ends))
     return sets if len(own) == 1 else sets[:0]
-
-
-def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
-    """Return what the joints and materials of the reference are called in the robot."""
-    names: dict[str, dict[str, str]] = {"joint": {}, "material": {}}
-    known = {joint.name for joint in reference.robot.joints}
-    for joint in reference.joints():
-        own = draft.joint_of(end_of(joint, "child"))
-        is_there = any(it.get("name") == joint.get("name") for it in draft.joints())
-        if own is not None and own.get("name") and own.get("name") not in known and not is_there:
-            names["joint"][joint.get("name") or ""] = own.get("name") or ""
-    mine = [node_of(found) for found in draft.root.iterchildren("material")]
-    pairs = paired(mine, [node_of(found) for found in reference.root.iterchildren("material")])
-    called = {like.values.get("name", ""): own_node.values.get("name") for own_node, like in pairs.both}
-    names["material"] = {name: own_name for name, own_name in called.items() if own_name}
-    return names
 
 
 def _is_equal(one: Element, other: Element) -> bool:

@@ -1,0 +1,54 @@
+"""Pieces of the difference to the reference that one mistake needs together: those of a link, or of one element."""
+
+from collections.abc import Iterator
+
+from grader.robot.edits.difference import RobotDifference
+from grader.robot.edits.elements import Set, end_of
+from grader.robot.edits.pieces import STRUCTURE, Piece
+from grader.xml.parsing import Element
+
+_FRAME = "the frame of {!r} and what it shows"
+
+
+def whole_links(difference: RobotDifference) -> Iterator[Piece]:
+    """Yield where each link and what it shows are, also with what it carries; and all its values."""
+    links: dict[str, list[Set]] = {}
+    for piece in difference.pieces:
+        own = links.setdefault(piece.link, [])
+        own += [one for one in piece.sets if one not in own and one.attribute != "name"]
+    for link, sets in links.items():
+        poses = [one for one in sets if "origin" in (one.tag, one.owner.tag) or "axis" in (one.tag, one.owner.tag)]
+        carried = {joint for joint in difference.draft.joints() if end_of(joint, "parent") == link}
+        after = [
+            one for own in links.values() for one in own if not carried.isdisjoint((one.owner, one.owner.getparent()))
+        ]
+        groups = (poses, _FRAME), (poses + after, f"{_FRAME} and carries"), (sets, "the values of {!r}")
+        for those, text in groups if link in difference.known else ():
+            yield from _group(difference, link, those, text.format(link))
+
+
+def _group(difference: RobotDifference, link: str, sets: list[Set], what: str) -> Iterator[Piece]:
+    changed = {(one.owner, one.tag): one for one in sets if one.owner.tag not in ("collision", "inertial")}
+    if len(changed) < 2:
+        return
+    cause, action = what, f"correct {what}"
+    if len(changed) == len(sets) == 2:
+        one, other = (difference.of_sets([one]) for one in changed.values())
+        cause, action = f"{one.cause} and {other.cause}", f"{one.action} and {other.action}"
+    yield Piece(cause, action, link, tuple(dict.fromkeys(sets)), (), STRUCTURE)
+
+
+def whole_elements(difference: RobotDifference) -> Iterator[Piece]:
+    """Yield all changes in one element of the robot; in a link or joint, those that are no values."""
+    groups: dict[Element | None, list[Piece]] = {}
+    for piece in difference.pieces:
+        owner = difference.draft.owner(piece.around) if piece.around is not None else None
+        is_plain = owner is not None and owner.tag in ("link", "joint", "material", "robot")
+        groups.setdefault(owner if piece.edits or not is_plain else None, []).append(piece)
+    for element, pieces in groups.items():
+        if element is not None and element is not difference.draft.root and len(pieces) > 1:
+            texts = zip(*((it.cause, it.action) for it in pieces), strict=True)
+            cause, action = (" and ".join(dict.fromkeys(those)) for those in texts)
+            edits = tuple(edit for piece in pieces for edit in piece.edits)
+            sets = tuple(one for piece in pieces for one in piece.sets)
+            yield Piece(cause, action, pieces[0].link, sets, edits, STRUCTURE)
