@@ -41,10 +41,9 @@ class Edit(NamedTuple):
 
 Edits = tuple[Edit, ...]
 
-# How sure a proven edit is. "only": all other places that the search knows were tried, and no edit there is proven.
-# "one of several": a proven edit of another place gains as much, is as plausible and not larger. "preferred": the best
-# of those that were tried; others gain less, are less plausible or larger, or were not all tried.
-Certainty = Literal["only", "preferred", "one of several"]
+# How sure a proven edit is. "one of several": an edit of another place gains as much, is as plausible and not larger.
+# "preferred": the best of those that were tried.
+Certainty = Literal["preferred", "one of several"]
 
 
 class Source:

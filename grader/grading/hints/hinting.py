@@ -94,12 +94,12 @@ def _entry(
 def _first_at(found: FoundHint, where: Location | None) -> FoundHint:
     """Return a hint with the edits in the line of the failure first."""
     place = (where.path, where.line) if where is not None else None
-    edits = sorted(found.edits, key=lambda it: ((it.path, it.line) != place, it.path, it.line, it.column))
+    edits = sorted(found.proposal.edits, key=lambda it: ((it.path, it.line) != place, it.path, it.line, it.column))
     return found._replace(proposal=found.proposal._replace(edits=tuple(edits)))
 
 
 def _hint(found: FoundHint, text: str, shown_by: str, result: Result, *, keeps_edits: bool) -> Hint:
-    places = [Location(edit.path, edit.line, edit.column) for edit in found.edits]
+    places = [Location(edit.path, edit.line, edit.column) for edit in found.proposal.edits]
     at = next(iter(places), result.outcome.location or Location("", 1, 1))
     shown = (found.edits, found.proposal.action) if keeps_edits else ((), "")
     return Hint(text, at, found.gains, *shown, shown_by, found.certainty)

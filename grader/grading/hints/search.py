@@ -51,7 +51,8 @@ class HintSearch:
         both = self._draft is not None and (reference or self._draft)
         self._difference = RobotDifference(self._draft, both) if self._draft is not None and both else None
         self.found: list[FoundHint] = []
-        self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing
+        self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing, or two edits
+        self._refused: set[Edits] = set()
         self.results: Results = trials.results  # with all edits
         self._after: Results = self.results
         self.is_complete = self._is_cut = False
@@ -69,10 +70,10 @@ class HintSearch:
                     self._take(family)
                 self.is_complete = not self._is_cut
         with self.trials.isolated():
-            known = {name for found in self.found for name in found.gains}
+            known = {name for found in self.found for name in found.gains} | self.missing.keys()
             lost = {name: points for name, points in costs_of(self.trials.results).items() if name not in known}
             is_readable = self._reading is not None and self._reading.root is not None
-            self.missing = missing_hints(
+            self.missing |= missing_hints(
                 self._difference, self._criteria, self.trials.results, lost, is_readable=is_readable
             )
         return self
@@ -93,14 +94,13 @@ class HintSearch:
                 results = self.trials.graded((*self.edits, *proposal.edits), lost)
                 passes = frozenset(name for name, result in results.items() if result.outcome.status == "passed")
                 tried += [_Tried(proposal, passes)] * bool(passes)
-        refused: set[Edits] = set()
-        while best := self._best(tried, refused):
+        while best := self._best(tried):
             if not self._prove(best, tried):
-                refused.add(best.proposal.edits)
+                self._refused.add(best.proposal.edits)
 
-    def _best(self, tried: Iterable[_Tried], refused: Collection[Edits]) -> _Tried | None:
+    def _best(self, tried: Iterable[_Tried]) -> _Tried | None:
         lost = set(self._lost)
-        left = (it for it in tried if it.passes & lost and it.proposal.edits not in refused)
+        left = (it for it in tried if it.passes & lost and it.proposal.edits not in self._refused)
         return min(left, key=lambda it: self._order(it, lost), default=None)
 
     def _order(self, one: _Tried, lost: Collection[str]) -> tuple[Decimal, int, int, int]:
@@ -126,10 +126,19 @@ class HintSearch:
         known = {name for found in self.found for name in found.gains}
         gains = {name: points for name, points in gains.items() if name not in known} or gains
         others = [it for it in tried if it.passes >= wanted and it.proposal.places.isdisjoint(best.proposal.places)]
-        is_tie = any(self._order(it, lost)[:2] == self._order(best, lost)[:2] for it in others)
+        equal = [it for it in others if self._order(it, lost) == self._order(best, lost)]
+        if equal and self._is_robot(best) and self._is_robot(equal[0]):
+            name = max(wanted, key=lambda name: self._criteria[name].points)
+            self.missing[name] = FoundHint(best.proposal, {}, "one of several", alternative=equal[0].proposal)
+            self._refused |= {it.proposal.edits for it in equal}
+            return False
+        is_tie = any(self._order(it, lost) <= self._order(best, lost) for it in others)
         self.found.append(FoundHint(best.proposal, gains, "one of several" if is_tie else "preferred", is_late))
         self.results = self._after
         return True
+
+    def _is_robot(self, one: _Tried) -> bool:
+        return all(edit.path.endswith((".urdf", ".xacro")) for edit in one.proposal.edits)
 
     def _is_half(self, link: str) -> bool:
         """Return whether criteria about a link still fail: then a number that the reference does not have is not it."""

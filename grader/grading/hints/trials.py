@@ -24,7 +24,8 @@ _HARMFUL = ("rejects", "drops", "undetermined")
 class FoundHint(NamedTuple):
     """A proven edit, and the points of the criteria that pass with it; without edits, `words` say what is missing.
 
-    `is_late` says that the gains are those after the edits of earlier hints.
+    `is_late` says that the gains are those after the edits of earlier hints. With an `alternative`, two edits cannot be
+    told apart: both are named, and neither is made.
     """
 
     proposal: Proposal
@@ -32,11 +33,12 @@ class FoundHint(NamedTuple):
     certainty: Certainty = "preferred"
     is_late: bool = False
     words: str = ""
+    alternative: Proposal | None = None
 
     @property
     def edits(self) -> Edits:
-        """Its edits."""
-        return self.proposal.edits
+        """The edits to make."""
+        return self.proposal.edits if self.alternative is None else ()
 
 
 class NoTrialsLeft(Exception):

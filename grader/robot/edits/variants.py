@@ -92,7 +92,8 @@ def _of_number(difference: RobotDifference, element: Element, name: str) -> Iter
     for text, edits_with in defined:
         for (value,) in plausible(unit, values_of(text)):
             edits = edits_with(format_number(value))
-            if edits and value > least:
+            is_length = values_of(text)[0] > 0.0 > value and abs(value) != 1.0  # 1 and -1 are the sides
+            if edits and value > least and not is_length:
                 cause = f"a number from which the {name} of {{}} is computed"
                 yield difference.piece(element, cause, f"correct {cause}", edits, rank=OWN)
 
