@@ -80,7 +80,7 @@ def test_the_cause_gives_no_answer_away(name: str, tmp_path: Path) -> None:
     assert not any(len(new) > 1 and new in hint["message"] for _, new in edits)
     words = {
         "default value of a path": "a path in the launch file",
-        "fixed frame": "a line in the RViz file",
+        "fixed frame": "the value of `Fixed Frame` in the RViz file",
     }
     assert words[name] in hint["message"]
 

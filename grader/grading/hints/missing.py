@@ -5,18 +5,17 @@ from decimal import Decimal
 
 from grader.edits import Proposal
 from grader.grading.criterion import Criterion
-from grader.grading.hints.trials import FoundHint, Results
+from grader.grading.hints.trials import FoundHint
 from grader.robot.edits.difference import MissingPart, RobotDifference
 from grader.robot.selectors import texts_in
 from grader.text import enumerated
 
-_MAX_SIBLINGS = 2
+_MAX_SIBLINGS, _MAX_NAMED = 2, 4
 
 
 def missing_hints(
     difference: RobotDifference | None,
     criteria: Mapping[str, Criterion],
-    results: Results,
     lost: Mapping[str, Decimal],
     *,
     is_readable: bool,
@@ -30,22 +29,27 @@ def missing_hints(
     found: dict[str, FoundHint] = {}
     for link in dict.fromkeys(part.link for part in difference.missing):
         parts = [part for part in difference.missing if part.link == link]
-        names = [name for name in lost if name not in found and _is_about(criteria[name], results, link, parts)]
+        robots = [name for name in lost if name not in found and criteria[name].check.subject == "robot"]
+        own = [name for name in robots if criteria[name].arguments.get("link") == link]
+        names = own or [name for name in robots if link in texts_in(criteria[name].arguments)]
         if names:
-            name = max(names, key=lambda it: (criteria[it].check.subject == "urdf", lost[it]))
-            cause = " and ".join(_cause(part) for part in parts) + (
-                " is missing" if len(parts) == 1 else " are missing"
-            )
-            words = f"add {' and '.join(_words(part) for part in parts)}{_siblings(difference, parts)}"
-            found[name] = FoundHint(Proposal((), cause, "", link), {}, words=words)
-    return found
+            found[max(names, key=lambda name: lost[name])] = _hint(difference, parts)
+    joints = [part for part in difference.missing if difference.draft.robot.has_link(part.link)]
+    loading = [name for name in lost if criteria[name].check.subject == "urdf"]
+    if loading and len(joints) == 1:
+        return {name: hint for name, hint in found.items() if hint.proposal.link != joints[0].link} | {
+            loading[0]: _hint(difference, joints)
+        }
+    names = enumerated([repr(part.link) for part in joints], _MAX_NAMED)
+    cause = f"the joints of {names} are missing"
+    every = FoundHint(Proposal((), cause, ""), {}, words=f"add the joints of {names}")
+    return found | ({loading[0]: every} if loading and joints else {})
 
 
-def _is_about(criterion: Criterion, results: Results, link: str, parts: list[MissingPart]) -> bool:
-    """Return whether a failure is that a link is missing, or that no joint connects it."""
-    if criterion.check.subject == "urdf":
-        return not any(part.tag == "link" for part in parts)
-    return criterion.check.subject == "robot" and link in texts_in(criterion.arguments) and bool(results)
+def _hint(difference: RobotDifference, parts: list[MissingPart]) -> FoundHint:
+    cause = f"{enumerated([_cause(part) for part in parts])} {'is' if len(parts) == 1 else 'are'} missing"
+    words = f"add {enumerated([_words(part) for part in parts])}{_siblings(difference, parts)}"
+    return FoundHint(Proposal((), cause, "", parts[0].link), {}, words=words)
 
 
 def _cause(part: MissingPart) -> str:

@@ -73,9 +73,7 @@ class HintSearch:
             known = {name for found in self.found for name in found.gains} | self.missing.keys()
             lost = {name: points for name, points in costs_of(self.trials.results).items() if name not in known}
             is_readable = self._reading is not None and self._reading.root is not None
-            self.missing |= missing_hints(
-                self._difference, self._criteria, self.trials.results, lost, is_readable=is_readable
-            )
+            self.missing |= missing_hints(self._difference, self._criteria, lost, is_readable=is_readable)
         return self
 
     @property

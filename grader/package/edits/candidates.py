@@ -11,7 +11,7 @@ from grader.package.edits.entries import missing_entries
 from grader.package.edits.paths import launch_paths, setup_paths
 from grader.package.edits.python_file import PythonFile
 from grader.package.edits.task import WHAT, PackageTask, file_proposals, package_names
-from grader.package.edits.wording import respellings, reword, undefined_names
+from grader.package.edits.wording import other_values, respellings, reword, undefined_names
 from grader.package.package import SETUP, Package
 from grader.source import Edits, Source
 
@@ -73,6 +73,8 @@ def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str 
     if is_python:
         yield from missing_entries(own, PythonFile(Source(source.path, wanted)), what)
         yield from undefined_names(own, what)
+    elif ending == other:
+        yield from other_values(source, wanted, what)
     if kind == "launch":
         yield from launch_paths(task, task.launch(path, source), source)
     elif kind == SETUP:

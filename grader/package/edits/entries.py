@@ -16,7 +16,9 @@ _MAX_ITEMS = 30
 def missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits that add an entry of the reference's lists, or all that are missing."""
     known = {own.plain(it) for it in _items(own)}
-    missing = [it for it in _items(like) if like.plain(it) not in known]
+    installed = {own.plain(it.elts[-1]) for it in _items(own) if isinstance(it, ast.Tuple) and it.elts}
+    others = (it for it in _items(like) if like.plain(it) not in known)
+    missing = [it for it in others if not (isinstance(it, ast.Tuple) and like.plain(it.elts[-1]) in installed)]
     several: list[str] = []
     spare = {
         _executable(own, value) or "-": name for name, value in own.values.items() if own.plain(value) not in known

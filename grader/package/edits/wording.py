@@ -22,6 +22,8 @@ _MAX_MORE = 2  # letters that one word has more than the other
 _LIKENESS = 0.75
 _TOKEN = re.compile(r"\w+|[ \t]+|\r?\n|.", re.DOTALL)
 _MAX_DIFFERENCES, _MAX_TOKENS = 6, 3000
+_SETTING = re.compile(r"(?P<key>[^\W\d][\w -]*?)(?::[ ]+|=\")(?P<value>[^\s\"][^\n\"]*)")
+_MAX_VALUES = 4
 _SUBSTITUTIONS = ("find-pkg-share", "var", "env", "command", "dirname")
 _SUBSTITUTION = re.compile(rf"(?<=\$\()(?!(?:{'|'.join(_SUBSTITUTIONS)})\b)[\w-]+")
 _SINGLE, _TYPOGRAPHIC = "‘’‚", re.compile("[‘’‚“”„]")
@@ -71,6 +73,17 @@ def reword(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
     for _, first, last, start, end in changes if len(changes) <= _MAX_DIFFERENCES else ():
         offset, old = start_of_text + len("".join(own[:first])), "".join(own[first:last])
         yield change([source.edit(offset, offset + len(old), "".join(right[start:end]))], "set", "a line", what)
+
+
+def other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
+    """Yield edits that give a key of YAML, or an attribute of XML, a value that the reference has for it."""
+    known: dict[str, list[str]] = {}
+    for found in _SETTING.finditer(wanted):
+        known.setdefault(found["key"], []).append(found["value"])
+    for found in _SETTING.finditer(source.text):
+        values = dict.fromkeys(known.get(found["key"], ()))
+        for value in [*values][:_MAX_VALUES] if found["value"] not in values else ():
+            yield change([source.edit(*found.span("value"), value)], "set", f"the value of `{found['key']}`", what)
 
 
 def undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:

@@ -7,6 +7,7 @@ from grader.robot.edits.elements import Set, end_of
 from grader.robot.edits.pieces import STRUCTURE, Piece
 from grader.xml.parsing import Element
 
+_MAX_NAMED = 3  # values whose mistakes are named one by one
 _FRAME = "the frame of {!r} and what it shows"
 
 
@@ -32,23 +33,26 @@ def _group(difference: RobotDifference, link: str, sets: list[Set], what: str) -
     if len(changed) < 2:
         return
     cause, action = what, f"correct {what}"
-    if len(changed) == len(sets) == 2:
-        one, other = (difference.of_sets([one]) for one in changed.values())
-        cause, action = f"{one.cause} and {other.cause}", f"{one.action} and {other.action}"
+    if len(changed) == len(sets) <= _MAX_NAMED:
+        pieces = [difference.of_sets([one]) for one in changed.values()]
+        cause, action = (" and ".join(texts) for texts in zip(*((it.cause, it.action) for it in pieces), strict=True))
     yield Piece(cause, action, link, tuple(dict.fromkeys(sets)), (), STRUCTURE)
 
 
 def whole_elements(difference: RobotDifference) -> Iterator[Piece]:
-    """Yield all changes in one element of the robot; in a link or joint, those that are no values."""
-    groups: dict[Element | None, list[Piece]] = {}
-    for piece in difference.pieces:
-        owner = difference.draft.owner(piece.around) if piece.around is not None else None
-        is_plain = owner is not None and owner.tag in ("link", "joint", "material", "robot")
-        groups.setdefault(owner if piece.edits or not is_plain else None, []).append(piece)
-    for element, pieces in groups.items():
-        if element is not None and element is not difference.draft.root and len(pieces) > 1:
+    """Yield the changes in one element together, and in one child of the robot; of links and joints no values."""
+    for is_owner in (False, True):
+        groups: dict[Element, list[Piece]] = {}
+        for piece in difference.pieces:
+            owner = difference.draft.owner(piece.around) if piece.around is not None else difference.draft.root
+            has_values = owner.tag in ("link", "joint", "material", "robot")
+            is_removed = not piece.sets and not any(edit.new for edit in piece.edits)
+            if piece.around is not None and not is_removed and (piece.edits or not has_values):
+                groups.setdefault(owner if is_owner else piece.around, []).append(piece)
+        for pieces in (those for element, those in groups.items() if element is not difference.draft.root):
             texts = zip(*((it.cause, it.action) for it in pieces), strict=True)
             cause, action = (" and ".join(dict.fromkeys(those)) for those in texts)
             edits = tuple(edit for piece in pieces for edit in piece.edits)
             sets = tuple(one for piece in pieces for one in piece.sets)
-            yield Piece(cause, action, pieces[0].link, sets, edits, STRUCTURE)
+            if len(pieces) > 1:
+                yield Piece(cause, action, pieces[0].link, sets, edits, STRUCTURE)

@@ -87,8 +87,9 @@ class PieceMaker:
     ) -> Piece:
         """Return a piece that changes an element, or its child with a tag; {} in the texts stands for its name."""
         place = self.draft.describe(element, tag, self.known)
+        around = element if element.getparent() is self.draft.root else element.getparent()
         cause, action = (text.replace("{}", place) for text in (cause, action))
-        return Piece(cause, action, link or self.draft.link_of(element), sets, edits, rank, element)
+        return Piece(cause, action, link or self.draft.link_of(element), sets, edits, rank, around)
 
     def of_sets(self, sets: Sequence[Set], rank: int = REFERENCE) -> Piece:
         """Return the piece that sets values of one element, named by what is wrong with them."""
