@@ -14,7 +14,7 @@ _PIECE = re.compile(r"(\s*)(\S+)")
 
 
 class Proposal(NamedTuple):
-    """An edit that may undo a mistake: what is wrong ("the sign of the roll of ..."), and what to do ("negate ...").
+    """An edit that may undo a mistake, and what is wrong: "the sign of the roll of ...".
 
     `link` is the link that is moved or changed. The `rank` orders proposals: those of the reference come first. `way`
     counts the ways to make the same change in xacro, the most plausible first.
@@ -22,7 +22,6 @@ class Proposal(NamedTuple):
 
     edits: Edits
     cause: str
-    action: str
     link: str = ""
     rank: int = 0
     way: int = 0

@@ -26,22 +26,21 @@ def corrections(document: Source, files: Mapping[str, XacroNode], refusals: Sequ
         _, start = document.element(0)
         end = markup.name_end(text, start)
         edit = document.edit(start, end, text[start:end] + _NAMESPACE)
-        yield Proposal((edit,), "the prefix xacro, which is not declared", "declare the prefix xacro")
+        yield Proposal((edit,), "the prefix xacro, which is not declared")
     nodes = [node for file in files.values() for node in islice(_walk(file), _MAX_NODES)]
     macros = {node.attributes.get("name", "") for node in nodes if node.tag == "xacro:macro"}
     for node in nodes:
         if node.tag in _PREFIXED or node.tag in macros:
             edits = tuple(_tags(node.place, node.tag, f"xacro:{node.tag}"))
-            yield Proposal(edits, f"<{node.tag}> without xacro:", f"write <xacro:{node.tag}>")
+            yield Proposal(edits, f"<{node.tag}> without xacro:")
     for error, place, attribute in refusals[:_MAX_NAMES]:
         for edits in _respell(place, attribute, error.unknown) if error.unknown is not None else ():
-            yield Proposal(edits, "a name that xacro does not know", "correct the name")
+            yield Proposal(edits, "a name that xacro does not know")
         own = next((node for node in nodes if node.place[:2] == place[:2]), None)
         others = [node.attributes for node in nodes if own is not None and node is not own and node.tag == own.tag]
         for given in [it for it in others if set(error.lacking) <= it.keys()] if error.lacking else ():
             for values in ({name: given[name] for name in error.lacking}, _negated(given, error.lacking)):
-                what = " and ".join(values)
-                yield Proposal(_give(place, values), f"this call gives no value for {what}", f"give {what} a value")
+                yield Proposal(_give(place, values), f"this call gives no value for {' and '.join(values)}")
 
 
 def _walk(node: XacroNode) -> Iterator[XacroNode]:

@@ -116,7 +116,7 @@ class ExpandedSource(Source):
         given = sorted(words)
         for document in self.documents.values():
             edited = conditions(document.place.source, given, near)
-            found += [Proposal(edits, "a text in a condition", "correct the text in the condition") for edits in edited]
+            found += [Proposal(edits, "a text in a condition") for edits in edited]
         return list({correction.edits: correction for correction in reversed(found)}.values())[::-1]
 
     def calls(self, edit: Edit) -> dict[str, list[Location]]:

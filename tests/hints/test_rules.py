@@ -14,12 +14,6 @@ from tests.samples import LAB6, SAMPLES
 
 REFERENCE = BASES["reference"].text
 MACROS = BASES["equivalent-xacro-macros"]
-SOLID = REFERENCE.replace(
-    "</visual>",
-    '</visual>\n    <collision>\n      <origin xyz="0 0 0.1" rpy="0 0 0"/>\n      <geometry><box size="0.6 0.4 0.2"/></geometry>\n'
-    "    </collision>",
-    1,
-)
 
 
 def edits_of(hints: Hints) -> list[list[tuple[str, str]]]:
@@ -61,16 +55,6 @@ def test_no_edit_pleases_a_tolerance(size: str) -> None:
     assert hints.is_full
     new = {new for edits in edits_of(hints) for _, new in edits if "size" in new}
     assert new == {'size="0.6 0.4 0.2"'}
-
-
-def test_what_is_seen_and_what_collides_stay_together() -> None:
-    """A visual that is moved or resized takes its collision along, if that was the same shape in the same place."""
-    for old, new in (('xyz="0 0 0.1" rpy', 'xyz="0 0 0.2" rpy'), ('size="0.6 0.4 0.2"', 'size="0.6 0.4 0.1"')):
-        hints = hints_for(read_submission(SOLID.replace(old, new, 2).encode(), identity="robot", path="my_robot.urdf"))
-        assert hints.is_full
-        (edits,) = edits_of(hints)
-        assert len(edits) == 2
-        assert len(set(edits)) == 1
 
 
 def test_no_edit_adds_a_problem() -> None:

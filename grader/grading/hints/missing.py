@@ -40,16 +40,16 @@ def missing_hints(
         return {name: hint for name, hint in found.items() if hint.proposal.link != joints[0].link} | {
             loading[0]: _hint(difference, joints)
         }
-    names = enumerated([repr(part.link) for part in joints], _MAX_NAMED)
-    cause = f"the joints of {names} are missing"
-    every = FoundHint(Proposal((), cause, ""), {}, words=f"add the joints of {names}")
+    lacking = enumerated([repr(part.link) for part in joints], _MAX_NAMED)
+    cause = f"the joints of {lacking} are missing"
+    every = FoundHint(Proposal((), cause), {}, words=f"add the joints of {lacking}")
     return found | ({loading[0]: every} if loading and joints else {})
 
 
 def _hint(difference: RobotDifference, parts: list[MissingPart]) -> FoundHint:
     cause = f"{enumerated([_cause(part) for part in parts])} {'is' if len(parts) == 1 else 'are'} missing"
     words = f"add {enumerated([_words(part) for part in parts])}{_siblings(difference, parts)}"
-    return FoundHint(Proposal((), cause, "", parts[0].link), {}, words=words)
+    return FoundHint(Proposal((), cause, parts[0].link), {}, words=words)
 
 
 def _cause(part: MissingPart) -> str:

@@ -166,7 +166,7 @@ class HintSearch:
             if links is None or piece.link in links or not self._is_known(piece.link):
                 for way, edits in enumerate(self._draft.ways(piece.sets)[:_MAX_WAYS]):
                     if edits or piece.edits:
-                        yield Proposal((*edits, *piece.edits), piece.cause, piece.action, piece.link, piece.rank, way)
+                        yield Proposal((*edits, *piece.edits), piece.cause, piece.link, piece.rank, way)
 
     def _is_known(self, link: str) -> bool:
         """Return whether the reference has a link: another one may be any of them."""

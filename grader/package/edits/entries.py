@@ -35,7 +35,7 @@ def _adding(own: PythonFile, codes: Sequence[str], what: str) -> Iterator[Propos
     edit = _add(own, codes)
     if edit is not None:
         needs = own.with_imports(sorted({name for code in codes for name in own.names_in(code)}))
-        yield change([*needs, edit], "add", what)
+        yield change([*needs, edit], f"a missing part of {what}")
 
 
 def _executable(file: PythonFile, code: ast.expr) -> str | None:

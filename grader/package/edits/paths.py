@@ -43,7 +43,7 @@ def setup_paths(task: PackageTask) -> Iterator[Proposal]:
         for actual in (path, f"{above}/*")[: 1 + is_folder]:
             for wanted in _similar(actual, known)[:_MAX_EDITS]:
                 edits = moved(source, actual, wanted, line)[:2]
-                yield from (change([edit], "set", "a path", SETUP) for edit in edits)
+                yield from (change([edit], "a path", SETUP) for edit in edits)
 
 
 def _similar(path: str, known: Iterable[str]) -> list[str]:
@@ -58,9 +58,9 @@ def launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator[
     wrong = [it for it in named if posixpath.normpath(it.path or "").removeprefix(f"{PREFIX}/") not in installed]
     ways = [way for way in (_edits_of_path(task, source, named)[:_MAX_EDITS] for named in wrong) if way]
     if len(ways) > 1:
-        yield change([edit for way in ways for edit in way[0]], "set", "the paths", _LAUNCH)
+        yield change([edit for way in ways for edit in way[0]], "the paths", _LAUNCH)
     for way in ways:
-        yield from (change(edits, "set", "a path", _LAUNCH) for edits in way)
+        yield from (change(edits, "a path", _LAUNCH) for edits in way)
 
 
 def _targets(task: PackageTask, purpose: str) -> list[str]:

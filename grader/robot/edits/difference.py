@@ -9,7 +9,7 @@ from grader.difference import Node, Step, steps
 from grader.robot.edits.draft import Draft, escaped
 from grader.robot.edits.elements import Set, child_of, end_of
 from grader.robot.edits.nodes import node_of, translation, wanted_value
-from grader.robot.edits.pieces import ENDS, STRUCTURE, Piece, PieceMaker, normal, twins_of, unique
+from grader.robot.edits.pieces import ENDS, STRUCTURE, Piece, PieceMaker, normal, unique
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import CHILDREN
 
@@ -60,8 +60,7 @@ class RobotDifference(PieceMaker):
                 self.draft.material(names[0]) is None
                 and self.draft.material(self._names["material"].get(names[0], "")) is None
             ):
-                edits = self.draft.replace(used, self.reference.text(like))
-                yield self.piece(used, "the material of {}", "correct the material of {}", edits)
+                yield self.piece(used, "the material of {}", self.draft.replace(used, self.reference.text(like)))
 
     def _joint_names(self) -> Iterator[Piece]:
         """Rename joints as in the reference, also where they are mimicked."""
@@ -71,9 +70,9 @@ class RobotDifference(PieceMaker):
             mimics = (it for it in self.draft.root.iter("mimic") if it.get("joint") == old)
             sets = (Set(joint, "", "name", new), *(Set(it, "", "joint", new) for it in mimics))
             every += sets
-            yield self.piece(joint, "the name of a joint", "correct the name of a joint", sets=sets, rank=STRUCTURE)
+            yield self.piece(joint, "the name of a joint", sets=sets, rank=STRUCTURE)
         if len(every) > 1:
-            yield Piece("the names of joints", "correct the names of joints", "", tuple(every), (), STRUCTURE)
+            yield Piece("the names of joints", "", tuple(every), (), STRUCTURE)
 
     def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
         children = [child for child in draft.root if isinstance(child.tag, str)]
@@ -95,11 +94,10 @@ class RobotDifference(PieceMaker):
             match step.verb:
                 case "rename":
                     edits = self.draft.rename_attribute(own.of, step.name, step.other)
-                    cause = f"the name of the attribute {step.other} of {{}}"
-                    yield self.piece(own.of, cause, f"rename {step.name} of {{}} to {step.other}", edits)
+                    yield self.piece(own.of, f"the name of the attribute {step.other} of {{}}", edits)
                 case "retag" if like is not None:
-                    edits, tag = self.draft.rename_tag(own.of, like.tag), f"<{like.tag}>"
-                    yield self.piece(own.of, f"the name of the tag {tag}", f"rename the tag to {tag}", edits)
+                    edits = self.draft.rename_tag(own.of, like.tag)
+                    yield self.piece(own.of, f"the name of the tag <{like.tag}>", edits)
                 case "move" if step.parent is not None and like is not None:
                     yield self.moved(own.of, step.parent.of)
                 case "add" if like is not None and own.tag != "robot":
@@ -125,8 +123,7 @@ class RobotDifference(PieceMaker):
             yield from self._rename(element, values.pop("name"))
         if "" in values:
             text = values.pop("")
-            edits = self.draft.write_text(element, text)
-            yield self.piece(element, "the text of {}", f"set the text of {{}} to {text}", edits)
+            yield self.piece(element, "the text of {}", self.draft.write_text(element, text))
         if not self._is_loose(element):
             yield from self.each([Set(element, "", name, value) for name, value in values.items()])
 
@@ -142,8 +139,7 @@ class RobotDifference(PieceMaker):
         own = (Set(element, "", "name", name),)
         everywhere = rename_link(self.draft, old, name) if tag == "link" else own
         for sets in filter(None, dict.fromkeys((everywhere, own))):
-            cause, link = f"the name of a {tag}", name if tag == "link" else ""
-            yield self.piece(element, cause, f"correct {cause}", sets=sets, link=link)
+            yield self.piece(element, f"the name of a {tag}", sets=sets, link=name if tag == "link" else "")
 
     def _remove(self, node: Node) -> Iterator[Piece]:
         """Remove what the reference does not have; an origin or axis gets its default."""
@@ -155,7 +151,7 @@ class RobotDifference(PieceMaker):
             return
         elif element.getparent() is not None and element.getparent().tag != "geometry":  # there the shape is replaced
             cause = f"an extra <{tag}>: {{}}" if tag not in ("link", "joint") else f"an extra {tag}"
-            yield self.piece(element, cause, f"remove the extra <{tag}>", self.draft.remove(element), rank=STRUCTURE)
+            yield self.piece(element, cause, self.draft.remove(element), rank=STRUCTURE)
 
     def _is_twice(self, element: Element) -> bool:
         """Return whether another element has the same name, or another joint the same child."""
@@ -179,16 +175,11 @@ class RobotDifference(PieceMaker):
             return
         if parent.tag == "robot" or tag in ("link", "joint"):
             return
-        cause, action = f"the <{tag}> of {{}} is missing", f"add the <{tag}> of {{}}"
         shape = next((it for it in parent if parent.tag == "geometry" and it.tag in CHILDREN["geometry"]), None)
-        text = self._text(element)
         if shape is None:
-            edits = self.draft.insert(parent, text)
+            yield self.piece(parent, f"the <{tag}> of {{}} is missing", self.draft.insert(parent, self._text(element)))
         else:
-            alike = [it for geometry in twins_of(parent) for it in geometry if _is_equal(it, shape)]
-            edits = tuple(edit for it in (shape, *alike) for edit in self.draft.replace(it, text))
-            cause, action = "the shape of {}", f"make the shape of {{}} a {tag}"
-        yield self.piece(parent, cause, action, edits)
+            yield self.piece(parent, "the shape of {}", self.draft.replace(shape, self._text(element)))
 
     def _text(self, element: Element) -> str:
         """Return an element of the reference with the robot's names, an undefined material with its colour."""
@@ -209,7 +200,3 @@ def rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
     ends = [(joint, role) for joint in draft.joints() for role in ENDS if end_of(joint, role) == old]
     sets = (*(Set(link, "", "name", new) for link in own), *(Set(joint, role, "link", new) for joint, role in ends))
     return sets if len(own) == 1 else sets[:0]
-
-
-def _is_equal(one: Element, other: Element) -> bool:
-    return (one.tag, sorted(one.attrib.items())) == (other.tag, sorted(other.attrib.items()))

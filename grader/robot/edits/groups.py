@@ -32,11 +32,9 @@ def _group(difference: RobotDifference, link: str, sets: list[Set], what: str) -
     changed = {(one.owner, one.tag): one for one in sets if one.owner.tag not in ("collision", "inertial")}
     if len(changed) < 2:
         return
-    cause, action = what, f"correct {what}"
     if len(changed) == len(sets) <= _MAX_NAMED:
-        pieces = [difference.of_sets([one]) for one in changed.values()]
-        cause, action = (" and ".join(texts) for texts in zip(*((it.cause, it.action) for it in pieces), strict=True))
-    yield Piece(cause, action, link, tuple(dict.fromkeys(sets)), (), STRUCTURE)
+        what = " and ".join(difference.of_sets([one]).cause for one in changed.values())
+    yield Piece(what, link, tuple(dict.fromkeys(sets)), (), STRUCTURE)
 
 
 def whole_elements(difference: RobotDifference) -> Iterator[Piece]:
@@ -50,9 +48,8 @@ def whole_elements(difference: RobotDifference) -> Iterator[Piece]:
             if piece.around is not None and not is_removed and (piece.edits or not has_values):
                 groups.setdefault(owner if is_owner else piece.around, []).append(piece)
         for pieces in (those for element, those in groups.items() if element is not difference.draft.root):
-            texts = zip(*((it.cause, it.action) for it in pieces), strict=True)
-            cause, action = (" and ".join(dict.fromkeys(those)) for those in texts)
+            cause = " and ".join(dict.fromkeys(piece.cause for piece in pieces))
             edits = tuple(edit for piece in pieces for edit in piece.edits)
             sets = tuple(one for piece in pieces for one in piece.sets)
             if len(pieces) > 1:
-                yield Piece(cause, action, pieces[0].link, sets, edits, STRUCTURE)
+                yield Piece(cause, pieces[0].link, sets, edits, STRUCTURE)

@@ -15,48 +15,39 @@ _SAME = 1e-6
 
 
 class Mistake(NamedTuple):
-    """What a person does to numbers: the units, the size from which it is likely, how to undo it, cause and action."""
+    """What a person does to numbers: the units, the size from which it is likely, how to undo it, and the cause."""
 
     units: tuple[str, ...]
     least: float
     correct: Callable[[float], float]
     cause: str
-    action: str
 
 
 _LENGTHS, _ANGLES, _ANY = ("m",), ("rad", "rad or m"), ()
 _MISTAKES = (
-    Mistake(_ANY, 0.0, lambda value: -value, "the sign of {}", "negate {}"),
-    Mistake(_ANGLES, 6.3, radians, "the unit of {}: degrees, not radians", "convert {} to radians"),
-    Mistake(
-        _LENGTHS, LARGE, lambda value: value / 1000, "the unit of {}: millimetres, not metres", "convert {} to metres"
-    ),
-    Mistake(
-        _LENGTHS, LARGE, lambda value: value / 100, "the unit of {}: centimetres, not metres", "convert {} to metres"
-    ),
-    Mistake(("1",), 1.1, lambda value: value / 255, "the range of {}: 0..255, not 0..1", "write {} in 0..1"),
-    Mistake(_LENGTHS, 0.0, lambda value: value / 2, "{}: twice the correct value", "halve {}"),
-    Mistake(_LENGTHS, 0.0, lambda value: value * 2, "{}: half of the correct value", "double {}"),
+    Mistake(_ANY, 0.0, lambda value: -value, "the sign of {}"),
+    Mistake(_ANGLES, 6.3, radians, "the unit of {}: degrees, not radians"),
+    Mistake(_LENGTHS, LARGE, lambda value: value / 1000, "the unit of {}: millimetres, not metres"),
+    Mistake(_LENGTHS, LARGE, lambda value: value / 100, "the unit of {}: centimetres, not metres"),
+    Mistake(("1",), 1.1, lambda value: value / 255, "the range of {}: 0..255, not 0..1"),
+    Mistake(_LENGTHS, 0.0, lambda value: value / 2, "{}: twice the correct value"),
+    Mistake(_LENGTHS, 0.0, lambda value: value * 2, "{}: half of the correct value"),
 )
 
 
-def words_of_change(what: str, parts: Sequence[str], unit: str, old: Values, new: Values) -> tuple[str, str]:
-    """Return the mistake in numbers, and what to do; `what` has {} where the names of the wrong parts go."""
+def mistake_in(parts: Sequence[str], unit: str, old: Values, new: Values) -> str:
+    """Return what is wrong with numbers; {} stands for what has them."""
     if len(old) != len(new):
-        return what.format("the numbers"), f"set {what.format('the numbers')} to {format_numbers(new)}"
+        return "the numbers of {}"
     off = [index for index, pair in enumerate(zip(old, new, strict=True)) if not _is_same(*pair)]
-    wrong = (
-        what.format(enumerated([_with_article(parts[index]) for index in off]))
-        if len(off) < 4
-        else what.format("the numbers")
-    )
+    wrong = f"{enumerated([_with_article(parts[index]) for index in off]) if len(off) < 4 else 'the numbers'} of {{}}"
     for mistake in _MISTAKES:
         fits = (_is_same(mistake.correct(old[index]), new[index], 2e-3) for index in off)
         if (not mistake.units or unit in mistake.units) and off and all(fits):
-            return mistake.cause.format(wrong), mistake.action.format(wrong)
+            return mistake.cause.replace("{}", wrong)
     if len(off) == 2 and all(_is_same(old[one], new[other]) for one, other in (off, off[::-1])):
-        return f"{wrong} are exchanged", f"exchange {wrong}"
-    return wrong, (f"set {wrong} to {enumerated(list(dict.fromkeys(format_number(new[index]) for index in off)))}")
+        return f"{wrong} are exchanged"
+    return wrong
 
 
 def _with_article(part: str) -> str:

@@ -18,18 +18,15 @@ def undone_proposals(reading: Reading) -> Iterator[Proposal]:
         recovery = Recovery(reading.source.text)
         recovery.run()
         edits = tuple(reading.source.edit(*change) for change in recovery.changes if not recovery.is_lossy)
-        found.append(Proposal(edits, "the syntax of tags", "correct the tags"))
+        found.append(Proposal(edits, "the syntax of tags"))
     draft = Draft.of(reading)
     if draft is not None and reading.undone:
         edits = tuple(edit for word in reading.undone for edit in _of_word(draft, word))
-        several = "s" * (len(reading.undone) > 1)
-        found.append(
-            Proposal(edits, f"the spelling of {several and 'some '}word{several}", f"correct the word{several}")
-        )
+        found.append(Proposal(edits, "the spelling of a word" if len(reading.undone) == 1 else "the spelling of words"))
     yield from (it for it in found if it.edits)
     if len(found) > 1:
         edits = tuple(edit for it in found for edit in it.edits)
-        yield Proposal(edits, " and ".join(it.cause for it in found), " and ".join(it.action for it in found))
+        yield Proposal(edits, " and ".join(it.cause for it in found))
 
 
 def _of_word(draft: Draft, word: Word) -> Edits:

@@ -95,7 +95,7 @@ def _of_number(difference: RobotDifference, element: Element, name: str) -> Iter
             is_length = values_of(text)[0] > 0.0 > value and abs(value) != 1.0  # 1 and -1 are the sides
             if edits and value > least and not is_length:
                 cause = f"a number from which the {name} of {{}} is computed"
-                yield difference.piece(element, cause, f"correct {cause}", edits, rank=OWN)
+                yield difference.piece(element, cause, edits, rank=OWN)
 
 
 def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
@@ -110,4 +110,4 @@ def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
         metres = [(it, name, tuple(value / factor for value in values)) for it, name, values in found]
         sets = tuple(Set(it, "", name, format_numbers(values)) for it, name, values in metres)
         cause = f"the unit of all lengths: {unit}, not metres"
-        yield Piece(cause, "convert all lengths to metres", "", sets, (), OWN)
+        yield Piece(cause, "", sets, (), OWN)
