@@ -27,14 +27,18 @@ def missing_hints(
         return {}  # another robot, or one that is hardly begun
     _ = difference.pieces
     found: dict[str, FoundHint] = {}
-    for link in dict.fromkeys(part.link for part in difference.missing):
-        parts = [part for part in difference.missing if part.link == link]
+    left = sorted(difference.missing, key=lambda part: part.tag, reverse=True)  # links first, each with its joints
+    while left:
+        link, is_link = left[0].link, left[0].tag == "link"
+        parts = [part for part in left if part.link == link or (is_link and part.parent == link)]
+        left = [part for part in left if part not in parts]
         robots = [name for name in lost if name not in found and criteria[name].check.subject == "robot"]
         own = [name for name in robots if criteria[name].arguments.get("link") == link]
         names = own or [name for name in robots if link in texts_in(criteria[name].arguments)]
         if names:
             found[max(names, key=lambda name: lost[name])] = _hint(difference, parts)
-    joints = [part for part in difference.missing if difference.draft.robot.has_link(part.link)]
+    has_link = difference.draft.robot.has_link
+    joints = [part for part in difference.missing if has_link(part.link) and has_link(part.parent)]
     loading = [name for name in lost if criteria[name].check.subject == "urdf"]
     if loading and len(joints) == 1:
         return {name: hint for name, hint in found.items() if hint.proposal.link != joints[0].link} | {

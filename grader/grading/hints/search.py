@@ -69,12 +69,21 @@ class HintSearch:
                 for family in (self._of_reference, self._of_package, self._of_own, self._of_links, self._of_reference):
                     self._take(family)
                 self.is_complete = not self._is_cut
+        self.trials.left = max(self.trials.left, 1 + self.trials.submission.cost)  # for the last one
+        with self.trials.isolated():
+            self._verify()
         with self.trials.isolated():
             known = {name for found in self.found for name in found.gains} | self.missing.keys()
             lost = {name: points for name, points in costs_of(self.trials.results).items() if name not in known}
             is_readable = self._reading is not None and self._reading.root is not None
             self.missing |= missing_hints(self._difference, self._criteria, lost, is_readable=is_readable)
         return self
+
+    def _verify(self) -> None:
+        """Take no hint back only if all together hold where the submission is read from scratch."""
+        after = self.trials.graded(self.edits, list(self.results), whole=True) if self.found else self.results
+        if not after or any(is_worse(self.results[name], result) for name, result in after.items()):
+            self.found, self.results = [], self.trials.results
 
     @property
     def _lost(self) -> list[str]:
@@ -152,8 +161,8 @@ class HintSearch:
             link = above if above and not self._is_known(above) else None
 
     def _gains(self, before: Edits, edits: Edits, against: Results) -> dict[str, Decimal]:
-        """Return what edits gain, from scratch; nothing where a criterion is worse with them."""
-        after = self.trials.graded((*before, *edits), list(against), whole=True)
+        """Return what edits gain; nothing where a criterion is worse with them."""
+        after = self.trials.graded((*before, *edits), list(against))
         if not after or any(is_worse(against[name], result) for name, result in after.items()):
             return {}
         self._after = after
