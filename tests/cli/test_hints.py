@@ -200,7 +200,7 @@ def test_fix_of_a_folder_writes_one_file_under_its_path(tmp_path: Path) -> None:
     ]
 
 
-@pytest.mark.parametrize(("steps", "written"), [(0, False), (50, True)])
+@pytest.mark.parametrize(("steps", "written"), [(0, False), (26, True)])
 def test_a_search_that_is_cut_off_is_reported(
     steps: int, written: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -13,7 +13,7 @@ from grader.edits import Proposal
 from grader.grading.criterion import Criterion
 from grader.grading.hints.missing import missing_hints
 from grader.grading.hints.targets import links_of
-from grader.grading.hints.trials import FoundHint, NoTrialsLeft, Results, Trials, costs_of, gains_of, is_worse
+from grader.grading.hints.trials import FoundHint, NoTrialsLeft, Results, Trials, costs_of, gains_of
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.groups import whole_elements, whole_links
@@ -27,13 +27,13 @@ from grader.submission.urdf import Read
 if TYPE_CHECKING:
     from grader.package.package import Package
 
-_MAX_WAYS = 3  # of a piece in xacro
 _RESERVE = 20  # gradings for proofs
 
 
 class _Tried(NamedTuple):
     proposal: Proposal
     passes: frozenset[str]
+    is_alone: bool  # not after the edits of earlier hints
 
 
 class HintSearch:
@@ -43,7 +43,7 @@ class HintSearch:
         self, trials: Trials, reference: Draft | None, package: "Callable[[], Package | None]" = lambda: None
     ) -> None:
         """`reference` and `package` are the robot and the package of the rubric's reference solution."""
-        self.trials, self._reference, self._package = trials, reference, package
+        self.trials, self._package = trials, package
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
         urdf = trials.submission.urdf
         self._reading = urdf.loaded if isinstance(urdf, Read) else None
@@ -81,8 +81,7 @@ class HintSearch:
 
     def _verify(self) -> None:
         """Take no hint back only if all together hold where the submission is read from scratch."""
-        after = self.trials.graded(self.edits, list(self.results), whole=True) if self.found else self.results
-        if not after or any(is_worse(self.results[name], result) for name, result in after.items()):
+        if self.found and not self.trials.graded(self.edits, self.results, whole=True):
             self.found, self.results = [], self.trials.results
 
     @property
@@ -91,16 +90,16 @@ class HintSearch:
 
     def _take(self, family: Callable[[list[Criterion]], Iterable[Proposal]]) -> None:
         """Try the edits of a family, and take those that are proven, those that gain most first."""
-        lost = self._lost
+        lost, before = self._lost, self.edits
         tried: list[_Tried] = []
         with self.trials.isolated():
             for proposal in family([self._criteria[name] for name in lost]) if lost else ():
                 if self.trials.left < _RESERVE:
                     self._is_cut = True
                     break
-                results = self.trials.graded((*self.edits, *proposal.edits), lost)
+                results = self.trials.graded((*before, *proposal.edits), lost)
                 passes = frozenset(name for name, result in results.items() if result.outcome.status == "passed")
-                tried += [_Tried(proposal, passes)] * bool(passes)
+                tried += [_Tried(proposal, passes, before == ())] * bool(passes)
         while best := self._best(tried):
             if not self._prove(best, tried):
                 self._refused.add(best.proposal.edits)
@@ -117,15 +116,16 @@ class HintSearch:
     def _prove(self, best: _Tried, tried: Iterable[_Tried]) -> bool:
         """Add an edit if it gains the points alone, or after the edits before it, and loses nothing of theirs."""
         lost = set(self._lost)
-        alone = self._gains((), best.proposal.edits, self.trials.results)
         wanted = best.passes & lost
+        if best.is_alone:
+            alone = {name: self._criteria[name].points for name in best.passes}
+        else:
+            alone = self._gains((), best.proposal.edits, self.trials.results)
+        together = self._gains(self.edits, best.proposal.edits, self.results)
         is_late = not wanted & alone.keys()
-        gains = alone
-        if self.found:
-            together = self._gains(self.edits, best.proposal.edits, self.results)
-            gains = together if is_late else alone
-            if not together or not set(gains) <= {*together, *(it for found in self.found for it in found.gains)}:
-                return False
+        gains = alone if self.found and not is_late else together
+        if not together or not set(gains) <= {*together, *(it for found in self.found for it in found.gains)}:
+            return False
         if not wanted & gains.keys() or (
             best.proposal.rank not in (REFERENCE, STRUCTURE) and self._is_half(best.proposal.link)
         ):
@@ -162,10 +162,8 @@ class HintSearch:
 
     def _gains(self, before: Edits, edits: Edits, against: Results) -> dict[str, Decimal]:
         """Return what edits gain; nothing where a criterion is worse with them."""
-        after = self.trials.graded((*before, *edits), list(against))
-        if not after or any(is_worse(against[name], result) for name, result in after.items()):
-            return {}
-        self._after = after
+        after = self.trials.graded((*before, *edits), against)
+        self._after = after or self._after
         return gains_of(against, after)
 
     def _proposals(self, pieces: Iterable[Piece], links: Collection[str] | None = None) -> Iterator[Proposal]:
@@ -173,7 +171,7 @@ class HintSearch:
         assert self._draft is not None
         for piece in pieces:
             if links is None or piece.link in links or not self._is_known(piece.link):
-                for way, edits in enumerate(self._draft.ways(piece.sets)[:_MAX_WAYS]):
+                for way, edits in enumerate(self._draft.ways(piece.sets)):
                     if edits or piece.edits:
                         yield Proposal((*edits, *piece.edits), piece.cause, piece.link, piece.rank, way)
 
@@ -209,8 +207,7 @@ class HintSearch:
     def _of_own(self, lost: list[Criterion]) -> Iterator[Proposal]:
         """Yield the student's own numbers with another sign, order or unit."""
         if self._difference is not None:
-            robots = [criterion for criterion in lost if criterion.check.subject == "robot"]
-            links = self._links(robots) if robots else []
+            links = self._links([criterion for criterion in lost if criterion.check.subject == "robot"])
             yield from self._proposals(of_own(self._difference, links or ()))
 
     def _of_package(self, lost: list[Criterion]) -> Iterator[Proposal]:

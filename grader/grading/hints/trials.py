@@ -65,9 +65,10 @@ class Trials:
         except Exception as error:  # noqa: BLE001
             self.faults.append(type(error).__name__)
 
-    def graded(self, edits: Edits, wanted: Collection[str], *, whole: bool = False) -> Results:
+    def graded(self, edits: Edits, wanted: Collection[str] | Results, *, whole: bool = False) -> Results:
         """Return the results of criteria with edits, none where these do not fit, or ROS 2 would reject or drop more.
 
+        With the results that criteria had, there are none where one is worse now.
         `whole` reads the submission from scratch. Raises NoTrialsLeft.
         """
         self.left -= 1 + self.submission.cost
@@ -76,7 +77,13 @@ class Trials:
         edited = self._edited(edits, whole=whole)
         if edited is None or _has_new_problems(self.submission, edited):
             return {}
-        return {result.criterion.id: result for result in decide(self.rubric, edited, wanted)}
+        found: dict[str, Result] = {}
+        for result in decide(self.rubric, edited, wanted):
+            name = result.criterion.id
+            if isinstance(wanted, Mapping) and is_worse(wanted[name], result):
+                return {}  # at once: a shape in another one takes long to measure
+            found[name] = result
+        return found
 
     def _edited(self, edits: Edits, *, whole: bool) -> Submission | None:
         files = edited_files(self.submission, edits)

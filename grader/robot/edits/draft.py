@@ -16,11 +16,10 @@ from grader.edits import (
 from grader.robot.edits.elements import RobotElements, Set
 from grader.source import Edits
 from grader.xml.parsing import Element
-from grader.xml.tinyxml2.recovery import broken_tag
 from grader.xml.urdf_format import PARTS
 
 _ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
-_MAX_WAYS = 6
+_MAX_WAYS = 3
 
 
 class Draft(RobotElements):
@@ -87,7 +86,7 @@ class Draft(RobotElements):
             ways: list[Edits] = self._expanded.rewrites(attribute, wanted)
             return ways
         source, start = self.source.element(tag)
-        if broken_tag(source.text, start):
+        if self._broken_tag(source.text, start):
             return [edits] if (edits := self.add_attributes(element, {attribute: value})) else []
         return [(with_attribute(source, start, attribute, escaped(value)),)]
 
@@ -128,7 +127,7 @@ class Draft(RobotElements):
         """Return the edit that adds attributes to an element, or writes a broken tag with them."""
         source, start = self.source.element(self._tags[element])
         end = markup.name_end(source.text, start)
-        broken = broken_tag(source.text, start)
+        broken = self._broken_tag(source.text, start)
         if broken:
             given = {str(name): str(value) for name, value in element.attrib.items()}
             new = empty_element(str(element.tag), {**given, **values})
@@ -136,6 +135,13 @@ class Draft(RobotElements):
             return (source.edit(start, start + len(broken), new),) if broken.endswith(">") else ()
         added = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
         return (source.edit(start, end, f"{source.text[start:end]}{added}"),)
+
+    def _broken_tag(self, text: str, start: int) -> str:
+        if not self.is_broken:
+            return ""
+        from grader.xml.tinyxml2.recovery import broken_tag  # late: its patterns take long, and few files need them
+
+        return broken_tag(text, start)
 
     def insert(self, parent: Element, xml: str) -> Edits:
         """Return the edit that inserts an element as the first child of another one."""

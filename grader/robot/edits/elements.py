@@ -35,6 +35,7 @@ class RobotElements:
         self.root = root
         self.robot = robot
         self.source = source
+        self.is_broken = False  # whether tags in the text are broken
         self._elements = list(root.iter())
         self._tags = {element: tag for tag, element in enumerate(self._elements)}
         self._parents: dict[str, Joint] = parent_joints(robot)
@@ -44,7 +45,9 @@ class RobotElements:
         """Return the elements of a robot that could be read."""
         if reading.elements is None or reading.robot is None:
             return None
-        return cls(reading.elements, reading.robot, reading.source)
+        found = cls(reading.elements, reading.robot, reading.source)
+        found.is_broken = reading.root is None
+        return found
 
     def links(self) -> Iterator[Element]:
         """Yield the links."""

@@ -8,13 +8,14 @@ from grader.robot.edits.elements import Set
 from grader.robot.meant import Word
 from grader.robot.reader import Reading
 from grader.source import Edits
-from grader.xml.tinyxml2.recovery import Recovery
 
 
 def undone_proposals(reading: Reading) -> Iterator[Proposal]:
     """Yield the edits of the tags and of the words for which ROS 2 or xacro rejects a file, then of both together."""
     found: list[Proposal] = []
     if reading.verdict == "rejected" and not reading.undone:
+        from grader.xml.tinyxml2.recovery import Recovery  # late: its patterns take long
+
         recovery = Recovery(reading.source.text)
         recovery.run()
         edits = tuple(reading.source.edit(*change) for change in recovery.changes if not recovery.is_lossy)
