@@ -16,9 +16,13 @@ from grader.robot.edits.draft import Draft
 from grader.source import Edits, Location
 from grader.submission.editing import edited_files, with_files
 from grader.submission.submission import Submission
+from grader.text import enumerated
 
 if TYPE_CHECKING:
     from grader.package.package import Package
+
+
+_MAX_NAMED = 4
 
 
 class HintedReport(NamedTuple):
@@ -58,6 +62,10 @@ def hinted(report: Report, submission: Submission, level: HintLevel, *, keep_edi
             earlier = [entries[id(it)] for it in before]
             text = message(found, level, submission, earlier)
             hints[name] = _hint(found, text, entry, results[name], keeps_edits=keep_edits or level == "edit")
+    left = [name for name in costs if name not in hints and name in search.results and not search.results[name].is_lost]
+    for name in left if level == "edit" else ():
+        others = enumerated(list(dict.fromkeys(entries.values())), _MAX_NAMED)
+        hints[name] = Hint(f"Make the edits for {others}.", results[name].outcome.location or Location("", 1, 1), {})
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
     report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete or submission.is_costly)
     return HintedReport(report, search.edits, trials.faults)

@@ -118,7 +118,7 @@ class HintSearch:
         lost = set(self._lost)
         wanted = best.passes & lost
         if best.is_alone:
-            alone = {name: self._criteria[name].points for name in best.passes}
+            alone = {name: it.points for name, it in self._criteria.items() if name in best.passes}
         else:
             alone = self._gains((), best.proposal.edits, self.trials.results)
         together = self._gains(self.edits, best.proposal.edits, self.results)
@@ -135,7 +135,7 @@ class HintSearch:
         others = [it for it in tried if it.passes >= wanted and it.proposal.places.isdisjoint(best.proposal.places)]
         equal = [it for it in others if self._order(it, lost) == self._order(best, lost)]
         if equal and self._is_robot(best) and self._is_robot(equal[0]):
-            name = max(wanted, key=lambda name: self._criteria[name].points)
+            name = max((it for it in self._criteria if it in wanted), key=lambda name: self._criteria[name].points)
             self.missing[name] = FoundHint(best.proposal, {}, "one of several", alternative=equal[0].proposal)
             self._refused |= {it.proposal.edits for it in equal}
             return False

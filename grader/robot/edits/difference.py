@@ -9,10 +9,11 @@ from grader.difference import Node, Step, steps
 from grader.robot.edits.draft import Draft, escaped
 from grader.robot.edits.elements import Set, child_of, end_of
 from grader.robot.edits.nodes import node_of, translation, wanted_value
-from grader.robot.edits.pieces import ENDS, STRUCTURE, Piece, PieceMaker, normal, unique
+from grader.robot.edits.pieces import ENDS, SIBLING, STRUCTURE, Piece, PieceMaker, normal, unique
 from grader.xml.parsing import Element
-from grader.xml.urdf_format import CHILDREN
+from grader.xml.urdf_format import CHILDREN, TAGS, TagFormat
 
+_TAG = TagFormat()
 _MAX_LINKS = 400  # of a robot: more are not compared
 
 
@@ -92,9 +93,9 @@ class RobotDifference(PieceMaker):
         for step in found:
             own, like = step.own, step.like
             match step.verb:
-                case "rename":
-                    edits = self.draft.rename_attribute(own.of, step.name, step.other)
-                    yield self.piece(own.of, f"the name of the attribute {step.other} of {{}}", edits)
+                case "rename" | "unset" if new := step.other or TAGS.get(own.tag, _TAG).aliases.get(step.name, ""):
+                    edits = self.draft.rename_attribute(own.of, step.name, new) if new not in own.values else ()
+                    yield self.piece(own.of, f"the name of the attribute {new} of {{}}", edits, rank=SIBLING)
                 case "retag" if like is not None:
                     edits = self.draft.rename_tag(own.of, like.tag)
                     yield self.piece(own.of, f"the name of the tag <{like.tag}>", edits)
