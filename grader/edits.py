@@ -17,7 +17,7 @@ class Proposal(NamedTuple):
     """An edit that may undo a mistake, and what is wrong: "the sign of the roll of ...".
 
     `link` is the link that is moved or changed. The `rank` orders proposals: those of the reference come first. `way`
-    counts the ways to make the same change in xacro, the most plausible first.
+    counts the ways to make the same change in xacro, the most plausible first; `shared` are links of the same text.
     """
 
     edits: Edits
@@ -25,6 +25,7 @@ class Proposal(NamedTuple):
     link: str = ""
     rank: int = 0
     way: int = 0
+    shared: frozenset[str] = frozenset()
 
     @property
     def places(self) -> frozenset[tuple[str, int, int]]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.edits import Proposal
 from grader.grading.criterion import Criterion
 from grader.grading.hints.missing import missing_hints
-from grader.grading.hints.targets import links_of
+from grader.grading.hints.targets import leaves_others, links_of, own_chain
 from grader.grading.hints.trials import FoundHint, NoTrialsLeft, Results, Trials, costs_of, gains_of
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
@@ -126,9 +126,7 @@ class HintSearch:
         gains = alone if self.found and not is_late else together
         if not together or not set(gains) <= {*together, *(it for found in self.found for it in found.gains)}:
             return False
-        if not wanted & gains.keys() or (
-            best.proposal.rank not in (REFERENCE, STRUCTURE) and self._is_half(best.proposal.link)
-        ):
+        if not wanted & gains.keys() or (self._draft is not None and self._is_half(best)):
             return False
         known = {name for found in self.found for name in found.gains}
         gains = {name: points for name, points in gains.items() if name not in known} or gains
@@ -147,18 +145,15 @@ class HintSearch:
     def _is_robot(self, one: _Tried) -> bool:
         return all(edit.path.endswith((".urdf", ".xacro")) for edit in one.proposal.edits)
 
-    def _is_half(self, link: str) -> bool:
-        """Return whether criteria about a link still fail: then a number that the reference does not have is not it."""
-        lost = (self._criteria[name] for name, result in self._after.items() if result.is_lost)
-        return bool(link) and any(link in self._own_chain(criterion.arguments.get("link")) for criterion in lost)
-
-    def _own_chain(self, link: object) -> Iterator[str]:
-        """Yield the link of a criterion, and those above it that only the student's robot has."""
-        parents = {joint.child: joint.parent for joint in self._draft.robot.joints} if self._draft is not None else {}
-        while isinstance(link, str):
-            yield link
-            above = parents.pop(link, "")
-            link = above if above and not self._is_known(above) else None
+    def _is_half(self, best: _Tried) -> bool:
+        """Return whether an edit leaves what it should correct as well: in another call of a macro, or of its link."""
+        assert self._draft is not None
+        lost = [self._criteria[name] for name, result in self._after.items() if result.is_lost]
+        if leaves_others(best.proposal.shared, [self._criteria[name] for name in best.passes], lost):
+            return True
+        is_own = best.proposal.rank not in (REFERENCE, STRUCTURE) and bool(best.proposal.link)
+        chains = (own_chain(it.arguments.get("link"), self._draft.robot, self._is_known) for it in lost if is_own)
+        return any(best.proposal.link in chain for chain in chains)
 
     def _gains(self, before: Edits, edits: Edits, against: Results) -> dict[str, Decimal]:
         """Return what edits gain; nothing where a criterion is worse with them."""
@@ -171,9 +166,10 @@ class HintSearch:
         assert self._draft is not None
         for piece in pieces:
             if links is None or piece.link in links or not self._is_known(piece.link):
+                shared = self._draft.shared(piece.sets)
                 for way, edits in enumerate(self._draft.ways(piece.sets)):
                     if edits or piece.edits:
-                        yield Proposal((*edits, *piece.edits), piece.cause, piece.link, piece.rank, way)
+                        yield Proposal((*edits, *piece.edits), piece.cause, piece.link, piece.rank, way, shared)
 
     def _is_known(self, link: str) -> bool:
         """Return whether the reference has a link: another one may be any of them."""

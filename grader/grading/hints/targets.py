@@ -1,6 +1,6 @@
 """The links that a criterion depends on: those that its arguments name, and those on the chains between them."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Collection, Iterable, Iterator
 
 from grader.errors import MissingElement, NotDecided
 from grader.grading.criterion import Criterion
@@ -35,3 +35,18 @@ def selected(posed: Configuration, name: str) -> str:
         return selected_link(posed.robot, posed.parent_joints, name)
     except (MissingElement, NotDecided):
         return name
+
+
+def own_chain(link: object, robot: Robot, is_known: Callable[[str], bool]) -> Iterator[str]:
+    """Yield a link, and those above it that only the student's robot has."""
+    parents = {joint.child: joint.parent for joint in robot.joints}
+    while isinstance(link, str):
+        yield link
+        above = parents.pop(link, "")
+        link = above if above and not is_known(above) else None
+
+
+def leaves_others(shared: Collection[str], passing: Iterable[Criterion], lost: Collection[Criterion]) -> bool:
+    """Return whether a criterion that passes for one call of a macro still fails for another one."""
+    functions = {criterion.check.function for criterion in passing} if shared else set()
+    return any(it.check.function in functions and it.arguments.get("link") in shared for it in lost)

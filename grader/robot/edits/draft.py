@@ -48,6 +48,11 @@ class Draft(RobotElements):
         same: list[Element] = [self._elements[it] for it in (self._expanded.siblings(tag) if self._expanded else [])]
         return {it: one.value for it in same for one in sets if one.attribute == attribute and one.element is it}
 
+    def shared(self, sets: Iterable[Set]) -> frozenset[str]:
+        """Return the links whose elements come from the same text of xacro as those that are set."""
+        tags = [self._tags[one.element] for one in sets if one.element is not None] if self._expanded else []
+        return frozenset(self.link_of(self._elements[it]) for tag in tags for it in self._expanded.siblings(tag))
+
     def ways(self, sets: Collection[Set]) -> list[Edits]:
         """Return the ways to set values; attributes and elements that are missing are added."""
         found: list[Edits] = [()]
