@@ -42,7 +42,9 @@ def test_a_hint_without_room_is_described() -> None:
     short, whole = (
         render(report._replace(results=results), Format.TERMINAL, verbose=verbose) for verbose in (False, True)
     )
-    assert "Wrong: the sign of the roll. --verbose shows the edits. Also fixes right-wheel-axis, -1." in " ".join(short.split())
+    assert "Wrong: the sign of the roll. --verbose shows the edits. Also fixes right-wheel-axis, -1." in " ".join(
+        short.split()
+    )
     assert "part79" not in short
     assert "part79." in whole
     assert '    +      <origin xyz="-0.15 -0.2 0" rpy="-1.57 0 0" />\n' in whole

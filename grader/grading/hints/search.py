@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.edits import Proposal
 from grader.grading.criterion import Criterion
 from grader.grading.hints.missing import missing_hints
-from grader.grading.hints.targets import leaves_others, links_of, own_chain
+from grader.grading.hints.targets import is_another, leaves_others, links_of, own_chain
 from grader.grading.hints.trials import FoundHint, NoTrialsLeft, Results, Trials, costs_of, gains_of
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
@@ -48,7 +48,11 @@ class HintSearch:
         urdf = trials.submission.urdf
         self._reading = urdf.loaded if isinstance(urdf, Read) else None
         self._draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
-        both = self._draft is not None and (reference or self._draft)
+        both = (
+            self._draft is not None
+            and not is_another(self._draft.robot, trials.rubric.links)
+            and (reference or self._draft)
+        )
         self._difference = RobotDifference(self._draft, both) if self._draft is not None and both else None
         self.found: list[FoundHint] = []
         self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing, or two edits

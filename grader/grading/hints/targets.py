@@ -7,6 +7,7 @@ from grader.grading.criterion import Criterion
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
 from grader.robot.selectors import selected_link, texts_in
+from grader.submission.urdf import known_links
 
 _MAX_LINKS = 40
 
@@ -50,3 +51,8 @@ def leaves_others(shared: Collection[str], passing: Iterable[Criterion], lost: C
     """Return whether a criterion that passes for one call of a macro still fails for another one."""
     functions = {criterion.check.function for criterion in passing} if shared else set()
     return any(it.check.function in functions and it.arguments.get("link") in shared for it in lost)
+
+
+def is_another(robot: Robot, wanted: Collection[str]) -> bool:
+    """Return whether a robot has few links, and none of the lab's: no correction makes it the lab's robot."""
+    return 2 * len(robot.links) < len(wanted) and not known_links(robot, wanted)

@@ -6,6 +6,7 @@ from itertools import groupby
 from typing import NamedTuple
 
 from grader.difference import Node, Step, steps
+from grader.names import near
 from grader.robot.edits.draft import Draft, escaped
 from grader.robot.edits.elements import Set, child_of, end_of
 from grader.robot.edits.nodes import node_of, translation, wanted_value
@@ -137,6 +138,9 @@ class RobotDifference(PieceMaker):
     def _rename(self, element: Element, name: str) -> Iterator[Piece]:
         """Rename a link with all that names it, or alone; a joint; a material where it is used or defined."""
         tag, old = str(element.tag), element.get("name") or ""
+        is_begun = 2 * sum(map(self.draft.robot.has_link, self.names)) >= len(self.names)
+        if tag == "link" and not is_begun and old and near(old, [name], "link") is None:
+            return  # nothing shows that it is this one
         own = (Set(element, "", "name", name),)
         everywhere = rename_link(self.draft, old, name) if tag == "link" else own
         for sets in filter(None, dict.fromkeys((everywhere, own))):
