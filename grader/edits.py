@@ -1,34 +1,31 @@
-"""Edits of the text of a file: made for its elements, put together, and applied.
-
-What to edit is decided in `robot.edits`, `xacro.edits`, `package.edits` and `xml.syntax`; `submission.editing` applies
-edits to a submission.
-"""
+"""Edits of the text of a file: made for its elements, and applied; `submission.editing` applies them to files."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
+from math import isclose
 from os.path import commonprefix
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple
 
 from grader import markup
-from grader.source import Edit, Edits, Location, Source
+from grader.source import Edit, Edits, Source
 
-_SAME = 1e-5  # numbers that differ by less are the same
+_SAME = 1e-3  # relative: -1.57 is -pi/2
 _PIECE = re.compile(r"(\s*)(\S+)")
 
 
 class Proposal(NamedTuple):
-    """An edit that may undo a mistake: what is wrong ("the sign of the roll of ..."), and what to do ("negate ...").
+    """An edit that may undo a mistake, and what is wrong: "the sign of the roll of ...".
 
     `link` is the link that is moved or changed. The `rank` orders proposals: those of the reference come first. `way`
-    counts the ways to make the same change in xacro, the most plausible first.
+    counts the ways to make the same change in xacro, the most plausible first; `shared` are links of the same text.
     """
 
     edits: Edits
     cause: str
-    action: str
     link: str = ""
     rank: int = 0
     way: int = 0
+    shared: frozenset[str] = frozenset()
 
     @property
     def places(self) -> frozenset[tuple[str, int, int]]:
@@ -39,29 +36,6 @@ class Proposal(NamedTuple):
     def size(self) -> int:
         """How much text changes: the number of edits counts more than their length."""
         return sum(100 + _change_size(edit.old, edit.new) for edit in self.edits)
-
-
-@runtime_checkable
-class Expanded(Protocol):
-    """A source of xacro: its elements come from other texts, several perhaps from one in a macro."""
-
-    def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> list[Edits]:
-        """Return the ways to give an attribute (or, without a name, the text) of expanded elements other values.
-
-        `wanted` has the values that the reader sees and should see, by the indices of the elements.
-        """
-
-    def siblings(self, tag: int) -> list[int]:
-        """Return the indices of the elements that come from the same text as this one."""
-
-    def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
-        """Return the calls of the macro that an edit is in, each with the macro's name; nothing outside of macros."""
-
-    def adapted(self, tag: int, xml: str) -> str:
-        """Return the text of an element as it is inserted in or instead of the one with this index."""
-
-    def corrections(self, names: Sequence[str], numbers: Sequence[str]) -> list[Proposal]:
-        """Return edits that may correct what xacro refuses; `names` and `numbers` are those of a reference."""
 
 
 def _change_size(old: str, new: str) -> int:
@@ -138,9 +112,9 @@ def _merge_one(old: str, new: str) -> str:
         before, after = float(old), float(new)
     except ValueError:
         return new
-    if abs(before - after) < _SAME:
+    if isclose(before, after, rel_tol=_SAME, abs_tol=_SAME / 100):
         return old
-    if abs(before + after) < _SAME:
+    if isclose(before, -after, rel_tol=_SAME):
         return old.lstrip("-") if before < 0 else f"-{old.lstrip('+')}"
     return new
 
@@ -156,52 +130,6 @@ def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
         pieces += (text[position:start], edit.new)
         position = start + len(edit.old)
     return "".join((*pieces, text[position:]))
-
-
-def composed(text: str, path: str, first: Iterable[Edit], second: Iterable[Edit]) -> Edits:
-    """Return the edits of a text that do what `first` does, and then `second`, whose places are those after `first`.
-
-    An edit that touches an earlier one becomes one edit with it.
-    """
-    before, middle = Source(path, text), Source(path, edited(text, path, first) or "")
-    spans: list[_Span] = []
-    shift = 0
-    for start, edit in _offsets(before, first):
-        spans.append(_Span(start + shift, start + shift + len(edit.new), None, len(edit.new) - len(edit.old)))
-        shift += spans[-1].growth
-    spans += [_Span(start, start + len(edit.old), edit.new) for start, edit in _offsets(middle, second)]
-    shift = 0
-    found: list[Edit] = []
-    for group in _touching(spans):
-        low, high, growth = group[0].start, max(span.end for span in group), sum(span.growth for span in group)
-        new = middle.text[low:high]
-        for start, end, other, _ in reversed(group):
-            new = new if other is None else new[: start - low] + other + new[end - low :]
-        found.append(before.edit(low - shift, high - shift - growth, new))
-        shift += growth
-    return tuple(found)
-
-
-class _Span(NamedTuple):
-    """A part of the text after the first edits: `new` replaces it, or it is new itself and so much longer."""
-
-    start: int
-    end: int
-    new: str | None
-    growth: int = 0
-
-
-def _touching(spans: Iterable[_Span]) -> list[list[_Span]]:
-    """Return spans in groups: those that a later edit touches are together with it."""
-    groups: list[list[_Span]] = []
-    for span in sorted(spans, key=lambda span: span[:2]):
-        last = groups[-1] if groups else []
-        is_later = any(it.new is not None for it in (span, *last))
-        if is_later and any(it.end >= span.start for it in last):
-            last.append(span)
-        else:
-            groups.append([span])
-    return groups
 
 
 def _offsets(source: Source, edits: Iterable[Edit]) -> list[tuple[int, Edit]]:

@@ -27,8 +27,8 @@ class Location(NamedTuple):
 class Edit(NamedTuple):
     """A change of the text of one file: `old`, which stands at a place, becomes `new`, and nothing else changes.
 
-    Line and column count from 1, as in a Location. A file that does not exist is created with the text `new`. With
-    `renamed`, the file gets this path instead.
+    Line and column count from 1, as in a Location. With `renamed`, the file
+    gets this path instead.
     """
 
     path: str
@@ -41,14 +41,15 @@ class Edit(NamedTuple):
 
 Edits = tuple[Edit, ...]
 
-# How sure a proven edit is. "only": all other places that the search knows were tried, and no edit there is proven.
-# "one of several": a proven edit of another place gains as much, is as plausible and not larger. "preferred": the best
-# of those that were tried; others gain less, are less plausible or larger, or were not all tried.
-Certainty = Literal["only", "preferred", "one of several"]
+# How sure a proven edit is. "one of several": an edit of another place gains as much, is as plausible and not larger.
+# "preferred": the best of those that were tried.
+Certainty = Literal["preferred", "one of several"]
 
 
 class Source:
     """The text of one file, in which locations are computed on demand: most never are."""
+
+    is_expanded = False  # whether xacro made its elements of other texts
 
     def __init__(self, path: str, text: str, tags: list[int] | None = None) -> None:
         """`tags` holds the offset of each start tag in document order; without it the text must be well-formed XML."""

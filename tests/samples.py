@@ -84,5 +84,5 @@ REPORTED = (
         "empty-urdf",
     "rviz-not-installed", "zero-axis", "caster-misnamed", "folder-misspelt-in-setup", "joint-without-child",
         "package-misnamed",
-    "rviz-of-ros1", "sensors/gazebo-reference-misspelt", "raw-xacro",
+    "rviz-of-ros1", "sensors/gazebo-reference-misspelt", "raw-xacro", "equivalent-other-urdfs-nearby",
 )  # fmt: skip

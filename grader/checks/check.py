@@ -58,8 +58,7 @@ class About(NamedTuple):
     """What a check declares, in the table `ABOUT` of its module by the name of its function.
 
     `looks_at`: the files of a package (`setup.py`, `package.xml`, `launch`, `rviz`) on which the result depends,
-    where hints propose edits, or the tags of a URDF (`limit`, `visual/origin`, `joint@type`). `suggests`
-    ("module:function") yields edits where neither the reference nor the numbers that are measured lead to them.
+    where hints propose edits, or the tags of a URDF (`limit`, `visual/origin`, `joint@type`).
     `measure` ("module:function") yields what is true of a reference, as facts for a new rubric; `usual` are
     arguments for all of these, `unit` their unit in words. `breaks_under` are the equivalents of a robot under
     which a criterion with such arguments may fail. `picture` is what a failure shows of the reference: the outline
@@ -67,7 +66,6 @@ class About(NamedTuple):
     """
 
     looks_at: tuple[str, ...] = ()
-    suggests: str = ""
     measure: str = ""
     usual: Usual | None = None
     breaks_under: BreaksUnder = nothing

@@ -16,12 +16,9 @@ from grader.robot.shapes import Shape, is_empty
 from grader.robot.transforms import IDENTITY, Vector, minus
 from grader.text import counted
 
-_EDITS = "grader.robot.edits.bodies:body_pieces"
 ABOUT = {
-    "collision_matches_visual": About(
-        ("collision",), suggests=_EDITS, measure=f"{MEASURES}.bodies:collisions_as_shown", usual=METRES
-    ),
-    "collides_as": About(("collision",), suggests=_EDITS, measure=f"{MEASURES}.bodies:collisions", usual=METRES),
+    "collision_matches_visual": About(("collision",), measure=f"{MEASURES}.bodies:collisions_as_shown", usual=METRES),
+    "collides_as": About(("collision",), measure=f"{MEASURES}.bodies:collisions", usual=METRES),
 }
 
 _ZERO: Vector = (0.0, 0.0, 0.0)

@@ -89,6 +89,9 @@ def _colourless(link: str, visual: Visual) -> Outcome:
     if visual.material is not None:
         message = f"{link!r} is shown with a texture, which the grader does not open; needs manual grading"
         return pending(message, "textures are not opened")
+    if visual.has_unreadable_colour:
+        at = place(visual.location, None, "material")
+        return failed(f"{link!r} has no colour: ROS 2 cannot read that of its material {visual.material_name!r}", at)
     if visual.material_name:
         message = f"{link!r} has no colour: the material {visual.material_name!r} is not defined here"
         at = place(visual.location, "name", "material")

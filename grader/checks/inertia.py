@@ -25,11 +25,10 @@ from grader.robot.separation import penetration
 from grader.robot.shapes import Shape, UnknownShape, bounding_radius
 from grader.robot.transforms import IDENTITY, Transform, minus
 
-_EDITS = "grader.robot.edits.bodies:body_pieces"
 _KILOGRAMS, _PERCENT = Usual({"tolerance": 0.001}, "kilograms"), Usual({"tolerance": 2.0}, "percent")
 ABOUT = {
-    "mass_is": About(("mass", "inertial"), suggests=_EDITS, measure=f"{MEASURES}.bodies:masses", usual=_KILOGRAMS),
-    "inertia_plausible": About(("inertial",), suggests=_EDITS, measure=f"{MEASURES}.bodies:inertias", usual=_PERCENT),
+    "mass_is": About(("mass", "inertial"), measure=f"{MEASURES}.bodies:masses", usual=_KILOGRAMS),
+    "inertia_plausible": About(("inertial",), measure=f"{MEASURES}.bodies:inertias", usual=_PERCENT),
 }
 
 _SINGULAR = 1e-12  # of the largest principal moment: a smaller one is 0 but for rounding

@@ -61,7 +61,7 @@ class GradedSubmission:
             path=submission.path,
             sha256=submission.sha256,
             package=GradedPackage(package.folder, package.name) if package is not None else None,
-            other_candidates=submission.other_candidates,
+            other_candidates=tuple(it for it in submission.other_candidates if it.path not in submission.included),
             ignored=submission.ignored,
             has_urdf=submission.has_urdf,
             verdict=submission.verdict,

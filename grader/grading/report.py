@@ -38,17 +38,17 @@ class ManualComment(NamedTuple):
 class Hint(NamedTuple):
     """A change of the submission that was tried: with it the criteria in `gains` pass, and nothing that passed fails.
 
-    `message` says it in a sentence, and `at` is where it is. `edits` and `action` are empty where the rubric does not
-    want to show them. `action` is the change without names and lines of the submission: "negate the roll of the joint
-    of 'right_wheel'". `shown_by` is the criterion that shows the hint; the others that it fixes name that one.
-    `certainty` says whether other edits were proven.
+    `message` says it in a sentence, and `at` is where it is. `edits` and `cause` are empty where the rubric does not
+    want to show them. `cause` is what is wrong: "the sign of the roll of the joint origin of 'right_wheel'".
+    `shown_by` is the criterion that shows the hint; the others that it fixes name that one. `certainty` says whether
+    other edits were proven.
     """
 
     message: str
     at: Location
     gains: Mapping[str, Decimal]  # criteria with their points
     edits: Edits = ()
-    action: str = ""
+    cause: str = ""
     shown_by: str = ""
     certainty: Certainty = "preferred"
 

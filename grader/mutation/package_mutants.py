@@ -7,7 +7,6 @@ from itertools import chain
 from grader.mutation.elements import elements, text_span
 from grader.mutation.mutants import Mutant, MutantEdit, as_mutants, misspelt, mutants
 from grader.mutation.python_mutants import launch_changes, setup_changes
-from grader.package.edits.trees import line_span, scalar_span
 from grader.package.package import MANIFEST, SETUP, Package
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.source import Source
@@ -22,6 +21,13 @@ _BUILD_TYPES = ("ament_python", "ament_cmake")
 _XML_FAMILIES = ("attribute misspelt", "element deleted", "text misspelt", "name misspelt")
 _DISPLAY_TEXTS = (("Class",), ("Description Topic", "Value"), ("Topic", "Value"))
 
+_SCALAR = re.compile(
+    r"""
+      "[^"\n]*" | '[^'\n]*'
+    | [^\s#][^\n\r]*?(?=\s*(?:\r?\n|$|\s\#))    # base_link, of "Fixed Frame: base_link  # of the robot"
+    """,
+    re.VERBOSE,
+)
 Text = Callable[[str], str]  # returns the text of a file by its path in the submission
 
 
@@ -80,7 +86,7 @@ def _launch_yaml(path: str, label: str, text: str) -> Iterator[MutantEdit]:
     root, source = _yaml(path, text), Source(path, text)
     actions = root.get("launch") if root else None
     for number, item in enumerate(actions.items if actions else (), 1):
-        yield MutantEdit("action removed", f"{label} {number}", *line_span(source, item), "", tags=("launch",))
+        yield MutantEdit("action removed", f"{label} {number}", *_line_span(source, item), "", tags=("launch",))
         for scalar in _scalars(item):
             yield from _misspelt(source, label, scalar, ("launch",))
 
@@ -99,7 +105,7 @@ def _rviz(path: str, label: str, text: str, links: list[str]) -> Iterator[Mutant
     root, source, tags = _yaml(path, text), Source(path, text), ("rviz",)
     frame = root.get("Visualization Manager", "Global Options", "Fixed Frame") if root else None
     if frame is not None and frame.text:
-        start, end = scalar_span(source, frame)
+        start, end = _scalar_span(source, frame)
         yield MutantEdit("fixed frame", label, start, end, misspelt(frame.text), misspelt(frame.text), tags)
         yield from (
             MutantEdit("fixed frame", label, start, end, link, link, tags) for link in links if link != frame.text
@@ -108,10 +114,10 @@ def _rviz(path: str, label: str, text: str, links: list[str]) -> Iterator[Mutant
     for display in displays.items if displays else ():
         title = display.get("Name") or display.get("Class")
         place = f"{label} {title.text if title else ''}".rstrip()
-        yield MutantEdit("display deleted", place, *line_span(source, display), "", tags=tags)
+        yield MutantEdit("display deleted", place, *_line_span(source, display), "", tags=tags)
         enabled = display.get("Enabled")
         if enabled is not None and enabled.text == "true":
-            yield MutantEdit("display disabled", place, *scalar_span(source, enabled), "false", tags=tags)
+            yield MutantEdit("display disabled", place, *_scalar_span(source, enabled), "false", tags=tags)
         for keys in _DISPLAY_TEXTS:
             node = display.get(*keys)
             if node is not None and node.text:
@@ -119,7 +125,7 @@ def _rviz(path: str, label: str, text: str, links: list[str]) -> Iterator[Mutant
 
 
 def _misspelt(source: Source, label: str, node: YamlNode, tags: tuple[str, ...]) -> Iterator[MutantEdit]:
-    start, end = scalar_span(source, node)
+    start, end = _scalar_span(source, node)
     text = source.text[start:end].strip("'\"")
     if text:
         start = source.text.index(text, start)
@@ -141,3 +147,19 @@ def _scalars(node: YamlNode) -> Iterator[YamlNode]:
             yield from chain.from_iterable(map(_scalars, items))
         case dict(values):
             yield from chain.from_iterable(map(_scalars, values.values()))
+
+
+def _scalar_span(source: Source, node: YamlNode) -> tuple[int, int]:
+    """Return the offsets of the text of a value, with its quotes."""
+    start = source.offset(node.location.line, node.location.column)
+    found = _SCALAR.match(source.text, start)
+    return start, found.end() if found is not None else start
+
+
+def _line_span(source: Source, node: YamlNode) -> tuple[int, int]:
+    """Return the offsets of the lines of a mapping: up to the next line that is not as deep as its keys."""
+    number, last = node.location.line + 1, source.text.count("\n") + 1
+    indent = " " * (node.location.column - 1)
+    while number <= last and (not source.line(number).strip() or source.line(number).startswith(indent)):
+        number += 1
+    return source.offset(node.location.line, 1), source.offset(number, 1) if number <= last else len(source.text)

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from grader.grading.report import Report, Result
 from grader.report.console import block, excerpt_block, put, symbol, wrapped
-from grader.report.details import ASCII_SYMBOLS, STYLES, SYMBOLS, Details, hint_of, result_details, sentence
+from grader.report.details import ASCII_SYMBOLS, STYLES, SYMBOLS, Details, hint_of, result_details
 from grader.report.locations import diff_lines, location_text
 from grader.report.order import CriteriaGroup, FailedCriterion, earned_text, points_of, status_of
 from grader.text import printable
@@ -97,8 +97,6 @@ def _head(failure: FailedCriterion, details: Details, page: Page) -> Text:
     status = status_of(failure.result)
     text = Text.assemble(page.mark(status), " ", (printable(failure.id), "bold"))
     text.append(f"  {failure.cost}", STYLES[status])
-    if failure.skipped and page.is_tight:
-        text.append(f" with {len(failure.skipped)} skipped", "yellow")
     if details.location is not None:
         where = details.location._replace(calls=()) if page.is_tight else details.location
         text.append(f"  {location_text(where)}", "dim")
@@ -126,9 +124,9 @@ def _hint(failure: FailedCriterion, details: Details, page: Page) -> Iterator[Te
     if hint is None:
         return
     whole = block(page.console, Text(hint.message, "bold"), INDENT)
-    is_long = not page.is_verbose and hint.action and whole.plain.count("\n") + 1 >= _MAX_ROWS
+    is_long = not page.is_verbose and hint.cause and whole.plain.count("\n") + 1 >= _MAX_ROWS
     if is_long:
-        short = hint_of(failure, hint._replace(message=f"{sentence(hint.action)} --verbose shows the edits."))
+        short = hint_of(failure, hint._replace(message=f"Wrong: {hint.cause}. --verbose shows the edits."))
         whole = block(page.console, Text(short.message, "bold"), INDENT)
     yield whole
     for line in diff_lines(hint.edits, page.report.submission.source) if page.is_verbose else ():

@@ -84,8 +84,14 @@ class FailedCriterion(NamedTuple):
 
     @property
     def cost(self) -> str:
-        """The points that it costs: -6 points; of extra credit what was earned: 0/5 bonus."""
-        lost = f"{signed_points(-self.lost) if self.lost else '0'} point{'' if self.lost == 1 else 's'}"
+        """The points that it costs: -6 points; of extra credit what was earned: 0/5 bonus.
+
+        Those of what is skipped because of it are apart: -3 points, and 21 for what depends on it.
+        """
+        others = sum((other.criterion.maximum for other in self.skipped), Decimal(0))
+        own = self.lost - others
+        lost = f"{signed_points(-own) if own else '0'} point{'' if own == 1 else 's'}"
+        lost = f"{lost}, and {format_points(others)} for what depends on it" if others else lost
         if not self.result.criterion.bonus:
             return lost
         return earned_text(self.result) + (f", {lost}" if self.lost else "")

@@ -37,11 +37,14 @@ class Materials:
         else:
             self.known[name] = material or Material(name, location=problems.location(element))
 
-    def assign(self, element: Element, link: str) -> tuple[Material | None, str]:
-        """Return the material of a visual and its name: a defined one wins, otherwise the one in place is defined."""
+    def assign(self, element: Element, link: str) -> tuple[Material | None, str, bool]:
+        """Return the material of a visual, its name, and whether its colour cannot be read.
+
+        A defined one wins, otherwise the one in place is defined.
+        """
         name = element.get("name") or ""
         if not len(element) and name in self.known and name:
-            return self.known[name], name
+            return self.known[name], name, False
         fallback = "the definition above applies" if name in self.known else f"material {quoted(name)} stays undefined"
         own, reported = self._read(element, name, f"ROS 2 logs an error: {fallback}")
         found = self.known.get(name) if name else own
@@ -54,7 +57,7 @@ class Materials:
         elif (own.rgba, own.texture) != (found.rgba, found.texture):
             message = f"material {quoted(name)} is already defined differently; ROS 2 ignores this definition"
             self._problems.add(catalogue.REDEFINED_MATERIAL, message, element, "name")
-        return found, name
+        return found, name, found is None and reported
 
     def _read(self, element: Element, name: str, consequence: str) -> tuple[Material | None, bool]:
         """Return the material that an element defines, if it does, and whether its colour is reported as a problem."""

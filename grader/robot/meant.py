@@ -33,6 +33,7 @@ class AsMeant(NamedTuple):
 
     robot: Robot
     problems: list[Problem]
+    words: list[Word]
 
 
 def read_as_meant(root: Element, robot: Robot, read: Callable[[], tuple[Robot, Problems]]) -> AsMeant | None:
@@ -55,7 +56,7 @@ def read_as_meant(root: Element, robot: Robot, read: Callable[[], tuple[Robot, P
             robot, problems = read()
             if "rejects" not in problems.effects:
                 assumed = [problems.assumed(word.element, word.attribute, word.sentence) for word in undone]
-                return AsMeant(robot, [*problems.listed, *assumed])
+                return AsMeant(robot, [*problems.listed, *assumed], undone)
         return None
     finally:
         for element, tag, attributes in reversed(before):

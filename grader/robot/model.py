@@ -75,12 +75,13 @@ class Material(Guarded):
 
 
 class Visual(NamedTuple):
-    """One shape that a link shows. `material` is resolved; None if ROS 2 has no colour for it."""
+    """One shape that a link shows. `material` is resolved; None if ROS 2 has no colour for it, or cannot read it."""
 
     geometry: Geometry
     origin: Origin = _SAME_FRAME
     material: Material | None = None
     material_name: str = ""
+    has_unreadable_colour: bool = False
     location: LazyLocation | None = None
 
 

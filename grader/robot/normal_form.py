@@ -76,7 +76,7 @@ def _with_name(element: Link | Joint, kept: set[str]) -> tuple[Any, ...]:
 def _plain(value: Any, ignored: tuple[str, ...] = _NAMES) -> Any:
     """Return a value of the model as plain tuples; locations do not count, as in comparisons."""
     kind: Any = type(value)
-    if kind is str or value is None:  # most values
+    if kind in (str, bool) or value is None:  # most values
         return value
     if kind is float:
         return value + 0.0  # -0.0 is 0.0

@@ -4,7 +4,7 @@ import re
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from grader.problems import Effect, Problem, causes, in_order
 from grader.robot import catalogue
@@ -20,6 +20,9 @@ from grader.source import Source
 from grader.text import quoted
 from grader.xml.parsing import Element, Unresolved, XmlDocument, read_document
 
+if TYPE_CHECKING:
+    from grader.robot.meant import Word
+
 Verdict = Literal["clean", "degraded", "rejected"]
 
 _FATAL: frozenset[Effect] = frozenset({"rejects", "undetermined"})
@@ -31,7 +34,8 @@ class Reading(NamedTuple):
 
     `root` is the element that it was read from, None where the text is not XML; then it was read from `recovered`, if
     that is not None. `unresolved` has what xacro leaves open in it. If ROS 2 rejects the file, `is_meant` says whether
-    it would load the robot, which is read with the tags and words undone for which it rejects the file.
+    it would load the robot, which is read with the tags and words undone for which it rejects the file; `undone` are
+    these words.
     """
 
     verdict: Verdict
@@ -42,6 +46,7 @@ class Reading(NamedTuple):
     unresolved: Mapping[Element, Unresolved] = {}
     recovered: Element | None = None
     is_meant: bool = False
+    undone: "tuple[Word, ...]" = ()
 
     @property
     def elements(self) -> Element | None:
@@ -94,12 +99,13 @@ def _read_content(document: XmlDocument, root: Element) -> Reading:
     effects = {problem.kind.effect for problem in listed} | problems.effects
     found, incomplete = problems.listed, _incomplete(document, robot) if effects.intersection(_FATAL) else ""
     is_meant = document.is_meant and "rejects" not in problems.effects
+    undone: tuple[Word, ...] = ()
     if document.is_meant and not is_meant and not incomplete:
         from grader.robot.meant import read_as_meant  # late: few files are rejected
 
         meant = read_as_meant(root, robot, partial(_read_robot, document, root))
         if meant is not None:
-            is_meant, robot = True, meant.robot
+            is_meant, robot, undone = True, meant.robot, tuple(meant.words)
             found = [*causes(found), *meant.problems]
     if document.root is None:
         broken = {problem.location.line for problem in listed}
@@ -112,7 +118,7 @@ def _read_content(document: XmlDocument, root: Element) -> Reading:
     if verdict == "rejected":
         robot = replace(robot, rejected=not is_meant or "undetermined" in effects, incomplete=incomplete)
     places = (document.source, document.root, document.unresolved, document.recovered)
-    return Reading(verdict, robot, in_order(listed), *places, is_meant)
+    return Reading(verdict, robot, in_order(listed), *places, is_meant, undone)
 
 
 def _verdict(effects: Collection[Effect]) -> Verdict:

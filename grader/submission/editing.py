@@ -46,11 +46,6 @@ def content(submission: Submission, path: str) -> bytes | None:
         return None
 
 
-def creates(submission: Submission, edit: Edit) -> bool:
-    """Return whether an edit creates a file, which may be empty."""
-    return edit.path != submission.path and edit.path not in submission.whole_tree.files
-
-
 def with_urdf(submission: Submission, files: Files) -> Submission:
     """Return a submission with only the URDF read again: for edits of the URDF and of xacro that it includes."""
     urdf = submission.urdf

@@ -20,7 +20,7 @@ def raw_xacro_proposals(submission: Submission) -> Iterator[Proposal]:
     for path in submission.package.launch_files if submission.package is not None else ():
         source = submission.source(submission.package.path(path)) if submission.package is not None else None
         for edits in with_xacro(source) if source is not None else ():
-            yield Proposal(edits, _CAUSE, "run xacro on the URDF")
+            yield Proposal(edits, _CAUSE)
     folder, slash, name = urdf.path.rpartition("/")
     renamed = f"{folder}{slash}{name.removesuffix('.urdf')}.urdf.xacro"
-    yield Proposal((Edit(urdf.path, 1, 1, "", "", renamed),), _CAUSE, "rename the URDF to *.urdf.xacro")
+    yield Proposal((Edit(urdf.path, 1, 1, "", "", renamed),), _CAUSE)

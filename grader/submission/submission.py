@@ -1,6 +1,6 @@
 """A submission: its files, and which URDF and which package of it are graded."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -144,6 +144,12 @@ class Submission:
     def unread(self) -> str:
         """The reason why the URDF could not be read; empty if it was, or if there is none."""
         return self.urdf.reason if isinstance(self.urdf, Unreadable) else ""
+
+    @property
+    def included(self) -> Collection[str]:
+        """The files that the URDF is expanded from, itself among them."""
+        source = self.urdf.reading.source if isinstance(self.urdf, Read) else None
+        return getattr(source, "documents", ())
 
     @property
     def verdict(self) -> Verdict | None:

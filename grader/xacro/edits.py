@@ -1,144 +1,189 @@
 """The ways to give expanded elements other values: edits of the xacro texts that they come from.
 
-A text in a macro is used by each call, in its own scope, and one change of it must give each use what it should be. The
-texts are the attribute itself, and those that define the names in it. Their changes are tried, not derived: small
-variants of an expression, and other numbers, which are solved for.
+A value is changed where it is defined, if a name alone gives it: in a property, in the argument of a macro call, in the
+default of an argument, in a YAML file. Else it is replaced where it is used. Nothing inside an expression is changed.
 """
 
-from collections.abc import Iterator, Sequence
-from itertools import islice, product
+import re
+from collections.abc import Callable, Iterator, Sequence
+
+import yaml
 
 from grader import markup
 from grader.edits import merged, with_attribute
-from grader.source import Edit, Edits
-from grader.xacro.candidates import ARGUMENT, EXPRESSION, NAME, TOKEN, Candidates, is_equal_value, near
+from grader.source import Edits, Source
 from grader.xacro.scopes import Definition, ScopePlace, XacroScope
-from grader.xacro.texts import PIECE, Texts
+from grader.xacro.texts import Texts
 from grader.xacro.written import TextChange, Use, Written, definition_text, edits_of, find_text
 
-_MAX_WAYS = 8
-_MAX_SITES = 10  # texts that one value is computed from
-_MAX_CHOICES = 3  # for each number, where several change
-_MAX_USES = 12
-
-Way = tuple[TextChange, ...]
+_TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
+_EXPRESSION = re.compile(r"\$\{([^}]*)\}")
+_NAME = re.compile(r"(?<![\w.'\"])[^\W\d]\w*(?![\w(])")
+_NUMBER = re.compile(r"\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*")
+# The one expression of a text that is a name, perhaps with a minus, or a value of a YAML file: config['wheel']['mass'].
+_ALONE = re.compile(
+    r"""(?P<before>[^$]*)
+    (?: \$\{\s*(?P<sign>-?)\s*(?P<name>[^\W\d]\w*)(?P<keys>(?:\[\s*'[^']*'\s*\]|\[\s*"[^"]*"\s*\]|\.[^\W\d]\w*)*)\s*\}
+      | \$\(\s*arg\s+(?P<argument>[^\s()]+)\s*\) )
+    (?P<after>[^$]*)""",
+    re.VERBOSE,
+)
+_KEY = re.compile(r"\[\s*'([^']*)'\s*\]|\[\s*\"([^\"]*)\"\s*\]|\.([^\W\d]\w*)")
+_LOADED = re.compile(r"\$\{\s*(?:xacro\.)?load_yaml\(")
+_MAX_DEPTH = 4  # definitions that lead to one another
+_MAX_DEFINITIONS = 12
 
 
 class Rewriter:
-    """Makes the edits of one expanded document."""
+    """Makes the edits of one expanded document. `yaml_file` returns the only YAML file that a name was loaded from."""
 
-    def __init__(self, texts: Texts) -> None:
-        self._texts = texts
-        self._candidates = Candidates(texts)
+    def __init__(self, texts: Texts, yaml_file: Callable[[str], Source | None]) -> None:
+        self._texts, self._yaml_file = texts, yaml_file
 
     def ways(self, place: ScopePlace, attribute: str, uses: Sequence[Use]) -> list[Edits]:
-        """Return the ways to change an attribute (or, without a name, the text) for its uses, the most plausible first.
-
-        Those with which all uses get what they should be come first, then those for the changed ones.
-        """
+        """Return the ways to change an attribute (or, without a name, the text) for its uses, the best first."""
         text = find_text(place, attribute, uses[0].scope)
-        changed = [use for use in uses if not is_equal_value(use.old, use.new)]
-        found: list[Edits] = []
-        for several in dict.fromkeys((tuple(uses), tuple(changed))) if changed else ():
-            if text is not None:
-                ways = sorted(islice(self._ways(text, several[:_MAX_USES]), 60), key=lambda way: way[0])
-                found += [edits for _, way in ways if (edits := edits_of(way)) is not None]
-                found += self._at_calls(text, several) if not found else []
-        if attribute and len({use.new for use in changed}) == 1:
-            source, start = place.source.element(place.tag)
-            current = markup.attribute(source.text, start, attribute)
-            raw = source.text[current.value_start : current.value_end] if current is not None else ""
-            found.insert(_MAX_WAYS - 1, (with_attribute(source, start, attribute, merged(raw, changed[0].new)),))
-        return list(dict.fromkeys(found))[:_MAX_WAYS]
+        changed = [use for use in uses if use.old != use.new]
+        if text is None or not changed:
+            return []
+        found: list[TextChange] = []
+        has_definition = False
+        for use in changed if "$" in text.text else ():
+            for part, old, new in _parts(text, use):
+                changes = self._definitions(part, use.scope, old, new)
+                has_definition |= bool(changes)
+                found += changes or [TextChange(part, new)]
+        by_place = {change.written[:3]: change for change in found}
+        is_one = all(by_place[change.written[:3]].new == change.new for change in found)
+        edits = edits_of(by_place.values()) if has_definition and is_one else None
+        return [*filter(None, [edits]), *self._literal(text, changed)]
 
-    def _ways(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
-        """Yield the changes with which a text is what its uses need, each with its rank."""
-        values = [self._candidates.value(text.text, use.scope) for use in uses]
-        if any(
-            value is not None and not is_equal_value(value, use.old) for value, use in zip(values, uses, strict=True)
-        ):
-            return  # a name has another value by now
-        yield from self._changes(text, uses)
-        if None not in values:
-            yield from self._of_parts(text, uses)
+    def _literal(self, text: Written, changed: Sequence[Use]) -> list[Edits]:
+        """Return the edit that writes a value where it is used; none where uses differ, or a YAML file gives it."""
+        around = {_around(text, use) for use in changed}
+        if len(around) == 1 and "" not in around:
+            edits = edits_of([TextChange(text, around.pop())])
+            return [edits] if edits else []
+        if len({use.new for use in changed}) != 1 or any(_LOADED.match(it.text) for it in self.definitions(text)):
+            return []
+        parts = _parts(text, changed[0])
+        if len(parts) == 2 and parts[0][1:] == parts[1][:0:-1]:  # two expressions are exchanged
+            edits = edits_of([TextChange(parts[0][0], parts[1][0].text), TextChange(parts[1][0], parts[0][0].text)])
+        else:
+            written, _, new = parts[0] if len(parts) == 1 else (text, "", changed[0].new)
+            edits = edits_of([TextChange(written, new if "$" in written.text else merged(written.text, new))])
+        return [edits] if edits else []
 
-    def _of_parts(self, text: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
-        """Yield changes of the wrong parts of a text: of the numbers of a list, or of what is around one part."""
-        tokens = [text.part(*found.span()) for found in TOKEN.finditer(text.text)]
-        words = [(use.old.split(), use.new.split()) for use in uses]
-        if len(tokens) > 1 and all(len(tokens) == len(old) == len(new) for old, new in words):
-            each = [
-                [use._replace(old=old[index], new=new[index]) for use, (old, new) in zip(uses, words, strict=True)]
-                for index in range(len(tokens))
-            ]
-            yield from self._of_tokens(tokens, each)
-        pieces = [text.part(*found.span()) for found in PIECE.finditer(text.text)]
-        values = [[self._candidates.value(piece.text, use.scope) or "" for piece in pieces] for use in uses]
-        for index, piece in enumerate(pieces if len(pieces) > 1 else ()):
-            middles = [_middle(use, found, index) for use, found in zip(uses, values, strict=True)]
-            if None not in middles:
-                yield from ((rank + 1, way) for rank, way in self._changes(piece, [*filter(None, middles)]))
+    def _definitions(
+        self, text: Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
+    ) -> list[TextChange]:
+        """Return the changes of what defines the one name in a text, with which the text has another value."""
+        found = _ALONE.fullmatch(text.text)
+        before, after = (found["before"], found["after"]) if found else ("", "")
+        is_inside = new.startswith(before) and new.endswith(after) and len(new) > len(before) + len(after)
+        if found is None or not depth or not is_inside:
+            return []
+        inner, was = (it[len(before) : len(it) - len(after)] for it in (new, old))
+        if found["sign"]:
+            inner, was = (it[1:] if it.startswith("-") else f"-{it}" for it in (inner, was))
+        name = found["argument"]
+        definition = self._texts.defaults.get(name) if name else self._of_name(found["name"], scope)
+        own = definition_text(definition) if definition is not None else None
+        if definition is None or own is None:
+            return []
+        if found["keys"]:
+            file = self._yaml_file(definition.text) if _LOADED.match(definition.text) else None
+            keys = [a or b or c for a, b, c in _KEY.findall(found["keys"])]
+            return _in_yaml(file, keys, inner, scope) if file is not None else []
+        if "$" in own.text:
+            parts = _parts(own, Use(definition.scope, was, inner))
+            changes = [self._definitions(part, definition.scope, a, b, depth - 1) for part, a, b in parts]
+            return [change for several in changes for change in several] if all(changes) else []
+        is_quoted = own.text[:1] == "'" == own.text[-1:]
+        return [TextChange(own, f"'{inner}'" if is_quoted else merged(own.text, inner))]
 
-    def _of_tokens(self, tokens: Sequence[Written], uses: Sequence[Sequence[Use]]) -> Iterator[tuple[int, Way]]:
-        """Yield changes of all tokens that are wrong, together."""
-        wrong: list[list[tuple[int, Way]]] = []
-        for token, own in zip(tokens, uses, strict=True):
-            if not all(is_equal_value(use.old, use.new) for use in own):
-                ways = sorted(islice(self._changes(token, own), 40), key=lambda way: way[0])
-                wrong.append(ways[: _MAX_CHOICES if wrong else _MAX_WAYS])
-        for parts in islice(product(*wrong), 4 * _MAX_WAYS):
-            yield sum(rank for rank, _ in parts), tuple(change for _, way in parts for change in way)
+    def _of_name(self, name: str, scope: XacroScope) -> Definition | None:
+        holder = scope.holder(name)
+        return holder.properties[name].definition if holder is not None else None
 
-    def _changes(self, root: Written, uses: Sequence[Use]) -> Iterator[tuple[int, Way]]:
-        """Yield the changes of one text with which another one, that is computed from it, is what its uses need."""
-        changed = [use.scope for use in uses if not is_equal_value(use.old, use.new)] or [uses[0].scope]
-        sites = {site.key: (rank, site) for scope in changed for rank, site in self._sites(root, scope)}
-        for first, site in sites.values():
-            for rank, other in self._candidates.of(site, root, uses):
-                yield rank + first, (TextChange(site, other),)
+    def definitions(self, text: Written) -> list[Written]:
+        """Return the texts with which the names in a text are defined, also by way of others."""
+        found: dict[object, Written] = {}
+        waiting = [text]
+        while waiting and len(found) < _MAX_DEFINITIONS:
+            one = waiting.pop(0)
+            for definition in self._named(one):
+                own = definition_text(definition)
+                if own is not None and definition.key not in found:
+                    found[definition.key] = own._replace(scope=definition.scope)
+                    waiting.append(found[definition.key])
+        return list(found.values())
 
-    def _at_calls(self, text: Written, uses: Sequence[Use]) -> list[Edits]:
-        """Return the edits that give calls of a macro a value of their own, where they have the default."""
-        defaults = [it for it in self._definitions(text, uses[0].scope) if it.attribute == "params"]
-        edits: list[Edit] = []
-        for use in uses:
-            if not is_equal_value(use.old, use.new) and use.calls:
-                for definition in defaults:
-                    for value in (use.new, f"'{use.new}'"):
-                        if near(self._candidates.value(text.text, use.scope, {definition.key: value}), use.new):
-                            source, start = use.calls[-1][1].source.element(use.calls[-1][1].tag)
-                            edits.append(with_attribute(source, start, definition.name, value))
-                            break
-        return [tuple(dict.fromkeys(edits))] if edits else []
+    def _named(self, text: Written) -> Iterator[Definition]:
+        for expression in _EXPRESSION.findall(text.text):
+            yield from filter(None, (self._of_name(name, text.scope) for name in _NAME.findall(expression)))
+        for argument in re.findall(r"\$\(\s*arg\s+([^\s()]+)\s*\)", text.text):
+            if argument in self._texts.defaults:
+                yield self._texts.defaults[argument]
 
-    def _sites(self, root: Written, scope: XacroScope) -> list[tuple[int, Written]]:
-        """Return the texts that a text is computed from, itself the first, each with its rank."""
-        sites = {root.key: (0, root._replace(scope=scope))}
-        pending = [root._replace(scope=scope)]
-        while pending and len(sites) < _MAX_SITES:
-            for definition in self._definitions(pending[0], pending.pop(0).scope):
-                text = definition_text(definition)
-                if text is not None and definition.key not in sites:
-                    is_given = definition.attribute not in ("params", "value", "default")
-                    sites[definition.key] = (0 if is_given else 2, text)
-                    pending.append(text)
-        return list(sites.values())
-
-    def _definitions(self, text: Written, scope: XacroScope) -> Iterator[Definition]:
-        """Yield where the names in the expressions of a text are defined."""
-        for expression in EXPRESSION.findall(text.text):
-            for name in NAME.findall(expression):
-                holder = scope.holder(name)
-                definition = holder.properties[name].definition if holder is not None else None
-                if definition is not None:
-                    yield definition
-        defaults = self._texts.defaults
-        yield from (defaults[name] for name in ARGUMENT.findall(text.text) if name in defaults)
+    def numbers(self, place: ScopePlace, attribute: str, scope: XacroScope) -> list[Written]:
+        """Return the texts that define numbers from which an attribute is computed."""
+        text = find_text(place, attribute, scope)
+        return [it for it in self.definitions(text) if _NUMBER.fullmatch(it.text)] if text is not None else []
 
 
-def _middle(use: Use, values: Sequence[str], index: int) -> Use | None:
-    """Return what one part of a text is and should be, if the others stay."""
-    before, after = "".join(values[:index]), "".join(values[index + 1 :])
-    middle = use.new[len(before) : len(use.new) - len(after)]
-    is_alone = "".join(values) == use.old and f"{before}{middle}{after}" == use.new
-    return use._replace(old=values[index], new=middle) if is_alone else None
+def _parts(text: Written, use: Use) -> list[tuple[Written, str, str]]:
+    """Return the parts of a text that should be others, each with what it is and should be: words, or the whole."""
+    tokens = [text.part(*found.span()) for found in _TOKEN.finditer(text.text)]
+    old, new = use.old.split(), use.new.split()
+    if len(tokens) != len(old) or len(old) != len(new) or len(tokens) < 2:
+        return [(text, use.old, use.new)]
+    return [part for part in zip(tokens, old, new, strict=True) if not is_equal(*part[1:])]
+
+
+def _around(text: Written, use: Use) -> str:
+    """Return a text with another one around its only expression, whose value stays: ${side}_joint; empty if it goes."""
+    found = _ALONE.fullmatch(text.text)
+    if found is None or not (found["before"] or found["after"]):
+        return ""
+    value = use.old[len(found["before"]) : len(use.old) - len(found["after"])]
+    expression = text.text[len(found["before"]) : len(text.text) - len(found["after"])]
+    return use.new.replace(value, expression) if value.isidentifier() and use.new.count(value) == 1 else ""
+
+
+def is_equal(one: str, other: str) -> bool:
+    """Return whether two texts are equal, or are the same number."""
+    try:
+        return one == other or abs(float(one) - float(other)) < 1e-9
+    except ValueError:
+        return False
+
+
+def _in_yaml(file: Source, keys: Sequence[str], new: str, scope: XacroScope) -> list[TextChange]:
+    """Return the change of the scalar at a path of keys in a YAML file."""
+    try:
+        node = yaml.compose(file.text, Loader=yaml.SafeLoader)
+    except (yaml.YAMLError, RecursionError):
+        return []
+    for key in keys:
+        pairs = node.value if isinstance(node, yaml.MappingNode) else []
+        node = next((value for name, value in pairs if name.value == key), None)
+    if not isinstance(node, yaml.ScalarNode) or node.style:
+        return []
+    start, end = node.start_mark.index, node.end_mark.index
+    written = Written(file, start, file.text[start:end], scope, (start, end))
+    return [TextChange(written, new)]
+
+
+def conditions(source: Source, known: Sequence[str], near: Callable[[str, Sequence[str]], str | None]) -> list[Edits]:
+    """Return the edits that correct a text in quotes in the condition of an <xacro:if> or <xacro:unless>: 'rigth'."""
+    found: list[Edits] = []
+    for tag in re.finditer(r"<xacro:(?:if|unless)\b", source.text):
+        value = markup.attribute(source.text, tag.start(), "value")
+        text = source.text[value.value_start : value.value_end] if value is not None else ""
+        for word in re.findall(r"'(\w+)'|\"(\w+)\"", text):
+            meant = near(word[0] or word[1], known) if (word[0] or word[1]) not in known else None
+            if value is not None and meant is not None:
+                new = re.sub(rf"\b{word[0] or word[1]}\b", meant, text)
+                found.append((with_attribute(source, tag.start(), "value", new),))
+    return found

@@ -1,14 +1,13 @@
 """The source of an expanded xacro file: where each element comes from, and the edits of what it comes from."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from grader.markup import element_end
 from grader.source import Edit, Edits, Location, Source
 from grader.xacro.expander import Expander
 from grader.xacro.nodes import XacroNode
-from grader.xacro.scopes import XacroScope
+from grader.xacro.scopes import ScopePlace, XacroScope
 
 if TYPE_CHECKING:
     from grader.edits import Proposal
@@ -19,6 +18,8 @@ _READING_OF_SHORT = 1_500  # parts
 
 class ExpandedSource(Source):
     """The text of a xacro file; its start tags are the expanded elements. Methods that make edits import them late."""
+
+    is_expanded = True
 
     def __init__(self, source: Source, nodes: list[XacroNode], expander: Expander, work: int) -> None:
         super().__init__(source.path, source.text)
@@ -62,20 +63,31 @@ class ExpandedSource(Source):
 
     def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> list[Edits]:
         """Return the ways to give an attribute (or, without a name, the text) of elements of one place other values."""
-        first = self._nodes[next(iter(wanted))]
-        moved = first.moved.get(attribute)
         from grader.xacro.written import Use
 
-        if moved is not None:
-            old, new = next(iter(wanted.values()))
-            return self._rewriter.ways(moved, "value", [Use(moved.scope or XacroScope(), old, new)])
+        place, name, scope = self._place(next(iter(wanted)), attribute)
         uses = []
         for tag in self.siblings(next(iter(wanted))):
             node = self._nodes[tag]
             text = node.attributes.get(attribute, "") if attribute else "".join(map(str, node.children)).strip()
-            old, new = wanted.get(tag, (text, text))
-            uses.append(Use(node.place.scope or XacroScope(), old, new, node.place.calls or ()))
-        return self._rewriter.ways(first.place, attribute, uses)
+            uses.append(Use(node.place.scope or scope, *wanted.get(tag, (text, text))))
+        return self._rewriter.ways(place, name, uses)
+
+    def _place(self, tag: int, attribute: str) -> tuple[ScopePlace, str, XacroScope]:
+        """Return where an attribute is written: in the element, or in an <xacro:attribute>."""
+        node = self._nodes[tag]
+        moved = node.moved.get(attribute)
+        place = moved or node.place
+        return place, "value" if moved else attribute, place.scope or XacroScope()
+
+    def numbers(self, tag: int, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
+        """Return the numbers from which an attribute is computed, each with what makes the edit of its definition."""
+        from grader.xacro.written import TextChange, Written, edits_of
+
+        def changing(written: Written) -> Callable[[str], Edits]:
+            return lambda new: edits_of([TextChange(written, new)]) or ()
+
+        return [(it.text.strip(), changing(it)) for it in self._rewriter.numbers(*self._place(tag, attribute))]
 
     def siblings(self, tag: int) -> list[int]:
         """Return the indices of the expanded elements that come from the same place of the source."""
@@ -89,35 +101,36 @@ class ExpandedSource(Source):
             found.setdefault((node.place.source.path, node.place.tag), []).append(index)
         return found
 
-    def corrections(self, names: Sequence[str], numbers: Sequence[str]) -> "list[Proposal]":
-        """Return edits that may correct XML that is not well-formed, undefined names, and calls of macros."""
-        from grader.xacro.corrections import Corrector, Refusal, well_formed
+    def corrections(self, names: Sequence[str]) -> "list[Proposal]":
+        """Return edits that may correct undeclared and undefined names, calls of macros, and conditions.
 
-        refusals = [Refusal(*refused) for refused in self._expander.refused]
-        corrector = Corrector(self.documents, self._expander.uses, self._expander.files.others)
-        found = (*well_formed(Source(self.path, self.text)), *corrector.corrections(refusals, names, numbers))
+        `names` are those that the reference has.
+        """
+        from grader.edits import Proposal
+        from grader.names import near
+        from grader.xacro.corrections import corrections
+        from grader.xacro.edits import conditions
+
+        found = [*corrections(Source(self.path, self.text), self.documents, self._expander.refused)]
+        words = {word for name in names for word in name.split("_")}
+        given = sorted(words)
+        for document in self.documents.values():
+            edited = conditions(document.place.source, given, near)
+            found += [Proposal(edits, "a text in a condition") for edits in edited]
         return list({correction.edits: correction for correction in reversed(found)}.values())[::-1]
 
-    def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
-        """Return the calls of the macro that an edit is in, each with the macro's name; nothing outside of macros."""
-        found: tuple[int, tuple[tuple[str, Location], ...]] = (-1, ())
-        for name, body, calls in self._expander.uses.values():
-            source, start = body.source.element(body.tag)
-            if source.path == edit.path and start <= source.offset(edit.line, edit.column) < element_end(
-                source.text, start
-            ):
-                found = max(found, (start, tuple((name, call.at()) for call in calls.values())), key=lambda it: it[0])
-        return found[1]
-
-    def adapted(self, tag: int, xml: str) -> str:
-        """Return the text of an element inserted in the one with this index: in a macro, with parameters in names."""
-        from grader.xacro.written import with_parameters
-
-        scope = self._nodes[tag].place.scope
-        return with_parameters(xml, scope) if scope is not None else xml
+    def calls(self, edit: Edit) -> dict[str, list[Location]]:
+        """Return the calls of the macros that an edit is in, by their names."""
+        found: dict[str, dict[Location, None]] = {}
+        for node in self._nodes if edit.old else ():
+            place = node.place.at(next((it for it in node.attributes if it and edit.old.startswith(f"{it}=")), None))
+            if node.place.calls and place[:3] == edit[:3]:
+                name, call = node.place.calls[-1]
+                found.setdefault(name, {})[call.at()] = None
+        return {name: [*calls] for name, calls in found.items()}
 
     @cached_property
     def _rewriter(self) -> "Rewriter":
         from grader.xacro.edits import Rewriter
 
-        return Rewriter(self._expander.texts)
+        return Rewriter(self._expander.texts, self._expander.yaml_file)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from grader.problems import Kind, Problem
-from grader.source import Location
+from grader.source import Location, Source
 from grader.static_python.closed_values import CHARACTERS, Budget, ExpressionFails, OutOfBudget, Undetermined, Value
 from grader.xacro import catalogue
 from grader.xacro.files import FileFails, Files, XmlFails
@@ -73,12 +73,10 @@ class Expander:
         self.own_tags = [tag.removeprefix("xacro:") for tag in handlers]
         self.problems: list[Problem] = []
         self.misspelt: list[Misspelt] = []
+        self._yaml: dict[str, bytes] = {}  # the files that were loaded, by their paths
         self.undetermined: list[Open] = []
         self.refused: list[tuple[XacroFails, ScopePlace, str | None]] = []  # what may be corrected, and where
         self.calls: tuple[tuple[str, ScopePlace], ...] = ()
-        self.uses: dict[
-            tuple[str, int], tuple[str, ScopePlace, dict[tuple[str, int], ScopePlace]]
-        ] = {}  # of macros, with calls
         self._listed: set[tuple[str, str, int, str | None]] = set()
         self._is_expanded = False
         self._length = 0  # of the expanded document
@@ -170,12 +168,6 @@ class Expander:
                 self.misspelt.append(Misspelt(error.unknown, place, location))
         return ""
 
-    def use(self, name: str, body: ScopePlace, call: ScopePlace) -> None:
-        """Note that a macro is called."""
-        self.budget.charge(len(self.calls))
-        _, _, calls = self.uses.setdefault((body.source.path, body.tag), (name, body, {}))
-        calls[call.source.path, call.tag] = call
-
     def _is_new(self, message: str, place: ScopePlace, attribute: str | None) -> bool:
         """Return whether something is to be listed: once for each place in the source, for all calls of a macro."""
         known = len(self._listed)
@@ -208,5 +200,12 @@ class Expander:
     def _load_yaml(self, name: Value) -> Value:
         if self._is_expanded:
             raise Undetermined("a YAML file is not read again for each edit")
-        data = self.files.read(self.files.path(self.texts.written(name)))
+        path = self.files.path(self.texts.written(name))
+        data = self.files.read(path)
+        self._yaml[path] = data
         return read_yaml_values(data, lambda name: self.texts.find(name, XacroScope()), self.budget)
+
+    def yaml_file(self, text: str) -> Source | None:
+        """Return the YAML file that a text loads, if the document loads one of this name."""
+        found = [path for path in self._yaml if path.rpartition("/")[2] in text]
+        return Source(found[0], self._yaml[found[0]].decode("utf-8", "surrogateescape")) if len(found) == 1 else None

@@ -3,7 +3,6 @@
 import posixpath
 import re
 from collections.abc import Callable, Collection
-from contextlib import suppress
 from typing import NamedTuple
 
 from grader.errors import InputError, NotDecided
@@ -16,7 +15,6 @@ from grader.xml.parsing import XMLSyntaxError
 _SHARED = re.compile(rf"{INSTALLED}/(?P<package>[^/]+)/share/(?P=package)(?:/+(?P<inside>.+))", re.DOTALL)
 _ADDED = re.compile(r".*\.(?:urdf|xacro)(.*)", re.IGNORECASE | re.DOTALL)
 _MAX_OPEN = 50  # files that include each other
-_MAX_OTHERS = 20
 _MAX_PATH = 1_000  # characters
 _OF_FILE = 50  # what looking for one is charged
 
@@ -59,15 +57,6 @@ class Files:
     def has_package(self, name: str) -> bool:
         """Return whether a package is, or may be, part of the submission."""
         return self._workspace.is_part or not self._workspace.paths or self._workspace.package(name) is not None
-
-    def others(self) -> dict[str, str]:
-        """Return the texts of xacro files that were not read, by their paths."""
-        found: dict[str, str] = {}
-        for path in self._workspace.paths:
-            if path.endswith(".xacro") and path not in self.documents and len(found) < _MAX_OTHERS:
-                with suppress(InputError, NotDecided):
-                    found[path] = self._workspace.read(path).decode("utf-8", "replace")
-        return found
 
     def path(self, text: str) -> str:
         """Return the path in the submission of a file that the innermost file names. Raises Undetermined."""

@@ -76,7 +76,7 @@ def _call_by_name(expander: Expander, name: str, node: XacroNode, out: XacroNode
         raise Undetermined(given.open)
     bind_blocks(macro, given.elements, left, inner.symbols)
     bind_defaults(macro, left, scopes.symbols, inner.symbols, expander.texts)
-    expander.use(name, macro.body.place, node.place)
+    expander.budget.charge(len(expander.calls))
     before = expander.calls
     expander.calls = (*before, (name, node.place))
     try:

@@ -117,11 +117,6 @@ class XacroScope:
             scope = scope.parent
         return scope
 
-    def names(self) -> list[str]:
-        """Return the names that are bound here."""
-        own = [name for name in self.properties if _is_compared(name)]
-        return own + (self.parent.names() if self.parent is not None else [])
-
     def definitions(self) -> dict[str, tuple[ScopePlace, str] | None]:
         """Return the names that are known here, each with the tag and attribute that define it where there is one."""
         found = self.parent.definitions() if self.parent is not None else {}

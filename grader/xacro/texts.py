@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from copy import copy
 from keyword import iskeyword
 
 from grader.names import did_you_mean, near
@@ -11,7 +10,6 @@ from grader.static_python.closed_values import Budget, ExpressionFails, Undeterm
 from grader.xacro.functions import GLOBALS
 from grader.xacro.scopes import (
     Definition,
-    Key,
     Known,
     Reported,
     ReportFailure,
@@ -19,7 +17,6 @@ from grader.xacro.scopes import (
     UnknownName,
     XacroFails,
     XacroScope,
-    literal,
 )
 
 # The tokens of xacro's lexer (`eval_text`), where ${'}'} ends at the first brace, too.
@@ -54,7 +51,6 @@ class Texts:
         self.arguments = arguments
         self.defaults: dict[str, Definition] = {}  # of arguments that have no other value
         self.names_open: ExpressionFails | Undetermined | None = None  # why a name may be bound that is not known
-        self._supposed: Mapping[Key, str] | None = None
         self._budget = budget
         self._is_own = is_own
         self._report = report
@@ -62,12 +58,6 @@ class Texts:
         self.respelt: Mapping[str, str] = {}  # names in expressions, and the names that they are read as
         # What is said of a name, and the name that it stands for, by this name and those that are known.
         self._similar: dict[tuple[str, ...], tuple[str, str | None]] = {}
-
-    def supposing(self, texts: Mapping[Key, str], budget: Budget) -> "Texts":
-        """Return the same with other texts where names are defined. Nothing is reported or remembered."""
-        other = copy(self)
-        vars(other).update(_supposed=texts, _budget=budget, _report=lambda *_: None)
-        return other
 
     def evaluate(self, text: str, scope: XacroScope) -> Value:
         """Return the value of a text: that of its expression, if it is a single one, else a text."""
@@ -104,9 +94,7 @@ class Texts:
         """Return the value of a name: a property, else one of xacro's own."""
         holder = scope.holder(name)
         if holder is not None:
-            definition = holder.properties[name].definition if self._supposed is not None else None
-            found = self._again(definition) if definition else holder.value(name, self.evaluate, self._report)
-            return self._charge(found)
+            return self._charge(holder.value(name, self.evaluate, self._report))
         if name in self._globals:
             return self._globals[name]
         if self.names_open is not None:
@@ -127,12 +115,6 @@ class Texts:
             self._similar[key] = did_you_mean(name, known), near(name, values)
         guess, meant = self._similar[key]
         return f"there is no {kind} {name[:_MAX_SHOWN]} at this place{guess}", UnknownName(name, known, kind, meant)
-
-    def _again(self, definition: Definition) -> Value:
-        """Return the value of a definition with the supposed texts."""
-        text = (self._supposed or {}).get(definition.key, definition.text)
-        self._budget.charge(1, len(text))
-        return literal(self.evaluate(text, definition.scope)) if "$" in text else literal(text)
 
     def is_bound(self, name: str, scope: XacroScope) -> bool:
         """Return whether a name has a value in a scope."""
@@ -195,8 +177,6 @@ class Texts:
 
     def argument(self, name: str) -> str:
         """Return the value of an argument."""
-        if self._supposed is not None and name in self.defaults:
-            return self.written(self._again(self.defaults[name]))
         if name not in self.arguments:
             raise Undetermined(f"the argument {name} has no default; give it with --arg {name}=VALUE")
         value = self.arguments[name]

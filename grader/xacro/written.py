@@ -9,7 +9,6 @@ from grader.source import Edit, Edits, Source
 from grader.xacro.scopes import Definition, Key, ScopePlace, XacroScope
 
 _MAX_LENGTH = 2_000  # of a text that is edited in parts
-_VALUE = re.compile(r'("[^"$]*")')
 
 
 class Written(NamedTuple):
@@ -33,12 +32,11 @@ class Written(NamedTuple):
 
 
 class Use(NamedTuple):
-    """A use of a text: the scope in which it is evaluated, what it is and should be, and the macro calls around it."""
+    """A use of a text: the scope in which it is evaluated, what it is and should be."""
 
     scope: XacroScope
     old: str
     new: str
-    calls: tuple[tuple[str, ScopePlace], ...] = ()
 
 
 class TextChange(NamedTuple):
@@ -84,17 +82,6 @@ def find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> Written |
     text = source.text[start:end]
     is_read = span is not None and not re.search("[&<]", text) and len(text) <= _MAX_LENGTH
     return Written(source, start, text, scope, span) if span is not None and is_read else None
-
-
-def with_parameters(xml: str, scope: XacroScope) -> str:
-    """Return elements with a macro's parameters instead of the texts that they have, in attributes: ${side}_wheel."""
-    for name, bound in scope.properties.items() if scope.parent is not None else ():
-        if isinstance(bound.value, str) and bound.value.isidentifier() and name.isidentifier():
-            word = re.compile(rf"(?<![^\W_]){re.escape(bound.value)}(?![^\W_])")
-            pieces = _VALUE.split(xml)  # every other one is a value
-            pieces[1::2] = [word.sub(f"${{{name}}}", piece) for piece in pieces[1::2]]
-            xml = "".join(pieces)
-    return xml
 
 
 def definition_text(definition: Definition) -> Written | None:

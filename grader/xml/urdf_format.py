@@ -10,13 +10,12 @@ JOINT_TYPES: tuple[str, ...] = get_args(JointType)
 class AttributeFormat(NamedTuple):
     """An attribute: the unit and the parts of its numbers (no parts: text), and what ROS 2 uses where it is not given.
 
-    An attribute without a default is required; `usual` is what a person would write, where nothing else is known.
+    An attribute without a default is required.
     """
 
     unit: str = ""
     parts: tuple[str, ...] = ()
     default: str | None = None
-    usual: str = ""
 
 
 class TagFormat(NamedTuple):
@@ -32,7 +31,7 @@ class TagFormat(NamedTuple):
 _REQUIRED, _OPTIONAL = AttributeFormat(), AttributeFormat(default="")
 _XYZ, _ONE = ("x", "y", "z"), ("",)
 _LINK = TagFormat({"link": _REQUIRED}, aliases={"name": "link", "joint": "link"})
-_POSITIVE, _MIXED = AttributeFormat("kg m2", _ONE, usual="0.001"), AttributeFormat("kg m2", _ONE, usual="0")
+_POSITIVE, _MIXED = AttributeFormat("kg m2", _ONE), AttributeFormat("kg m2", _ONE)
 _END = AttributeFormat("rad or m", _ONE, "0")
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
 
@@ -66,17 +65,17 @@ TAGS: dict[str, TagFormat] = {
     "mesh": TagFormat({"filename": _REQUIRED, "scale": AttributeFormat("1", _XYZ, "1 1 1")}),
     "color": TagFormat({"rgba": AttributeFormat("1", ("red", "green", "blue", "alpha"))}, aliases={"rgb": "rgba"}),
     "texture": TagFormat({"filename": _REQUIRED}),
-    "mass": TagFormat({"value": AttributeFormat("kg", _ONE, usual="1")}),
+    "mass": TagFormat({"value": AttributeFormat("kg", _ONE)}),
     "inertia": TagFormat(
         {"ixx": _POSITIVE, "ixy": _MIXED, "ixz": _MIXED, "iyy": _POSITIVE, "iyz": _MIXED, "izz": _POSITIVE}
     ),
-    "axis": TagFormat({"xyz": AttributeFormat("1", _XYZ, "0 0 0", "0 0 1")}),  # a joint without <axis> has 1 0 0
+    "axis": TagFormat({"xyz": AttributeFormat("1", _XYZ, "0 0 0")}),  # a joint without <axis> has 1 0 0
     "limit": TagFormat(
         {
-            "lower": _END._replace(usual="-1.57"),
-            "upper": _END._replace(usual="1.57"),
-            "effort": AttributeFormat("N m or N", _ONE, usual="10"),
-            "velocity": AttributeFormat("rad/s or m/s", _ONE, usual="1"),
+            "lower": _END,
+            "upper": _END,
+            "effort": AttributeFormat("N m or N", _ONE),
+            "velocity": AttributeFormat("rad/s or m/s", _ONE),
         }
     ),
     "dynamics": TagFormat(
@@ -91,7 +90,7 @@ TAGS: dict[str, TagFormat] = {
             "soft_lower_limit": _END,
             "soft_upper_limit": _END,
             "k_position": AttributeFormat("1", _ONE, "0"),
-            "k_velocity": AttributeFormat("1", _ONE, usual="1"),
+            "k_velocity": AttributeFormat("1", _ONE),
         }
     ),
     "calibration": TagFormat(
@@ -107,10 +106,3 @@ REQUIRED = {
 }
 # The parts of the numbers in an attribute of this name; texts have none.
 PARTS = {key: one.parts for tag in TAGS.values() for key, one in tag.attributes.items()}
-
-
-def missing_element(name: str) -> str | None:
-    """Return an element with usual values for its attributes; None where only the author knows a value."""
-    values = {key: one.usual or one.default for key, one in TAGS[name].attributes.items()}
-    given = "".join(f' {key}="{value}"' for key, value in values.items())
-    return f"<{name}{given}/>" if values and all(values.values()) else None

@@ -63,7 +63,7 @@ def test_no_hints_for_what_passes() -> None:
             "place",
             'Check `rpy="1.57 0 0"` (line 73) and `xyz="0 0 0.025"` (line 65).',
         ),
-        ("cause", "Check lines 65 and 73: the sign of the roll of the joint"),
+        ("cause", "Check lines 65 and 73: the sign of z of the visual origin"),
         ("edit", 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"`'),
     ],
 )
@@ -84,7 +84,7 @@ def test_a_long_hint_says_no_more_than_its_level(level: str) -> None:
     assert "  Check " in text
     for said in ("Negate", "Double", "--verbose shows the edits"):
         assert said not in text
-    assert "--verbose shows the edits" in run(("grade", MISTAKES), COLUMNS="24").stdout.decode()
+    assert "--verbose shows the edits" in " ".join(run(("grade", MISTAKES), COLUMNS="24").stdout.decode().split())
 
 
 def test_level_none() -> None:
@@ -105,14 +105,15 @@ def test_an_option_never_exceeds_the_rubric(allowed: str, wanted: str, tmp_path:
 
 
 def test_a_rubric_without_a_reference(tmp_path: Path) -> None:
-    """What its criteria say, and families of mistakes, are tried all the same."""
+    """The student's own numbers with another sign are tried all the same; no number of a criterion is written."""
     rubric = lab(tmp_path, "edit")
     kept = [line for line in rubric.read_text().splitlines() if not line.startswith("reference")]
     rubric.write_text("\n".join(kept))
-    edits = {name: some[0]["edits"][0]["new"] for name, some in hints(MISTAKES, "--rubric", rubric).items()}
-    assert edits["base-green"] == 'rgba="0 0.6 0 1"'
-    assert edits["lidar-frame"] == 'xyz="0.15 0 0.225"'
-    assert edits["right-wheel-forward"] == 'xyz="0 0 -1"'
+    mirrored = tmp_path / "a.urdf"
+    turned, text = 'rpy="-1.57 0 0"', REFERENCE.read_text()
+    mirrored.write_text('rpy="1.57 0 0"'.join(text.rsplit(turned, 1)))
+    edits = {name: some[0]["edits"][0]["new"] for name, some in hints(mirrored, "--rubric", rubric).items()}
+    assert set(edits.values()) == {'rpy="-1.57 0 0"'}
 
 
 def test_fix_writes_the_robot_with_all_edits(tmp_path: Path) -> None:
@@ -198,12 +199,12 @@ def test_fix_of_a_folder_writes_one_file_under_its_path(tmp_path: Path) -> None:
     ]
 
 
-@pytest.mark.parametrize(("steps", "written"), [(0, False), (50, True)])
+@pytest.mark.parametrize(("steps", "written"), [(0, False), (26, True)])
 def test_a_search_that_is_cut_off_is_reported(
     steps: int, written: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A note of every report, and the words of `--fix`, say that the budget ended the search."""
-    monkeypatch.setattr("grader.grading.hints.trials._MAX_STEPS", steps)
+    monkeypatch.setattr("grader.grading.hints.trials._MAX_GRADINGS", steps)
     note = "the search for hints ended at its limit: there may be more"
     assert note in graded(MISTAKES)["notes"]
     assert f"Note: {note}" in run(("grade", MISTAKES)).stdout.decode()
@@ -220,22 +221,21 @@ def test_a_submission_that_is_too_large_has_its_own_sentence(tmp_path: Path) -> 
     assert done.stderr == b"grader: --fix: nothing was written: the submission is too large to search for edits\n"
 
 
-@pytest.mark.parametrize("step", ["run", "_rounds"])
+@pytest.mark.parametrize("step", ["run", "_take"])
 def test_a_search_that_failed_has_its_own_sentence(step: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """`--fix` does not say that there is nothing to fix."""
-    monkeypatch.setattr(HintSearch, step, lambda self: self.nothing)
+    monkeypatch.setattr(HintSearch, step, lambda self, *_: self.nothing)
     done = run(("grade", MISTAKES, "--fix", tmp_path / "fixed.urdf"))
     assert done.stderr.decode().splitlines()[-1] == "grader: --fix: nothing was written: the search for edits failed"
 
 
 def test_one_of_several_equal_texts_of_a_line_is_named(tmp_path: Path) -> None:
-    """The hint gives the column, and which of them it is; not where there is only one."""
+    """The hint says which of them it is; not where there is only one."""
     line = " ".join(REFERENCE.read_text().split())
     head, tail = line.split("</robot>")[0].rsplit('rpy="-1.57 0 0"', 1)
     (tmp_path / "a.urdf").write_text(f'{head}rpy="1.57 0 0"{tail}<!-- rpy="1.57 0 0" --></robot>')
-    column = len(head) + 1
     shown = " ".join(run(("grade", tmp_path / "a.urdf")).stdout.decode().split())
-    assert f"(line 1, column {column}: number 1 of 2)" in shown
+    assert "(line 1, number 1 of 2)" in shown
     (tmp_path / "b.urdf").write_text(f'{head}rpy="1.57 0 0"{tail}</robot>')
     shown = " ".join(run(("grade", tmp_path / "b.urdf")).stdout.decode().split())
     assert 'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 1)' in shown
@@ -273,22 +273,6 @@ def test_a_fault_of_the_search_costs_no_report(monkeypatch: pytest.MonkeyPatch) 
 MISSPELT_FRAME = ROOT / "submissions/lab6/rviz-fixed-frame-misspelt"
 
 
-def test_a_missing_resource_index_costs_no_other_hint(tmp_path: Path) -> None:
-    """The hint that creates its empty file is one edit without text; `--fix` writes the file."""
-    sample = tmp_path / "sample"
-    shutil.copytree(MISSPELT_FRAME, sample, ignore=shutil.ignore_patterns("resource"))
-    found = hints(sample)
-    assert found["rviz-fixed-frame"][0]["edits"][0]["new"] == "base_footprint"
-    [created] = found["setup-installs-urdf"]
-    assert created["message"].startswith("Create the empty file `my_robot/resource/my_robot`")
-    assert [edit["path"] for edit in created["edits"]] == ["my_robot/resource/my_robot"]
-    [created] = hints(sample, "--hints", "place")["setup-installs-urdf"]
-    assert created["message"] == "Check which files are missing."
-    (tmp_path / "fixed").mkdir()
-    assert run(("grade", sample, "--fix", tmp_path / "fixed")).returncode == 1
-    assert (tmp_path / "fixed/my_robot/resource/my_robot").read_bytes() == b""
-
-
 @pytest.mark.parametrize("name", sorted(path.name for path in MISSPELT_FRAME.glob("my_robot/*")))
 def test_what_is_missing_costs_no_other_hint(name: str, tmp_path: Path) -> None:
     """Without any one file or folder of the package the search does not fail."""
@@ -302,9 +286,8 @@ def test_what_is_missing_costs_no_other_hint(name: str, tmp_path: Path) -> None:
     ("place", "lost"),
     [
         ("grader.package.edits.candidates.package_names", ()),
-        ("grader.grading.hints.state_edits.targets_of", ("base-green",)),
-        ("grader.grading.hints.search.HintSearch._load", ()),
-        ("grader.grading.hints.search.HintSearch._combine", ()),
+        ("grader.grading.hints.search.of_siblings", ("base-green",)),
+        ("grader.grading.hints.search.missing_hints", ()),
     ],
 )
 def test_a_fault_of_one_family_costs_no_other_hint(

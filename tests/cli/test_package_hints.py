@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 
 from tests.command_line import run
-from tests.examples import spread
 from tests.samples import ROOT
 
 LAUNCH, SETUP, RVIZ = "*.launch.py", "setup.py", "*.rviz"
@@ -18,10 +17,6 @@ XACRO, PLAIN = "equivalent-xacro-command", "equivalent-f-strings-and-pathlib"
 # A sample, a file of it, a text, what a student writes instead, and the old and the new text of each edit.
 MISTAKES = {
     "default value of a path": (XACRO, LAUNCH, "my_robot.urdf", "my_robto.urdf", [("my_robto.urdf", "my_robot.urdf")]),
-    "default value of a switch": (XACRO, LAUNCH, "'false'", "'maybe'", [("'maybe'", "'true'")]),
-    "bracket": (XACRO, LAUNCH, "value_type=str)", "value_type=str", [("", ")")]),
-    "quote": (XACRO, LAUNCH, "executable='rviz2'", "executable='rviz2", [("", "'")]),
-    "comma": (XACRO, LAUNCH, "package='rviz2',", "package='rviz2'", [("", ",")]),
     "fixed frame": (PLAIN, RVIZ, "Fixed Frame: base_footprint", "Fixed Frame: odom", [("odom", "base_footprint")]),
     "two paths": (
         PLAIN, LAUNCH, "my_robot.", "my-robot.",
@@ -31,24 +26,9 @@ MISTAKES = {
         "equivalent-nested-install-paths", SETUP, "from glob import glob", "import glob",
         [("import glob", "from glob import glob")],
     ),
-    "closing bracket of another kind": (XACRO, LAUNCH, "description}]", "description]]", [("]", "}")]),
     "space after xacro": (XACRO, LAUNCH, "'xacro '", "'xacro'", [("", " ")]),
     "name that is not defined": (XACRO, LAUNCH, "([model, gui])", "([model_file, gui])", [("model_file", "model")]),
-    "name of the function": (
-        XACRO, LAUNCH, "generate_launch_description", "launch_robot", [("launch_robot", "generate_launch_description")],
-    ),
-    "return": (XACRO, LAUNCH, "    return ld\n", "", [("", "\n    return ld")]),
-    "name of an argument": (XACRO, LAUNCH, "executable='rviz2'", "node='rviz2'", [("node", "executable")]),
-    "two nodes": (
-        XACRO, LAUNCH, "executable='r", "executable='xr",
-        [("'xrobot_state_publisher'", "'robot_state_publisher'"), ("'xrviz2'", "'rviz2'")],
-    ),
-    "name of an attribute": (FRONTEND, XML, 'exec="rviz2"', 'type="rviz2"', [("type", "exec")]),
-    "executable in XML": (
-        FRONTEND, XML, 'exec="robot_state_publisher"', 'exec="state_publisher"',
-        [('exec="state_publisher"', 'exec="robot_state_publisher"')],
-    ),
-    "name of a tag": (PLAIN, "package.xml", "name>", "nme>", [("<nme>my_robot</nme>", "<name>my_robot</name>")]),
+    "name of a tag": (PLAIN, "package.xml", "name>", "nme>", [("nme", "name")] * 2),
     "substitution of ROS 1": (FRONTEND, XML, "$(find-pkg-share", "$(find", [("find", "find-pkg-share")] * 2),
     "name of the package in its paths": (
         "equivalent-literal-lists", SETUP, "share/my_robot", "share/my-robot", [("my-robot", "my_robot")] * 2,
@@ -78,7 +58,7 @@ def hints(report: dict[str, Any]) -> list[dict[str, Any]]:
     return list(found.values())
 
 
-@pytest.mark.parametrize("name", spread(MISTAKES, 6))
+@pytest.mark.parametrize("name", MISTAKES)
 def test_the_mistake_itself_is_corrected(name: str, tmp_path: Path) -> None:
     """The only hint changes what the student got wrong and nothing else, and --fix reaches all automatic points."""
     *mistake, edits = MISTAKES[name]
@@ -91,7 +71,7 @@ def test_the_mistake_itself_is_corrected(name: str, tmp_path: Path) -> None:
     assert not [result for result in graded(folder)["results"] if result["status"] == "failed"]
 
 
-@pytest.mark.parametrize("name", ["default value of a path", "fixed frame", "bracket"])
+@pytest.mark.parametrize("name", ["default value of a path", "fixed frame"])
 def test_the_cause_gives_no_answer_away(name: str, tmp_path: Path) -> None:
     """Below the level edit the hint says where and what is wrong, in the words of the file's format."""
     *mistake, edits = MISTAKES[name]
@@ -100,8 +80,7 @@ def test_the_cause_gives_no_answer_away(name: str, tmp_path: Path) -> None:
     assert not any(len(new) > 1 and new in hint["message"] for _, new in edits)
     words = {
         "default value of a path": "a path in the launch file",
-        "fixed frame": "the value of `Fixed Frame` of Global Options in the RViz file",
-        "bracket": "a syntax error in the launch file",
+        "fixed frame": "the value of `Fixed Frame` in the RViz file",
     }
     assert words[name] in hint["message"]
 

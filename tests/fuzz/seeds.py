@@ -3,12 +3,12 @@
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
+from tests.grading.broken_urdfs import BROKEN
 from tests.robot.edge_cases import EDGE_CASES
 from tests.robot.problem_samples import SAMPLES
 from tests.xacro.documents import GROUPS
 from tests.xacro.documents.document import Document
 from tests.xacro.hostile import HOSTILE
-from tests.xml.test_syntax import ANY, TAGS
 
 _EXPRESSION = re.compile(r"\$\{([^{}]+)\}")
 
@@ -20,8 +20,7 @@ def urdfs() -> Iterator[bytes]:
 
 def broken() -> Iterator[bytes]:
     """Yield XML with one error."""
-    yield from (f'<robot name="r">{tag}</robot>'.encode() for tag, *_ in TAGS)
-    yield from (text.encode() for text, *_ in ANY)
+    yield from (one.text.encode() for one in BROKEN)
 
 
 def xacro() -> Iterator[bytes]:

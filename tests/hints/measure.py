@@ -53,10 +53,8 @@ class Verdict(NamedTuple):
         """The hints in lines."""
         lines = [f"{self.family} | {self.label} | lost {len(self.hints.lost)}: {' '.join(self.hints.lost[:4])}"]
         for found in self.hints.found:
-            lines.append(
-                f"     + {message(found, 'edit', self.hints.submission, lambda earlier: next(iter(earlier.gains)))}"
-            )
-            lines.append(f"       {found.proposal.action} [{found.proposal.cause}]")
+            lines.append(f"     + {message(found, 'edit', self.hints.submission, ())}")
+            lines.append(f"       {found.proposal.cause}")
         left = f"     left: {' '.join(self.hints.left[:6])}" if not self.hints.is_full else ""
         return "\n".join([*lines, left or f"     differs: {', '.join(self.differs)}"])
 

@@ -5,11 +5,10 @@ from itertools import count
 
 import pytest
 
-from grader.grading.hints.trials import Trials
 from grader.submission.opening import read_submission
 from tests.examples import spread
 from tests.hints.trials import BASES, graded, search_for
-from tests.samples import LAB6, ROOT, RUBRICS, reference
+from tests.samples import ROOT, RUBRICS
 from tests.work import limited_work
 
 REFERENCE = BASES["reference"].text
@@ -81,25 +80,3 @@ def test_a_check_at_many_positions_is_searched_with_bounded_work() -> None:
     results = graded(submission, RUBRICS["arm"])
     with limited_work(25_000_000):
         search_for(submission, results, RUBRICS["arm"])
-
-
-def test_positions_are_charged() -> None:
-    """A criterion that compares the robot with the reference at 100 positions costs ten times as much as another."""
-    arm = RUBRICS["arm"]
-    trials = Trials(arm, reference(arm), graded(reference(arm), arm))
-
-    def cost(name: str) -> int:
-        before = trials.left
-        trials.passing(trials.start, (), (name,))
-        return before - trials.left
-
-    assert cost("motion-everywhere") >= cost("joint-1-axis") + 10
-
-
-def test_reading_of_broken_tags_is_charged() -> None:
-    """The search for the tags that are meant reads millions of characters of a short text: they count like gradings."""
-    broken = b'<<parent link="a"/>' + b"\xa4" * 102 + b"><<k1e308><c>E</a>"
-    submission = read_submission(broken, identity="student", path="my_robot.urdf")
-    results = graded(submission)
-    before = Trials(LAB6, submission, results).left
-    assert before - search_for(submission, results).trials.left > 600

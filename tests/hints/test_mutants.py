@@ -81,6 +81,8 @@ def test_a_wrong_count_of_numbers_is_corrected(written: str) -> None:
         ("both-wheels-one-name", ('name="left_wheel"', 'name="right_wheel"')),
         ("colour-called-colour", ("<colour", "<color")),
         ("xacro-macro-outward", ('outward="1"', 'outward="-1"')),
+        ("centres-left-at-the-box", ('xyz="-0.15 0.2 0"', 'xyz="-0.15 0.225 0"')),
+        ("centres-in-centimetres", ('xyz="-15 22.5 0"', 'xyz="-0.15 0.225 0"')),
         ("mount-of-the-wheel-turned", ('rpy="1.57 0 0"', 'rpy="-1.57 0 0"')),
     ],
 )

@@ -4,9 +4,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from grader.edits import composed, edited
 from grader.mutation.mutants import mutants
-from grader.source import Edit, Source
 from grader.submission.editing import edited_files
 from grader.submission.opening import read_submission
 from tests.examples import examples
@@ -37,7 +35,7 @@ def test_hints_gain_what_they_promise_and_lose_nothing(data: bytes) -> None:
     submission = read_submission(data, identity="student", path=PATH)
     before = graded(submission)
     search = search_for(submission, before)
-    for edits, gains in (*((found.edits, found.gains) for found in search.found), (search.final.edits, {})):
+    for edits, gains in (*((found.edits, found.gains) for found in search.found), (search.edits, {})):
         files = edited_files(submission, edits) or {}
         assert files == ({PATH: applied(data, edits)} if edits else {})
         after = graded(with_edits(submission, edits))
@@ -48,35 +46,3 @@ def test_hints_gain_what_they_promise_and_lose_nothing(data: bytes) -> None:
         if gains:
             assert passed - had == set(gains)
             assert gains == {name: after[name].points - before[name].points for name in gains}
-
-
-_TEXTS = st.lists(st.sampled_from([*"ab <>\t\n\u00e9\udcff", "\r\n"]), max_size=40).map("".join)
-
-
-@st.composite
-def edits_of(draw: st.DrawFn, text: str) -> list[Edit]:
-    """Draw edits of a text that do not touch each other; none before a byte-order mark, which editors do not show."""
-    first = int(text.startswith("\ufeff"))
-    ends = sorted(draw(st.lists(st.integers(first, len(text)), max_size=6, unique=True)))
-    spans = list(zip(ends[::2], ends[1::2], strict=False))
-    return [Source(PATH, text).edit(start, end, draw(_TEXTS)) for start, end in spans]
-
-
-@examples(20)
-@given(data=st.data(), text=_TEXTS, mark=st.sampled_from(("", "\ufeff")))
-def test_composed_edits_do_what_edits_do_one_after_the_other(data: st.DataObject, text: str, mark: str) -> None:
-    """Also where the later touch the earlier, in any line breaks, and nothing else changes."""
-    text = mark + text
-    first = data.draw(edits_of(text))
-    middle = edited(text, PATH, first)
-    assert middle is not None
-    second = data.draw(edits_of(middle))
-    last = edited(middle, PATH, second)
-    assert edited(text, PATH, composed(text, PATH, first, second)) == last
-    assert _bytes(middle) == applied(_bytes(text), first)
-    assert last is not None
-    assert _bytes(last) == applied(_bytes(text), composed(text, PATH, first, second))
-
-
-def _bytes(text: str) -> bytes:
-    return text.encode("utf-8", "surrogateescape")

@@ -6,8 +6,8 @@ from functools import cache
 from typing import NamedTuple
 
 from grader.grading.grade import grade
-from grader.grading.hints.search import FoundHint, HintSearch
-from grader.grading.hints.trials import Trials
+from grader.grading.hints.search import HintSearch
+from grader.grading.hints.trials import FoundHint, Trials
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric, load_rubric
 from grader.robot.edits.draft import Draft
@@ -51,7 +51,7 @@ def hints_for(submission: Submission, rubric: Rubric = LAB6) -> Hints:
     results = graded(submission, rubric)
     search = search_for(submission, results, rubric)
     budget = Trials(rubric, submission, results).left
-    fixed = with_edits(submission, search.final.edits)
+    fixed = with_edits(submission, search.edits)
     return Hints(
         submission, _lost(results), search.found, fixed, _lost(graded(fixed, rubric)), budget - search.trials.left
     )

@@ -32,11 +32,13 @@ def test_a_hint_without_room_is_described() -> None:
     """What it changes; the lines that change are in the whole report."""
     report = hinted()
     change = "Change " + " ".join(f"part{number}" for number in range(80))
-    results = _with_hint(report.results, message=change, action="negate the roll")
+    results = _with_hint(report.results, message=change, cause="the sign of the roll")
     short, whole = (
         render(report._replace(results=results), Format.TERMINAL, verbose=verbose) for verbose in (False, True)
     )
-    assert "Negate the roll. --verbose shows the edits. Also fixes right-wheel-axis, -1." in " ".join(short.split())
+    assert "Wrong: the sign of the roll. --verbose shows the edits. Also fixes right-wheel-axis, -1." in " ".join(
+        short.split()
+    )
     assert "part79" not in short
     assert "part79." in whole
     assert '    +      <origin xyz="-0.15 -0.2 0" rpy="-1.57 0 0" />\n' in whole

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError
 from grader.grading.grade import grade
-from grader.grading.hints.search import FoundHint, HintSearch
-from grader.grading.hints.trials import Trials, costs_of
+from grader.grading.hints.search import HintSearch
+from grader.grading.hints.trials import FoundHint, Trials, costs_of
 from grader.grading.hints.words import message
 from grader.grading.levels import HintLevel
 from grader.grading.reference import ReferenceSolution
@@ -20,6 +20,9 @@ from grader.text import enumerated
 
 if TYPE_CHECKING:
     from grader.package.package import Package
+
+
+_MAX_NAMED = 4
 
 
 class HintedReport(NamedTuple):
@@ -49,22 +52,23 @@ def hinted(report: Report, submission: Submission, level: HintLevel, *, keep_edi
     search = HintSearch(trials, _draft(solution), lambda: _package(solution)).run()
     costs = costs_of(results)
     shown = {name: found for found in reversed(search.found) for name in found.gains}
-
-    def shown_by(found: FoundHint) -> str:
-        return _entry(found, shown, results, costs)
-
-    certainties = search.certainties(found.proposal for found in shown.values())
+    entries = {id(found): _entry(found, shown, results, costs) for found in search.found}
     hints: dict[str, Hint] = {}
-    for name, found in shown.items():
+    for name, one in {**shown, **search.missing}.items():
         with trials.isolated():
-            text = message(found, level, submission, shown_by)
-            hint = _hint(found, text, shown_by(found), keeps_edits=keep_edits or level == "edit")
-            hints[name] = hint._replace(certainty=certainties[found.proposal])
-    causes = search.causes if level in ("cause", "edit") else {}
-    with_hints = [_explain(result, hints.get(result.criterion.id), causes) for result in report.results]
-    is_complete = search.is_complete or submission.is_costly
-    report = report._replace(results=tuple(with_hints), hints_complete=is_complete)
-    return HintedReport(report, search.final.edits, trials.faults)
+            entry = entries.get(id(one), name)
+            before = search.found[: search.found.index(one)] if one.is_late else []
+            found = _first_at(one, results[entry].outcome.location)
+            earlier = [entries[id(it)] for it in before]
+            text = message(found, level, submission, earlier)
+            hints[name] = _hint(found, text, entry, results[name], keeps_edits=keep_edits or level == "edit")
+    left = [name for name in costs if name not in hints and name in search.results and not search.results[name].is_lost]
+    for name in left if level == "edit" else ():
+        others = enumerated(list(dict.fromkeys(entries.values())), _MAX_NAMED)
+        hints[name] = Hint(f"Make the edits for {others}.", results[name].outcome.location or Location("", 1, 1), {})
+    with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
+    report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete or submission.is_costly)
+    return HintedReport(report, search.edits, trials.faults)
 
 
 def fixed(found: HintedReport, submission: Submission) -> Fix:
@@ -81,18 +85,6 @@ def fixed(found: HintedReport, submission: Submission) -> Fix:
     return Fix(files, grade(report.rubric, after, report.parts, is_one_of_class=not submission.is_single), why_nothing)
 
 
-def _explain(result: Result, hint: Hint | None, causes: Mapping[str, list[str]]) -> Result:
-    """Return a result with its hint; without one, its message says what is wrong at several places."""
-    if hint is not None:
-        return result._replace(hint=hint)
-    wrong = causes.get(result.criterion.id)
-    if not wrong or not result.is_lost:
-        return result
-    outcome = result.outcome
-    message = f"{outcome.message}. Several places differ from the reference solution: {enumerated(wrong)}"
-    return result._replace(outcome=outcome._replace(message=message, mistake=outcome.mistake or outcome.message))
-
-
 def _entry(
     found: FoundHint, shown: Mapping[str, FoundHint], results: Mapping[str, Result], costs: Mapping[str, Decimal]
 ) -> str:
@@ -107,11 +99,18 @@ def _entry(
     return min([name for name in found.gains if shown.get(name) is found] or found.gains, key=rank)
 
 
-def _hint(found: FoundHint, text: str, shown_by: str, *, keeps_edits: bool) -> Hint:
-    first = found.edits[0]
-    at = Location(first.path, first.line, first.column)
-    shown = (found.edits, found.proposal.action) if keeps_edits else ((), "")
-    return Hint(text, at, found.gains, *shown, shown_by)
+def _first_at(found: FoundHint, where: Location | None) -> FoundHint:
+    """Return a hint with the edits in the line of the failure first."""
+    place = (where.path, where.line) if where is not None else None
+    edits = sorted(found.proposal.edits, key=lambda it: ((it.path, it.line) != place, it.path, it.line, it.column))
+    return found._replace(proposal=found.proposal._replace(edits=tuple(edits)))
+
+
+def _hint(found: FoundHint, text: str, shown_by: str, result: Result, *, keeps_edits: bool) -> Hint:
+    places = [Location(edit.path, edit.line, edit.column) for edit in found.proposal.edits]
+    at = next(iter(places), result.outcome.location or Location("", 1, 1))
+    shown = (found.edits, found.proposal.cause) if keeps_edits else ((), "")
+    return Hint(text, at, found.gains, *shown, shown_by, found.certainty)
 
 
 def _draft(reference: ReferenceSolution | None) -> Draft | None:

@@ -1,175 +1,220 @@
-"""Search the edits that make failed criteria pass, the costliest first, and prove them.
+"""Search the edits that make failed criteria pass: each is graded alone, and with those that were found before it.
 
-From small to large: a `Set` is a value of one element, a `Piece` what one mistake needs, with its words, and a
-`Proposal` one way to write a piece into the files, as edits of their texts. A `State` is the submission with some
-edits; `StateEdits` are the pieces that may help it, tried by a `QuickGrading` without any text, of which `EditChoice`
-takes the best. What `Trials` prove by grading again becomes a `FoundHint`, and in a report a `Hint`. `Fix` are all of
-them together, as files.
+A `Piece` is what one mistake needs, with its words; a `Proposal` is one way to write it into the files; what grading
+proves becomes a `FoundHint`, and in a report a `Hint`. All of them together are the `Fix`.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import suppress
 from decimal import Decimal
-from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.edits import Proposal
-from grader.grading.hints.choice import EditChoice
-from grader.grading.hints.trials import NoTrialsLeft, Results, State, Trials, as_one, costs_of, gains_of, join
-from grader.grading.missing_work import robot_of
+from grader.grading.criterion import Criterion
+from grader.grading.hints.missing import missing_hints
+from grader.grading.hints.targets import is_another, leaves_others, links_of, own_chain
+from grader.grading.hints.trials import FoundHint, NoTrialsLeft, Results, Trials, costs_of, gains_of
+from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
-from grader.robot.reader import Reading
+from grader.robot.edits.groups import whole_elements, whole_links
+from grader.robot.edits.pieces import REFERENCE, STRUCTURE, Piece
+from grader.robot.edits.undone import undone_proposals
+from grader.robot.edits.variants import in_another_unit, of_own, of_siblings
 from grader.source import Edits
-from grader.submission.editing import creates
-from grader.submission.urdf import Read, known_links
+from grader.submission.raw_xacro import raw_xacro_proposals
+from grader.submission.urdf import Read
 
 if TYPE_CHECKING:
     from grader.package.package import Package
 
-_UNION = Proposal((), "", "")  # of edits that are proposed already
+_RESERVE = 20  # gradings for proofs
 
 
-class FoundHint(NamedTuple):
-    """A proven edit of the submission as it is, and the points of the criteria that pass with it.
-
-    `after` are earlier edits that it includes, because it needs them.
-    """
-
+class _Tried(NamedTuple):
     proposal: Proposal
-    edits: Edits
-    gains: Mapping[str, Decimal]
-    after: "tuple[FoundHint, ...]" = ()
+    passes: frozenset[str]
+    is_alone: bool  # not after the edits of earlier hints
 
 
 class HintSearch:
-    """The search for one submission; `found` are proven edits, `final` the submission with those that fit together."""
+    """The search for one submission: `found` are proven edits that fit together, `edits` are those of all."""
 
     def __init__(
         self, trials: Trials, reference: Draft | None, package: "Callable[[], Package | None]" = lambda: None
     ) -> None:
         """`reference` and `package` are the robot and the package of the rubric's reference solution."""
-        self.trials = trials
+        self.trials, self._package = trials, package
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
-        self._choice = EditChoice(trials, reference, package)
-        self._reference = reference
-        robot, rubric = robot_of(trials.start.submission.urdf), trials.rubric
-        # One with as many links may be the lab's, with other names; one with some of its links may be unfinished.
-        is_small = robot is not None and not robot.incomplete and 2 * len(robot.links) < len(rubric.links)
-        self._is_another_robot = robot is not None and is_small and not known_links(robot, rubric.links)
-        self.causes = self._choice.causes
-        self.certainties = self._choice.certainties
+        urdf = trials.submission.urdf
+        self._reading = urdf.loaded if isinstance(urdf, Read) else None
+        self._draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
+        both = (
+            self._draft is not None
+            and not is_another(self._draft.robot, trials.rubric.links)
+            and (reference or self._draft)
+        )
+        self._difference = RobotDifference(self._draft, both) if self._draft is not None and both else None
         self.found: list[FoundHint] = []
-        self.final = trials.start
-        self.is_complete = True  # whether all was searched that may help
-        self._given_up: set[tuple[Edits, str, bool]] = set()
+        self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing, or two edits
+        self._refused: set[Edits] = set()
+        self.results: Results = trials.results  # with all edits
+        self._after: Results = self.results
+        self.is_complete = self._is_cut = False
+
+    @property
+    def edits(self) -> Edits:
+        """The edits of all hints."""
+        return tuple(edit for found in self.found for edit in found.edits)
 
     def run(self) -> "HintSearch":
         """Search until nothing more is found, or the budget is spent."""
-        self.is_complete = False
         with suppress(NoTrialsLeft):
-            for phase in (self._load, self._convention, self._rounds, self._combine) if self.trials.left else ():
-                with self.trials.isolated():
-                    phase()
-            self.is_complete = bool(self.trials.left)
+            if self.trials.left:
+                for family in (self._of_reference, self._of_package, self._of_own, self._of_links, self._of_reference):
+                    self._take(family)
+                self.is_complete = not self._is_cut
+        self.trials.left = max(self.trials.left, 1 + self.trials.submission.cost)  # for the last one
+        with self.trials.isolated():
+            self._verify()
+        with self.trials.isolated():
+            known = {name for found in self.found for name in found.gains} | self.missing.keys()
+            lost = {name: points for name, points in costs_of(self.trials.results).items() if name not in known}
+            is_readable = self._reading is not None and self._reading.root is not None
+            self.missing |= missing_hints(self._difference, self._criteria, lost, is_readable=is_readable)
         return self
 
-    def _convention(self) -> None:
-        """Correct a convention of the whole robot first: one hint instead of one for each consequence."""
-        best = None if self._is_another_robot else self._choice.convention(self.final)
-        after = self.trials.apply(self.final, best.edits) if best is not None else None
-        name = next(iter(gains_of(self.final.results, after.results))) if after is not None else ""
-        if best is not None and after is not None and self._prove(self.final, best, name):
-            self.final = after._replace(edits=join(self.trials.start.submission, self.final.edits, best.edits))
+    def _verify(self) -> None:
+        """Take no hint back only if all together hold where the submission is read from scratch."""
+        if self.found and not self.trials.graded(self.edits, self.results, whole=True):
+            self.found, self.results = [], self.trials.results
 
-    def _rounds(self) -> None:
-        for is_solving in (False, True):  # what the reference has comes first
-            while self._round(self.final, is_solving=is_solving):
-                pass
+    @property
+    def _lost(self) -> list[str]:
+        return [name for name, result in self.results.items() if result.is_lost]
 
-    def _round(self, state: State, *, is_solving: bool) -> bool:
-        """Find edits of a state for as many of its failed criteria as possible; return whether there were any."""
-        wanted = self._by_cost(state.results)
-        if self._is_another_robot:  # no edit of a mistake makes it the lab's
-            wanted = [name for name in wanted if self._criteria[name].check.subject != "robot"]
-        taken: Edits = ()
-        current = state
-        for name in wanted:
-            if current.results[name].outcome.status == "passed" or (state.edits, name, is_solving) in self._given_up:
-                continue
-            best = self._choice.best(state, self._criteria[name], is_solving=is_solving)
-            if best is None or not self._prove(state, best, name):
-                self._given_up.add((state.edits, name, is_solving))
-                continue
-            after = self.trials.apply(state, (*taken, *best.edits), current.results)
-            if after is not None and not after.lost:
-                taken, current = after.edits, after
-                self.final = current._replace(edits=join(self.trials.start.submission, state.edits, taken))
-        return bool(taken)
-
-    def _load(self) -> None:
-        """Repair a URDF that ROS 2 rejects, or drops content of: the rest of the search goes on from there."""
-        urdf = self.final.submission.urdf
-        if isinstance(urdf, Read) and urdf.loaded.verdict == "clean" and not _has_remains(urdf.loaded):
-            return
-        from grader.grading.hints.loading import repair  # late: most robots load
-
-        repairs, self.final = repair(self.trials, self._reference)
-        is_each = len(repairs) > 1 and [self._add(it, it.edits) for it in repairs if it.edits] == [True] * len(repairs)
-        known = {name for found in self.found for name in found.gains}
-        if set(gains_of(self.trials.start.results, self.final.results)) - known:
-            whole, after = (_UNION, tuple(self.found)) if is_each else (as_one(repairs, self.final.edits), ())
-            self._add(whole, self.final.edits, after=after)
-
-    def _by_cost(self, results: Results) -> list[str]:
-        """Return the failed criteria, those with which most points are lost first."""
-        costs = costs_of(results)
-        return sorted(costs, key=lambda name: (-costs[name], self._criteria[name].position))
-
-    def _prove(self, state: State, proposal: Proposal, name: str) -> bool:
-        """Add a proven edit of the submission as it is: alone, else together with one or all of those before it."""
-        submission = self.trials.start.submission
-        all_edits = join(submission, state.edits, proposal.edits) if state.edits else proposal.edits
-        alone = tuple(edit for edit in all_edits if edit not in state.edits)
-        is_apart = len(alone) + len(state.edits) == len(all_edits)
-        after_one = ((join(submission, it.edits, ()) + alone, (it,)) for it in tuple(self.found) if is_apart)
-        return (
-            (is_apart and self._add(proposal, alone, name))
-            or any(self._add(proposal, edits, name, it) for edits, it in after_one)
-            or self._add(proposal, all_edits, name, tuple(self.found))
-        )
-
-    def _add(self, proposal: Proposal, edits: Edits, name: str = "", after: tuple[FoundHint, ...] = ()) -> bool:
-        """Add edits if they, graded from scratch, gain the points of a criterion; return whether they do."""
-        start = self.trials.start
-        state = self.trials.apply(start, edits, whole=True)
-        if state is None or state.lost:
-            return False
-        gains = gains_of(start.results, state.results)
-        edits = tuple(edit for edit in edits if edit.old != edit.new or edit.renamed or creates(start.submission, edit))
-        is_proven = bool(gains) and name in (*gains, "")
-        if is_proven:
-            self.found.append(FoundHint(proposal, edits, gains, after))
-        return is_proven
-
-    def _combine(self) -> None:
-        """Find which of the proven edits make a criterion pass together that no single one does."""
-        start = self.trials.start
-        for name in self._by_cost(start.results):
-            if any(name in found.gains for found in self.found) or self.final.results[name].outcome.status != "passed":
-                continue
-            for first, second in combinations(self.found, 2):
-                edits = tuple(dict.fromkeys((*first.edits, *second.edits)))
-                if not first.after and not second.after and self._add(_UNION, edits, name, (first, second)):
+    def _take(self, family: Callable[[list[Criterion]], Iterable[Proposal]]) -> None:
+        """Try the edits of a family, and take those that are proven, those that gain most first."""
+        lost, before = self._lost, self.edits
+        tried: list[_Tried] = []
+        with self.trials.isolated():
+            for proposal in family([self._criteria[name] for name in lost]) if lost else ():
+                if self.trials.left < _RESERVE:
+                    self._is_cut = True
                     break
-            else:
-                self._add(_UNION, self.final.edits, name, tuple(self.found))
+                results = self.trials.graded((*before, *proposal.edits), lost)
+                passes = frozenset(name for name, result in results.items() if result.outcome.status == "passed")
+                tried += [_Tried(proposal, passes, before == ())] * bool(passes)
+        while best := self._best(tried):
+            if not self._prove(best, tried):
+                self._refused.add(best.proposal.edits)
 
+    def _best(self, tried: Iterable[_Tried]) -> _Tried | None:
+        lost = set(self._lost)
+        left = (it for it in tried if it.passes & lost and it.proposal.edits not in self._refused)
+        return min(left, key=lambda it: self._order(it, lost), default=None)
 
-def _has_remains(reading: Reading) -> bool:
-    """Return whether a file that ROS 2 loads has problems, or text between its tags."""
-    texts = (
-        (text for element in reading.root.iter() for text in (element.text, element.tail))
-        if reading.root is not None
-        else ()
-    )
-    return bool(reading.problems) or any(text and not text.isspace() for text in texts)
+    def _order(self, one: _Tried, lost: Collection[str]) -> tuple[Decimal, int, int, int]:
+        gain = sum((self._criteria[name].points for name in one.passes if name in lost), Decimal(0))
+        return -gain, one.proposal.rank, one.proposal.way, one.proposal.size
+
+    def _prove(self, best: _Tried, tried: Iterable[_Tried]) -> bool:
+        """Add an edit if it gains the points alone, or after the edits before it, and loses nothing of theirs."""
+        lost = set(self._lost)
+        wanted = best.passes & lost
+        if best.is_alone:
+            alone = {name: it.points for name, it in self._criteria.items() if name in best.passes}
+        else:
+            alone = self._gains((), best.proposal.edits, self.trials.results)
+        together = self._gains(self.edits, best.proposal.edits, self.results)
+        is_late = not wanted & alone.keys()
+        gains = alone if self.found and not is_late else together
+        if not together or not set(gains) <= {*together, *(it for found in self.found for it in found.gains)}:
+            return False
+        if not wanted & gains.keys() or (self._draft is not None and self._is_half(best)):
+            return False
+        known = {name for found in self.found for name in found.gains}
+        gains = {name: points for name, points in gains.items() if name not in known} or gains
+        others = [it for it in tried if it.passes >= wanted and it.proposal.places.isdisjoint(best.proposal.places)]
+        equal = [it for it in others if self._order(it, lost) == self._order(best, lost)]
+        if equal and self._is_robot(best) and self._is_robot(equal[0]):
+            name = max((it for it in self._criteria if it in wanted), key=lambda name: self._criteria[name].points)
+            self.missing[name] = FoundHint(best.proposal, {}, "one of several", alternative=equal[0].proposal)
+            self._refused |= {it.proposal.edits for it in equal}
+            return False
+        is_tie = any(self._order(it, lost) <= self._order(best, lost) for it in others)
+        self.found.append(FoundHint(best.proposal, gains, "one of several" if is_tie else "preferred", is_late))
+        self.results = self._after
+        return True
+
+    def _is_robot(self, one: _Tried) -> bool:
+        return all(edit.path.endswith((".urdf", ".xacro")) for edit in one.proposal.edits)
+
+    def _is_half(self, best: _Tried) -> bool:
+        """Return whether an edit leaves what it should correct as well: in another call of a macro, or of its link."""
+        assert self._draft is not None
+        lost = [self._criteria[name] for name, result in self._after.items() if result.is_lost]
+        if leaves_others(best.proposal.shared, [self._criteria[name] for name in best.passes], lost):
+            return True
+        is_own = best.proposal.rank not in (REFERENCE, STRUCTURE) and bool(best.proposal.link)
+        chains = (own_chain(it.arguments.get("link"), self._draft.robot, self._is_known) for it in lost if is_own)
+        return any(best.proposal.link in chain for chain in chains)
+
+    def _gains(self, before: Edits, edits: Edits, against: Results) -> dict[str, Decimal]:
+        """Return what edits gain; nothing where a criterion is worse with them."""
+        after = self.trials.graded((*before, *edits), against)
+        self._after = after or self._after
+        return gains_of(against, after)
+
+    def _proposals(self, pieces: Iterable[Piece], links: Collection[str] | None = None) -> Iterator[Proposal]:
+        """Yield the edits of the text that pieces of these links stand for."""
+        assert self._draft is not None
+        for piece in pieces:
+            if links is None or piece.link in links or not self._is_known(piece.link):
+                shared = self._draft.shared(piece.sets)
+                for way, edits in enumerate(self._draft.ways(piece.sets)):
+                    if edits or piece.edits:
+                        yield Proposal((*edits, *piece.edits), piece.cause, piece.link, piece.rank, way, shared)
+
+    def _is_known(self, link: str) -> bool:
+        """Return whether the reference has a link: another one may be any of them."""
+        return self._difference is not None and self._difference.reference.robot.has_link(link)
+
+    def _links(self, lost: Iterable[Criterion]) -> list[str] | None:
+        """Return the links on which criteria depend; None if all may."""
+        assert self._difference is not None
+        return links_of(lost, self._difference.draft.robot, self._difference.reference.robot)
+
+    def _of_reference(self, lost: list[Criterion]) -> Iterator[Proposal]:
+        """Yield what undoes a slip, then what differs from the other side of the robot, and from the reference."""
+        subjects = {criterion.check.subject for criterion in lost}
+        if self._reading is not None and self._draft is not None and "urdf" in subjects:
+            yield from undone_proposals(self._reading)
+            yield from raw_xacro_proposals(self.trials.submission)
+        if self._difference is not None and self._draft is not None and subjects & {"urdf", "robot"}:
+            yield from self._draft.corrections(self._difference.names)
+            links = self._links(lost)
+            yield from self._proposals(in_another_unit(self._difference))
+            yield from self._proposals(of_siblings(self._difference, links or ()))
+            yield from self._proposals(self._difference.pieces, links)
+
+    def _of_links(self, lost: list[Criterion]) -> Iterator[Proposal]:
+        """Yield all values of the reference of a link and its joint."""
+        if self._difference is not None and any(criterion.check.subject == "robot" for criterion in lost):
+            links = self._links(lost)
+            yield from self._proposals(whole_links(self._difference), links)
+            yield from self._proposals(whole_elements(self._difference), links)
+
+    def _of_own(self, lost: list[Criterion]) -> Iterator[Proposal]:
+        """Yield the student's own numbers with another sign, order or unit."""
+        if self._difference is not None:
+            links = self._links([criterion for criterion in lost if criterion.check.subject == "robot"])
+            yield from self._proposals(of_own(self._difference, links or ()))
+
+    def _of_package(self, lost: list[Criterion]) -> Iterator[Proposal]:
+        own = [criterion for criterion in lost if criterion.check.subject not in ("urdf", "robot")]
+        if own:
+            from grader.package.edits.candidates import package_proposals  # late: a robot on its own needs none
+
+            wanted = [(criterion.check.about.looks_at, criterion.arguments) for criterion in own]
+            package = self.trials.submission.package
+            yield from package_proposals(package, self._package(), wanted, self.trials.isolated)

@@ -1,36 +1,33 @@
 """The links that a criterion depends on: those that its arguments name, and those on the chains between them."""
 
-from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from collections.abc import Callable, Collection, Iterable, Iterator
 
 from grader.errors import MissingElement, NotDecided
 from grader.grading.criterion import Criterion
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
 from grader.robot.selectors import selected_link, texts_in
+from grader.submission.urdf import known_links
 
-_MAX_LINKS, _MAX_CHAIN = 40, 12
-
-
-class Targets(NamedTuple):
-    """Links that decide criteria: whose shapes count, whose parent joints move them, and that criteria name."""
-
-    shown: tuple[str, ...]
-    moved: tuple[str, ...]
+_MAX_LINKS = 40
 
 
-def targets_of(criteria: Iterable[Criterion], robot: Robot, reference: Robot) -> Targets:
-    """Return the links whose joints and shapes decide criteria."""
-    shown: dict[str, None] = {}
-    moved: dict[str, None] = {}
+def links_of(criteria: Iterable[Criterion], robot: Robot, reference: Robot) -> list[str] | None:
+    """Return the links whose joints and shapes decide criteria, with all above them; None if all may."""
+    found: dict[str, None] = {}
     posed = Configuration(robot)
-    for criterion in criteria:
+    for criterion in (it for it in criteria if it.check.subject in ("urdf", "robot")):
         given = (selected(posed, name) for name in texts_in(criterion.arguments))
         named = [name for name in given if reference.has_link(name) or robot.has_link(name)]
-        shown |= dict.fromkeys(named)
-        moved |= dict.fromkeys(_between(posed, named) if len(named) > 1 else named)
-        moved |= dict.fromkeys(moving_child(posed, name) for name in named)
-    return Targets(tuple(shown)[:_MAX_LINKS], tuple(moved)[:_MAX_LINKS])
+        if not named:
+            return None
+        for name in named:
+            link: str | None = name
+            while link is not None and link not in found:
+                found[link] = None
+                joint = posed.parent_joints.get(link)
+                link = joint.parent if joint is not None else None
+    return [*found][:_MAX_LINKS]
 
 
 def selected(posed: Configuration, name: str) -> str:
@@ -41,19 +38,21 @@ def selected(posed: Configuration, name: str) -> str:
         return name
 
 
-def _between(posed: Configuration, named: list[str]) -> Iterator[str]:
-    """Yield the links whose parent joints are on the chains between links; all of those that no chain connects."""
-    for other in named[1:]:
-        try:
-            chain = [joint.child for joint in posed.between(other, named[0])]
-            yield from chain if len(chain) <= _MAX_CHAIN else (*chain[: _MAX_CHAIN // 2], *chain[-_MAX_CHAIN // 2 :])
-        except (MissingElement, NotDecided):
-            yield from (named[0], other)
+def own_chain(link: object, robot: Robot, is_known: Callable[[str], bool]) -> Iterator[str]:
+    """Yield a link, and those above it that only the student's robot has."""
+    parents = {joint.child: joint.parent for joint in robot.joints}
+    while isinstance(link, str):
+        yield link
+        above = parents.pop(link, "")
+        link = above if above and not is_known(above) else None
 
 
-def moving_child(posed: Configuration, link: str) -> str:
-    """Return the child of the joint that moves a link; the link itself where none does."""
-    try:
-        return posed.moving_joint(link).child
-    except (MissingElement, NotDecided):
-        return link
+def leaves_others(shared: Collection[str], passing: Iterable[Criterion], lost: Collection[Criterion]) -> bool:
+    """Return whether a criterion that passes for one call of a macro still fails for another one."""
+    functions = {criterion.check.function for criterion in passing} if shared else set()
+    return any(it.check.function in functions and it.arguments.get("link") in shared for it in lost)
+
+
+def is_another(robot: Robot, wanted: Collection[str]) -> bool:
+    """Return whether a robot has few links, and none of the lab's: no correction makes it the lab's robot."""
+    return 2 * len(robot.links) < len(wanted) and not known_links(robot, wanted)

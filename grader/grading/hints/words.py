@@ -1,47 +1,57 @@
 """What a hint says, at each level: nothing, where to look, what is wrong there, or the edit."""
 
-from collections.abc import Callable
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, cast
 
-from grader.edits import Expanded
-from grader.grading.hints.search import FoundHint
+from grader.grading.hints.trials import FoundHint
 from grader.grading.levels import HintLevel
 from grader.source import Edit, Location
-from grader.submission.editing import content, creates
+from grader.submission.editing import content
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import counted, enumerated
+
+if TYPE_CHECKING:
+    from grader.xacro.expanded_source import ExpandedSource
 
 _MAX_NAMED = 4  # criteria and edits that are named
 _MAX_LINES = 6
 _MAX_TEXT = 240  # characters of a changed text
 
 
-def message(found: FoundHint, level: HintLevel, submission: Submission, entry: Callable[[FoundHint], str]) -> str:
-    """Return the hint in a sentence, which need not name the URDF. `entry` is where an earlier one is shown."""
-    own, names = _own_edits(found), list(dict.fromkeys(map(entry, found.after)))
-    earlier = f"the edit{'s' if len(names) > 1 else ''} for {enumerated(names, _MAX_NAMED)}"
-    if not own:
-        return f"Make {earlier}."
-    if level == "edit":
-        changes = _moves(own, submission) or [_change(edit, submission) for edit in own[:_MAX_NAMED]]
-        changes += [counted(len(own) - _MAX_NAMED, "more edit")] * (len(own) > _MAX_NAMED)
+def message(found: FoundHint, level: HintLevel, submission: Submission, earlier: Sequence[str]) -> str:
+    """Return the hint in a sentence, which need not name the URDF. `earlier` are criteria whose hints come first."""
+    if found.words:
+        text = found.words if level == "edit" else found.proposal.cause if level == "cause" else "a part is missing"
+    elif found.alternative is not None:
+        each = [found._replace(proposal=it, alternative=None) for it in (found.proposal, found.alternative)]
+        one, other = (message(it, level, submission, ()).removesuffix(".") for it in each)
+        text = f"{one}, or {other[0].lower()}{other[1:]}: both work, so look which one is meant"
+    elif level == "edit":
+        edits = found.edits
+        changes = _moves(edits, submission) or [_change(edit, submission) for edit in edits[:_MAX_NAMED]]
+        changes += [counted(len(edits) - _MAX_NAMED, "more edit")] * (len(edits) > _MAX_NAMED)
         source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
         text = enumerated(changes, _MAX_NAMED + 1)
-        text += _calls(own, source, submission.path) if isinstance(source, Expanded) else ""
+        is_expanded = source is not None and source.is_expanded
+        text += _calls(edits, cast("ExpandedSource", source), submission.path) if is_expanded else ""
     elif level == "cause":
-        text = f"check {_places(own, submission)}: {found.proposal.cause}"
+        text = f"check {_places(found.edits, submission)}: {found.proposal.cause}"
     else:
-        text = f"check {_texts_to_check(own, submission)}"
-    return f"After {earlier}, {text}." if names else f"{text[0].upper()}{text[1:]}."
+        text = f"check {_texts_to_check(found.edits, submission)}"
+    if earlier:
+        several = "s" * (len(set(earlier)) > 1)
+        return f"After the edit{several} for {enumerated(list(dict.fromkeys(earlier)), _MAX_NAMED)}, {text}."
+    return f"{text[0].upper()}{text[1:]}."
 
 
-def _texts_to_check(edits: list[Edit], submission: Submission) -> str:
+def _texts_to_check(edits: Sequence[Edit], submission: Submission) -> str:
     """Return the texts to look at, each with its line."""
     texts = [f"{_quote(edit.old)} ({_where(edit, submission)})" for edit in edits if edit.old]
     return enumerated(texts, _MAX_NAMED) if texts else _places(edits, submission)
 
 
-def _places(edits: list[Edit], submission: Submission) -> str:
+def _places(edits: Sequence[Edit], submission: Submission) -> str:
     """Return the lines to look at: lines 65 and 73; of another file with its name."""
     files: dict[str, list[int]] = {}
     for edit in edits:
@@ -55,34 +65,30 @@ def _places(edits: list[Edit], submission: Submission) -> str:
     return "; ".join(texts) or "which files are missing"
 
 
-def _calls(edits: list[Edit], source: Expanded, main: str | None) -> str:
+def _calls(edits: Sequence[Edit], source: "ExpandedSource", main: str | None) -> str:
     """Return where the macros of xacro that edits are in are called, if that is more than once."""
-    calls = dict.fromkeys(call for edit in edits for call in source.calls(edit))
-    macros = {macro: [_at(place, main) for name, place in calls if name == macro] for macro, _ in calls}
-    uses = [
-        f"the macro {macro} is called in {enumerated(places, _MAX_NAMED)}"
-        for macro, places in macros.items()
-        if len(places) > 1
-    ]
-    return f" ({'; '.join(uses)})" if uses else ""
+    macros = {name: calls for edit in edits for name, calls in source.calls(edit).items() if len(calls) > 1}
+    texts = (
+        f"the macro {name} is called in {enumerated([_at(call, main) for call in calls], _MAX_NAMED)}"
+        for name, calls in macros.items()
+    )
+    return f" ({'; '.join(texts)})" if macros else ""
 
 
 def _at(place: Location | Edit, main: str | None) -> str:
     return f"line {place.line}" if place.path == main else f"line {place.line} of {place.path}"
 
 
-def _own_edits(found: FoundHint) -> list[Edit]:
-    """Return the edits that are not those of an earlier hint."""
-    if not found.proposal.edits:
+def _moves(edits: Sequence[Edit], submission: Submission) -> list[str]:
+    """Return two changes in words if they exchange texts, or if a text is removed at one place and added at another."""
+    if len(edits) != 2:
         return []
-    earlier = {edit for before in found.after for edit in before.edits}
-    return [edit for edit in found.edits if edit not in earlier]
-
-
-def _moves(edits: list[Edit], submission: Submission) -> list[str]:
-    """Return the change in words if a text is moved: removed at one place, and inserted at another one."""
+    first, second = edits
+    if first.old and (first.old, first.new) == (second.new, second.old):
+        places = (f"{_quote(edit.old)} ({_where(edit, submission)})" for edit in edits)
+        return [f"exchange {' and '.join(places)}"]
     texts = {" ".join((edit.old + edit.new).split()) for edit in edits}
-    if len(edits) != 2 or len(texts) > 1 or {bool(edit.old) for edit in edits} != {True, False}:
+    if len(texts) > 1 or {bool(edit.old) for edit in edits} != {True, False}:
         return []
     old, new = sorted(edits, key=lambda edit: not edit.old)
     return [f"move {_quote(old.old)} ({_where(old, submission)}) to {_insertion(new, submission)}"]
@@ -92,28 +98,29 @@ def _change(edit: Edit, submission: Submission) -> str:
     old, new = _quote(edit.old), _quote(edit.new)
     if edit.renamed:
         return f"rename `{edit.path}` to `{edit.renamed}`"
-    if creates(submission, edit):
-        return f"create {'' if edit.new else 'the empty file '}`{edit.path}` (--fix writes it)"
     if not edit.old:
-        return f"insert {new} ({_insertion(edit, submission)})"
+        return f"add {new} {_insertion(edit, submission)}"
     where = _where(edit, submission)
+    added = edit.new.removeprefix(edit.old).strip()
+    if edit.old.startswith("<") and edit.new.startswith(edit.old) and "<" not in added:
+        return f"add {_quote(added)} to `{edit.old}>` ({where})"
     return f"change {old} to {new} ({where})" if edit.new else f"remove {old} ({where})"
 
 
 def _insertion(edit: Edit, submission: Submission) -> str:
-    """Return the line before or after which a text is inserted, or the column, if more of that line follows."""
-    is_below = edit.new.lstrip(" \r").startswith("\n") and not _line(edit, submission)[edit.column - 1 :].strip()
-    side, at = "before " if edit.new.endswith("\n") else "after " if is_below else "", _at(edit, submission.path)
-    return f"{side}{at}" if side else f"{at}, column {edit.column}"
+    """Return the line before, after or in which a text is added."""
+    line, at = _line(edit, submission), _at(edit, submission.path)
+    if edit.new.endswith("\n") or not line[: edit.column - 1].strip():
+        return f"before {at}"
+    return f"{'in' if line[edit.column - 1 :].strip() else 'after'} {at}"
 
 
 def _where(edit: Edit, submission: Submission) -> str:
-    """Return the line of an edit; the column too if its text is there several times."""
+    """Return the line of an edit, and which of the texts in it is meant if it is there several times."""
     line = _line(edit, submission)
     number = line.count(edit.old) if edit.old else 0
     nth = line.count(edit.old, 0, edit.column - 1) + 1
-    which = f", column {edit.column}: number {nth} of {number}" if number > 1 else ""
-    return f"{_at(edit, submission.path)}{which}"
+    return f"{_at(edit, submission.path)}{f', number {nth} of {number}' if number > 1 else ''}"
 
 
 def _line(edit: Edit, submission: Submission) -> str:

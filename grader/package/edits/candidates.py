@@ -1,83 +1,21 @@
 """The edits of a package that may make criteria pass, by the files that their checks look at."""
 
 import posixpath
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import AbstractContextManager
 from itertools import islice
 from typing import Any
 
-from grader.edits import Proposal, composed, edited
-from grader.package.edits.paths import in_xml, launch_paths, setup_paths
+from grader.edits import Proposal
+from grader.package.edits.entries import missing_entries
+from grader.package.edits.paths import launch_paths, setup_paths
 from grader.package.edits.python_file import PythonFile
-from grader.package.edits.python_tree import python_tree
-from grader.package.edits.task import WHAT, PackageTask, change, file_proposals, package_names
-from grader.package.edits.trees import markup_tree, tree_proposals
-from grader.package.edits.wording import respellings, reword, undefined_names
-from grader.package.launch.model import Launch
-from grader.package.package import MANIFEST, SETUP, Package
-from grader.source import Edit, Edits, Source
-from grader.static_python.parse import SyntaxFault
-from grader.xml.syntax import syntax_proposals
+from grader.package.edits.task import WHAT, PackageTask, file_proposals, package_names
+from grader.package.edits.wording import other_values, respellings, reword, undefined_names
+from grader.package.package import SETUP, Package
+from grader.source import Edits, Source
 
-_BRACKETS = ("()", "[]", "{}")
-_QUOTES = str.maketrans("“”„‘’‚", "\"\"\"'''")
-_MAX_TRIES, _MAX_PARSED = 250, 512 * 1024  # edits that are parsed, and characters
-_MAX_FOUND = 10
 _MAX_MADE, _MAX_PROPOSALS = 100, 24  # for one kind of files
-_MAX_MISTAKES = 3  # in one launch file
-_MAX_FIRST = 2
-
-
-def repairs(file: PythonFile, what: str) -> Iterator[Proposal]:
-    """Yield edits of one token after which Python can read a file, the nearest to the error first."""
-    fault = file.parsed
-    if not isinstance(fault, SyntaxFault):
-        return
-    tries = min(_MAX_TRIES, _MAX_PARSED // len(file.text))
-    found = (change([edit], "syntax", "", what) for edit in dict.fromkeys(islice(_edits(file, fault), tries)))
-    yield from islice((it for it in found if _is_read(file, it)), _MAX_FOUND)
-
-
-def _is_read(file: PythonFile, repair: Proposal) -> bool:
-    after = edited(file.text, file.source.path, repair.edits)
-    return after is not None and not isinstance(PythonFile(Source(file.source.path, after)).parsed, SyntaxFault)
-
-
-def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
-    """Yield edits of one token, the nearest to the error first: lone quotes and brackets, indentation, then others."""
-    source, last = file.source, fault.location.line
-    at = source.offset(last, fault.location.column)
-    if (plain := file.text.translate(_QUOTES)) != file.text:
-        changed = [index for index, char in enumerate(file.text) if char != plain[index]]
-        yield source.edit(changed[0], changed[-1] + 1, plain[changed[0] : changed[-1] + 1])
-    odd = _loose_marks([token.text for token in file.tokens if token.kind == "op"])
-    tokens = sorted(file.tokens, key=lambda it: min(abs(it.start - at), abs(it.end - at)))
-    near = [token for token in tokens if source.at(token.start).line in (last, last - 1)]
-    for token in near:
-        if token.text in odd and token.kind == "op":
-            yield from (source.edit(token.start, token.end, char) for char in ("", *odd))
-    for token in tokens if odd else ():
-        for place in (token.end, token.start):
-            yield from (source.edit(place, place, char) for char in odd)
-    yield from _indents(file, (last, last - 1))
-    for token in near:
-        yield from (source.edit(token.end, token.end, char) for char in ",:=.([])")
-
-
-def _loose_marks(ops: Sequence[str]) -> list[str]:
-    """Return the quotes that are tokens of their own, and the brackets that are not all paired."""
-    unpaired = [pair for pair in _BRACKETS if ops.count(pair[0]) != ops.count(pair[1])]
-    return [char for char in "'\"" if char in ops] + list("".join(unpaired))
-
-
-def _indents(file: PythonFile, lines: tuple[int, ...]) -> Iterator[Edit]:
-    """Yield edits that indent a line as the lines around it."""
-    for number in lines:
-        text, start = file.source.line(number), file.source.offset(number, 1)
-        around = [file.source.line(other) for other in (number - 1, number - 2, number + 1)]
-        indents = [line[: len(line) - len(line.lstrip())] for line in around if line.strip()]
-        for indent in dict.fromkeys(indents):
-            yield file.source.edit(start, start + len(text) - len(text.lstrip()), indent)
 
 
 def package_proposals(
@@ -120,39 +58,8 @@ def _of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
     yield from file_proposals(task, "urdf") if kind in (SETUP, "launch") else ()
     path, like = task.file(task.package, kind), task.file(task.reference, kind)
     source = task.source(path)
-    # With the build type alone, the package could not be built.
-    is_alone = kind == MANIFEST and SETUP not in task.files
-    needed = [edit for it in file_proposals(task, SETUP) for edit in it.edits] if is_alone else []
     if source is not None and path is not None:
-        made = _further if kind == "launch" else _of_text
-        yield from (it._replace(edits=(*it.edits, *needed)) for it in made(task, kind, source, path, like) if it.edits)
-
-
-def _further(
-    task: PackageTask, kind: str, source: Source, path: str, like: str | None, depth: int = _MAX_MISTAKES
-) -> Iterator[Proposal]:
-    """Yield the edits of a launch file; after those that leave fewer mistakes in it, also the edits of the others."""
-    reference = task.reference.launch(like) if task.reference is not None and like is not None else None
-    wanted = _node_names(reference) if reference is not None else set()
-
-    def left(text: Source) -> tuple[bool, int]:
-        launch = task.launch(path, text)
-        return launch.syntax is not None, len(launch.faults) + len(wanted - _node_names(launch))
-
-    found = [it for it in islice(_of_text(task, kind, source, path, like), _MAX_MADE) if it.edits]
-    yield from found
-    afters = {it: Source(source.path, edited(source.text, source.path, it.edits) or "") for it in found if depth > 1}
-    ranks = {it: left(after) for it, after in afters.items()}
-    better = [it for it in ranks if (False, 0) < ranks[it] < left(source)]
-    for first in sorted(better, key=lambda it: (ranks[it], it.size))[:_MAX_FIRST]:
-        for second in _further(task, kind, afters[first], path, like, depth - 1):
-            edits = composed(source.text, source.path, first.edits, second.edits)
-            cause, action = f"{first.cause} and {second.cause}", f"{first.action} and {second.action}"
-            yield Proposal(edits, cause, action, rank=max(first.rank, second.rank))
-
-
-def _node_names(launch: Launch) -> set[tuple[str, str]]:
-    return {(it.package, it.executable) for it in launch.nodes}
+        yield from (it for it in _of_text(task, kind, source, path, like) if it.edits)
 
 
 def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str | None) -> Iterator[Proposal]:
@@ -164,17 +71,10 @@ def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str 
     if wanted and (ending == other or is_python):
         yield from reword(source, wanted, what)
     if is_python:
-        trees = python_tree(own, own), python_tree(PythonFile(Source(source.path, wanted)), own)
-        yield from tree_proposals(source, trees, what, own.needs)
-        yield from repairs(own, what)
+        yield from missing_entries(own, PythonFile(Source(source.path, wanted)), what)
         yield from undefined_names(own, what)
-    else:
-        text = wanted if ending == other else in_xml(task, like) if ending == ".xml" else ""
-        trees = markup_tree(source), markup_tree(Source(source.path, text))
-        yield from (it._replace(rank=int(ending != other)) for it in tree_proposals(source, trees, what))
-    if ending == ".xml":
-        for it in syntax_proposals(source, is_urdf=False, is_strict=True):
-            yield it._replace(cause=f"{it.cause} in {what}", action=f"{it.action} in {what}")
+    elif ending == other:
+        yield from other_values(source, wanted, what)
     if kind == "launch":
         yield from launch_paths(task, task.launch(path, source), source)
     elif kind == SETUP:

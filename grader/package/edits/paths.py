@@ -10,7 +10,7 @@ from itertools import islice
 from grader.edits import Proposal
 from grader.package.edits.python_file import PythonFile
 from grader.package.edits.task import PackageTask, change
-from grader.package.launch.model import STATE_PUBLISHER, Launch, NamedFile
+from grader.package.launch.model import Launch, NamedFile
 from grader.package.launch.places import HOME, PREFIX, WORKING_FOLDER
 from grader.package.package import SETUP
 from grader.source import Edit, Source
@@ -43,7 +43,7 @@ def setup_paths(task: PackageTask) -> Iterator[Proposal]:
         for actual in (path, f"{above}/*")[: 1 + is_folder]:
             for wanted in _similar(actual, known)[:_MAX_EDITS]:
                 edits = moved(source, actual, wanted, line)[:2]
-                yield from (change([edit], "set", "a path", SETUP) for edit in edits)
+                yield from (change([edit], "a path", SETUP) for edit in edits)
 
 
 def _similar(path: str, known: Iterable[str]) -> list[str]:
@@ -58,25 +58,9 @@ def launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator[
     wrong = [it for it in named if posixpath.normpath(it.path or "").removeprefix(f"{PREFIX}/") not in installed]
     ways = [way for way in (_edits_of_path(task, source, named)[:_MAX_EDITS] for named in wrong) if way]
     if len(ways) > 1:
-        yield change([edit for way in ways for edit in way[0]], "set", "the paths", _LAUNCH)
+        yield change([edit for way in ways for edit in way[0]], "the paths", _LAUNCH)
     for way in ways:
-        yield from (change(edits, "set", "a path", _LAUNCH) for edits in way)
-
-
-def in_xml(task: PackageTask, like: str | None) -> str:
-    """Return a launch file in XML with the nodes of one of the reference, and the files of the student's package."""
-    if task.reference is None or like is None:
-        return ""
-    launch, paths = task.reference.launch(like), {}
-    for purpose in ("urdf", "rviz"):
-        named = [(it.path or "").partition(f"{task.reference.name}/")[2] for it in launch.named(purpose)]
-        found = [target for path in named for target in _similar(path, _targets(task, purpose))]
-        paths[purpose] = f"$(find-pkg-share {task.package.name})/{found[0]}" if found else ""
-    read = "xacro" if paths["urdf"].endswith(".xacro") else "cat"
-    inner = f"""><param name="robot_description" value="$(command '{read} {paths["urdf"]}')" type="str"/></node>"""
-    ends = {STATE_PUBLISHER: inner, "rviz2": f' args="-d {paths["rviz"]}"/>'}
-    nodes = [f'<node pkg="{it.package}" exec="{it.executable}"{ends.get(it.executable, "/>")}' for it in launch.nodes]
-    return "\n".join(("<launch>", *nodes, "</launch>"))
+        yield from (change(edits, "a path", _LAUNCH) for edits in way)
 
 
 def _targets(task: PackageTask, purpose: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""The text of a Python file with its syntax tree and tokens, for edits that change nothing else."""
+"""The text of a Python file with its syntax tree and strings, for edits that change nothing else."""
 
 import ast
 import re
@@ -10,16 +10,14 @@ from grader.source import Edit, Edits, Source
 from grader.static_python.imports import USUAL_NAMES
 from grader.static_python.parse import Code, SyntaxFault, parse
 
-# Not `tokenize`: it stops at the mistakes that are searched for here.
-_TOKEN = re.compile(
+_STRING = re.compile(
     r"""
-      (?P<comment>\#[^\n]*)
+      \#[^\n]*
     | (?P<string>[rRbBfFuU]{0,2}(?:
           "{3}(?:\\.|[^\\])*?"{3} | '{3}(?:\\.|[^\\])*?'{3}    # over several lines
         | "(?:\\.|[^"\\\n])*" | '(?:\\.|[^'\\\n])*'            # "launch", r'\d', f'{name}.urdf'
       ))
-    | (?P<name>\w+)                                            # setup, 0
-    | (?P<op>[^\s\w])                                          # also a quote that is not closed
+    | \w+
     """,
     re.DOTALL | re.VERBOSE,
 )
@@ -30,10 +28,9 @@ _USE = re.compile(r"\bglob\.glob\b")
 _CAT = re.compile(r"\bcat(?=\s)")
 
 
-class Token(NamedTuple):
-    """A token: string, name (also a number), op, or the literal text between the quotes of a string; its offsets."""
+class Literal(NamedTuple):
+    """The text between the quotes of a string, and its offsets."""
 
-    kind: str
     text: str
     start: int
     end: int
@@ -59,17 +56,12 @@ class PythonFile:
         return list(ast.walk(self.parsed.tree)) if isinstance(self.parsed, Code) else []
 
     @cached_property
-    def tokens(self) -> list[Token]:
-        """The tokens without comments, as far as can be told, also where Python cannot read the file."""
-        found = (match for match in _TOKEN.finditer(self.text) if match.lastgroup != "comment")
-        return [Token(match.lastgroup or "", match[0], match.start(), match.end()) for match in found]
-
-    @cached_property
-    def literals(self) -> list[Token]:
+    def literals(self) -> list[Literal]:
         """The texts in its strings."""
-        quoted = ((it, _QUOTES.match(it.text)) for it in self.tokens if it.kind == "string")
-        spans = [(it.start + quotes.end(), it.end - len(quotes[1])) for it, quotes in quoted if quotes is not None]
-        return [Token("literal", self.text[start:end], start, end) for start, end in spans]
+        found = ((it.start("string"), it["string"]) for it in _STRING.finditer(self.text) if it["string"])
+        quoted = ((start, text, _QUOTES.match(text)) for start, text in found)
+        spans = [(at + it.end(), at + len(text) - len(it[1])) for at, text, it in quoted if it is not None]
+        return [Literal(self.text[start:end], start, end) for start, end in spans]
 
     def offset(self, line: int, byte: int) -> int:
         """Return the offset of a place that Python gives: it counts the bytes of a line from 0."""
@@ -131,10 +123,10 @@ class PythonFile:
             self._plain[node] = ast.unparse(tree) if tree is not None else code
         return self._plain[node]
 
-    def needs(self, code: str) -> list[Edit]:
-        """Return the edit without which an expression would have unknown names."""
+    def names_in(self, code: str) -> set[str]:
+        """Return the names in an expression."""
         tree = _expression(code)
-        return self.with_imports(sorted({it.id for it in ast.walk(tree) if isinstance(it, ast.Name)}) if tree else ())
+        return {it.id for it in ast.walk(tree) if isinstance(it, ast.Name)} if tree else set()
 
     @cached_property
     def bound(self) -> frozenset[str]:

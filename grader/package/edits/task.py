@@ -2,9 +2,8 @@
 
 import posixpath
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
 
 from grader.edits import Proposal
 from grader.errors import InputError
@@ -14,17 +13,6 @@ from grader.package.launch.places import ENDINGS, is_in_launch_folder, is_launch
 from grader.package.package import MANIFEST, PYTHON_LIMIT, SETUP, Package
 from grader.source import Edit, Source
 
-Verb = Literal["set", "add", "remove", "rename", "syntax", "create", "file"]
-# What is wrong and what to do, by the kind of the step; the first gives no answer away.
-_WORDS: Mapping[Verb, tuple[str, str]] = {
-    "set": ("{}", "correct {}"),
-    "add": ("a missing part of {}", "complete {}"),
-    "remove": ("{}", "remove {}"),
-    "rename": ("the spelling of {}", "correct the spelling of {}"),
-    "syntax": ("a syntax error{}", "correct the syntax{}"),
-    "create": ("{} is missing", "create {}"),
-    "file": ("the name of {}", "rename {}"),
-}
 _RVIZ_LIMIT = 512 * 1024
 WHAT = {"launch": "the launch file", "rviz": "the RViz file", "urdf": "the URDF"}
 _MAX_NAMES = 2  # of files that may be the one that is meant
@@ -57,13 +45,8 @@ class PackageTask:
         return self.package.launch(path, source.text.encode("utf-8", "surrogateescape"))
 
     def wanted(self, path: str | None) -> str | None:
-        """Return the text of a file of the reference, with the student's names of the package and of its frames."""
+        """Return the text of a file of the reference, with the student's name of the package."""
         text = _text(self.reference, path) if self.reference is not None and path is not None else None
-        launch = next((self.package.launch(it) for it in self.package.launch_files[:1]), None)
-        if text is not None and launch is not None and path is not None and path.endswith(".rviz"):
-            for link in sorted(self.given):
-                frame = launch.frames_of(link)[0] or link
-                text = text.replace(f"Frame: {link}\n", f"Frame: {frame}\n")
         return self.named(text) if text is not None else None
 
     def named(self, text: str) -> str:
@@ -71,11 +54,6 @@ class PackageTask:
         if self.reference is None or self.reference.name == self.package.name:
             return text
         return re.sub(rf"(?<![\w.]){re.escape(self.reference.name)}(?![\w.])", lambda _: self.package.name, text)
-
-    def created(self, path: str, like: str | None) -> list[Edit]:
-        """Return the edit that creates a file like the reference's; none where it exists, or the reference has none."""
-        text = self.wanted(like)
-        return [Edit(self.package.path(path), 1, 1, "", text)] if text is not None and path not in self.files else []
 
     def renamed(self, path: str, new: str) -> Edit:
         """Return the edit that gives a file another path."""
@@ -105,15 +83,13 @@ def _text(package: Package, path: str) -> str | None:
         return None
 
 
-def change(edits: Iterable[Edit], verb: Verb, name: str, what: str = "") -> Proposal:
-    """Return the proposal of a step; `name` is what changes, and `what` the file that it is in."""
-    place = " in ".join(filter(None, (name, what)))
-    cause, action = (text.format(f" in {what}" if verb == "syntax" else place) for text in _WORDS[verb])
-    return Proposal(tuple(dict.fromkeys(edits)), cause, action)
+def change(edits: Iterable[Edit], cause: str, what: str = "") -> Proposal:
+    """Return a proposal; `what` is the file in which something is wrong, if the cause does not name it."""
+    return Proposal(tuple(dict.fromkeys(edits)), f"{cause} in {what}" if what else cause)
 
 
 def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
-    """Yield edits that give a file the name that it has in the reference, or create it."""
+    """Yield edits that give a file the name that it has in the reference."""
     likes = {task.named(path): path for path in (task.reference.tree.files if task.reference is not None else ())}
     names = {posixpath.basename(path) for path in likes} | task.given
     wanted = {path: like for path, like in likes.items() if kind_of(path) == kind}
@@ -123,15 +99,6 @@ def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
             continue
         own = [it for it in task.files if kind in (kind_of(it), posixpath.dirname(it)) or it.startswith(f"{folder}/")]
         yield from _rename(task, kind, name, [it for it in own if posixpath.basename(it) not in names])
-        if path not in task.files and kind != "urdf" and (path == kind or SETUP in task.files):
-            what = WHAT.get(kind, kind if path == kind else "a file of the resource index")
-            yield change(_create(task, path, wanted), "create", what)
-
-
-def _create(task: PackageTask, path: str, wanted: Mapping[str, str]) -> list[Edit]:
-    """Return the edits that create a file of the reference; with setup.py the other files that it needs."""
-    needed = [path, *(other for other in wanted if path == SETUP != other)]
-    return [edit for new in needed for edit in task.created(new, wanted[new])]
 
 
 def _is_named(path: str, name: str, kind: str) -> bool:
@@ -143,7 +110,7 @@ def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> It
     spare = {posixpath.basename(it): it for it in files}
     for other in dict.fromkeys([*filter(None, [closest(name, spare)]), *[*spare][:_MAX_NAMES]]):
         new = posixpath.join(posixpath.dirname(spare[other]), name)
-        yield change([task.renamed(spare[other], new)], "file", WHAT.get(kind, "a file"))
+        yield change([task.renamed(spare[other], new)], f"the name of {WHAT.get(kind, 'a file')}")
 
 
 def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
@@ -162,4 +129,4 @@ def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
         edits += [source.edit(*it.span(), new) for it in word.finditer(source.text)] if source is not None else []
     moved = [task.renamed(f"resource/{old}", f"resource/{new}") for old in names if f"resource/{old}" in task.files]
     edits += moved if f"resource/{new}" not in task.files else []
-    yield change(edits, "set", "the name of the package")
+    yield change(edits, "the name of the package")

@@ -3,60 +3,28 @@
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
+from typing import NamedTuple
 
-from grader.difference import Node, Step, paired, steps
-from grader.robot.edits.additions import Additions
-from grader.robot.edits.draft import Draft
+from grader.difference import Node, Step, steps
+from grader.names import near
+from grader.robot.edits.draft import Draft, escaped
 from grader.robot.edits.elements import Set, child_of, end_of
-from grader.robot.edits.numbers import format_number, values_of
-from grader.robot.edits.pieces import ENDS, SOLVED, STRUCTURE, Piece, PieceMaker, normal, unique
+from grader.robot.edits.nodes import node_of, translation, wanted_value
+from grader.robot.edits.pieces import ENDS, SIBLING, STRUCTURE, Piece, PieceMaker, normal, unique
 from grader.xml.parsing import Element
-from grader.xml.urdf_format import PARTS, TAGS
+from grader.xml.urdf_format import CHILDREN, TAGS, TagFormat
 
-_AXIS = ("1 0 0", "revolute", "continuous", "prismatic", "planar")
-
-
-# The attributes that name a joint or a material, which a student may call otherwise.
-_NAMES = {("mimic", "joint"): "joint", ("joint", "name"): "joint", ("material", "name"): "material"}
+_TAG = TagFormat()
 _MAX_LINKS = 400  # of a robot: more are not compared
 
 
-def wanted_value(step: Step) -> str | None:
-    """Return the value that a step sets: that of the reference, else the default; None if there is none."""
-    if step.verb == "set" and step.like is not None:
-        return step.like.values[step.name]
-    known = TAGS[step.own.tag].attributes.get(step.name) if step.own.tag in TAGS else None
-    return known.default or None if known is not None else None
+class MissingPart(NamedTuple):
+    """A link or joint of the reference that a robot does not have: nothing writes it."""
 
-
-def node_of(element: Element, names: Mapping[str, Mapping[str, str]] | None = None) -> Node:
-    """Return the node of an element, without values and elements that are the default."""
-    tag = str(element.tag)
-    values = {}
-    for name, value in element.attrib.items():
-        text = normal(tag, str(name), str(value))
-        if tag in TAGS and str(name) in TAGS[tag].attributes and text == normal(tag, str(name), None):
-            continue
-        values[str(name)] = (names or {}).get(_NAMES.get((tag, str(name)), ""), {}).get(text, text)
-    if tag not in TAGS and not len(element) and (element.text or "").strip():
-        values[""] = (element.text or "").strip()
-    children = [node_of(child, names) for child in element if isinstance(child.tag, str)]
-    is_moving = tag != "joint" or element.get("type") in _AXIS[1:]
-    children = [child for child in children if not _is_default(child, is_moving=is_moving)]
-    return Node(tag, _keys(element, values), values, children, element)
-
-
-def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
-    name = values.get("name", "") or values.get("reference", "")
-    if element.tag == "joint" and element.getparent() is not None and child_of(element, "child") is not None:
-        return end_of(element, "child"), name
-    return (name,) if name and element.tag not in ("visual", "collision") else ()
-
-
-def _is_default(node: Node, *, is_moving: bool) -> bool:
-    if node.tag == "axis":
-        return not is_moving or node.values.get("xyz", "1 0 0") == "1 0 0"
-    return node.tag == "origin" and not node.values
+    tag: str
+    link: str  # that it is, or that the joint moves
+    joint_type: str = ""
+    parent: str = ""
 
 
 class RobotDifference(PieceMaker):
@@ -64,31 +32,37 @@ class RobotDifference(PieceMaker):
 
     def __init__(self, draft: Draft, reference: Draft) -> None:
         super().__init__(draft, reference)
-        self._names = _translation(draft, reference)
-        self.additions = Additions(self, self._names)
+        self._names = translation(draft, reference)
+        self.missing: list[MissingPart] = []
 
-    @cached_property
+    @property
     def names(self) -> list[str]:
         """The links of the reference."""
         return [link.name for link in self.reference.robot.links]
 
     @cached_property
-    def numbers(self) -> list[str]:
-        """The numbers of the reference, each once."""
-        values = (
-            values_of(str(text))
-            for element in self.reference.root.iter()
-            for name, text in element.attrib.items()
-            if PARTS.get(str(name))
-        )
-        return list(dict.fromkeys(format_number(abs(value)) for found in values for value in found if value))
-
-    @cached_property
     def pieces(self) -> list[Piece]:
         """The pieces, each once: values first, then what moves, is added and is removed."""
-        own, like = self._tree(self.draft, {}), self._tree(self.reference, self._names)
-        found_steps = steps(own, like)
-        return unique([*self._pieces(found_steps), *self._joint_names(), *self._ends()])
+        found_steps = steps(self._tree(self.draft, {}), self._tree(self.reference, self._names))
+        found = [*self._pieces(found_steps)]
+        return unique([*found, *self._materials(), *self._joint_names()])
+
+    def _materials(self) -> Iterator[Piece]:
+        """Give what a link shows the colour of the reference, where no material of the robot has it."""
+        for used in self.draft.root.iter("material"):
+            link = self.reference.link(self.draft.link_of(used))
+            names = [it.get("name") or "" for it in link.iter("material")] if link is not None else []
+            like = self.reference.material(names[0]) if names else None
+            colour = child_of(like, "color") if like is not None else None
+            if like is None or colour is None:
+                continue
+            if not any(it.get("name") == used.get("name") for it in self.draft.root.iterchildren("material")):
+                yield self.of_sets([Set(used, "color", "rgba", colour.get("rgba") or "")])
+            elif (
+                self.draft.material(names[0]) is None
+                and self.draft.material(self._names["material"].get(names[0], "")) is None
+            ):
+                yield self.piece(used, "the material of {}", self.draft.replace(used, self.reference.text(like)))
 
     def _joint_names(self) -> Iterator[Piece]:
         """Rename joints as in the reference, also where they are mimicked."""
@@ -98,52 +72,49 @@ class RobotDifference(PieceMaker):
             mimics = (it for it in self.draft.root.iter("mimic") if it.get("joint") == old)
             sets = (Set(joint, "", "name", new), *(Set(it, "", "joint", new) for it in mimics))
             every += sets
-            yield self.piece(joint, "the name of a joint", "correct the name of a joint", sets=sets, rank=STRUCTURE)
+            yield self.piece(joint, "the name of a joint", sets=sets, rank=STRUCTURE)
         if len(every) > 1:
-            yield Piece("the names of joints", "correct the names of joints", "", tuple(every), (), STRUCTURE)
-
-    def _ends(self) -> Iterator[Piece]:
-        """Exchange the parent and the child of a joint."""
-        for joint in self.draft.joints():
-            names = [end_of(joint, role) for role in ENDS]
-            likes = [self.reference.joint_of(name) for name in names]
-            if any(like is not None and [end_of(like, role) for role in ENDS] == names[::-1] for like in likes):
-                ends = [(child_of(joint, role), other) for role, other in zip(ENDS, ENDS[::-1], strict=True)]
-                edits = tuple(it for end, other in ends if end is not None for it in self.draft.rename_tag(end, other))
-                cause, action = "parent and child of {} are swapped", "swap parent and child of {}"
-                yield self.piece(joint, cause, action, edits, rank=STRUCTURE)
+            yield Piece("the names of joints", "", tuple(every), (), STRUCTURE)
 
     def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
         children = [child for child in draft.root if isinstance(child.tag, str)]
         nodes = [node_of(child, names) for child in children[: 3 * _MAX_LINKS]]
+        is_nameless = draft is self.reference and self.draft.root.get("name") is None
+        values = {"name": draft.root.get("name") or ""} if is_nameless else {}
         version = draft.root.get("version")
-        return Node("robot", (), {"version": version} if version not in (None, "1.0") else {}, nodes, draft.root)
+        values |= {"version": version} if version not in (None, "1.0") else {}
+        return Node("robot", (), values, nodes, draft.root)
 
     def _pieces(self, found: Sequence[Step]) -> Iterator[Piece]:
-        added = [
-            step.like for step in found if step.like is not None and step.verb == "add" and step.own.tag == "robot"
-        ]
-        removed = [step.own for step in found if step.verb == "remove"]
         is_set = lambda step: id(step.own) if step.verb in ("set", "unset") else None  # noqa: E731
         for _, group in groupby(found, key=is_set):
             those = [*group]
             if those[0].verb in ("set", "unset"):
                 yield from self._of_values(those)
         for step in found:
+            own, like = step.own, step.like
             match step.verb:
-                case "rename":
-                    edits = self.draft.rename_attribute(step.own.of, step.name, step.other)
-                    cause = f"the name of the attribute {step.other} of {{}}"
-                    yield self.piece(step.own.of, cause, f"rename {step.name} of {{}} to {step.other}", edits)
-                case "retag" if step.like is not None:
-                    edits, tag = self.draft.rename_tag(step.own.of, step.like.tag), f"<{step.like.tag}>"
-                    yield self.piece(step.own.of, f"the name of the tag {tag}", f"rename the tag to {tag}", edits)
-                case "move" if step.parent is not None and step.like is not None:
-                    yield self.moved(step.own.of, step.parent.of)
-                case "add" if step.like is not None:
-                    yield from self.additions.pieces(step, added, removed)
+                case "rename" | "unset" if new := step.other or TAGS.get(own.tag, _TAG).aliases.get(step.name, ""):
+                    edits = self.draft.rename_attribute(own.of, step.name, new) if new not in own.values else ()
+                    yield self.piece(own.of, f"the name of the attribute {new} of {{}}", edits, rank=SIBLING)
+                case "retag" if like is not None:
+                    edits = self.draft.rename_tag(own.of, like.tag)
+                    yield self.piece(own.of, f"the name of the tag <{like.tag}>", edits)
+                case "move" if step.parent is not None and like is not None:
+                    yield self.moved(own.of, step.parent.of)
+                case "add" if like is not None and own.tag != "robot":
+                    yield from self._inner(own.of, like.of)
+                case "add" if like is not None and like.tag in ("link", "joint"):
+                    self._miss(like.of)
                 case "remove":
-                    yield from self._remove(step.own)
+                    yield from self._remove(own)
+
+    def _miss(self, like: Element) -> None:
+        if like.tag == "link":
+            self.missing.append(MissingPart("link", like.get("name") or ""))
+        else:
+            ends = (end_of(like, "child"), like.get("type") or "", end_of(like, "parent"))
+            self.missing.append(MissingPart("joint", *ends))
 
     def _of_values(self, found: Sequence[Step]) -> Iterator[Piece]:
         """Yield the values of one element: each alone, and all together."""
@@ -154,29 +125,78 @@ class RobotDifference(PieceMaker):
             yield from self._rename(element, values.pop("name"))
         if "" in values:
             text = values.pop("")
-            edits = self.draft.write_text(element, text)
-            yield self.piece(element, "the text of {}", f"set the text of {{}} to {text}", edits)
-        yield from self.each([Set(element, "", name, value) for name, value in values.items()])
+            yield self.piece(element, "the text of {}", self.draft.write_text(element, text))
+        if not self._is_loose(element):
+            yield from self.each([Set(element, "", name, value) for name, value in values.items()])
+
+    def _is_loose(self, element: Element) -> bool:
+        """Return whether an element names a parent of the student's own that no joint holds yet: that is what lacks."""
+        name = element.get("link") or ""
+        is_own = element.tag == "parent" and self.draft.link(name) is not None and name not in self.known
+        return is_own and self.draft.joint_of(name) is None
 
     def _rename(self, element: Element, name: str) -> Iterator[Piece]:
         """Rename a link with all that names it, or alone; a joint; a material where it is used or defined."""
         tag, old = str(element.tag), element.get("name") or ""
+        is_begun = 2 * sum(map(self.draft.robot.has_link, self.names)) >= len(self.names)
+        if tag == "link" and not is_begun and old and near(old, [name], "link") is None:
+            return  # nothing shows that it is this one
         own = (Set(element, "", "name", name),)
         everywhere = rename_link(self.draft, old, name) if tag == "link" else own
         for sets in filter(None, dict.fromkeys((everywhere, own))):
-            cause, link = f"the name of a {tag}", name if tag == "link" else ""
-            yield self.piece(element, cause, f"correct {cause}", sets=sets, link=link)
+            yield self.piece(element, f"the name of a {tag}", sets=sets, link=name if tag == "link" else "")
 
     def _remove(self, node: Node) -> Iterator[Piece]:
         """Remove what the reference does not have; an origin or axis gets its default."""
         element, tag = node.of, node.tag
         if tag in ("origin", "axis"):
             defaults = dict.fromkeys(node.values, "1 0 0" if tag == "axis" else "0 0 0")
-            yield from (self.of_sets([Set(element, "", name, value)], SOLVED) for name, value in defaults.items())
+            yield from self.each([Set(element, "", name, value) for name, value in defaults.items()])
+        elif element.getparent() is self.draft.root and not self._is_twice(element):
             return
-        if element.getparent() is not None and element.getparent().tag != "geometry":  # there the shape is replaced
+        elif element.getparent() is not None and element.getparent().tag != "geometry":  # there the shape is replaced
             cause = f"an extra <{tag}>: {{}}" if tag not in ("link", "joint") else f"an extra {tag}"
-            yield self.piece(element, cause, f"remove the extra <{tag}>", self.draft.remove(element), rank=STRUCTURE)
+            yield self.piece(element, cause, self.draft.remove(element), rank=STRUCTURE)
+
+    def _is_twice(self, element: Element) -> bool:
+        """Return whether another element has the same name, or another joint the same child."""
+        tag, parent = str(element.tag), element.getparent()
+        keys = [
+            {it.get("name"), end_of(it, "child") or None} - {None}
+            for it in (parent if parent is not None else ())
+            if it.tag == tag
+        ]
+        own = {element.get("name"), end_of(element, "child") or None} - {None}
+        return sum(not own.isdisjoint(other) for other in keys) > 1
+
+    def _inner(self, parent: Element, element: Element) -> Iterator[Piece]:
+        """Add an element to another one: values of an origin or axis, another shape, or the element as it is."""
+        tag, own = str(element.tag), child_of(parent, str(element.tag))
+        if tag in ("origin", "axis"):  # one with default values only does not count
+            values = {str(key): str(value) for key, value in element.attrib.items()}
+            mine = {name: own.get(name) if own is not None else None for name in values}
+            off = [name for name, value in values.items() if normal(tag, name, mine[name]) != normal(tag, name, value)]
+            yield from self.each([Set(parent, tag, name, values[name]) for name in off])
+            return
+        if parent.tag == "robot" or tag in ("link", "joint"):
+            return
+        shape = next((it for it in parent if parent.tag == "geometry" and it.tag in CHILDREN["geometry"]), None)
+        if shape is None:
+            yield self.piece(parent, f"the <{tag}> of {{}} is missing", self.draft.insert(parent, self._text(element)))
+        else:
+            yield self.piece(parent, "the shape of {}", self.draft.replace(shape, self._text(element)))
+
+    def _text(self, element: Element) -> str:
+        """Return an element of the reference with the robot's names, an undefined material with its colour."""
+        name = element.get("name") or ""
+        own = self._names["material" if element.tag == "material" else "joint"]
+        text = self.reference.text(element)
+        for old, new in own.items():
+            text = text.replace(f'"{old}"', f'"{escaped(new)}"') if element.tag in ("material", "mimic") else text
+        defined = self.reference.material(name)
+        if element.tag == "material" and defined is not None and self.draft.material(own.get(name, name)) is None:
+            return self.reference.text(defined)
+        return text
 
 
 def rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
@@ -185,19 +205,3 @@ def rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
     ends = [(joint, role) for joint in draft.joints() for role in ENDS if end_of(joint, role) == old]
     sets = (*(Set(link, "", "name", new) for link in own), *(Set(joint, role, "link", new) for joint, role in ends))
     return sets if len(own) == 1 else sets[:0]
-
-
-def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
-    """Return what the joints and materials of the reference are called in the robot."""
-    names: dict[str, dict[str, str]] = {"joint": {}, "material": {}}
-    known = {joint.name for joint in reference.robot.joints}
-    for joint in reference.joints():
-        own = draft.joint_of(end_of(joint, "child"))
-        is_there = any(it.get("name") == joint.get("name") for it in draft.joints())
-        if own is not None and own.get("name") and own.get("name") not in known and not is_there:
-            names["joint"][joint.get("name") or ""] = own.get("name") or ""
-    mine = [node_of(found) for found in draft.root.iterchildren("material")]
-    pairs = paired(mine, [node_of(found) for found in reference.root.iterchildren("material")])
-    called = {like.values.get("name", ""): own_node.values.get("name") for own_node, like in pairs.both}
-    names["material"] = {name: own_name for name, own_name in called.items() if own_name}
-    return names

@@ -1,11 +1,10 @@
 """The edits of the elements of a robot in the text that they are written in."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from typing import Any
 
 from grader import markup
 from grader.edits import (
-    Expanded,
     Proposal,
     merged,
     with_attribute,
@@ -20,33 +19,39 @@ from grader.xml.parsing import Element
 from grader.xml.urdf_format import PARTS
 
 _ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
-_MAX_WAYS = 6
+_MAX_WAYS = 3
 
 
 class Draft(RobotElements):
     """A robot that is being edited."""
 
-    @cached_property
-    def _expanded(self) -> Expanded | None:
+    @property
+    def _expanded(self) -> Any:
         """The source if xacro expanded it: an element is not written there as it is read."""
-        return self.source if isinstance(self.source, Expanded) else None
+        return self.source if self.source.is_expanded else None
 
-    def corrections(self, names: Sequence[str], numbers: Sequence[str]) -> list[Proposal]:
-        """Return edits that may correct what xacro refuses; `names` and `numbers` are those of a reference."""
-        return self._expanded.corrections(names, numbers) if self._expanded is not None else []
+    def corrections(self, names: Sequence[str]) -> list[Proposal]:
+        """Return edits that may correct what xacro refuses; `names` are those of a reference."""
+        found: list[Proposal] = self._expanded.corrections(names) if self._expanded is not None else []
+        return found
 
-    def _adapt(self, element: Element, xml: str) -> str:
-        return self._expanded.adapted(self._tags[element], xml) if self._expanded is not None else xml
-
-    def siblings(self, element: Element) -> list[Element]:
-        """Return the elements that come from the same text of xacro, with this one."""
-        tag = self._tags[element]
-        return [self._elements[it] for it in (self._expanded.siblings(tag) if self._expanded is not None else [tag])]
+    def numbers(self, element: Element, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
+        """Return the numbers from which xacro computes an attribute, each with what makes the edit of it."""
+        if self._expanded is None:
+            return []
+        found: list[tuple[str, Callable[[str], Edits]]] = self._expanded.numbers(self._tags[element], attribute)
+        return found
 
     def _siblings(self, element: Element, attribute: str, sets: Iterable[Set]) -> dict[Element, str]:
         """Return the values that are set for the elements that come from the same text as one."""
-        same = [it for it in self.siblings(element) if it is not element]
+        tag = self._tags[element]
+        same: list[Element] = [self._elements[it] for it in (self._expanded.siblings(tag) if self._expanded else [])]
         return {it: one.value for it in same for one in sets if one.attribute == attribute and one.element is it}
+
+    def shared(self, sets: Iterable[Set]) -> frozenset[str]:
+        """Return the links whose elements come from the same text of xacro as those that are set."""
+        tags = [self._tags[one.element] for one in sets if one.element is not None] if self._expanded else []
+        return frozenset(self.link_of(self._elements[it]) for tag in tags for it in self._expanded.siblings(tag))
 
     def ways(self, sets: Collection[Set]) -> list[Edits]:
         """Return the ways to set values; attributes and elements that are missing are added."""
@@ -72,7 +77,10 @@ class Draft(RobotElements):
         added = [self.add_attributes(element, values) for element, values in attributes.items()]
         added += [self.insert(owner, empty_element(tag, values)) for (owner, tag), values in children.items()]
         rest = tuple(edit for edits in added for edit in edits)
-        return [tuple(dict.fromkeys((*edits, *rest))) for edits in found[:_MAX_WAYS]]
+        return [
+            tuple(edit for edit in dict.fromkeys((*edits, *rest)) if edit.old != edit.new)
+            for edits in found[:_MAX_WAYS]
+        ]
 
     def _ways_of(self, element: Element, attribute: str, value: str, others: Mapping[Element, str]) -> list[Edits]:
         """Return the ways to give an attribute another text, and elements that come from the same text others."""
@@ -80,15 +88,18 @@ class Draft(RobotElements):
         wanted = {tag: (element.get(attribute) or "", escaped(value))}
         wanted |= {self._tags[it]: (it.get(attribute) or "", escaped(text)) for it, text in others.items()}
         if self._expanded is not None:
-            return self._expanded.rewrites(attribute, wanted)
+            ways: list[Edits] = self._expanded.rewrites(attribute, wanted)
+            return ways
         source, start = self.source.element(tag)
+        if self._broken_tag(source.text, start):
+            return [edits] if (edits := self.add_attributes(element, {attribute: value})) else []
         return [(with_attribute(source, start, attribute, escaped(value)),)]
 
     def write_text(self, element: Element, text: str) -> Edits:
         """Return the edit that gives an element another text; none where it has children, or xacro evaluates it."""
         tag = self._tags[element]
         wanted = {tag: ((element.text or "").strip(), escaped(text))}
-        ways = self._expanded.rewrites("", wanted) if self._expanded is not None else ()
+        ways: list[Edits] = self._expanded.rewrites("", wanted) if self._expanded is not None else []
         if ways:
             return ways[0]
         source, start = self.source.element(tag)
@@ -117,22 +128,29 @@ class Draft(RobotElements):
             edits += (source.edit(closing, tail, f"</{new}>"),)
         return edits
 
-    def wrap(self, element: Element, tag: str) -> Edits:
-        """Return the edits that put an element into a new one."""
-        source, start = self.source.element(self._tags[element])
-        end = markup.element_end(source.text, start)
-        return source.edit(start, start, f"<{tag}>"), source.edit(end, end, f"</{tag}>")
-
     def add_attributes(self, element: Element, values: Mapping[str, str]) -> Edits:
-        """Return the edit that adds attributes to an element."""
+        """Return the edit that adds attributes to an element, or writes a broken tag with them."""
         source, start = self.source.element(self._tags[element])
         end = markup.name_end(source.text, start)
+        broken = self._broken_tag(source.text, start)
+        if broken:
+            given = {str(name): str(value) for name, value in element.attrib.items()}
+            new = empty_element(str(element.tag), {**given, **values})
+            new = new if broken.endswith("/>") else f"{new[:-2]}>"
+            return (source.edit(start, start + len(broken), new),) if broken.endswith(">") else ()
         added = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
-        return (source.edit(start, end, f"{source.text[start:end]}{self._adapt(element, added)}"),)
+        return (source.edit(start, end, f"{source.text[start:end]}{added}"),)
+
+    def _broken_tag(self, text: str, start: int) -> str:
+        if not self.is_broken:
+            return ""
+        from grader.xml.tinyxml2.recovery import broken_tag  # late: its patterns take long, and few files need them
+
+        return broken_tag(text, start)
 
     def insert(self, parent: Element, xml: str) -> Edits:
         """Return the edit that inserts an element as the first child of another one."""
-        return (with_child(*self.source.element(self._tags[parent]), self._adapt(parent, xml)),)
+        return (with_child(*self.source.element(self._tags[parent]), xml),)
 
     def append(self, xml: str) -> Edits:
         """Return the edit that inserts an element after the last one of the robot."""

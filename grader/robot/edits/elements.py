@@ -1,16 +1,15 @@
 """The elements of a robot, each with its name in words and its place in the text."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Collection, Iterator
 from typing import NamedTuple, Self
 
 from grader.edits import element_text
 from grader.robot.model import Joint, Robot
 from grader.robot.reader import Reading
 from grader.robot.tree import parent_joints
-from grader.source import Location, Source
-from grader.xml.parsing import Element, make_element
+from grader.source import Source
+from grader.xml.parsing import Element
 
 _COMMENT = re.compile(r"[ \t]*<!--.*?-->", re.DOTALL)
 
@@ -36,6 +35,7 @@ class RobotElements:
         self.root = root
         self.robot = robot
         self.source = source
+        self.is_broken = False  # whether tags in the text are broken
         self._elements = list(root.iter())
         self._tags = {element: tag for tag, element in enumerate(self._elements)}
         self._parents: dict[str, Joint] = parent_joints(robot)
@@ -43,9 +43,11 @@ class RobotElements:
     @classmethod
     def of(cls, reading: Reading) -> Self | None:
         """Return the elements of a robot that could be read."""
-        if reading.root is None or reading.robot is None:
+        if reading.elements is None or reading.robot is None:
             return None
-        return cls(reading.root, reading.robot, reading.source)
+        found = cls(reading.elements, reading.robot, reading.source)
+        found.is_broken = reading.root is None
+        return found
 
     def links(self) -> Iterator[Element]:
         """Yield the links."""
@@ -113,37 +115,6 @@ class RobotElements:
     def line(self, element: Element) -> int:
         """Return the line of an element, from 1."""
         return self.source.tag(self._tags[element]).line
-
-    def places(self) -> dict[Location, tuple[Element, str | None]]:
-        """Return the element, and the attribute, that is at each place of the file."""
-        found: dict[Location, tuple[Element, str | None]] = {}
-        for element, tag in self._tags.items():
-            found.setdefault(self.source.tag(tag), (element, None))
-            for attribute in map(str, element.keys()):
-                found.setdefault(self.source.tag(tag, attribute), (element, attribute))
-        return found
-
-    @contextmanager
-    def supposing(self, sets: Iterable[Set]) -> Iterator[None]:
-        """Give the elements themselves other values for a while, not their text."""
-        before: list[tuple[Element, str, str | None]] = []
-        added: list[Element] = []
-        for one in sets:
-            element = one.element
-            if element is None:
-                element = make_element(one.tag, {}, one.owner)
-                added.append(element)
-            before.append((element, one.attribute, element.get(one.attribute)))
-            element.set(one.attribute, one.value)
-        try:
-            yield
-        finally:
-            for element, attribute, value in reversed(before):
-                element.attrib.pop(attribute)
-                if value is not None:
-                    element.set(attribute, value)
-            for element in added:
-                element.getparent().remove(element)  # type: ignore[union-attr]
 
 
 def end_of(joint: Element, role: str) -> str:

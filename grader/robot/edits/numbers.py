@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
-from math import isclose, isfinite, pi, radians
+from math import isclose, isfinite, radians
 from typing import NamedTuple
 
 from grader.robot.numbers import NumberError, numbers
@@ -10,59 +10,44 @@ from grader.text import enumerated
 
 Values = tuple[float, ...]
 
+LARGE = 3.0  # metres: no part of a robot for a desk is as large
 _SAME = 1e-6
-_QUARTER_TURNS = (0.0, pi / 2, -pi / 2, pi)
-_LARGE = 1.0  # metres: larger parts are often in another unit
 
 
 class Mistake(NamedTuple):
-    """What a person does to a number: the units in which it happens, the correct number, the cause and what to do."""
+    """What a person does to numbers: the units, the size from which it is likely, how to undo it, and the cause."""
 
     units: tuple[str, ...]
+    least: float
     correct: Callable[[float], float]
     cause: str
-    action: str
 
 
 _LENGTHS, _ANGLES, _ANY = ("m",), ("rad", "rad or m"), ()
 _MISTAKES = (
-    Mistake(_ANY, lambda value: -value, "the sign of {}", "negate {}"),
-    Mistake(_ANGLES, radians, "the unit of {}: degrees, not radians", "convert {} to radians"),
-    Mistake(_LENGTHS, lambda value: value / 1000, "the unit of {}: millimetres, not metres", "convert {} to metres"),
-    Mistake(_LENGTHS, lambda value: value / 100, "the unit of {}: centimetres, not metres", "convert {} to metres"),
-    Mistake(("1",), lambda value: value / 255, "the range of {}: 0..255, not 0..1", "write {} in 0..1"),
-    Mistake(_LENGTHS, lambda value: value / 2, "{}: twice the correct value", "halve {}"),
-    Mistake(_LENGTHS, lambda value: value * 2, "{}: half of the correct value", "double {}"),
-    Mistake(_ANY, lambda value: value / 10, "the decimal point of {}", "divide {} by 10"),
-    Mistake(_ANY, lambda value: value * 10, "the decimal point of {}", "multiply {} by 10"),
+    Mistake(_ANY, 0.0, lambda value: -value, "the sign of {}"),
+    Mistake(_ANGLES, 6.3, radians, "the unit of {}: degrees, not radians"),
+    Mistake(_LENGTHS, LARGE, lambda value: value / 1000, "the unit of {}: millimetres, not metres"),
+    Mistake(_LENGTHS, LARGE, lambda value: value / 100, "the unit of {}: centimetres, not metres"),
+    Mistake(("1",), 1.1, lambda value: value / 255, "the range of {}: 0..255, not 0..1"),
+    Mistake(_LENGTHS, 0.0, lambda value: value / 2, "{}: twice the correct value"),
+    Mistake(_LENGTHS, 0.0, lambda value: value * 2, "{}: half of the correct value"),
 )
 
 
-class Named(NamedTuple):
-    """What is wrong with numbers, what to do, and whether it is a mistake that people make."""
-
-    cause: str
-    action: str
-    is_mistake: bool = False
-
-
-def words_of_change(what: str, parts: Sequence[str], unit: str, old: Values, new: Values) -> Named:
-    """Return the mistake in numbers, and what to do; `what` has {} where the names of the wrong parts go."""
+def mistake_in(parts: Sequence[str], unit: str, old: Values, new: Values) -> str:
+    """Return what is wrong with numbers; {} stands for what has them."""
     if len(old) != len(new):
-        return Named(what.format("the numbers"), f"set {what.format('the numbers')} to {format_numbers(new)}")
+        return "the numbers of {}"
     off = [index for index, pair in enumerate(zip(old, new, strict=True)) if not _is_same(*pair)]
-    wrong = (
-        what.format(enumerated([_with_article(parts[index]) for index in off]))
-        if len(off) < 4
-        else what.format("the numbers")
-    )
+    wrong = f"{enumerated([_with_article(parts[index]) for index in off]) if len(off) < 4 else 'the numbers'} of {{}}"
     for mistake in _MISTAKES:
         fits = (_is_same(mistake.correct(old[index]), new[index], 2e-3) for index in off)
         if (not mistake.units or unit in mistake.units) and off and all(fits):
-            return Named(mistake.cause.format(wrong), mistake.action.format(wrong), is_mistake=True)
+            return mistake.cause.replace("{}", wrong)
     if len(off) == 2 and all(_is_same(old[one], new[other]) for one, other in (off, off[::-1])):
-        return Named(f"{wrong} are swapped", f"swap {wrong}", is_mistake=True)
-    return Named(wrong, f"set {wrong} to {enumerated(list(dict.fromkeys(format_number(new[index]) for index in off)))}")
+        return f"{wrong} are exchanged"
+    return wrong
 
 
 def _with_article(part: str) -> str:
@@ -70,25 +55,17 @@ def _with_article(part: str) -> str:
 
 
 def plausible(unit: str, old: Values) -> Iterator[Values]:
-    """Yield numbers that a person may have meant: another sign, another unit, another order, a quarter turn."""
-    count = range(len(old))
+    """Yield numbers that a person may have meant: another sign, another unit, twice or half of it, another order."""
     for mistake in _MISTAKES:
-        if mistake.units and unit not in mistake.units:
-            continue
-        for indices in ((index,) for index in count if old[index]):
-            yield _with(old, {index: mistake.correct(old[index]) for index in indices})
-        if sum(map(bool, old)) > 1:
-            yield tuple(mistake.correct(value) if value else value for value in old)
-    for one, other in combinations(count, 2):
+        if max(map(abs, old), default=0.0) >= mistake.least and (not mistake.units or unit in mistake.units):
+            for index in (index for index, value in enumerate(old) if value and not (mistake.least and len(old) > 1)):
+                yield (*old[:index], mistake.correct(old[index]), *old[index + 1 :])
+            if mistake.least and len(old) > 1:
+                yield tuple(map(mistake.correct, old))
+    for one, other in combinations(range(len(old)), 2):
         if old[one] != old[other]:
-            yield _with(old, {one: old[other], other: old[one]})
-    if unit == "rad" and len(old) > 1:
-        for index in count:
-            yield from (_with(old, {index: turn}) for turn in _QUARTER_TURNS)
-
-
-def _with(values: Values, others: dict[int, float]) -> Values:
-    return tuple(others.get(index, value) for index, value in enumerate(values))
+            pair = {one: old[other], other: old[one]}
+            yield tuple(pair.get(index, value) for index, value in enumerate(old))
 
 
 def _is_same(one: float, other: float, relative: float = 1e-9) -> bool:
@@ -116,8 +93,3 @@ def format_number(value: float) -> str:
     if text == "0" and abs(value) > 1e-12:  # an inertia
         return f"{value:.6g}"
     return text if "e" not in text else f"{value:.6f}".rstrip("0").rstrip(".")
-
-
-def round_numbers(values: Values, digits: int) -> Values:
-    """Return numbers with so many decimals."""
-    return tuple(round(value, digits) + 0.0 for value in values)

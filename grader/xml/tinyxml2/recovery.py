@@ -3,13 +3,14 @@
 import re
 from typing import Literal, NamedTuple
 
+from grader.markup import indentation
 from grader.names import near
 from grader.problems import Kind
 from grader.text import enumerated
 from grader.xml import catalogue
 from grader.xml.tinyxml2.tags import MalformedTagError, ReadTag, read_tag, short
 from grader.xml.tinyxml2.values import decode, escape
-from grader.xml.urdf_format import CHILDREN
+from grader.xml.urdf_format import CHILDREN, REQUIRED, TAGS
 
 # What is no tag, to its end or to the end of the text: a comment, a CDATA section, a declaration, a DOCTYPE.
 _OTHER = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(?P<text>.*?)(?:\]\]>|\Z)|<[?!].*?(?:>|\Z)", re.DOTALL)
@@ -19,12 +20,13 @@ _ATTRIBUTE = re.compile(
     r"""
     (?<![\w:.-])([A-Za-z_][\w:.-]*+)\s*+=\s*+(?:
         "([^"]*)"? | '([^']*)'?    # link="base", or link="base at the end of the tag
-      | [“”]([^“”]*)[“”]
+      | [“”„]([^“”„]*)[“”„]
       | ([^\s"'“”=]+)              # link=base
     )
     """,
     re.VERBOSE,
 )
+_NAMELESS = re.compile(r"""\s*=\s*["']([^"']*)["']""")
 _NEXT_NAME = re.compile(r"<\s*+([A-Za-z_][\w:.-]*)")
 # Elements for other tools, and of xacro, which stand in the robot; those of xacro have no URDF in them.
 _XACRO = ("xacro:property", "xacro:arg", "xacro:include")
@@ -69,6 +71,9 @@ class Recovery:
         self._xml: list[str] = []
         self._offsets: list[int] = []
         self._assumed: list[NoteDifference] = []
+        self.changes: list[tuple[int, int, str]] = []  # with which the text is what is read: from offset to offset
+        self.is_lossy = False  # whether a text in a tag has no place in what is read
+        self._end_of_tag = 0
         self._open: list[ReadTag] = []
 
     def run(self) -> Scan:
@@ -81,11 +86,16 @@ class Recovery:
             if other := _OTHER.match(text, start):
                 self._write(other["text"] or "")
                 position = other.end()
+                if start and other[0].startswith("<?xml ") and text[:start].strip("\ufeff \t\r\n"):
+                    self._change(start, position, "")
                 continue
             tag, position = self._tag(start)
+            self._end_of_tag = position
             if tag is not None and (tag.name == "robot" if not self._open else True):
                 self._close(tag) if tag.form == "close" else self._start(tag)
             if self._xml and not self._open:
+                rest = text[position:].strip()
+                self._change(position, len(text.rstrip()), "") if rest and "<" not in rest else None
                 break
         if self._open:
             self._assume(
@@ -93,6 +103,7 @@ class Recovery:
                 len(text),
             )
         while self._open:
+            self._close_before(len(text))
             self._end()
         if not any(xml.startswith("<link") for xml in self._xml):
             return Scan(b"", [], 0, [])
@@ -106,6 +117,7 @@ class Recovery:
             found = _BROKEN.match(self._text, start)
             if found is None:
                 self._assume("a < without the name of a tag is ignored", start)
+                self._change(start, start + 1, "")
                 return None, max(error.resume, start + 1)
             attributes: dict[str, str] = {}
             rest = found["rest"].rstrip()
@@ -115,6 +127,9 @@ class Recovery:
                 "close" if found["close"] else "empty" if rest.endswith("/") else "open"
             )
             tag, end = ReadTag(found["name"], form, attributes, start), found.end()
+            corrected = _corrected(tag, rest)
+            self.is_lossy |= "=" in rest and "=" not in corrected and tag.form != "close"
+            self._change(start, start + len(found[0].rstrip()), corrected)
             if tag.form != "close":
                 what = f"with {enumerated(list(map(short, attributes)))}" if attributes else "without attributes"
                 self._assume(
@@ -123,6 +138,7 @@ class Recovery:
         is_slash_missing = tag.form == "open" and not tag.attributes and self._open and self._open[-1].name == tag.name
         if is_slash_missing and not self._is_before_child(tag, end):
             self._assume(f"<{short(tag.name)}> is read as </{short(tag.name)}>", start)
+            self._change(start, end, f"</{tag.name}>")
             return tag._replace(form="close"), end
         return tag, end
 
@@ -148,9 +164,11 @@ class Recovery:
             self._open[-1] = opened._replace(name=tag.name)
             self._xml[at] = self._open[-1].xml
             self._assume(f"<{short(opened.name)}> is read as <{short(tag.name)}>", opened.offset)
+            self._change(opened.offset, opened.offset + 1 + len(opened.name), f"<{tag.name}")
             self._end()
         elif not found:
             self._assume(f"</{short(tag.name)}> is ignored, because no <{short(tag.name)}> is open", tag.offset)
+            self._change(tag.offset, self._end_of_tag, "")
         else:
             self._leave(found[-1] + 1, tag.offset)
             self._end()
@@ -161,6 +179,7 @@ class Recovery:
             name = short(self._open[-1].name)
             line = self._text.count("\n", 0, self._open[-1].offset) + 1
             self._assume(f"<{name}> of line {line} is closed here", offset)
+            self._close_before(offset)
             self._end()
 
     def _end(self) -> None:
@@ -172,3 +191,38 @@ class Recovery:
 
     def _assume(self, message: str, offset: int, subject: str = "") -> None:
         self._assumed.append(NoteDifference(catalogue.RECOVERED, message, offset, subject))
+
+    def _close_before(self, offset: int) -> None:
+        """Note that the innermost open tag should be closed before an offset, in a line of its own if it has one."""
+        at, opened = len(self._text[:offset].rstrip()), self._open[-1]
+        indent = indentation(self._text, opened.offset)
+        newline = "\r\n" if "\r\n" in self._text else "\n"
+        before = f"{newline}{indent}" if "\n" in self._text[opened.offset : at] else ""
+        self._change(at, at, f"{before}</{opened.name}>")
+
+    def _change(self, start: int, end: int, new: str) -> None:
+        if self.changes and self.changes[-1][1] == start == end:
+            start, end, new = *self.changes[-1][:2], self.changes.pop()[2] + new
+        self.changes.append((start, end, new))
+
+
+def broken_tag(text: str, start: int) -> str:
+    """Return the broken tag at an offset; empty if it is not broken."""
+    try:
+        read_tag(text, start, lambda *_: None)
+    except MalformedTagError:
+        found = _BROKEN.match(text, start)
+        return found[0].rstrip() if found is not None else ""
+    return ""
+
+
+def _corrected(tag: ReadTag, rest: str) -> str:
+    """Return a broken tag as it is read; a value without a name gets that of the attribute that the tag needs."""
+    attributes, value = dict(tag.attributes), _NAMELESS.match(rest)
+    needed = REQUIRED.get(tag.name) or tuple(TAGS[tag.name].attributes if tag.name in TAGS else ())
+    if value is not None and needed and needed[0] not in attributes:
+        attributes = {needed[0]: value[1], **attributes}
+    if tag.form == "close":
+        return f"</{tag.name}>"
+    text = "".join(f' {name}="{escape(value)}"' for name, value in attributes.items())
+    return f"<{tag.name}{text}{'/' if tag.form == 'empty' else ''}>"
