@@ -10,7 +10,7 @@ from typing import NamedTuple
 _HEAD = re.compile(r"""<\s*([^\s=/>"'<]*)((?:"[^"]*"|'[^']*'|[^>"'<])*)(/?)>""")
 _TAG_NAME = re.compile(r"<\s*[^\s=/>]*")
 _ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
-_TOKEN = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<!|</[^>]*>|<", re.DOTALL)
+TOKEN = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<!|</[^>]*>|<", re.DOTALL)
 _STEP = "   "  # of indentation, where the file shows none
 
 
@@ -22,6 +22,11 @@ class Attribute(NamedTuple):
     value_start: int
     value_end: int
     end: int
+
+    @property
+    def value(self) -> tuple[int, int]:
+        """The offsets of its value."""
+        return self.value_start, self.value_end
 
 
 def attributes(text: str, start: int) -> Iterator[Attribute]:
@@ -59,7 +64,7 @@ def element_end(text: str, start: int) -> int:
     position, is_empty = head_end(text, start)
     depth = 0 if is_empty else 1
     while depth:
-        token = _TOKEN.search(text, position)
+        token = TOKEN.search(text, position)
         if token is None:
             return len(text)
         position = token.end()
@@ -88,7 +93,7 @@ def child_indentation(text: str, start: int) -> str:
     """Return the indentation of the children of the element at an offset: its first child's, else one step more."""
     own = indentation(text, start)
     end, is_empty = head_end(text, start)
-    token = None if is_empty else _TOKEN.search(text, end)
+    token = None if is_empty else TOKEN.search(text, end)
     if token is not None and not token[0].startswith("</"):
         found = indentation(text, token.start())
         if len(found) > len(own):

@@ -1,33 +1,12 @@
-"""The elements of a URDF or xacro text with the offsets of all their parts.
+"""The elements of a URDF or xacro text with the offsets of all their parts."""
 
-The text is read here, not by the grader's own reader: a fault of the reader must not hide itself from its own mutants.
-"""
-
-import re
 from collections import Counter
 from collections.abc import Iterable
 from typing import NamedTuple
 
-_TOKEN = re.compile(
-    r"""
-      <!--.*?-->
-    | <[?!][^>]*>                                # <?xml version="1.0"?>, <!DOCTYPE robot>
-    | </[^>]*>
-    | <([^\s/>]+)(?:"[^"]*"|'[^']*'|[^>"'])*>    # <link name="a>b">, <origin xyz='0 0 1'/>
-    """,
-    re.DOTALL | re.VERBOSE,
-)
-_ATTRIBUTE = re.compile(r"""\s([^\s="'<>/]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
+from grader.markup import TOKEN, Attribute, attributes, head_end, name_end
+
 _NAMED_BY = ("name", "reference")
-
-
-class AttributeSpan(NamedTuple):
-    """An attribute of a start tag: its name, and the offsets of the attribute and its value."""
-
-    name: str
-    start: int
-    value: tuple[int, int]
-    end: int
 
 
 class Element(NamedTuple):
@@ -41,7 +20,7 @@ class Element(NamedTuple):
     head_end: int
     end: int
     parent: int
-    attributes: tuple[AttributeSpan, ...]
+    attributes: tuple[Attribute, ...]
     label: str = ""
     tags: tuple[str, ...] = ()  # of those above it, from the root, and its own
 
@@ -58,16 +37,16 @@ def elements(text: str) -> list[Element]:
     """Return the elements of markup in document order."""
     found: list[Element] = []
     open_ones: list[int] = []
-    for token in _TOKEN.finditer(text):
-        if token[1]:
-            parent = open_ones[-1] if open_ones else -1
-            tags = (*(found[parent].tags if parent >= 0 else ()), token[1])
-            attributes = tuple(
-                AttributeSpan(it[1], it.start(1), it.span(2 if it[2] is not None else 3), it.end())
-                for it in _ATTRIBUTE.finditer(text, token.start(), token.end())
-            )
-            found.append(Element(token[1], token.start(), token.end(), token.end(), parent, attributes, "", tags))
-            if not token[0].endswith("/>"):
+    position = 0
+    while token := TOKEN.search(text, position):
+        position = token.end()
+        if token[0] == "<":
+            position, is_empty = head_end(text, token.start())
+            parent, tag = open_ones[-1] if open_ones else -1, text[token.end() : name_end(text, token.start())]
+            tags = (*(found[parent].tags if parent >= 0 else ()), tag)
+            own = tuple(attributes(text, token.start()))
+            found.append(Element(tag, token.start(), position, position, parent, own, "", tags))
+            if not is_empty:
                 open_ones.append(len(found) - 1)
         elif token[0].startswith("</") and open_ones:
             index = open_ones.pop()

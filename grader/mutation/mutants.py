@@ -6,7 +6,8 @@ from itertools import pairwise
 from math import degrees
 from typing import NamedTuple
 
-from grader.mutation.elements import AttributeSpan, Element, elements, names_of_tag, text_span
+from grader.markup import Attribute
+from grader.mutation.elements import Element, elements, names_of_tag, text_span
 from grader.xml.urdf_format import JOINT_TYPES, PARTS
 
 _NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
@@ -103,7 +104,7 @@ def _changes(text: str) -> Iterator[MutantEdit]:
 
 
 def _of_attribute(
-    text: str, element: Element, attribute: AttributeSpan, known: dict[str, list[str]]
+    text: str, element: Element, attribute: Attribute, known: dict[str, list[str]]
 ) -> Iterator[MutantEdit]:
     name, span = attribute.name, attribute.value
     label, tags = f"{element.label} {name}", (*element.tags, f"@{name}")
