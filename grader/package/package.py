@@ -11,6 +11,7 @@ from grader.files.tree import Tree
 from grader.names import closest
 from grader.package.launch.places import ENDINGS, PREFIX, SHARE, is_in_launch_folder, is_launch_named, launch_stem
 from grader.source import Location, Source
+from grader.static_python.budget import Budget
 from grader.text import enumerated, was_not_committed
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
@@ -40,6 +41,8 @@ class Package:
     packages: dict[str, "Package"]  # all of the submission, by their names
     generated: tuple[str, ...] = ()  # paths in the submission that a build has copied
     lab_name: str = ""  # the name that the lab gives it
+    ignored_by: str = ""  # the path of a file for which colcon ignores it
+    budget: Budget = field(default_factory=Budget, init=False)  # of the evaluation of its files
     _launches: "dict[str, Launch]" = field(default_factory=dict, init=False)
     _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False)
 
@@ -102,7 +105,7 @@ class Package:
             code = parse(file.read(PYTHON_LIMIT), path)
         except InputError as error:
             code = SyntaxFault(Source(path, ""), str(error), Location(path, 1, 1), sure=False)
-        return read_setup(code, self.tree)
+        return read_setup(code, self.tree, self.budget)
 
     @cached_property
     def installed(self) -> dict[str, str]:

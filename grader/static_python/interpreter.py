@@ -2,193 +2,236 @@
 
 import ast
 import builtins
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import partial
+from io import StringIO
 
-from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable, LoopFlow, RaisedFlow, ReturnFlow
-from grader.static_python.parse import Code, Position, position_of
-from grader.static_python.statements import StatementEvaluator
-from grader.static_python.values import UNKNOWN_KEYS, Call, Function, Scope, Unknown, Value, items_of, truth
+from grader.static_python.budget import Budget, OutOfBudget
+from grader.static_python.file_expressions import EvaluationStopped, ExitFlow, FunctionTable, RaisedFlow
+from grader.static_python.parse import START, Code, Position, position_of
+from grader.static_python.statements import LoopFlow, ReturnFlow, Statements
+from grader.static_python.values import (
+    UNKNOWN_KEYS,
+    BoundMethod,
+    Call,
+    ExpressionFails,
+    Function,
+    Scope,
+    Undetermined,
+    Unknown,
+    Value,
+    iterate,
+)
 
-_CONDITION = "a condition is known only at run time"
+_STEPS = 100_000  # what the evaluation of one file may use
+_IN_CLASS = (ast.FunctionDef, ast.Pass, ast.Expr, ast.Assign)
 
 
-class Interpreter(StatementEvaluator):
+class Interpreter(Statements):
     """Adds the statements that have blocks."""
 
-    def __init__(self, functions: FunctionTable, names: Mapping[str, Value]) -> None:
-        """`names` are those that Python itself binds, such as __file__."""
-        super().__init__(functions, {"__name__": "__main__", **names})
-        self.stop_reason = ""  # why the file is not evaluated to its end
-        self._has_generators = True
-        self._generators: dict[ast.AST, bool] = {}
+    def __init__(
+        self,
+        functions: FunctionTable,
+        names: Mapping[str, Value],
+        *,
+        stand_ins: Collection[str] = (),
+        budget: Budget | None = None,
+        exports: Mapping[str, Collection[str]] | None = None,
+        local_modules: Collection[str] = (),
+    ) -> None:
+        """`names` are those that Python itself binds, such as __file__.
+
+        Args:
+            functions: What may be called, by full name.
+            names: The names that are bound from the beginning.
+            stand_ins: Texts that stand for folders that are not known.
+            budget: What the evaluation is charged to.
+            exports: The names that modules export, besides those of Python itself.
+            local_modules: The modules beside the file, which are imported before any other.
+        """
+        super().__init__(functions, names, budget or Budget(_STEPS))
+        self.budget.stand_ins = stand_ins
+        self.at = START  # the statement that is evaluated
+        self.exports = exports or {}
+        self.local_modules = local_modules
 
     def run(self, code: Code) -> Scope:
         """Evaluate a whole file and return the scope of its names. Never raises."""
-        self._has_generators = "yield" in code.source.text
         try:
             self._block(code.tree.body, self.module)
-        except (EvaluationStopped, RecursionError) as error:
+        except (EvaluationStopped, OutOfBudget, RecursionError) as error:
             self._stop(error)
         except (ReturnFlow, LoopFlow, ExitFlow):  # also a break outside of a loop, which ast accepts
             pass
+        except RaisedFlow as error:
+            self.errors.append(error.error)
         return self.module
 
     def call_from_outside(self, function: Function, at: Position, args: Sequence[Value] | None = ()) -> Value:
         """Return the value of a call of one of the file's functions. Never raises.
 
-        With `args` None, the arguments are unknown, and no error in the call counts: it may never happen.
+        With `args` None, the arguments are unknown, and no error or doubt in the call counts: it may never happen.
         """
         unknown = {UNKNOWN_KEYS: Unknown("an event is known only at run time", at)} if args is None else {}
-        recorded = list(self.errors)
+        recorded, doubt = list(self.errors), self.doubt
         try:
             return self.call_function(function, Call("", list(args or ()), unknown, at))
-        except (EvaluationStopped, RecursionError) as error:
-            return Unknown(self._stop(error), at)
-        except (ExitFlow, LoopFlow):
-            return Unknown("the file exits here", at)
+        except (EvaluationStopped, OutOfBudget, RecursionError) as error:
+            return self._stop(error, at)
+        except (ExitFlow, LoopFlow, ExpressionFails, Undetermined, RaisedFlow):
+            return self.doubted(Unknown("the file exits here", at))
         finally:
             if args is None:
-                self.errors = recorded
+                self.errors, self.doubt = recorded, doubt
 
-    def _functiondef(self, node: ast.FunctionDef | ast.AsyncFunctionDef, scope: Scope) -> None:
-        function = self.function(node.args, scope, position_of(node), partial(self._function_body, node))
-        for parameter in getattr(node, "type_params", ()):  # Python 3.12
-            scope.bind(parameter.name, Unknown("a type is not supported", position_of(node)))
-        decorated = Unknown("a decorator is not supported", position_of(node))
-        scope.bind(node.name, decorated if node.decorator_list else function)
-
-    def _if(self, node: ast.If, scope: Scope) -> None:
-        condition = truth(self.evaluate(node.test, scope))
-        if condition is None:
-            self._branches([node.body, node.orelse], scope, position_of(node))
-        else:
-            self._block(node.body if condition else node.orelse, scope)
-
-    def _while(self, node: ast.While, scope: Scope) -> None:
-        before = self.uncertainty
-        if truth(self.evaluate(node.test, scope)) is False:
-            self._block(node.orelse, scope)
-        else:  # the body twice: its first round may change what the second one does
-            self._branches([node.body, node.body, node.orelse], scope, position_of(node))
-        self.uncertainty = before
-
-    def _match(self, node: ast.Match, scope: Scope) -> None:
-        self.evaluate(node.subject, scope)
-        for pattern in ast.walk(node):
-            if isinstance(pattern, ast.MatchAs | ast.MatchStar) and pattern.name is not None:
-                scope.bind(pattern.name, Unknown("a pattern is not supported", position_of(node)))
-        self._branches([case.body for case in node.cases], scope, position_of(node))
-
-    def _with(self, node: ast.With | ast.AsyncWith, scope: Scope) -> None:
-        for item in node.items:
-            value = self.evaluate(item.context_expr, scope)
-            if item.optional_vars is not None:
-                self.assign(item.optional_vars, value, scope)
-        self._block(node.body, scope)
-
-    _asyncfunctiondef, _asyncwith = _functiondef, _with
-
-    def _stop(self, error: Exception) -> str:
+    def _stop(self, error: Exception, at: Position | None = None) -> Unknown:
+        self.handlers = 0
         is_deep = isinstance(error, RecursionError)
-        self.stop_reason = "the file is too deeply nested to evaluate" if is_deep else str(error)
-        return self.stop_reason
+        reason = "the file is too deeply nested, which is not evaluated" if is_deep else str(error)
+        return self.doubted(Unknown(reason, getattr(error, "at", None) or at or self.at))
 
     def _block(self, body: list[ast.stmt], scope: Scope) -> None:
         for statement in body:
-            self.step()
-            if self.may_have_failed and self.handlers and self.uncertainty is None:
-                self.uncertainty = Unknown("an earlier error may have been caught", position_of(statement))
+            self.budget.charge(1)
+            self.at = position_of(statement)
             self.statement(statement, scope)
 
-    def _branches(self, bodies: list[list[ast.stmt]], scope: Scope, at: Position, reason: str = _CONDITION) -> None:
-        """Evaluate blocks of which only a run decides which are executed."""
-        for body in bodies:
-            with self.uncertain(reason, at):
-                self._block(body, scope)
+    def on_functiondef(self, node: ast.FunctionDef, scope: Scope) -> None:
+        """Bind a function, as its decorators return it."""
+        at = position_of(node)
+        decorators = [self.evaluate(decorator, scope) for decorator in node.decorator_list]
+        parameters = node.args
+        every = (*parameters.posonlyargs, *parameters.args, *parameters.kwonlyargs, parameters.vararg, parameters.kwarg)
+        function: Value = self.function(parameters, scope, at, partial(self._function_body, node), _bound_in(node))
+        if not getattr(node, "type_params", ()):
+            for annotation in (*(parameter.annotation for parameter in every if parameter), node.returns):
+                self.annotation(annotation, scope)
+        for decorator in reversed(decorators):
+            function = self.call_value(decorator, Call("", [function], {}, at))
+        scope.bind(node.name, function)
 
-    def _function_body(self, node: ast.FunctionDef | ast.AsyncFunctionDef, scope: Scope, at: Position) -> Value:
-        if self._has_generators and node not in self._generators:
-            self._generators[node] = any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in ast.walk(node))
-        if self._generators.get(node):
-            return Unknown("a generator function is not supported", at)
-        before = self.uncertainty
+    def _function_body(self, node: ast.FunctionDef, scope: Scope) -> Value:
+        if any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in _own_nodes(node)):
+            raise EvaluationStopped("a generator function is not evaluated", position_of(node))
         try:
             self._block(node.body, scope)
         except ReturnFlow as flow:
-            return flow.value if self.uncertainty is before or self.uncertainty is None else self.uncertainty
-        finally:
-            self.uncertainty = before
+            return flow.value
         return None
 
-    def _for(self, node: ast.For | ast.AsyncFor, scope: Scope) -> None:
-        items = items_of(self.evaluate(node.iter, scope))
-        before = self.uncertainty
-        if items is None:
-            for body in (node.body, node.body, node.orelse):  # the body twice, as that of a while loop
-                with self.uncertain("the items of a loop are known only at run time", position_of(node)):
-                    self.assign(node.target, None, scope)
-                    self._block(body, scope)
-        for item in items or ():
-            self.step()
-            self.assign(node.target, item, scope)
-            try:
-                self._block(node.body, scope)
-            except LoopFlow as flow:
-                if flow.is_break:
-                    break
-        else:
-            self._block(node.orelse if items is not None else [], scope)
-        self.uncertainty = before
+    def on_classdef(self, node: ast.ClassDef, scope: Scope) -> None:
+        """Bind a class that only defines methods and plain values; it is not called."""
+        for base in (*node.bases, *node.keywords, *node.decorator_list):
+            if not isinstance(base, ast.Name | ast.Attribute):
+                raise EvaluationStopped("this class is not evaluated", position_of(node))
+            self.evaluate(base, scope)
+        inner = Scope({}, scope)
+        for statement in node.body:
+            is_plain = not any(isinstance(part, ast.Call) for part in _own_nodes(statement))
+            if not isinstance(statement, _IN_CLASS) or not is_plain or node.decorator_list:
+                raise EvaluationStopped("this class is not evaluated", position_of(statement))
+            self.statement(statement, inner)
+        scope.bind(node.name, Unknown(f"the class {node.name} is not evaluated", position_of(node)))
 
-    def _try(self, node: ast.Try | ast.TryStar, scope: Scope) -> None:
-        if not node.handlers:
-            self._block(node.body, scope)
-        else:
-            raised, may_have_failed = self._guard(node.body, scope)
-            if raised is not None:
-                self._handle(node, raised, scope)
-            elif may_have_failed:
-                bodies = [node.orelse, *(handler.body for handler in node.handlers)]
-                self._branches(bodies, scope, position_of(node), "whether an error is raised is known only at run time")
-            else:
-                self._block(node.orelse, scope)
-        self._block(node.finalbody, scope)
+    def on_typealias(self, node: ast.stmt, scope: Scope) -> None:
+        """Bind the name of a type (Python 3.12), whose value is evaluated only when it is used."""
+        name = node.name.id  # type: ignore[attr-defined]
+        scope.bind(name, Unknown("a type is not evaluated", position_of(node)))
 
-    _asyncfor, _trystar = _for, _try
+    def on_if(self, node: ast.If, scope: Scope) -> None:
+        """Evaluate the branch whose condition holds."""
+        self._block(node.body if self.holds(node.test, scope) else node.orelse, scope)
 
-    def _guard(self, body: list[ast.stmt], scope: Scope) -> tuple[RaisedFlow | None, bool]:
-        """Evaluate a block whose errors are caught; return the certainly raised error, and whether another may be."""
-        before, failed_before, self.may_have_failed = self.uncertainty, self.may_have_failed, False
-        self.handlers += 1
-        raised: RaisedFlow | None = None
+    def on_while(self, node: ast.While, scope: Scope) -> None:
+        """Evaluate rounds as long as the condition holds."""
+        while self.holds(node.test, scope):
+            if not self._round(node.body, scope):
+                return
+        self._block(node.orelse, scope)
+
+    def on_for(self, node: ast.For, scope: Scope) -> None:
+        """Evaluate a round for each item."""
+        items = iterate(self.evaluate(node.iter, scope))
+        for item in items:
+            self.bind(node.target, item, scope)
+            if not self._round(node.body, scope):
+                return
+        self._block(node.orelse, scope)
+
+    def _round(self, body: list[ast.stmt], scope: Scope) -> bool:
+        """Evaluate one round of a loop; return whether the loop goes on."""
         try:
             self._block(body, scope)
-        except RaisedFlow as error:
-            raised = error
-        finally:
-            self.handlers -= 1
-            failed, self.may_have_failed = self.may_have_failed, self.may_have_failed or failed_before
-        self.uncertainty = before
-        return raised, failed
+        except LoopFlow as flow:
+            return not flow.is_break
+        return True
 
-    def _handle(self, node: ast.Try | ast.TryStar, raised: RaisedFlow, scope: Scope) -> None:
+    def on_with(self, node: ast.With, scope: Scope) -> None:
+        """Evaluate a block with files that are opened for reading, or what the table knows to enter."""
+        entered: list[Value] = []
+        for item in node.items:
+            value = self.evaluate(item.context_expr, scope)
+            at = position_of(item.context_expr)
+            if isinstance(value, Call):
+                self.call_value(BoundMethod(value, "__enter__"), Call("", [], {}, at))
+            elif not isinstance(value, StringIO):
+                raise EvaluationStopped("this use of with is not evaluated", at)
+            entered.append(value)
+            if item.optional_vars is not None:
+                self.bind(item.optional_vars, value, scope)
+        try:
+            self._block(node.body, scope)
+        finally:
+            for value in entered:
+                if isinstance(value, StringIO):
+                    value.close()
+
+    def on_try(self, node: ast.Try, scope: Scope) -> None:
+        """Evaluate a block; an error in it is certain, because the evaluation stops where one is only possible."""
+        leaving = (part for it in node.finalbody for part in ast.walk(it))
+        catches = any(isinstance(part, ast.Return | ast.Break | ast.Continue) for part in leaving)
+        before = self.handlers
+        self.handlers += catches
+        try:
+            self._guarded(node, scope)
+        except (RaisedFlow, ReturnFlow, LoopFlow, ExitFlow):
+            self.handlers = before
+            self._block(node.finalbody, scope)  # a flow that begins in it replaces this one
+            raise
+        self.handlers = before
+        self._block(node.finalbody, scope)
+
+    def _guarded(self, node: ast.Try, scope: Scope) -> None:
+        before = self.handlers
+        self.handlers += bool(node.handlers)
+        try:
+            self._block(node.body, scope)
+        except RaisedFlow as raised:
+            self.handlers = before
+            self._handle(node, raised, scope)
+            return
+        finally:
+            self.handlers = before
+        self._block(node.orelse, scope)
+
+    def _handle(self, node: ast.Try, raised: RaisedFlow, scope: Scope) -> None:
         """Evaluate the first handler that catches an error; raise it again where none does."""
         for handler in node.handlers:
             catches = _catches(handler.type, raised.kind)
-            if catches is False:
-                continue
-            if handler.name is not None:
-                scope.bind(handler.name, Unknown("the error is known only at run time", position_of(handler)))
+            if catches is None:
+                raise EvaluationStopped("whether an error is caught here is not evaluated", position_of(handler))
             if catches:
+                if handler.name is not None:
+                    scope.bind(handler.name, Unknown("the error is not evaluated", position_of(handler)))
                 self._block(handler.body, scope)
+                if handler.name is not None:
+                    scope.declared.get(handler.name, scope).names.pop(handler.name, None)
                 return
-            reason = "which error is raised is known only at run time"
-            self._branches([handler.body], scope, position_of(handler), reason)
         self.error(raised.error.message, raised.error.at, raised.kind)
 
 
-def _catches(kinds: ast.expr | None, raised: type[Exception]) -> bool | None:
+def _catches(kinds: ast.expr | None, raised: type[BaseException]) -> bool | None:
     """Return whether `except kinds:` catches an error; None where this is unknown."""
     if kinds is None:
         return True
@@ -197,3 +240,35 @@ def _catches(kinds: ast.expr | None, raised: type[Exception]) -> bool | None:
     if any(isinstance(kind, type) and issubclass(raised, kind) for kind in types):
         return True
     return None if None in types else False
+
+
+def _own_nodes(node: ast.AST) -> "list[ast.AST]":
+    """Return the nodes of a function or statement, without those of the functions and classes in it."""
+    found: list[ast.AST] = []
+    pending = list(ast.iter_child_nodes(node)) if isinstance(node, ast.FunctionDef) else [node]
+    while pending:
+        part = pending.pop()
+        found.append(part)
+        if not isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
+            pending += ast.iter_child_nodes(part)
+    return found
+
+
+def _bound_in(node: ast.FunctionDef) -> frozenset[str]:
+    """Return the names that a function binds itself."""
+    nodes = _own_nodes(node)
+    declared = {name for part in nodes if isinstance(part, ast.Global | ast.Nonlocal) for name in part.names}
+    loops = [part.target for part in nodes if isinstance(part, ast.comprehension)]  # they have scopes of their own
+    inner = {id(part) for target in loops for part in ast.walk(target)}
+    names: set[str] = set()
+    for part in nodes:
+        match part:
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) if id(part) not in inner:
+                names.add(name)
+            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
+                names.add(name)
+            case ast.ExceptHandler(name=str() as name) | ast.MatchAs(name=str() as name):
+                names.add(name)
+            case ast.alias(name=full, asname=asname):
+                names.add(asname or full.partition(".")[0])
+    return frozenset(names - declared)

@@ -13,7 +13,7 @@ from grader.files.tree import File, Tree, make_tree
 from grader.package.package import NO_PACKAGE, Package
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
-from grader.static_python.closed_values import Budget
+from grader.static_python.budget import Budget
 from grader.submission.urdf import Absent, OtherCandidate, Read, Unreadable, Urdf
 from grader.text import was_not_committed
 

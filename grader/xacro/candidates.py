@@ -12,7 +12,8 @@ from math import isclose, isfinite, nan
 
 from grader.edits import merged
 from grader.names import closest
-from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
+from grader.static_python.budget import Budget, OutOfBudget
+from grader.static_python.values import ExpressionFails, Undetermined
 from grader.xacro.scopes import Key, XacroScope, literal
 from grader.xacro.texts import Texts
 from grader.xacro.written import Use, Written

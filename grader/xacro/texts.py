@@ -6,8 +6,9 @@ from copy import copy
 from keyword import iskeyword
 
 from grader.names import did_you_mean, near
-from grader.static_python.closed import evaluate
-from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value, joined, str_of
+from grader.static_python.budget import Budget
+from grader.static_python.expressions import evaluate
+from grader.static_python.values import ExpressionFails, Undetermined, Value, joined, str_of
 from grader.xacro.functions import GLOBALS
 from grader.xacro.scopes import (
     Definition,

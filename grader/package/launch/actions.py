@@ -53,7 +53,7 @@ class ActionVisitor:
                 self.findings.add_unknown(f"the value of {value.name} is known only at run time", START)
             case Call():
                 start = len(context.errors)
-                is_certain = value.uncertainty is None and UNKNOWN_KEYS not in value.kwargs
+                is_certain = UNKNOWN_KEYS not in value.kwargs
                 executed = _both(when if is_certain else when and None, holds(value.kwargs.get("condition"), context))
                 self.findings.add_errors(context, start, is_certain=when is True)  # launch evaluates the condition
                 self.visited.add(id(value))
@@ -98,8 +98,7 @@ class ActionVisitor:
         self._visit_list(actions, call, context, when)
         for method in call.method_calls:
             if method.name.endswith((".add_action", ".add_entity")):
-                is_called = None if method.uncertainty is not None else True
-                self._visit_list(method.args, method, context, _both(when, is_called))
+                self._visit_list(method.args, method, context, when)
 
     def _visit_list(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
         """Visit the actions of a description, which may not contain lists."""

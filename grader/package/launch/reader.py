@@ -16,8 +16,9 @@ from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.setup_py import location_in
 from grader.reuse import reuse
 from grader.source import Location, Source
-from grader.static_python.evaluation import Evaluation, FunctionTable
-from grader.static_python.functions import standard_functions
+from grader.static_python.file_expressions import FileExpressions, FunctionTable, record
+from grader.static_python.imports import USUAL_NAMES
+from grader.static_python.library import standard_functions
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import START, SyntaxFault, parse
 from grader.static_python.values import Call, Function, QualifiedName, Unknown, Value, path_text
@@ -27,6 +28,11 @@ _MODULE = "python_launch_file"  # the __name__ of a launch file
 _MAX_INCLUDES = 10
 _JOINED = ("nodes", "references", "faults", "unknown")  # what a launch file shares with those that it includes
 _AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
+_RECORDED = (
+    "launch.LaunchDescription.add_action", "launch.LaunchDescription.add_entity", "builtins.open", "builtins.open.read",
+    "builtins.open.__enter__", "xacro.process_file", "xacro.process_file.toxml", "xacro.process_file.toprettyxml",
+    "launch.substitutions.LaunchConfiguration.perform", "xacro.parse", "xacro.process_doc", "xacro.parse.toxml",
+)  # fmt: skip
 _FIND = [f"launch_ros.substitutions.{module}FindPackageShare.find" for module in ("", "find_package.")]
 
 # Returns the bytes of an installed file and its path in the submission, by its path below the prefix; None for other
@@ -113,7 +119,9 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
     if isinstance(code, SyntaxFault):
         syntax = LaunchFault(f"Python cannot read the file: {code.message}", code.location)
         return Launch(code.source, syntax) if code.sure else Launch(code.source, unknown=(syntax,))
-    interpreter = Interpreter(launch_functions(), {"__file__": f"{PREFIX}/{installed}", "__name__": _MODULE})
+    interpreter = Interpreter(
+        launch_functions(), {"__file__": f"{PREFIX}/{installed}", "__name__": _MODULE}, stand_ins=(PREFIX, HOME)
+    )
     names = interpreter.run(code).names
     findings = Findings(lambda position: location_in(code.source, position))
     visitor = ActionVisitor(findings, include, interpreter.call_from_outside)
@@ -125,12 +133,12 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
             visitor.visit(description, context, context.when)
         case Unknown() | QualifiedName() | Call() as description:
             visitor.visit(description, context, context.when)
-        case _ if interpreter.stop_reason or "*" in names:
+        case _ if interpreter.doubt is not None or interpreter.has_star:
             findings.add_unknown("what it launches is known only at run time", START)
         case _:
             findings.add_fault(f"the file does not define the function {_ENTRY}, which ros2 launch calls", START)
-    if interpreter.stop_reason:
-        findings.add_unknown(interpreter.stop_reason, START)
+    if interpreter.doubt is not None:
+        findings.add_unknown(interpreter.doubt.reason, interpreter.doubt.at)
     for fault in interpreter.errors:
         findings.add_fault(fault.message, fault.at)
     nodes = [call for call in interpreter.calls if call.name.endswith(".Node") and id(call) not in visitor.visited]
@@ -173,6 +181,8 @@ def launch_functions() -> FunctionTable:
     """Return the functions by full name; the folders that they return are stand-ins."""
     return {
         **standard_functions(WORKING_FOLDER),
+        **dict.fromkeys((name for name in USUAL_NAMES.values() if name.startswith("launch")), record),
+        **dict.fromkeys(_RECORDED, record),
         **dict.fromkeys([*_FIND, *(f"{module}.get_package_share_directory" for module in _AMENT_INDEX)], _share),
         **dict.fromkeys((f"{module}.get_package_share_path" for module in _AMENT_INDEX), _share_path),
         **dict.fromkeys((f"{module}.get_package_prefix" for module in _AMENT_INDEX), lambda *_: PREFIX),
@@ -182,18 +192,18 @@ def launch_functions() -> FunctionTable:
     }
 
 
-def _share(_: Evaluation, call: Call) -> Value:
+def _share(_: FileExpressions, call: Call) -> Value:
     name = call.argument(0, "package_name", "package")
     if isinstance(name, str):
         return f"{SHARE}/{name}"
     return name if isinstance(name, Unknown) else Unknown("the package is known only at run time", call.at)
 
 
-def _share_path(evaluation: Evaluation, call: Call) -> Value:
+def _share_path(evaluation: FileExpressions, call: Call) -> Value:
     found = _share(evaluation, call)
     return PurePosixPath(found) if isinstance(found, str) else found
 
 
-def _expanduser(_: Evaluation, call: Call) -> Value:
+def _expanduser(_: FileExpressions, call: Call) -> Value:
     text = path_text(call.args[0]) if call.args else None
     return re.sub("^~", HOME, text) if text is not None else Unknown("a path is known only at run time", call.at)

@@ -9,11 +9,21 @@ from grader.package.launch.booleans import BOOLEAN_SUBSTITUTIONS, boolean_substi
 from grader.package.launch.commands import command_output, opened_by
 from grader.package.launch.model import Contents, Context, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
-from grader.static_python.closed import evaluate
-from grader.static_python.closed_functions import BUILTINS
-from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, str_of
+from grader.static_python.budget import Budget, OutOfBudget
+from grader.static_python.builtins import BUILTINS
+from grader.static_python.expressions import evaluate
 from grader.static_python.parse import START
-from grader.static_python.values import MAX_TEXT, UNKNOWN_KEYS, Call, Unknown, Value, as_text
+from grader.static_python.values import (
+    MAX_TEXT,
+    UNKNOWN_KEYS,
+    Call,
+    ExpressionFails,
+    Undetermined,
+    Unknown,
+    Value,
+    as_text,
+    str_of,
+)
 
 COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression

@@ -5,8 +5,9 @@ from collections.abc import Callable, Iterator
 from math import isfinite, pi
 
 from grader.robot.edits.numbers import format_number, values_of
-from grader.static_python.closed import evaluate
-from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, Value
+from grader.static_python.budget import Budget, OutOfBudget
+from grader.static_python.expressions import evaluate
+from grader.static_python.values import ExpressionFails, Undetermined, Value
 from grader.xml.urdf_format import PARTS
 
 _WORK = 1_000  # of one expression
