@@ -18,7 +18,18 @@ FILES = {
     "meshes/two.stl": "solid {}\n",
     "my_robot/__init__.py": _HASH,
     "my_robot/version.py": _HASH + "__version__ = '0.0.0'\n",
-    "package.xml": _XML,
+    "package.xml": """<?xml version="1.0"?>
+<package format="3">
+  <name>my_robot</name>
+  <version>0.0.0</version>
+  <description>A package: {}</description>
+  <maintainer email="student@example.com">student</maintainer>
+  <license>Apache-2.0</license>
+  <export>
+    <build_type>ament_python</build_type>
+  </export>
+</package>
+""",
     "resource/my_robot": "{}\n",
     "rviz/my_robot.rviz": _HASH,
     "setup.cfg": _HASH + "[develop]\nscript_dir=$base/lib/my_robot\n[install]\ninstall_scripts=$base/lib/my_robot\n",
