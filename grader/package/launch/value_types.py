@@ -1,0 +1,134 @@
+"""The values that launch and launch_ros take as texts and as parameters of nodes, and what is wrong with others."""
+
+from collections.abc import Callable
+from pathlib import PurePosixPath
+from typing import Any
+
+from grader.package.launch.api import SUBSTITUTION, class_named, is_a
+from grader.static_python.values import Call, Function, Items, QualifiedName, Undetermined, Unknown, Value
+
+# Calls of Python functions that are not evaluated, but certainly give a text.
+TEXT_CALLS = frozenset(
+    {"builtins.open.read", "xacro.process_file.toxml", "xacro.process_file.toprettyxml", "xacro.process.toxml",
+     "pathlib.Path.read_text", "xacro.process", "subprocess.check_output.decode"}
+)  # fmt: skip
+SCALARS = (bool, int, float, str)
+TYPED = ("launch_ros.parameter_descriptions.ParameterValue", "launch_ros.parameter_descriptions.Parameter")
+FILE = "launch_ros.parameter_descriptions.ParameterFile"
+_COLLECTIONS = (list, tuple, dict, set, frozenset, Items)
+_NAMES = {type(None): "None", bool: "a boolean", int: "a number", float: "a number", dict: "a dict", Function: "a function"}
+
+
+def is_text(value: Value) -> bool:
+    """Return whether a value is a string or a substitution. Raises Undetermined."""
+    match value:
+        case Unknown():
+            raise Undetermined(value.reason)
+        case QualifiedName():
+            raise Undetermined(f"the value of {value.name}")
+        case Call() if class_named(value.name) is not None:
+            return is_a(value.name, SUBSTITUTION)
+        case Call() if value.name not in TEXT_CALLS:
+            raise Undetermined(f"the result of {value.name}")
+    return isinstance(value, str | Call)
+
+
+def items_in(value: Value) -> list[Value] | None:
+    """Return what iterating over a value gives; None where Python cannot. Raises Undetermined."""
+    if isinstance(value, Unknown):
+        raise Undetermined(value.reason)
+    if isinstance(value, Call) and class_named(value.name) is None:
+        raise Undetermined(f"the result of {value.name}")
+    return list(value) if isinstance(value, (*_COLLECTIONS, str, range)) else None
+
+
+def wrong_text(value: Value) -> str:
+    if isinstance(value, _COLLECTIONS):
+        wrong = next((item for item in value if not is_text(item)), "")
+        return f"takes strings and substitutions, not {kind_of(wrong)} in a list" if wrong != "" else ""
+    return "" if is_text(value) else "takes a string or a substitution"
+
+
+def kind_of(value: Value) -> str:
+    """Return what a value is, in words."""
+    if isinstance(value, Call):
+        return f"{value.name.rpartition('.')[2]}(...)"
+    if isinstance(value, PurePosixPath):
+        return "a path: write str(...) around it"
+    return _NAMES.get(type(value), f"a {type(value).__name__}")
+
+
+def typed(kind: type) -> Callable[[Value], str]:
+    """Return the check of a value of a type, or of a substitution whose text is read as one."""
+
+    def checked(value: Value) -> str:
+        if isinstance(value, str | int | float):
+            return "" if isinstance(value, kind) else f"takes {_WANTED[kind]} or a substitution"
+        if isinstance(value, list | tuple) and any(isinstance(item, Call | Unknown) for item in value):
+            return wrong_text(value)
+        return "" if not isinstance(value, _COLLECTIONS) and is_text(value) else f"takes {_WANTED[kind]} or a substitution"
+
+    return checked
+
+
+_WANTED = {bool: "True, False", float: "a decimal number such as 2.0", int: "an integer", str: "a string"}
+
+
+def wrong_parameters(value: Value) -> str:
+    """Return what is wrong with the parameters of a node, or nothing. Raises Undetermined."""
+    if isinstance(value, Unknown):
+        raise Undetermined(value.reason)
+    if not isinstance(value, list):
+        return "has to be a list: put [ ] around it"
+    for item in value:
+        if isinstance(item, dict):
+            if wrong := _wrong_dict(item):
+                return wrong
+        elif not (isinstance(item, Call) and item.name in (*TYPED, FILE)) and not isinstance(item, PurePosixPath):
+            if wrong := wrong_text(item):
+                return wrong
+    return ""
+
+
+def _wrong_dict(table: dict[Any, Value]) -> str:
+    return next(filter(None, (wrong_text(key) or wrong_parameter(value) for key, value in table.items())), "")
+
+
+def wrong_parameter(value: Value) -> str:
+    """Return what is wrong with the value of a parameter, or nothing. Raises Undetermined."""
+    match value:
+        case dict():
+            return _wrong_dict(value)
+        case str() | int() | float() | bytes():
+            return ""
+        case Call() if value.name in TYPED:
+            return ""
+        case list() | tuple() | range():
+            items = [item for item in value if not isinstance(item, SCALARS)]
+            return next(filter(None, map(wrong_text, items)), "")
+    return "" if is_text(value) else f"has a value that is {kind_of(value)}"
+
+
+def wrong_typed(call: Call) -> str:
+    """Return what is wrong with the value of ParameterValue, or nothing. Raises Undetermined."""
+    value, kind = call.kwargs["value"], type_of(call)
+    if isinstance(value, SCALARS):
+        return "" if kind is None or isinstance(value, kind) else f"the value is {kind_of(value)}, not {kind.__name__}"
+    if isinstance(value, list | tuple) and not any(isinstance(it, Call | Unknown) for it in value):
+        is_wrong = kind is not None or not value or not all(isinstance(it, SCALARS) for it in value)
+        return f"the value is {kind_of(value)}" if is_wrong else ""
+    return wrong_text(value)
+
+
+def type_of(call: Call) -> "type | None":
+    """Return the type that ParameterValue is given; None for none. Raises Undetermined for the type of a list."""
+    given = call.kwargs.get("value_type")
+    if given is None:
+        return None
+    name = getattr(given, "name", "").removeprefix("builtins.")
+    found = {kind.__name__: kind for kind in SCALARS}.get(name)
+    if found is None:
+        raise Undetermined(f"the type {name}")
+    return found
+
+
