@@ -38,6 +38,18 @@ class Setup:
     )
     is_called: bool = True
     called_at: Position = START
+    entry_points: Value = None  # what setup() is given
+
+    def has_program(self, name: str) -> bool | None:
+        """Return whether a build installs a program for `ros2 run`; None where this is not known."""
+        installed = [copy.target.rpartition("/") for copy in self.copies]
+        if any(target == name and folder.startswith("lib/") for folder, _, target in installed):
+            return True
+        points = self.entry_points if self.entry_points is not None else {}
+        scripts = points.get("console_scripts", []) if isinstance(points, dict) else None
+        if not isinstance(scripts, list) or not all(isinstance(script, str) for script in scripts) or self.unknown:
+            return None
+        return name in [script.partition("=")[0].strip() for script in scripts]
 
     def location(self, position: Position) -> Location:
         """Return the location of a position in the file."""
@@ -117,6 +129,7 @@ def _evaluate(code: Code, listing: PackageListing, written: dict[str, Position],
         doubt=doubts[0] if doubts else None,
         is_called=bool(calls) or interpreter.doubt is not None,
         called_at=calls[0].at if calls else START,
+        entry_points=calls[0].kwargs.get("entry_points") if calls else None,
     )
 
 

@@ -21,10 +21,12 @@ from grader.static_python.values import (
     Call,
     ExpressionFails,
     Function,
+    Items,
     QualifiedName,
     Undetermined,
     Unknown,
     Value,
+    iterate,
 )
 
 
@@ -43,7 +45,9 @@ def bind(cls: LaunchClass, call: Call) -> None:
     for name in call.kwargs.keys() - cls.parameters.keys():
         message = f"{cls.short} has no argument {name!r}{did_you_mean(name, cls.parameters)}"
         raise ExpressionFails(message, kind=TypeError)
-    call.args, call.kwargs = call.args[len(positional) :], {**given, **call.kwargs}
+    kwargs = {**given, **call.kwargs}.items()
+    call.args = call.args[len(positional) :]
+    call.kwargs = {name: list(iterate(value)) if isinstance(value, Items) else value for name, value in kwargs}
     missing = [name for name, it in cls.parameters.items() if it.is_required and name not in call.kwargs]
     if missing:
         raise ExpressionFails(f"{cls.short} needs the argument {missing[0]}=...", kind=TypeError)

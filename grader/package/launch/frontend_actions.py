@@ -214,7 +214,8 @@ def _parameter(entity: Entity) -> Value:
         return _checked(Call(FILE, [], {"param_file": path, "allow_substs": allow}, entity.at))
     if "name" not in given:
         raise LaunchFails("a <param> needs name or from", entity.at)
-    name, inner = tuple(parse_value(given["name"], entity.at)), entity.nested.get("param")
+    parts, inner = parse_value(given["name"], entity.at), entity.nested.get("param")
+    name: Value = parts[0] if len(parts) == 1 and isinstance(parts[0], str) else tuple(parts)
     if inner:
         if "value" in given or "type" in given:
             raise LaunchFails("a <param> has either a value or other <param> in it", entity.at)

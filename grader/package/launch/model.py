@@ -44,6 +44,11 @@ class NotEvaluated(LaunchSignal):
     """Whether launch raises an error here is not known."""
 
 
+def not_evaluated(reason: str) -> str:
+    """Return a reason with the words that say what it means."""
+    return reason if "evaluated" in reason else f"{reason}, which is not evaluated"
+
+
 @dataclass(slots=True)
 class Surroundings:
     """What a launch file finds around it. `texts` has the paths of the files that it has read, by their texts."""
@@ -165,7 +170,7 @@ class Findings:
 
     def add_doubt(self, reason: str, at: Position) -> None:
         """Add what may stop the launch."""
-        self.doubts.append(LaunchFault(reason if "evaluated" in reason else f"{reason} is not evaluated", self.locate(at)))
+        self.doubts.append(LaunchFault(not_evaluated(reason), self.locate(at)))
 
     def add(self, signal: LaunchSignal, when: bool | None) -> None:
         """Add what ends an action: an error only if it certainly is executed."""

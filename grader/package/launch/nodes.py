@@ -1,6 +1,7 @@
 """The nodes that a launch file starts, by Node or a command, and the files that they are given."""
 
 import re
+from typing import Any
 
 from grader.package.launch.commands import PART_UNKNOWN
 from grader.package.launch.model import (
@@ -17,7 +18,7 @@ from grader.package.launch.model import (
 )
 from grader.package.launch.parameters import tables_in
 from grader.package.launch.substitutions import known_text, resolve
-from grader.package.launch.value_types import TYPED
+from grader.package.launch.value_types import TYPED, items_in
 from grader.static_python.parse import Position
 from grader.static_python.values import Call, Unknown, Value
 
@@ -82,6 +83,11 @@ def evaluate_node(call: Call, context: Context) -> None:
 def start_node(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
     """Add the node that a Node action starts, and the files that it is given."""
     own = call.kwargs.get("package")
+    if own is None:
+        words = _words([call.kwargs["executable"], *(items_in(call.kwargs.get("arguments") or []) or [])], context, call.at)
+        if words[0] == _RVIZ:
+            _start(findings, _RVIZ, _RVIZ, call, context, when)
+            return
     package, executable = _attempt(own, context, call.at), _attempt(call.kwargs["executable"], context, call.at)
     if isinstance(package, str) and isinstance(executable, str) and own is not None:
         _start(findings, package, executable, call, context, when)
@@ -157,7 +163,10 @@ def _find_description(findings: Findings, call: Call, context: Context) -> None:
     if descriptions:
         _refer_description(findings, descriptions[-1], call, context)
         return
-    unclear = next((value for value in parameters if not isinstance(value, dict)), None)
+    nested = Unknown("parameters in a dict in a dict are not evaluated", call.at)
+    unclear = next(
+        (nested if isinstance(it, dict) else it for it in parameters if not isinstance(it, dict) or _has_dict(it)), None
+    )
     words = _words(call.kwargs.get("arguments"), context, call.at)
     end = words.index("--ros-args") if "--ros-args" in words else len(words)
     files = [word for word in words[:end] if not word.startswith("-")]
@@ -172,10 +181,18 @@ def _find_description(findings: Findings, call: Call, context: Context) -> None:
         findings.refer("urdf", None, call, wrong=message)
 
 
+def _has_dict(table: dict[Any, Value]) -> bool:
+    return any(isinstance(value, dict) for value in table.values())
+
+
 def _refer_description(findings: Findings, value: Value, call: Call, context: Context) -> None:
     value = _inner(value)
     if isinstance(value, Call) and value.name in _UNFINISHED:
         findings.refer("urdf", None, call, value, wrong=_UNFINISHED[value.name])
+        return
+    if isinstance(value, list | tuple) and not any(isinstance(it, Call) for it in value):
+        findings.add_doubt("a robot_description that is a list is not evaluated", call.at)
+        findings.refer("urdf", Unknown("robot_description is a list", call.at), call)
         return
     found = _attempt(value, context, call.at)
     match _origin(found, context, call.at) if isinstance(found, str) else found:

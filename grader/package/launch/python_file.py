@@ -13,7 +13,7 @@ import yaml
 
 from grader.package.launch.api import CONDITION, DESCRIPTION, SUBSTITUTION, LaunchClass, class_named, exports, is_a
 from grader.package.launch.arguments import bind, check
-from grader.package.launch.model import Contents, Context, LaunchFails, LaunchSignal
+from grader.package.launch.model import Contents, Context, LaunchFails, LaunchSignal, not_evaluated
 from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.launch.substitutions import condition, resolve
 from grader.static_python.file_expressions import FileExpressions, FunctionTable, record
@@ -71,7 +71,7 @@ def _construct(cls: LaunchClass, evaluation: FileExpressions, call: Call) -> Val
     bind(cls, call)
     doubt = check(cls, call)
     if doubt is not None:
-        evaluation.doubted(Unknown(f"{doubt.reason} is not evaluated" if "evaluated" not in doubt.reason else doubt.reason, doubt.at))
+        evaluation.doubted(Unknown(not_evaluated(doubt.reason), doubt.at))
     return record(evaluation, call)
 
 

@@ -5,7 +5,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.package.launch.api import SUBSTITUTION, class_named, is_a
-from grader.static_python.values import Call, Function, Items, QualifiedName, Undetermined, Unknown, Value
+from grader.static_python.values import Call, Function, Items, QualifiedName, Undetermined, Unknown, Value, iterate
 
 # Calls of Python functions that are not evaluated, but certainly give a text.
 TEXT_CALLS = frozenset(
@@ -15,7 +15,7 @@ TEXT_CALLS = frozenset(
 SCALARS = (bool, int, float, str)
 TYPED = ("launch_ros.parameter_descriptions.ParameterValue", "launch_ros.parameter_descriptions.Parameter")
 FILE = "launch_ros.parameter_descriptions.ParameterFile"
-_COLLECTIONS = (list, tuple, dict, set, frozenset, Items)
+_COLLECTIONS = (list, tuple, dict, set, frozenset)
 _NAMES = {type(None): "None", bool: "a boolean", int: "a number", float: "a number", dict: "a dict", Function: "a function"}
 
 
@@ -39,6 +39,8 @@ def items_in(value: Value) -> list[Value] | None:
         raise Undetermined(value.reason)
     if isinstance(value, Call) and class_named(value.name) is None:
         raise Undetermined(f"the result of {value.name}")
+    if isinstance(value, Items):
+        return list(iterate(value))
     return list(value) if isinstance(value, (*_COLLECTIONS, str, range)) else None
 
 
