@@ -146,7 +146,7 @@ def launch_finds_files(package: Package, *, name: str, built: bool = True, start
         return _no_files(launch)
     if unknown is not None:
         return pending(f"{unknown.text}; needs manual grading", _UNKNOWN_FILES)
-    if launch.doubts:
+    if launch.doubts and not launch.faults:
         return _doubtful(launch)
     if any(it.state == "missing" for it in places):
         return passed("the launch file looks for files of the package")

@@ -12,7 +12,7 @@ from grader.package.launch.parameters import evaluate_dict, evaluate_parameters
 from grader.package.launch.substitutions import boolean, condition, known_text, resolve
 from grader.package.launch.value_types import items_in, kind_of
 from grader.static_python.parse import START, Position
-from grader.static_python.values import UNKNOWN_KEYS, Call, Function, Undetermined, Unknown, Value
+from grader.static_python.values import UNKNOWN_KEYS, Call, Function, QualifiedName, Undetermined, Unknown, Value
 
 _MAX_ACTIONS = 5_000
 _MAX_DEPTH = 40
@@ -65,7 +65,7 @@ class ActionVisitor:
                 hint = ": write * before it" if isinstance(value, list | tuple) else ""
                 raise LaunchFails(f"expected an action, found {kind_of(value)}{hint}", at)
         except LaunchSignal as signal:
-            self.findings.add(signal, context.when if self.is_loaded else when)
+            self._add_of_form(signal, context, when)
         else:
             self.visited.add(id(value))
             try:
@@ -75,6 +75,12 @@ class ActionVisitor:
                 executed = None if when is not False else False
             self._execute(value, context, executed)
         self.depth -= 1
+
+    def _add_of_form(self, signal: LaunchSignal, context: Context, when: bool | None) -> None:
+        """Add an error in the form of a description: launch looks at all of it before it executes any of it."""
+        silent, self.findings.is_silent = self.findings.is_silent, self.findings.is_silent and not self.is_loaded
+        self.findings.add(signal, context.when if self.is_loaded else when)
+        self.findings.is_silent = silent
 
     def _holds(self, call: Call, context: Context) -> bool | None:
         """Return whether the condition of an action holds; None where this is not known. Raises LaunchSignal."""
@@ -87,12 +93,14 @@ class ActionVisitor:
         if not is_a(given.name, CONDITION) or kind == "Condition":
             raise NotEvaluated(f"the condition {kind} is not evaluated", given.at)
         if kind in ("IfCondition", "UnlessCondition"):
-            text = resolve(given.kwargs["predicate_expression"], context, given.at)
-            return condition(text, given.at) == (kind == "IfCondition") if isinstance(text, str) else None
+            text = known_text(given.kwargs["predicate_expression"], context, given.at)
+            return condition(text, given.at) == (kind == "IfCondition")
         wanted = given.kwargs["expected_value"]
         expected = resolve(wanted, context, given.at) if wanted is not None else None
         name = given.kwargs["launch_configuration_name"]
-        actual = context.arguments.get(name) if isinstance(name, str) else Unknown("", given.at)
+        if not isinstance(name, str):
+            raise NotEvaluated("the name of this launch configuration is not evaluated", given.at)
+        actual = context.arguments.get(name)
         if isinstance(actual, Unknown) or isinstance(expected, Unknown) or (actual is None and UNKNOWN_KEYS in context.arguments):
             return None
         return (expected == actual) == (kind == "LaunchConfigurationEquals")
@@ -189,27 +197,30 @@ class ActionVisitor:
 
     def _perhaps(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
         """Visit what may never be executed: errors in it do not count, but for what is no action."""
-        kept = self.findings.faults, self.findings.doubts, self.executed
-        self.findings.faults, self.findings.doubts, self.executed = [], [], {}
+        silent, self.findings.is_silent, kept, self.executed = self.findings.is_silent, True, self.executed, {}
         self._actions(actions if isinstance(actions, list | tuple) else [actions], call, context.copy(), when)
-        self.findings.faults, self.findings.doubts, self.executed = kept
+        self.findings.is_silent, self.executed = silent, kept
 
     def _register(self, call: Call, context: Context, when: bool | None) -> None:
         handler = call.kwargs["event_handler"]
-        if not isinstance(handler, Call):
-            raise NotEvaluated("this event handler is not evaluated", call.at)
-        if not is_a(handler.name, _HANDLER):
-            raise LaunchFails(f"expected an event handler, found {kind_of(handler)}", call.at)
+        if isinstance(handler, Unknown):
+            raise NotEvaluated(handler.reason, handler.at)
+        if not isinstance(handler, Call) or not is_a(handler.name, _HANDLER):
+            error = LaunchFails(f"expected an event handler, found {kind_of(handler)}", call.at)
+            self._add_of_form(error, context, when)
+            return
         target = handler.kwargs.get("target_action")
         for name, value in handler.kwargs.items():
-            if (name.startswith("on_") or name == "entities") and value is not None:
+            if (name.startswith("on_") or name == "entities") and not isinstance(value, QualifiedName | None):
                 actions = self.call_function(value, handler.at, None, context) if isinstance(value, Function) else value
                 is_certain = handler.name.endswith("OnProcessStart") and isinstance(target, Call) and value is actions
                 listed = actions if isinstance(actions, list | tuple) else [actions]
                 if is_certain:
                     self._defer(listed, handler, context, when, target)
-                elif actions is not None:
+                elif actions is not None and not handler.name.endswith("OnProcessIO"):
+                    loaded, self.is_loaded = self.is_loaded, self.is_loaded and value is actions
                     self._perhaps(listed, handler, context, when and None)
+                    self.is_loaded = loaded
 
     def _opaque_function(self, call: Call, context: Context, when: bool | None) -> None:
         function, args = call.kwargs["function"], call.kwargs.get("args") or []
@@ -290,6 +301,8 @@ class ActionVisitor:
             return
         name, value = (call.kwargs.get(it) for it in ("name", "value"))
         variable = known_text(name, context, call.at)
+        if (not variable or "=" in variable) and not call.name.endswith("UnsetEnvironmentVariable"):
+            raise LaunchFails(f"an environment variable cannot be called {variable!r}", call.at)
         is_set = call.name.endswith("SetEnvironmentVariable") and when
         found: Resolved | None = resolve(value, context, call.at) if is_set else None
         if not is_set and not (call.name.endswith("UnsetEnvironmentVariable") and when):
@@ -317,6 +330,8 @@ class ActionVisitor:
         own = call.kwargs.get("launch_configurations") or {}
         if when is None:
             raise NotEvaluated("what is reset under a condition is not evaluated", call.at)
+        if not isinstance(own, dict):
+            raise LaunchFails(f"launch_configurations is {kind_of(own)}, not a dict", call.at)
         kept = {known_text(name, context, call.at): resolve(value, context, call.at) for name, value in own.items()}
         if when:
             context.arguments.clear()
@@ -353,16 +368,19 @@ class ActionVisitor:
         if when is not False:
             (evaluate_node if "executable" in call.kwargs else evaluate_process)(call, context)
         on_exit = call.kwargs.get("on_exit")
-        if on_exit is not None and not isinstance(on_exit, Function):
+        if isinstance(on_exit, list):
             self._perhaps(on_exit, call, context, when and None)
         if composed := call.kwargs.get("composable_node_descriptions"):
-            self._load(Call(call.name, [], {"composable_node_descriptions": composed}, call.at), context, when)
+            self._load(Call(call.name, [], {"target_container": "", "composable_node_descriptions": composed}, call.at), context, when)
 
     def _load(self, call: Call, context: Context, when: bool | None) -> None:
         """Evaluate the nodes that a container loads."""
         self.findings.add_unknown("the nodes of a container are not supported", call.at)
+        target = call.kwargs["target_container"]
+        if when is not False and not (isinstance(target, Call) and is_a(target.name, ENTITY)):
+            resolve(target, context, call.at)
         for node in items_in(call.kwargs["composable_node_descriptions"]) or ():
-            if not isinstance(node, Call):
+            if not isinstance(node, Call) or not node.name.endswith("ComposableNode"):
                 raise NotEvaluated("this composable node is not evaluated", call.at)
             self._fields(node, context, _both(when, self._holds(node, context)))
 

@@ -7,6 +7,7 @@ from grader.names import did_you_mean
 from grader.package.launch.api import ACTION, SOURCE, LaunchClass, is_a
 from grader.package.launch.value_types import (
     TEXT_CALLS,
+    is_entity,
     is_text,
     items_in,
     kind_of,
@@ -56,7 +57,8 @@ def bind(cls: LaunchClass, call: Call) -> None:
 def check(cls: LaunchClass, call: Call) -> Unknown | None:
     """Check the arguments of a constructor; return the first that is not known. Raises ExpressionFails."""
     doubt: Unknown | None = None
-    pairs = [(name, cls.parameters[name].check, value) for name, value in call.kwargs.items()]
+    is_late = cls.short == "ResetLaunchConfigurations"  # which takes anything until it is executed
+    pairs = [(name, cls.parameters[name].check, value) for name, value in call.kwargs.items() if not is_late]
     for name, test, value in [*pairs, *((cls.rest, "text", value) for value in call.args)]:
         optional, own = test.endswith("?"), _CHECKS.get(test.removesuffix("?"))
         try:
@@ -107,10 +109,10 @@ _CHECKS: Mapping[str, Callable[[Value], str]] = {
 
 def _declaration(call: Call) -> str:
     choices, default = call.kwargs.get("choices"), call.kwargs.get("default_value")
-    if isinstance(choices, list | tuple) and not choices:
-        return "choices is empty"
-    is_limited = isinstance(choices, list | tuple) and all(isinstance(it, str) for it in choices)
-    if is_limited and isinstance(default, str) and default not in choices:
+    if choices is not None and not isinstance(choices, Unknown) and not items_in(choices):
+        return "choices is empty, or no list"
+    is_known = isinstance(choices, list | tuple) and not any(isinstance(it, Unknown) for it in choices)
+    if is_known and isinstance(default, str) and default not in choices:
         return f"the default {default!r} of {call.kwargs['name']!r} is not one of its choices"
     return ""
 
@@ -140,10 +142,18 @@ def _opaque(call: Call) -> str:
         raise Undetermined(function.reason)
     if not isinstance(function, Function | QualifiedName) and not callable(function):
         return f"function is {kind_of(function)}, not a function"
+    if not isinstance(call.kwargs.get("kwargs"), dict | Unknown | None):
+        return "kwargs has to be a dict"
     return "args has to be a list" if args is not None and items_in(args) is None else ""
 
 
 def _event_handler(call: Call) -> str:
+    for name, value in call.kwargs.items():
+        if name in ("on_exit", "on_start", "on_completion") and not isinstance(value, Function | QualifiedName | None):
+            items = [value] if isinstance(value, Call) else items_in(value) or [value]
+            wrong = [it for it in items if not isinstance(it, Unknown) and not (isinstance(it, Call) and is_entity(it))]
+            if wrong:
+                return f"expected an action, found {kind_of(wrong[0])} in {name}"
     target = call.kwargs.get("target_action")
     if isinstance(target, Unknown):
         raise Undetermined(target.reason)
@@ -155,6 +165,20 @@ def _event_handler(call: Call) -> str:
 def _description(call: Call) -> str:
     actions = call.kwargs.get("initial_entities")
     return "put [ ] around the actions" if actions is not None and items_in(actions) is None else ""
+
+
+def _load(call: Call) -> str:
+    target, nodes = call.kwargs["target_container"], call.kwargs["composable_node_descriptions"]
+    is_container = isinstance(target, Call) and is_a(target.name, "launch_ros.actions.composable_node_container.ComposableNodeContainer")
+    wrong = "" if is_container else wrong_text(target)
+    return wrong and f"target_container {wrong}" or ("" if items_in(nodes) is not None else "put [ ] around the nodes")
+
+
+def _shutdown_handler(call: Call) -> str:
+    value = call.kwargs["on_shutdown"]
+    if not isinstance(value, Function) and not all(isinstance(it, Call) and is_entity(it) for it in items_in(value) or [value]):
+        raise Undetermined(f"what {kind_of(value)} does at the end")
+    return ""
 
 
 def _text_substitution(call: Call) -> str:
@@ -177,7 +201,7 @@ _SPECIAL: Mapping[str, Callable[[Call], str]] = {
     "DeclareLaunchArgument": _declaration, "TimerAction": _timer, "ROSTimer": _timer, "OpaqueFunction": _opaque,
     "IncludeLaunchDescription": _include, "LaunchDescription": _description, "TextSubstitution": _text_substitution,
     "ParameterFile": _parameter_file, "IfElseSubstitution": _if_else,
-    "ParameterValue": wrong_typed,
+    "ParameterValue": wrong_typed, "LoadComposableNodes": _load, "OnShutdown": _shutdown_handler,
     **dict.fromkeys(("OnProcessExit", "OnProcessStart", "OnProcessIO", "OnExecutionComplete"), _event_handler),
 }  # fmt: skip
 

@@ -159,6 +159,7 @@ class Findings:
     unknown: list[LaunchFault] = field(default_factory=list)
     doubts: list[LaunchFault] = field(default_factory=list)
     sets_parameters: bool = False
+    is_silent: bool = False  # while what may never be executed is visited
 
     def add_fault(self, message: str, at: Position) -> None:
         """Add an error that stops the launch."""
@@ -174,6 +175,8 @@ class Findings:
 
     def add(self, signal: LaunchSignal, when: bool | None) -> None:
         """Add what ends an action: an error only if it certainly is executed."""
+        if self.is_silent:
+            return
         if isinstance(signal, LaunchFails) and when:
             self.add_fault(str(signal), signal.at)
         elif when is not False:

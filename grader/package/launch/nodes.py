@@ -24,7 +24,7 @@ from grader.static_python.values import Call, Unknown, Value
 
 _RVIZ = "rviz2"
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")
-_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*|.*<.*")  # the second is the stand-in for a folder
 _NAMESPACE = re.compile(r"/|(/[A-Za-z_][A-Za-z0-9_]*)+")
 # The errors where robot_description is given a call whose last method is missing.
 _UNFINISHED = {
@@ -37,7 +37,7 @@ _UNFINISHED = {
 
 def absolute_namespace(before: Resolved, pushed: str, at: Position) -> str:
     """Return a namespace below another. Raises LaunchSignal."""
-    if not isinstance(before, str):
+    if not isinstance(before, str) or "<" in pushed:  # of the stand-in for a folder
         raise NotEvaluated("the namespace is not evaluated", at)
     full = pushed if pushed.startswith("/") or not before else f"{before if before != '/' else ''}/{pushed}"
     absolute = full if full.startswith("/") else f"/{full}"
@@ -49,6 +49,8 @@ def absolute_namespace(before: Resolved, pushed: str, at: Position) -> str:
 
 def evaluate_process(call: Call, context: Context) -> None:
     """Evaluate what launch does with the arguments of a process besides their texts. Raises LaunchSignal."""
+    if "cmd" in call.kwargs and not items_in(call.kwargs["cmd"]):
+        raise LaunchFails("cmd is empty", call.at)
     output = call.kwargs.get("output", "log")
     if not isinstance(output, dict) and (text := known_text(output, context, call.at)) not in _OUTPUTS:
         raise LaunchFails(f"output={text!r} is not one of {', '.join(_OUTPUTS)}", call.at)

@@ -2,6 +2,7 @@
 
 import builtins
 import posixpath
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import isclose
@@ -235,9 +236,12 @@ class _Substitution:
         if isinstance(texts, Unknown):
             raise NotEvaluated(f"this expression is not evaluated: {texts.reason}", self.call.at)
         modules = self.call.kwargs.get("python_modules", ["math"])
+        names = [modules] if isinstance(modules, str) else modules if isinstance(modules, list | tuple) else [None]
+        if not all(isinstance(name, str) and name in sys.stdlib_module_names for name in names):
+            raise NotEvaluated("the modules of this expression are not evaluated", self.call.at)
         budget = Budget(_WORK)
         try:
-            return str_of(evaluate(texts[0], _find if modules in ("math", ["math"]) else _unknown, budget))
+            return str_of(evaluate(texts[0], _find if list(names) == ["math"] else _unknown, budget))
         except ExpressionFails as error:
             raise LaunchFails(f"the expression {texts[0][:60]!r} fails: {error}", self.call.at) from None
         except (Undetermined, OutOfBudget) as error:
@@ -294,7 +298,7 @@ _PERFORMS: dict[str, Callable[[_Substitution], Resolved]] = {
     "FileContent": _Substitution.file_content,
     "ThisLaunchFile": lambda it: it.context.path,
     "ThisLaunchFileDir": lambda it: posixpath.dirname(it.context.path),
-    "AnonName": lambda it: Unknown("an anonymous name is not evaluated", it.call.at),
+    "AnonName": lambda it: it.argument("name") and Unknown("an anonymous name is not evaluated", it.call.at),
     "LaunchLogDir": lambda it: Unknown("the folder of the log is not evaluated", it.call.at),
     "EqualsSubstitution": lambda it: it.compared(equal=True),
     "NotEqualsSubstitution": lambda it: it.compared(equal=False),

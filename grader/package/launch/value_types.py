@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import PurePosixPath
 from typing import Any
 
-from grader.package.launch.api import SUBSTITUTION, class_named, is_a
+from grader.package.launch.api import ENTITY, SUBSTITUTION, class_named, is_a
 from grader.static_python.values import Call, Function, Items, QualifiedName, Undetermined, Unknown, Value, iterate
 
 # Calls of Python functions that are not evaluated, but certainly give a text.
@@ -31,6 +31,13 @@ def is_text(value: Value) -> bool:
         case Call() if value.name not in TEXT_CALLS:
             raise Undetermined(f"the result of {value.name}")
     return isinstance(value, str | Call)
+
+
+def is_entity(call: Call) -> bool:
+    """Return whether a call makes an action, or a description of some. Raises Undetermined."""
+    if class_named(call.name) is None:
+        raise Undetermined(f"the result of {call.name}")
+    return is_a(call.name, ENTITY)
 
 
 def items_in(value: Value) -> list[Value] | None:
