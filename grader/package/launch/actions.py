@@ -351,6 +351,13 @@ class ActionVisitor:
             found = resolve(call.kwargs["filename"], context, call.at)
             raise NotEvaluated(f"whether {found if isinstance(found, str) else 'a file'} exists is not evaluated", call.at)
 
+    def _sim_time(self, call: Call, context: Context, when: bool | None) -> None:
+        del context
+        value = call.kwargs["value"]
+        if when is not False and not isinstance(value, bool):
+            unknown = isinstance(value, Unknown)
+            raise (NotEvaluated if unknown else LaunchFails)("SetUseSimTime takes True or False, in Python only", call.at)
+
     def _shutdown(self, call: Call, context: Context, when: bool | None) -> None:
         del context
         event = call.kwargs.get("event")
@@ -385,7 +392,7 @@ class ActionVisitor:
             self._fields(node, context, _both(when, self._holds(node, context)))
 
     # What each kind of action does, besides the evaluation of its arguments.
-    _IDLE: ClassVar = frozenset({"LogInfo", "SetRemap", "SetROSLogDir", "LifecycleTransition", "SetUseSimTime"})
+    _IDLE: ClassVar = frozenset({"LogInfo", "SetRemap", "SetROSLogDir", "LifecycleTransition"})
     _EXECUTES: ClassVar[Mapping[str, Callable[..., None]]] = {
         "DeclareLaunchArgument": _declare, "SetLaunchConfiguration": _assign, "UnsetLaunchConfiguration": _unset,
         **dict.fromkeys(("Node", "LifecycleNode", "ExecuteProcess", "ComposableNodeContainer"), _process),
@@ -396,7 +403,7 @@ class ActionVisitor:
         **dict.fromkeys(("PushLaunchConfigurations", "PushEnvironment"), _push), "ResetLaunchConfigurations": _reset,
         **dict.fromkeys(("PopLaunchConfigurations", "PopEnvironment"), _pop), "PushROSNamespace": _namespace,
         **dict.fromkeys(("SetParameter", "SetParametersFromFile"), _set_parameter),
-        **dict.fromkeys(("Shutdown", "EmitEvent"), _shutdown),
+        **dict.fromkeys(("Shutdown", "EmitEvent"), _shutdown), "SetUseSimTime": _sim_time,
     }  # fmt: skip
 
 

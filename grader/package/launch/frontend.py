@@ -29,6 +29,7 @@ class Entity:
     nested: "dict[str, list[Entity]]" = field(default_factory=dict)
     actions: "list[Entity]" = field(default_factory=list)
     is_yaml: bool = False
+    has_actions: bool = True  # in YAML: whether it is a list, or has the key children
     error: str = ""  # what is wrong with its form
 
 
@@ -96,6 +97,7 @@ class _YamlReader:
         elif not isinstance(node.value, dict):
             entity.error = f"{kind} has no attributes: write them below it"
         else:
+            entity.has_actions = "children" in merge_keys(node)
             for key, value in merge_keys(node).items():
                 if key == "children":
                     entity.actions = self.entries(value, depth)

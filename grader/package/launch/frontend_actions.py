@@ -24,7 +24,7 @@ _ACTIONS: Mapping[str, str] = {
     "log": "message!", "reset_env": "", "reset": "keep[]", "set_env": "name! value!", "let": "name! value!",
     "shutdown": "reason", "timer": "period!:float cancel_on_shutdown:bool children", "unset_env": "name!",
     "ros_timer": "period!:float children", "node": _NODE, "node_container": f"{_NODE} composable_node[]",
-    "load_composable_node": "target! composable_node[]", "push_ros_namespace": "namespace!",
+    "load_composable_node": "target! composable_node![]", "push_ros_namespace": "namespace!",
     "push-ros-namespace": "namespace!", "set_parameter": "name! value!", "set_parameters_from_file": "filename!",
     "set_remap": "from! to!", "set_ros_log_dir": "new_log_dir!", "set_use_sim_time": "value!",
 }  # fmt: skip
@@ -41,7 +41,8 @@ _ARGUMENTS = {
     "file": "launch_description_source", "args": "arguments", "ros_args": "ros_arguments", "target": "target_container",
     "node-name": "node_name",
 }  # fmt: skip
-_AS_TEXT = {("arg", "name"), ("arg", "description"), ("executable", "on_exit")}  # without substitutions
+_AS_TEXT = {("arg", "name"), ("arg", "description")}  # without substitutions
+_RAW = ("shell", "emulate_tty", "scoped", "forwarding", "respawn_max_retries")
 # Elements and attributes that only ROS 1 has, and what replaces them.
 _ROS1_TAGS = {
     "param": "a <param> belongs in its <node>", "rosparam": "write <param from=.../> in the <node>",
@@ -100,6 +101,9 @@ def _attributes(entity: Entity, known: str) -> dict[str, Any]:
     """Return the attributes of an entity, of their types. Raises LaunchFails for unknown and missing ones."""
     if entity.error:
         raise LaunchFails(entity.error, entity.at)
+    if entity.is_yaml and entity.has_actions != ("children" in known):
+        what = "needs the key children" if "children" in known else "has no list of actions"
+        raise LaunchFails(f"{entity.kind} {what}", entity.at)
     names = {word.partition(":")[0].rstrip("![]"): word for word in known.split()}
     lists = {name for name, word in names.items() if word.endswith("[]")}
     for name in () if "children" in names else [*entity.nested, *(it.kind for it in entity.actions)]:
@@ -114,7 +118,7 @@ def _attributes(entity: Entity, known: str) -> dict[str, Any]:
             raise LaunchFails(f"<{entity.kind}> has no attribute {name!r}{hint}", entity.at)
         if plain == name:
             found[name] = _typed(entity, name, value, names[name])
-    missing = [name for name, word in names.items() if "!" in word and name not in found]
+    missing = [name for name, word in names.items() if "!" in word and name not in {*found, *entity.nested}]
     if missing:
         raise LaunchFails(f"<{entity.kind}> needs the attribute {missing[0]!r}", entity.at)
     return found
@@ -159,14 +163,18 @@ def _value(entity: Entity, name: str, value: Any) -> Value:
         if not isinstance(value, int | float) or value < 0:
             raise LaunchFails(f"{name} is {value!r}, not a number of seconds", entity.at)
         return str(value) if name != "respawn_delay" else value
+    if name == "respawn" or entity.kind == "set_parameter":
+        parts = parse_value(value, entity.at)
+        text = "launch.substitutions.text_substitution.TextSubstitution"
+        return [Call(text, [], {"text": it}, entity.at) if isinstance(it, str) else it for it in parts]
     if name in ("period", "prepend", "cancel_on_shutdown"):
         return parse_if_text(value, entity.at)
-    return parse_value(value, entity.at) if isinstance(value, str) and name not in ("shell", "emulate_tty") else value
+    return parse_value(value, entity.at) if isinstance(value, str) and name not in _RAW else value
 
 
 def _add_elements(entity: Entity, kwargs: dict[str, Value], findings: Findings) -> None:
     """Add the arguments that the elements in an entity stand for."""
-    nested = {name: inner for name, inner in entity.nested.items() if f"{name}[]" in _ACTIONS[entity.kind].split()}
+    nested = {name: inner for name, inner in entity.nested.items() if f"{name}[]" in _ACTIONS[entity.kind].replace("!", "").split()}
     for name, inner in nested.items():
         match name:
             case "param":
@@ -179,13 +187,19 @@ def _add_elements(entity: Entity, kwargs: dict[str, Value], findings: Findings) 
                 table = {tuple(pair["name"]): pair["value"] for pair in map(_pairs, inner)}
                 kwargs["additional_env" if name == "env" else "launch_configurations"] = table
             case "choice":
-                kwargs["choices"] = [str(it.attributes.get("value", "")) for it in inner]
+                kwargs["choices"] = [_choice(it) for it in inner]
             case "composable_node":
                 kwargs["composable_node_descriptions"] = [_composable(it) for it in inner]
     if "children" in _ACTIONS[entity.kind]:
         kwargs["actions"] = actions_of(entity, findings)
     if entity.kind == "load_composable_node":
         kwargs.setdefault("composable_node_descriptions", [])
+
+
+def _choice(entity: Entity) -> str:
+    if not isinstance(entity.attributes.get("value"), str):
+        raise LaunchFails("<choice> needs the attribute 'value'", entity.at)
+    return str(entity.attributes["value"])
 
 
 def _pairs(entity: Entity) -> dict[str, list[Value]]:
@@ -212,8 +226,8 @@ def _parameter(entity: Entity) -> Value:
         allow = given.get("allow_substs", False)
         path = parse_value(str(given["from"]), entity.at)
         return _checked(Call(FILE, [], {"param_file": path, "allow_substs": allow}, entity.at))
-    if "name" not in given:
-        raise LaunchFails("a <param> needs name or from", entity.at)
+    if "name" not in given or "allow_substs" in given:
+        raise LaunchFails("a <param> needs name, or from, which may have allow_substs", entity.at)
     parts, inner = parse_value(given["name"], entity.at), entity.nested.get("param")
     name: Value = parts[0] if len(parts) == 1 and isinstance(parts[0], str) else tuple(parts)
     if inner:

@@ -1,6 +1,7 @@
 """The nodes that a launch file starts, by Node or a command, and the files that they are given."""
 
 import re
+import shlex
 from typing import Any
 
 from grader.package.launch.commands import PART_UNKNOWN
@@ -24,7 +25,7 @@ from grader.static_python.values import Call, Unknown, Value
 
 _RVIZ = "rviz2"
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")
-_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*|.*<.*")  # the second is the stand-in for a folder
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _NAMESPACE = re.compile(r"/|(/[A-Za-z_][A-Za-z0-9_]*)+")
 # The errors where robot_description is given a call whose last method is missing.
 _UNFINISHED = {
@@ -51,6 +52,10 @@ def evaluate_process(call: Call, context: Context) -> None:
     """Evaluate what launch does with the arguments of a process besides their texts. Raises LaunchSignal."""
     if "cmd" in call.kwargs and not items_in(call.kwargs["cmd"]):
         raise LaunchFails("cmd is empty", call.at)
+    try:
+        shlex.split(known_text(call.kwargs.get("prefix") or "", context, call.at))
+    except ValueError:
+        raise LaunchFails("the quotes in a prefix are not closed", call.at) from None
     output = call.kwargs.get("output", "log")
     if not isinstance(output, dict) and (text := known_text(output, context, call.at)) not in _OUTPUTS:
         raise LaunchFails(f"output={text!r} is not one of {', '.join(_OUTPUTS)}", call.at)
