@@ -10,8 +10,8 @@ from typing import NamedTuple
 from grader.files.names import ignored_part
 from grader.names import did_you_mean
 from grader.package.globbing import PackageListing, SearchError
-from grader.static_python.parse import Position
 from grader.static_python.library import MAX_PATH, PACKAGE_FOLDER
+from grader.static_python.parse import Position
 from grader.static_python.values import PLAIN, Call, Function, Items, QualifiedName, Unknown, Value, unknown_in
 from grader.text import enumerated
 

@@ -2,7 +2,6 @@
 
 import ast
 from dataclasses import dataclass, replace
-from itertools import chain
 
 from grader.files.tree import Tree
 from grader.package.build_settings import argument_findings, file_findings
@@ -72,7 +71,7 @@ def read_setup(code: Code | SyntaxFault, tree: Tree, budget: Budget | None = Non
         setups.append(_evaluate(code, PackageListing(tree, budget, ORDERS[0]), written, f"{_ROOT}/setup.py"))
     orders = ORDERS[1:] if listing.order_matters else ()
     setups += [_evaluate(code, PackageListing(tree, budget, order), written, "setup.py") for order in orders]
-    results = {(it.name, frozenset(it.copies), it.is_called, bool(it.stops or it.faults)) for it in setups}
+    results = {(it.name, frozenset(it.copies), it.is_called, bool(it.faults)) for it in setups}
     doubts = [unknown for it in setups[1:] for unknown in it.unknown]
     if len(results) == 1 and not doubts:
         return setups[0]
@@ -113,7 +112,7 @@ def _evaluate(code: Code, listing: PackageListing, written: dict[str, Position],
         stops=tuple(data_files.stops),
         empty=tuple(listing.empty),
         faults=tuple(sorted(interpreter.errors, key=lambda error: error.at)),
-        unknown=(*doubts, *data_files.unknown),
+        unknown=tuple(dict.fromkeys([*doubts, *data_files.unknown])),
         doubt=doubts[0] if doubts else None,
         is_called=bool(calls) or interpreter.doubt is not None,
         called_at=calls[0].at if calls else START,
@@ -131,8 +130,9 @@ def _read_call(data_files: DataFiles, call: Call) -> None:
     entries = call.kwargs.get("data_files")
     if entries is not None:
         data_files.read(entries, call.at)
-    findings = (argument_findings(call.kwargs, data_files.listing, unknown), file_findings(data_files.listing, unknown))
-    for finding in chain.from_iterable(findings):
+    of_files = [*file_findings(data_files.listing, unknown)]
+    is_configured = any(isinstance(finding, Unknown) for finding in of_files)
+    for finding in (*argument_findings(call.kwargs, data_files.listing, unknown, is_configured), *of_files):
         if isinstance(finding, str):
             data_files.stop(finding, call.at)
         else:

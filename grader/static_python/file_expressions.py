@@ -75,6 +75,7 @@ _MAX_DEPTH = 30
 _MAX_ERRORS = 200
 _MAX_CALLS = 20_000
 _NOT_EVALUATED = "is not evaluated"
+FAILED = "Python raises an error before"  # the reason of a value that would follow
 # What is unknown without an error where its operands are unknown.
 _SAFE = (ast.BoolOp, ast.JoinedStr, ast.FormattedValue, ast.IfExp)
 _CHANGING: Mapping[type, tuple[str, ...]] = {
@@ -137,7 +138,7 @@ class FileExpressions(Expressions):
             return unknown if is_safe and error.at else self.doubted(unknown)
         except ExpressionFails as error:
             self.error(str(error), position_of(node), error.kind)
-            return Unknown("Python raises an error here", position_of(node))
+            return Unknown(FAILED, position_of(node))
 
     def of_name(self, node: ast.Name, scope: Scope) -> Value:
         """Return the value of a name. An undefined name is an error; its value is the most likely intended one."""
@@ -171,7 +172,7 @@ class FileExpressions(Expressions):
                 full = f"{module}.{name}"
                 error = attribute_error(module, name) if full not in self.functions else None
                 if error is not None:
-                    self.error(error, at, AttributeError)
+                    raise ExpressionFails(error, AttributeError)
                 return CONSTANTS.get(full, QualifiedName(full))
         if isinstance(owner, PurePosixPath) and name in _PARTS:
             value = getattr(owner, name)
@@ -355,6 +356,8 @@ class FileExpressions(Expressions):
                 if UNKNOWN_KEYS in made.kwargs:
                     raise Undetermined("the unpacked arguments are known only at run time", made.at)
                 return call(function, made.args, made.kwargs, self.budget, apply)
+        if isinstance(function, Unknown) and function.reason == FAILED:
+            return function
         if isinstance(function, PLAIN):
             kind = type(function).__name__
             raise ExpressionFails(f"a {kind} cannot be called: is there a comma missing before it?")
@@ -368,7 +371,7 @@ class FileExpressions(Expressions):
         function = self.functions.get(made.name)
         if function is None:
             if made.name.startswith("?."):  # an undefined name, which is an error already
-                return Unknown("Python raises an error here", made.at)
+                return Unknown(FAILED, made.at)
             raise EvaluationStopped(f"{made.name.removeprefix('builtins.')} {_NOT_EVALUATED}", made.at)
         if isinstance(function, PlainFunction):
             return self.call_value(function, made)
@@ -386,7 +389,7 @@ class FileExpressions(Expressions):
         found = method(owner, name, self.budget)
         if found is not None:
             return self.call_value(found, made)
-        if isinstance(owner, Unknown) and name in _TEXT_METHODS:
+        if isinstance(owner, Unknown) and (name in _TEXT_METHODS or owner.reason == FAILED):
             raise Undetermined(owner.reason, owner.at)
         raise EvaluationStopped(f"the method {name} of this value {_NOT_EVALUATED}", made.at)
 

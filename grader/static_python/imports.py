@@ -86,7 +86,7 @@ CONSTANTS = {
 
 def is_local(module: str, local_modules: Collection[str]) -> bool:
     """Return whether a module is beside the file, where Python looks first."""
-    return module.split(".")[0] in local_modules
+    return module.split(".", maxsplit=1)[0] in local_modules
 
 
 def import_error(module: str, name: str, exports: Mapping[str, Collection[str]]) -> str | None:

@@ -18,8 +18,8 @@ from grader.reuse import reuse
 from grader.source import Location, Source
 from grader.static_python.file_expressions import FileExpressions, FunctionTable, record
 from grader.static_python.imports import USUAL_NAMES
-from grader.static_python.library import standard_functions
 from grader.static_python.interpreter import Interpreter
+from grader.static_python.library import standard_functions
 from grader.static_python.parse import START, SyntaxFault, parse
 from grader.static_python.values import Call, Function, QualifiedName, Unknown, Value, path_text
 
