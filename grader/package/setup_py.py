@@ -10,7 +10,7 @@ from grader.package.file_functions import file_functions
 from grader.package.globbing import ORDERS, EmptyGlob, PackageListing
 from grader.source import Location, Source
 from grader.static_python.budget import Budget
-from grader.static_python.file_expressions import EvaluationStopped, FileExpressions, PythonError
+from grader.static_python.evaluation import Evaluation, EvaluationStopped, PythonError
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.library import PACKAGE_FOLDER, standard_functions
 from grader.static_python.parse import START, Code, Position, SyntaxFault, position_of
@@ -88,7 +88,7 @@ def _evaluate(code: Code, listing: PackageListing, written: dict[str, Position],
     data_files = DataFiles(listing, _ROOT, written, is_first=file == "setup.py")
     calls: list[Call] = []
 
-    def setup(_: FileExpressions, call: Call) -> Value:
+    def setup(_: Evaluation, call: Call) -> Value:
         calls.append(call)
         _read_call(data_files, call)
         return Unknown("the result of setup() is not evaluated", call.at)
@@ -139,7 +139,7 @@ def _read_call(data_files: DataFiles, call: Call) -> None:
             data_files.doubts.append(finding)
 
 
-def _print(_: FileExpressions, call: Call) -> None:
+def _print(_: Evaluation, call: Call) -> None:
     """Print: colcon reads what setup.py prints, and stops at anything that it does not expect."""
     if "file" not in call.kwargs:
         raise ExpressionFails("colcon cannot build a package whose setup.py prints something: print to sys.stderr")

@@ -18,7 +18,7 @@ from grader.static_python.values import (
     Unknown,
     Value,
     parts_of,
-    reason_of,
+    refuse,
     too_large,
 )
 
@@ -111,6 +111,4 @@ class Budget:
             return 0
         if isinstance(part, Unknown):
             raise Undetermined(part.reason, part.at)
-        raise Undetermined(
-            reason_of(part) or f"values of the type {type(part).__name__} are not supported", getattr(part, "at", None)
-        )
+        refuse(part, f"values of the type {type(part).__name__} are not supported")

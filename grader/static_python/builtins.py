@@ -1,7 +1,9 @@
 """Python's built-in functions and those of math, as an expression may call them."""
 
 import math
+import re
 from collections.abc import Callable, Iterator, Mapping
+from types import FunctionType
 from typing import Any
 
 from grader.static_python.budget import Budget
@@ -24,6 +26,7 @@ from grader.static_python.values import (
 )
 
 _MAX_DIGITS = 400  # that round leaves
+_OF_SIGNATURE = re.compile(r"positional argument|keyword argument|required keyword")
 _MAX_SMALL = 200  # arguments of factorial and its like
 
 # Calls a function value with arguments, for the functions that call others: map, filter, sorted.
@@ -36,9 +39,13 @@ def call(function: Value, args: list[Value], kwargs: dict[str, Value], budget: B
         budget.measure([args, list(kwargs.values())], "holds")
         return call_plain(function, *args, **kwargs) if not callable(function) else _refuse("this call")
     budget.measure([args, list(kwargs.values())], "holds" if function.kind == "applies" else function.kind)
-    if function.kind == "applies":
-        return budget.checked(call_plain(function.run, apply, *args, **kwargs))
-    return budget.checked(call_plain(function.run, *args, **kwargs), function.kind)
+    given = (apply, *args) if function.kind == "applies" else args
+    try:
+        return budget.checked(call_plain(function.run, *given, **kwargs), function.kind)
+    except ExpressionFails as error:
+        if isinstance(function.run, FunctionType) and _OF_SIGNATURE.search(str(error)):  # Python's own may have another
+            _refuse(f"this use of {function.name}")
+        raise
 
 
 def _refuse(what: str) -> Value:
@@ -171,7 +178,7 @@ BUILTINS: Mapping[str, PlainFunction] = {
     **{name: PlainFunction(name, function) for name, function in _FUNCTIONS.items()},
     **{name: PlainFunction(name, function, "holds") for name, function in _HOLDING.items()},
     **{name: PlainFunction(name, function, "applies") for name, function in _APPLYING.items()},
-    "str": PlainFunction("str", lambda *args: str_of(*args) if args else "", "path"),
+    "str": PlainFunction("str", lambda *args: str_of(*args) if args else "", "text"),
 }
 MATH: Mapping[str, Value] = {
     **{name: getattr(math, name) for name in ("pi", "e", "tau", "inf", "nan")},

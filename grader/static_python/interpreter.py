@@ -7,8 +7,8 @@ from functools import partial
 from io import StringIO
 
 from grader.static_python.budget import Budget, OutOfBudget
-from grader.static_python.file_expressions import EvaluationStopped, ExitFlow, FunctionTable, RaisedFlow
-from grader.static_python.parse import START, Code, Position, position_of
+from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable, RaisedFlow
+from grader.static_python.parse import Code, Position, position_of
 from grader.static_python.statements import LoopFlow, ReturnFlow, Statements
 from grader.static_python.values import (
     UNKNOWN_KEYS,
@@ -24,7 +24,6 @@ from grader.static_python.values import (
 )
 
 _STEPS = 100_000  # what the evaluation of one file may use
-_IN_CLASS = (ast.FunctionDef, ast.Pass, ast.Expr, ast.Assign)
 
 
 class Interpreter(Statements):
@@ -52,7 +51,6 @@ class Interpreter(Statements):
         """
         super().__init__(functions, names, budget or Budget(_STEPS))
         self.budget.stand_ins = stand_ins
-        self.at = START  # the statement that is evaluated
         self.exports = exports or {}
         self.local_modules = local_modules
 
@@ -97,18 +95,15 @@ class Interpreter(Statements):
             self.at = position_of(statement)
             self.statement(statement, scope)
 
-    def on_functiondef(self, node: ast.FunctionDef, scope: Scope) -> None:
-        """Bind a function, as its decorators return it."""
+    def _on_functiondef(self, node: ast.FunctionDef, scope: Scope) -> None:
         at = position_of(node)
-        decorators = [self.evaluate(decorator, scope) for decorator in node.decorator_list]
+        if node.decorator_list or getattr(node, "type_params", []):
+            raise EvaluationStopped("a function with a decorator or type parameters is not evaluated", at)
         parameters = node.args
         every = (*parameters.posonlyargs, *parameters.args, *parameters.kwonlyargs, parameters.vararg, parameters.kwarg)
         function: Value = self.function(parameters, scope, at, partial(self._function_body, node), _bound_in(node))
-        if not getattr(node, "type_params", ()):
-            for annotation in (*(parameter.annotation for parameter in every if parameter), node.returns):
-                self.annotation(annotation, scope)
-        for decorator in reversed(decorators):
-            function = self.call_value(decorator, Call("", [function], {}, at))
+        for annotation in (*(parameter.annotation for parameter in every if parameter), node.returns):
+            self.annotation(annotation, scope)
         scope.bind(node.name, function)
 
     def _function_body(self, node: ast.FunctionDef, scope: Scope) -> Value:
@@ -120,38 +115,16 @@ class Interpreter(Statements):
             return flow.value
         return None
 
-    def on_classdef(self, node: ast.ClassDef, scope: Scope) -> None:
-        """Bind a class that only defines methods and plain values; it is not called."""
-        for base in (*node.bases, *node.keywords, *node.decorator_list):
-            if not isinstance(base, ast.Name | ast.Attribute):
-                raise EvaluationStopped("this class is not evaluated", position_of(node))
-            self.evaluate(base, scope)
-        inner = Scope({}, scope)
-        for statement in node.body:
-            is_plain = not any(isinstance(part, ast.Call) for part in _own_nodes(statement))
-            if not isinstance(statement, _IN_CLASS) or not is_plain or node.decorator_list:
-                raise EvaluationStopped("this class is not evaluated", position_of(statement))
-            self.statement(statement, inner)
-        scope.bind(node.name, Unknown(f"the class {node.name} is not evaluated", position_of(node)))
-
-    def on_typealias(self, node: ast.stmt, scope: Scope) -> None:
-        """Bind the name of a type (Python 3.12), whose value is evaluated only when it is used."""
-        name = node.name.id  # type: ignore[attr-defined]
-        scope.bind(name, Unknown("a type is not evaluated", position_of(node)))
-
-    def on_if(self, node: ast.If, scope: Scope) -> None:
-        """Evaluate the branch whose condition holds."""
+    def _on_if(self, node: ast.If, scope: Scope) -> None:
         self._block(node.body if self.holds(node.test, scope) else node.orelse, scope)
 
-    def on_while(self, node: ast.While, scope: Scope) -> None:
-        """Evaluate rounds as long as the condition holds."""
+    def _on_while(self, node: ast.While, scope: Scope) -> None:
         while self.holds(node.test, scope):
             if not self._round(node.body, scope):
                 return
         self._block(node.orelse, scope)
 
-    def on_for(self, node: ast.For, scope: Scope) -> None:
-        """Evaluate a round for each item."""
+    def _on_for(self, node: ast.For, scope: Scope) -> None:
         items = iterate(self.evaluate(node.iter, scope))
         for item in items:
             self.bind(node.target, item, scope)
@@ -167,8 +140,7 @@ class Interpreter(Statements):
             return not flow.is_break
         return True
 
-    def on_with(self, node: ast.With, scope: Scope) -> None:
-        """Evaluate a block with files that are opened for reading, or what the table knows to enter."""
+    def _on_with(self, node: ast.With, scope: Scope) -> None:
         entered: list[Value] = []
         for item in node.items:
             value = self.evaluate(item.context_expr, scope)
@@ -187,19 +159,16 @@ class Interpreter(Statements):
                 if isinstance(value, StringIO):
                     value.close()
 
-    def on_try(self, node: ast.Try, scope: Scope) -> None:
+    def _on_try(self, node: ast.Try, scope: Scope) -> None:
         """Evaluate a block; an error in it is certain, because the evaluation stops where one is only possible."""
         leaving = (part for it in node.finalbody for part in ast.walk(it))
-        catches = any(isinstance(part, ast.Return | ast.Break | ast.Continue) for part in leaving)
-        before = self.handlers
-        self.handlers += catches
+        if any(isinstance(part, ast.Return | ast.Break | ast.Continue) for part in leaving):
+            raise EvaluationStopped("leaving a finally block is not evaluated", position_of(node))
         try:
             self._guarded(node, scope)
         except (RaisedFlow, ReturnFlow, LoopFlow, ExitFlow):
-            self.handlers = before
-            self._block(node.finalbody, scope)  # a flow that begins in it replaces this one
+            self._block(node.finalbody, scope)
             raise
-        self.handlers = before
         self._block(node.finalbody, scope)
 
     def _guarded(self, node: ast.Try, scope: Scope) -> None:

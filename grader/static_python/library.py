@@ -6,7 +6,7 @@ from functools import cache
 from itertools import chain
 from pathlib import PurePosixPath
 
-from grader.static_python.file_expressions import EvaluationStopped, ExitFlow, FileExpressions, FunctionTable
+from grader.static_python.evaluation import Evaluation, EvaluationStopped, ExitFlow, FunctionTable
 from grader.static_python.values import (
     Call,
     ExpressionFails,
@@ -74,7 +74,7 @@ def _bounded(path: str) -> str:
     return path
 
 
-def leave(evaluation: FileExpressions, call: Call) -> Value:
+def leave(evaluation: Evaluation, call: Call) -> Value:
     """End the program, if nothing can catch it."""
     if evaluation.handlers:
         raise EvaluationStopped("the end of the program, which may be caught, is not evaluated", call.at)
@@ -83,25 +83,15 @@ def leave(evaluation: FileExpressions, call: Call) -> Value:
     raise ExitFlow
 
 
-def _set(_: FileExpressions, call: Call) -> Value:
-    if call.kwargs or len(call.args) > 1:
-        raise ExpressionFails("set takes one value, whose items it contains")
-    items = known(list(iterate(call.args[0])) if call.args else [])
-    try:
-        return set(items)
-    except TypeError as error:
-        raise ExpressionFails(f"TypeError: {error}") from None
-
-
-def _getenv(_: FileExpressions, call: Call) -> Value:
+def _getenv(_: Evaluation, call: Call) -> Value:
     return Unknown(_ENVIRONMENT, call.at)
 
 
-def _environment(_: FileExpressions, call: Call) -> Value:
+def _environment(_: Evaluation, call: Call) -> Value:
     raise Undetermined(_ENVIRONMENT, call.at)
 
 
-def _print(evaluation: FileExpressions, call: Call) -> None:
+def _print(evaluation: Evaluation, call: Call) -> None:
     if not call.kwargs.keys() <= {"file", "end", "sep", "flush"} or not isinstance(
         call.kwargs.get("file"), QualifiedName | None
     ):
@@ -111,7 +101,6 @@ def _print(evaluation: FileExpressions, call: Call) -> None:
 
 _FUNCTIONS: FunctionTable = {
     **dict.fromkeys(_EXITS, leave),
-    **dict.fromkeys(("builtins.set", "builtins.frozenset"), _set),
     **dict.fromkeys(("os.environ.get", "os.getenv"), _getenv),
     "os.environ.__getitem__": _environment,
     "builtins.print": _print,

@@ -23,7 +23,7 @@ from grader.static_python.values import (
     call_plain,
     items_of,
     known,
-    reason_of,
+    refuse,
     str_of,
     too_large,
 )
@@ -66,7 +66,7 @@ def method(owner: Value, name: str, budget: Budget) -> PlainFunction | None:
     run = next((table.get(name) for kind, table in _METHODS.items() if isinstance(owner, kind)), None)
     if run is None:
         return None
-    kind = "holds" if isinstance(owner, list | tuple | dict) else "path" if name in _JOINING else "plain"
+    kind = "holds" if isinstance(owner, list | tuple | dict) else _KINDS.get(name, "plain")
     return PlainFunction(name, lambda *args, **kwargs: _call(run, owner, args, kwargs, budget, kind), kind)
 
 
@@ -135,8 +135,9 @@ def _named(kind: type, *names: str) -> dict[str, Callable[..., Value]]:
     return {name: getattr(kind, name) for name in names}
 
 
-_JOINING = ("format", "join", "joinpath", "as_posix", "with_name", "with_suffix", "with_stem", "relative_to", "read",
-            "readline", "readlines", "close", "removeprefix", "rstrip", "lstrip", "strip", "replace", "split")  # fmt: skip
+_OF_PATHS = ("joinpath", "as_posix", "with_name", "with_suffix", "with_stem", "relative_to", "read", "readline",
+             "readlines", "close", "removeprefix", "rstrip", "lstrip", "strip", "replace", "split")  # fmt: skip
+_KINDS = {**dict.fromkeys(_OF_PATHS, "path"), "format": "text", "join": "text"}
 _METHODS: Mapping[type, Mapping[str, Callable[..., Value]]] = {
     str: {
         "replace": _replace, "join": _join, "format": _format,
@@ -164,7 +165,7 @@ def operate(op: ast.operator, left: Value, right: Value, budget: Budget) -> Valu
         kind = _kind(op, left, right)
         for value in (left, right):
             if not isinstance(value, (*PLAIN, Items)):  # an iterator has no operators, as Python says itself
-                raise Undetermined(reason_of(value) or "this operation is not supported", getattr(value, "at", None))
+                refuse(value, "this operation is not supported")
         size = budget.measure(left, kind) + budget.measure(right, kind)
         made = 0
         match op, left, right:
@@ -186,7 +187,7 @@ def _kind(op: ast.operator, left: Value, right: Value) -> str:
     """Return what the operands may contain: an operator of two lists passes their items on."""
     if isinstance(left, _CONTAINERS) or (isinstance(right, _CONTAINERS) and not isinstance(left, str)):
         return "holds"
-    return "path" if isinstance(op, ast.Add | ast.Div | ast.Mod) else "plain"
+    return "text" if isinstance(op, ast.Add | ast.Div | ast.Mod) else "plain"
 
 
 def _run(operation: Callable[[Value, Value], Value], left: Value, right: Value) -> Value:
@@ -209,7 +210,7 @@ def compare(op: ast.cmpop, left: Value, right: Value, budget: Budget) -> bool:
         raise Undetermined("which values are one object is not defined")
     for value in (left, right):
         if not isinstance(value, PLAIN) and not (isinstance(value, Items) and isinstance(op, ast.Eq | ast.NotEq)):
-            raise Undetermined(reason_of(value) or "this comparison is not supported", getattr(value, "at", None))
+            refuse(value, "this comparison is not supported")
     if type(left) not in _NUMBERS or type(right) not in _NUMBERS:
         budget.charge(budget.measure(left) + budget.measure(right), search_cost(right, left))
     return bool(call_plain(_COMPARISONS[type(op)], left, right))
@@ -222,7 +223,7 @@ def subscript(owner: Value, key: Value, budget: Budget) -> Value:
     if isinstance(owner, Items):
         raise ExpressionFails("TypeError: an iterator (map, zip, reversed, a generator ...) has no items by index")
     if not isinstance(owner, PLAIN):
-        raise Undetermined(reason_of(owner) or "this index is not supported", getattr(owner, "at", None))
+        refuse(owner, "this index is not supported")
     if isinstance(owner, str):
         budget.measure(owner)
     if not isinstance(key, slice):
@@ -232,7 +233,7 @@ def subscript(owner: Value, key: Value, budget: Budget) -> Value:
     return budget.checked(call_plain(operator.getitem, owner, key))
 
 
-_CONTAINERS = (list, tuple, dict, set)
+_CONTAINERS = (list, tuple, dict)
 _OPERATORS: dict[type[ast.operator], Callable[[Value, Value], Value]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
     ast.FloorDiv: operator.floordiv, ast.Mod: operator.mod, ast.Pow: operator.pow, ast.BitOr: operator.or_,

@@ -1,10 +1,10 @@
 """The statements of a file without blocks: assignments, imports, deletions and raised errors."""
 
 import ast
-import builtins
 
 from grader.static_python.builtins import truth
-from grader.static_python.file_expressions import EvaluationStopped, ExitFlow, FileExpressions
+from grader.static_python.evaluation import EvaluationStopped, ExitFlow
+from grader.static_python.file_expressions import FileExpressions
 from grader.static_python.imports import import_error, imported_names, is_local
 from grader.static_python.operators import operate
 from grader.static_python.parse import Position, position_of
@@ -22,6 +22,7 @@ from grader.static_python.values import (
     iterate,
     known,
     reason_of,
+    refuse,
 )
 
 
@@ -46,7 +47,7 @@ class Statements(FileExpressions):
 
     def statement(self, node: ast.stmt, scope: Scope) -> None:
         """Evaluate a statement; stop at one of a kind that is not supported."""
-        kind = getattr(self, f"on_{type(node).__name__.lower()}", None)
+        kind = getattr(self, f"_on_{type(node).__name__.lower()}", None)
         if kind is None:
             raise EvaluationStopped(
                 f"a statement of the kind {type(node).__name__} is not evaluated", position_of(node)
@@ -73,27 +74,6 @@ class Statements(FileExpressions):
             case _:
                 super().bind(target, value, scope)
 
-    def unpack_items(self, targets: list[ast.expr], value: Value, scope: Scope) -> None:
-        """Bind several targets, of which one may be starred, to the items of a value."""
-        if isinstance(value, Unknown):
-            self.doubted(value)
-            for target in targets:
-                self.bind(target.value if isinstance(target, ast.Starred) else target, value, scope)
-            return
-        starred = next((place for place, target in enumerate(targets) if isinstance(target, ast.Starred)), None)
-        if starred is None:
-            super().unpack_items(targets, value, scope)
-            return
-        values, after = list(iterate(value)), len(targets) - starred - 1
-        if len(values) < len(targets) - 1:
-            raise ExpressionFails(
-                f"ValueError: cannot unpack {len(values)} values into {len(targets)} names", ValueError
-            )
-        end = len(values) - after
-        values[starred:end] = [values[starred:end]]
-        for target, item in zip(targets, values, strict=True):
-            self.bind(target.value if isinstance(target, ast.Starred) else target, item, scope)
-
     def _store(self, owner: Value, key: Value, value: Value, at: Position) -> None:
         """Set an item of a list or dict."""
         if isinstance(owner, QualifiedName | Call):
@@ -101,22 +81,18 @@ class Statements(FileExpressions):
             self.call_value(QualifiedName(made.name), made)
             return
         if not isinstance(owner, PLAIN):
-            raise Undetermined(
-                reason_of(owner) or "this assignment to an item is not supported", getattr(owner, "at", at)
-            )
+            refuse(owner, "this assignment to an item is not supported")
         if isinstance(key, slice):
             value = list(iterate(value))
         call_plain(_set_item, owner, known(key) if not isinstance(key, slice) else key, value)
         self.budget.charge(len(owner))
 
-    def on_assign(self, node: ast.Assign, scope: Scope) -> None:
-        """Bind targets to one value."""
+    def _on_assign(self, node: ast.Assign, scope: Scope) -> None:
         value = self.evaluate(node.value, scope)
         for target in node.targets:
             self.bind(target, value, scope)
 
-    def on_annassign(self, node: ast.AnnAssign, scope: Scope) -> None:
-        """Bind a target; its annotation is evaluated in a module."""
+    def _on_annassign(self, node: ast.AnnAssign, scope: Scope) -> None:
         if node.value is not None:
             self.bind(node.target, self.evaluate(node.value, scope), scope)
         if scope is self.module:
@@ -128,68 +104,45 @@ class Statements(FileExpressions):
             return
         for part in ast.walk(node):
             if isinstance(part, ast.Name):
-                self.of_name(part, scope)
+                self._of_name(part, scope)
             elif not isinstance(part, _IN_ANNOTATIONS):
                 raise EvaluationStopped("this annotation is not evaluated", position_of(node))
 
-    def on_augassign(self, node: ast.AugAssign, scope: Scope) -> None:
-        """Change a list, dict or set in place, or bind the value of the operator."""
+    def _on_augassign(self, node: ast.AugAssign, scope: Scope) -> None:
         target = node.target
         if any(isinstance(part, ast.Call | ast.NamedExpr) for part in ast.walk(target)):
             raise Undetermined("this target is not supported")
         load = ast.copy_location(type(target)(**{**vars_of(target), "ctx": ast.Load()}), target)
         before, value = self.evaluate(load, scope), self.evaluate(node.value, scope)
         if not isinstance(before, PLAIN):
-            raise Undetermined(reason_of(before) or "this value is not supported", getattr(before, "at", None))
-        if isinstance(before, list | dict | set):
-            self._change_in_place(node, before, value)
-            return
-        try:
-            found = operate(node.op, before, value, self.budget)
-        except Undetermined as error:
-            found = self.doubted(Unknown(str(error), error.at or position_of(node)))
-        self.bind(target, found, scope)
+            refuse(before, "this value is not supported")
+        if isinstance(before, list) and isinstance(node.op, ast.Add):
+            before.extend(list(iterate(value)))
+            self.budget.measure(before, "holds")
+        elif isinstance(before, list | dict):
+            raise Undetermined("this operator is not supported")
+        else:
+            self.bind(target, operate(node.op, before, value, self.budget), scope)
 
-    def _change_in_place(self, node: ast.AugAssign, before: Value, value: Value) -> None:
-        match node.op, before:
-            case ast.Add(), list():
-                before.extend(list(iterate(value)))
-            case ast.Mult(), list() if isinstance(value, int):
-                before[:] = operate(node.op, before, value, self.budget)
-            case ast.BitOr(), dict() if isinstance(value, dict):
-                before.update(value)
-            case _:
-                raise Undetermined("this operator is not supported")
-        self.budget.measure(before, "holds")
-
-    def on_expr(self, node: ast.Expr, scope: Scope) -> None:
-        """Evaluate an expression for what it does."""
+    def _on_expr(self, node: ast.Expr, scope: Scope) -> None:
         self.evaluate(node.value, scope)
 
-    def on_pass(self, node: ast.Pass, scope: Scope) -> None:
-        """Do nothing."""
+    def _on_pass(self, node: ast.Pass, scope: Scope) -> None:
+        pass
 
-    def on_return(self, node: ast.Return, scope: Scope) -> None:
-        """Leave a function."""
+    def _on_return(self, node: ast.Return, scope: Scope) -> None:
         raise ReturnFlow(self.evaluate(node.value, scope) if node.value is not None else None)
 
-    def on_break(self, node: ast.Break | ast.Continue, scope: Scope) -> None:
-        """Leave a loop, or its round."""
+    def _on_break(self, node: ast.Break | ast.Continue, scope: Scope) -> None:
         del scope
         raise LoopFlow(is_break=isinstance(node, ast.Break))
 
-    on_continue = on_break
+    _on_continue = _on_break
 
-    def on_global(self, node: ast.Global, scope: Scope) -> None:
-        """Declare names of the module."""
+    def _on_global(self, node: ast.Global, scope: Scope) -> None:
         scope.declared |= dict.fromkeys(node.names, self.module)
 
-    def on_nonlocal(self, node: ast.Nonlocal, scope: Scope) -> None:
-        """Declare names of a function around."""
-        scope.declared |= {name: scope.holder(name) for name in node.names}
-
-    def on_assert(self, node: ast.Assert, scope: Scope) -> None:
-        """Fail if the condition does not hold."""
+    def _on_assert(self, node: ast.Assert, scope: Scope) -> None:
         if not self.holds(node.test, scope, may_fail=True):
             self.error("this assertion fails", position_of(node), AssertionError)
 
@@ -205,8 +158,7 @@ class Statements(FileExpressions):
                 return True
             raise EvaluationStopped(unknown.reason, error.at or unknown.at) from None
 
-    def on_delete(self, node: ast.Delete, scope: Scope) -> None:
-        """Delete names and items."""
+    def _on_delete(self, node: ast.Delete, scope: Scope) -> None:
         for target in node.targets:
             match target:
                 case ast.Subscript(value=owner, slice=key):
@@ -215,13 +167,12 @@ class Statements(FileExpressions):
                         raise Undetermined(reason_of(container) or "this deletion is not supported")
                     call_plain(_delete_item, container, item if isinstance(item, slice) else known(item))
                 case ast.Name(id=name):
-                    self.of_name(ast.copy_location(ast.Name(name, ast.Load()), target), scope)
+                    self._of_name(ast.copy_location(ast.Name(name, ast.Load()), target), scope)
                     scope.declared.get(name, scope).names.pop(name, None)
                 case _:
                     raise Undetermined("this deletion is not supported")
 
-    def on_import(self, node: ast.Import | ast.ImportFrom, scope: Scope) -> None:
-        """Bind what is imported; an import that certainly fails is an error, any other of an unknown module a doubt."""
+    def _on_import(self, node: ast.Import | ast.ImportFrom, scope: Scope) -> None:
         module = "" if isinstance(node, ast.Import) else "." * node.level + (node.module or "")
         at = position_of(node)
         for alias in node.names:
@@ -235,25 +186,20 @@ class Statements(FileExpressions):
             elif error is not None:
                 self.error(error, at, ImportError)
             bound = imported_names(module, alias, self.exports)
-            self.has_star |= bound.pop("*", None) is not None
+            if bound.pop("*", None) is not None:
+                raise EvaluationStopped(f"the names of {module} are not evaluated", at)
             self.has_lazy_annotations |= (module, alias.name) == ("__future__", "annotations")
             for name, value in bound.items():
                 scope.bind(name, value)
 
-    on_importfrom = on_import
+    _on_importfrom = _on_import
 
-    def on_raise(self, node: ast.Raise, scope: Scope) -> None:
-        """Raise an error: one of Python's own, or one that only a handler of every error catches."""
-        raised = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
-        name = raised.id if isinstance(raised, ast.Name) else "an error"
-        for argument in node.exc.args if isinstance(node.exc, ast.Call) else []:
-            self.evaluate(argument, scope)
-        kind = getattr(builtins, name, None)
-        if not isinstance(kind, type) or not issubclass(kind, BaseException) or not issubclass(kind, Exception):
-            if self.handlers:
-                raise EvaluationStopped("which error is raised here is not evaluated", position_of(node))
-            kind = Exception
-        self.error(f"the file raises {name} here", position_of(node), kind)
+    def _on_raise(self, node: ast.Raise, scope: Scope) -> None:
+        """Raise an error, which ends the file if nothing can catch it."""
+        if self.handlers or node.exc is None:
+            raise EvaluationStopped("an error that may be caught is not evaluated", position_of(node))
+        self.evaluate(node.exc.func if isinstance(node.exc, ast.Call) else node.exc, scope)
+        self.error("the file raises an error here", position_of(node), Exception)
         raise ExitFlow
 
 

@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 
 from grader.static_python.parse import Position
 
-# A plain value is a str, number, bool, None, list, tuple, dict, set, range, StringIO (a file) or PurePosixPath.
+# A plain value is a str, number, bool, None, list, tuple, dict, range, StringIO (a file) or PurePosixPath.
 Value = Any
 
 MAX_TEXT = 100_000  # characters
@@ -20,7 +20,7 @@ _MAX_MESSAGE = 1_000  # characters
 _EMPTY: dict[str, str] = {}
 _VIEWS: tuple[Any, ...] = (type(_EMPTY.keys()), type(_EMPTY.values()), type(_EMPTY.items()))
 SCALARS = (str, int, float)
-PLAIN: tuple[Any, ...] = (*SCALARS, type(None), range, list, tuple, dict, set, PurePosixPath, StringIO, *_VIEWS)
+PLAIN: tuple[Any, ...] = (*SCALARS, type(None), range, list, tuple, dict, PurePosixPath, StringIO, *_VIEWS)
 
 
 class EvaluationSignal(Exception):
@@ -126,15 +126,14 @@ class Function:
 class Scope:
     """The names that are bound in a scope, and the scope around it."""
 
-    __slots__ = ("declared", "is_loop", "locals", "names", "outer")
+    __slots__ = ("declared", "locals", "names", "outer")
 
     def __init__(
         self, names: dict[str, Value], outer: "Scope | None" = None, local: frozenset[str] = frozenset()
     ) -> None:
         self.names, self.outer = names, outer
         self.locals = local  # the names that are bound here sooner or later, and nowhere else until then
-        self.declared: dict[str, Scope] = {}  # the scopes of names that are global or nonlocal here
-        self.is_loop = False  # whether it is that of a comprehension
+        self.declared: dict[str, Scope] = {}  # the scopes of names that are global here
 
     def find(self, name: str) -> Value:
         """Return the value of a name; raise KeyError, or ExpressionFails for one that is bound later."""
@@ -151,20 +150,13 @@ class Scope:
         """Give a name a value, in the scope that it belongs to."""
         self.declared.get(name, self).names[name] = value
 
-    def holder(self, name: str) -> "Scope":
-        """Return the nearest scope around this one that binds a name, else the outermost."""
-        scope = self.outer or self
-        while name not in scope.names and name not in scope.locals and scope.outer is not None:
-            scope = scope.outer
-        return scope
-
 
 class PlainFunction:
     """A function that an expression may call. It is Python's own, or takes and returns what Python's own does.
 
     `kind` is "plain" for one whose arguments are wholly known; "holds" for one that only passes on what a list
     contains, known or not; "applies" for such a one that calls functions, by the one that it is given first; "path" for
-    one whose result may begin with the stand-in of a folder.
+    one whose result may begin with the stand-in of a folder, "text" for one that may contain it.
     """
 
     __slots__ = ("kind", "name", "run")
@@ -202,7 +194,7 @@ class DottedDict(dict[Value, Value]):
 
 
 OPAQUE = (Unknown, QualifiedName, BoundMethod, Call, Function, PlainFunction, Namespace, Items)
-_REPEATED = (list, tuple, dict, set)
+_REPEATED = (list, tuple, dict)
 
 
 def call_plain(function: Callable[..., Value], *args: Value, **kwargs: Value) -> Value:
@@ -222,12 +214,15 @@ def iterate(value: Value) -> Iterator[Value]:
     """Return what a loop over a value yields, one by one."""
     if isinstance(value, Items):
         return value.iterator
-    if isinstance(value, set) and len(value) > 1:
-        raise Undetermined("the order of a set differs between runs")
     if isinstance(value, PLAIN) or (callable(value) and not isinstance(value, OPAQUE)):
         found: Iterator[Value] = call_plain(iter, value)
         return found
-    raise Undetermined(reason_of(value) or "this loop is not supported", getattr(value, "at", None))
+    refuse(value, "this loop is not supported")
+
+
+def refuse(value: Value, message: str) -> NoReturn:
+    """Raise Undetermined for a value that is not known, or not supported."""
+    raise Undetermined(reason_of(value) or message, getattr(value, "at", None))
 
 
 def items_of(value: Value) -> list[Value]:
@@ -241,11 +236,9 @@ def items_of(value: Value) -> list[Value]:
 def known(value: Value) -> Value:
     """Return a value if all of it is known. Raises Undetermined."""
     unknown = unknown_in(value)
-    if unknown is None and not isinstance(value, OPAQUE):
-        return value
-    raise Undetermined(
-        reason_of(unknown or value) or "this value is not supported", getattr(unknown or value, "at", None)
-    )
+    if unknown is not None or isinstance(value, OPAQUE):
+        refuse(unknown or value, "this value is not supported")
+    return value
 
 
 def reason_of(value: Value) -> str:
@@ -277,7 +270,7 @@ def parts_of(part: Value) -> Collection[Value]:
     """Return what a value contains."""
     if isinstance(part, dict):
         return [*part.keys(), *part.values()]
-    return part if isinstance(part, list | tuple | range | set) else [*part] if isinstance(part, _VIEWS) else ()
+    return part if isinstance(part, list | tuple | range) else [*part] if isinstance(part, _VIEWS) else ()
 
 
 def checked_key(key: Value) -> Value:
@@ -312,7 +305,7 @@ def has_text(value: Value) -> bool:
         value = (*value.keys(), *value.values())
     if isinstance(value, list | tuple):
         return all(map(has_text, value))
-    return not isinstance(value, (*OPAQUE, set, StringIO, PurePosixPath, *_VIEWS))
+    return not isinstance(value, (*OPAQUE, StringIO, PurePosixPath, *_VIEWS))
 
 
 def too_large(what: str) -> NoReturn:

@@ -5,6 +5,7 @@ import subprocess
 import sys
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -60,7 +61,7 @@ def _build(package: tuple[Path, dict[str, str]]) -> Build:
     installed = {str(path.relative_to(root)): source for path, source in sources.items()}
     has_failed = done.returncode or not (root / "share/my_robot/package.xml").exists()
     error = done.stderr.strip() or done.stdout.strip() or "the package is not built"
-    own = ("lib/", *IMPLIED)
+    own = ("lib/", "share/colcon-core/", *IMPLIED)
     wanted = {
         target: it for target, it in installed.items() if it and not ignored_part(it) and not target.startswith(own)
     }

@@ -16,7 +16,7 @@ from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.setup_py import location_in
 from grader.reuse import reuse
 from grader.source import Location, Source
-from grader.static_python.file_expressions import FileExpressions, FunctionTable, record
+from grader.static_python.evaluation import Evaluation, FunctionTable, record
 from grader.static_python.imports import USUAL_NAMES
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.library import standard_functions
@@ -133,7 +133,7 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
             visitor.visit(description, context, context.when)
         case Unknown() | QualifiedName() | Call() as description:
             visitor.visit(description, context, context.when)
-        case _ if interpreter.doubt is not None or interpreter.has_star:
+        case _ if interpreter.doubt is not None:
             findings.add_unknown("what it launches is known only at run time", START)
         case _:
             findings.add_fault(f"the file does not define the function {_ENTRY}, which ros2 launch calls", START)
@@ -192,18 +192,18 @@ def launch_functions() -> FunctionTable:
     }
 
 
-def _share(_: FileExpressions, call: Call) -> Value:
+def _share(_: Evaluation, call: Call) -> Value:
     name = call.argument(0, "package_name", "package")
     if isinstance(name, str):
         return f"{SHARE}/{name}"
     return name if isinstance(name, Unknown) else Unknown("the package is known only at run time", call.at)
 
 
-def _share_path(evaluation: FileExpressions, call: Call) -> Value:
+def _share_path(evaluation: Evaluation, call: Call) -> Value:
     found = _share(evaluation, call)
     return PurePosixPath(found) if isinstance(found, str) else found
 
 
-def _expanduser(_: FileExpressions, call: Call) -> Value:
+def _expanduser(_: Evaluation, call: Call) -> Value:
     text = path_text(call.args[0]) if call.args else None
     return re.sub("^~", HOME, text) if text is not None else Unknown("a path is known only at run time", call.at)
