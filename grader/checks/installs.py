@@ -79,7 +79,7 @@ def _build_error(package: Package, setup: "Setup") -> Outcome | None:
         message, problem = "; ".join(first_lines(messages, 3)), messages[0] + hint
         return failed(message, setup.location(at), detail=hint if len(messages) == 1 else "", problem=problem)
     if not setup.is_called:
-        message = "a build fails: setup.py does not call setup()"
+        message = "setup.py does not call setup()"
         return failed(message, setup.location(setup.called_at), problem=message)
     if setup.doubt is not None:
         reason = f"{setup.doubt.reason} (line {setup.doubt.at.line} of setup.py)"

@@ -5,7 +5,7 @@ import ast
 from grader.static_python.builtins import truth
 from grader.static_python.evaluation import EvaluationStopped, ExitFlow
 from grader.static_python.file_expressions import FileExpressions
-from grader.static_python.imports import import_error, imported_names, is_local
+from grader.static_python.imports import UNCERTAIN, USUAL_NAMES, import_error, imported_names, is_local
 from grader.static_python.operators import operate
 from grader.static_python.parse import Position, position_of
 from grader.static_python.values import (
@@ -179,13 +179,15 @@ class Statements(FileExpressions):
             if is_local(module or alias.name, self.local_modules):
                 raise EvaluationStopped(f"the file's own module {module or alias.name} is not evaluated", at)
             error = import_error(module, alias.name, self.exports)
-            if error == "?":
+            if error == UNCERTAIN:
                 self.doubted(
                     Unknown(f"whether {module or alias.name} is installed is not known; it is not evaluated", at)
                 )
             elif error is not None:
                 self.error(error, at, ImportError)
             bound = imported_names(module, alias, self.exports)
+            if error not in (None, UNCERTAIN):
+                bound = dict.fromkeys(bound, QualifiedName(USUAL_NAMES.get(alias.name, f"?.{alias.name}")))
             if bound.pop("*", None) is not None:
                 raise EvaluationStopped(f"the names of {module} are not evaluated", at)
             self.has_lazy_annotations |= (module, alias.name) == ("__future__", "annotations")
