@@ -93,9 +93,15 @@ def _evaluate(code: Code, listing: PackageListing, written: dict[str, Position],
         _read_call(data_files, call)
         return Unknown("the result of setup() is not evaluated", call.at)
 
+    def write(_: Evaluation, call: Call) -> None:
+        if "file" not in call.kwargs:
+            data_files.stop("setup.py prints something, and colcon reads what it prints: print to sys.stderr", call.at)
+        elif not isinstance(call.kwargs["file"], QualifiedName) or call.kwargs["file"].name != "sys.stderr":
+            raise EvaluationStopped("this use of print is not evaluated", call.at)
+
     functions = {**standard_functions(_ROOT), **file_functions(listing, _ROOT), **dict.fromkeys(_SETUPS, setup)}
     interpreter = Interpreter(
-        {**functions, "builtins.print": _print},
+        {**functions, "builtins.print": write},
         {"__file__": file},
         stand_ins=(_ROOT,),
         budget=listing.budget,
@@ -137,11 +143,3 @@ def _read_call(data_files: DataFiles, call: Call) -> None:
             data_files.stop(finding, call.at)
         else:
             data_files.doubts.append(finding)
-
-
-def _print(_: Evaluation, call: Call) -> None:
-    """Print: colcon reads what setup.py prints, and stops at anything that it does not expect."""
-    if "file" not in call.kwargs:
-        raise ExpressionFails("colcon cannot build a package whose setup.py prints something: print to sys.stderr")
-    if not isinstance(call.kwargs["file"], QualifiedName) or call.kwargs["file"].name != "sys.stderr":
-        raise EvaluationStopped("this use of print is not evaluated", call.at)

@@ -127,4 +127,5 @@ class FileExpressions(Calls):
         return self.function(node.args, scope, position_of(node), lambda inner: self.evaluate(node.body, inner))
 
 
-FileExpressions.KINDS = kinds_of(FileExpressions)
+_OUTSIDE = (ast.Await, ast.Yield, ast.YieldFrom)  # of functions, these are errors in xacro
+FileExpressions.KINDS = {kind: run for kind, run in kinds_of(FileExpressions).items() if kind not in _OUTSIDE}

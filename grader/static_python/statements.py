@@ -1,6 +1,7 @@
 """The statements of a file without blocks: assignments, imports, deletions and raised errors."""
 
 import ast
+import builtins
 
 from grader.static_python.builtins import truth
 from grader.static_python.evaluation import EvaluationStopped, ExitFlow
@@ -197,11 +198,12 @@ class Statements(FileExpressions):
     _on_importfrom = _on_import
 
     def _on_raise(self, node: ast.Raise, scope: Scope) -> None:
-        """Raise an error, which ends the file if nothing can catch it."""
-        if self.handlers or node.exc is None:
-            raise EvaluationStopped("an error that may be caught is not evaluated", position_of(node))
-        self.evaluate(node.exc.func if isinstance(node.exc, ast.Call) else node.exc, scope)
-        self.error("the file raises an error here", position_of(node), Exception)
+        """Raise one of Python's own errors, which ends the file if nothing can catch it."""
+        raised = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
+        kind = getattr(builtins, raised.id, None) if isinstance(raised, ast.Name) else None
+        if self.handlers or not isinstance(kind, type) or not issubclass(kind, Exception):
+            raise EvaluationStopped("which error is raised here is not evaluated", position_of(node))
+        self.error(f"the file raises {kind.__name__} here", position_of(node), kind)
         raise ExitFlow
 
 
