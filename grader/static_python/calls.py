@@ -161,7 +161,7 @@ class Calls(Evaluation):
         """Return the value of a call of a function of the file."""
         if self._depth == _MAX_DEPTH:
             raise EvaluationStopped(f"a function that calls others so deeply {NOT_EVALUATED}", made.at)
-        scope = Scope(self._bound_parameters(function, made), function.scope, function.locals)
+        scope = Scope(self._bound_parameters(function, made), function.scope, function.local)
         self._depth += 1
         try:
             return function.body(scope)

@@ -210,7 +210,7 @@ class Expressions:
         """Bind the names of a target to a value."""
         match target:
             case ast.Name(id=name):
-                scope.bind(name, value)
+                scope.names[name] = value
             case ast.Tuple(elts=targets) | ast.List(elts=targets):
                 self.unpack_items(targets, value, scope)
             case _:

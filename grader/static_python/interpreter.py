@@ -39,15 +39,10 @@ class Interpreter(Statements):
         exports: Mapping[str, Collection[str]] | None = None,
         local_modules: Collection[str] = (),
     ) -> None:
-        """`names` are those that Python itself binds, such as __file__.
+        """`functions` may be called, by full name; `names` are bound from the beginning, such as __file__.
 
-        Args:
-            functions: What may be called, by full name.
-            names: The names that are bound from the beginning.
-            stand_ins: Texts that stand for folders that are not known.
-            budget: What the evaluation is charged to.
-            exports: The names that modules export, besides those of Python itself.
-            local_modules: The modules beside the file, which are imported before any other.
+        `stand_ins` are texts that stand for folders that are not known; `exports` has the names of modules, besides those
+        of Python itself; `local_modules` are beside the file, and imported before any other.
         """
         super().__init__(functions, names, budget or Budget(_STEPS))
         self.budget.stand_ins = stand_ins
@@ -104,7 +99,7 @@ class Interpreter(Statements):
         function: Value = self.function(parameters, scope, at, partial(self._function_body, node), _bound_in(node))
         for annotation in (*(parameter.annotation for parameter in every if parameter), node.returns):
             self.annotation(annotation, scope)
-        scope.bind(node.name, function)
+        scope.names[node.name] = function
 
     def _function_body(self, node: ast.FunctionDef, scope: Scope) -> Value:
         if any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in _own_nodes(node)):
@@ -192,10 +187,10 @@ class Interpreter(Statements):
                 raise EvaluationStopped("whether an error is caught here is not evaluated", position_of(handler))
             if catches:
                 if handler.name is not None:
-                    scope.bind(handler.name, Unknown("the error is not evaluated", position_of(handler)))
+                    scope.names[handler.name] = Unknown("the error is not evaluated", position_of(handler))
                 self._block(handler.body, scope)
                 if handler.name is not None:
-                    scope.declared.get(handler.name, scope).names.pop(handler.name, None)
+                    scope.names.pop(handler.name, None)
                 return
         self.error(raised.error.message, raised.error.at, raised.kind)
 

@@ -140,9 +140,6 @@ class Statements(FileExpressions):
 
     _on_continue = _on_break
 
-    def _on_global(self, node: ast.Global, scope: Scope) -> None:
-        scope.declared |= dict.fromkeys(node.names, self.module)
-
     def _on_assert(self, node: ast.Assert, scope: Scope) -> None:
         if not self.holds(node.test, scope, may_fail=True):
             self.error("this assertion fails", position_of(node), AssertionError)
@@ -169,7 +166,7 @@ class Statements(FileExpressions):
                     call_plain(_delete_item, container, item if isinstance(item, slice) else known(item))
                 case ast.Name(id=name):
                     self._of_name(ast.copy_location(ast.Name(name, ast.Load()), target), scope)
-                    scope.declared.get(name, scope).names.pop(name, None)
+                    scope.names.pop(name, None)
                 case _:
                     raise Undetermined("this deletion is not supported")
 
@@ -193,7 +190,7 @@ class Statements(FileExpressions):
                 raise EvaluationStopped(f"the names of {module} are not evaluated", at)
             self.has_lazy_annotations |= (module, alias.name) == ("__future__", "annotations")
             for name, value in bound.items():
-                scope.bind(name, value)
+                scope.names[name] = value
 
     _on_importfrom = _on_import
 
