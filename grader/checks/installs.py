@@ -133,10 +133,12 @@ def _require_installed(
     if isinstance(setup, Outcome):
         return setup
     error = _build_error(package, setup)
-    if error is not None and (error.status == "pending" or not despite_errors):
-        return error if error.status == "pending" else error._replace(message=f"a build fails: {error.message}")
-    if error is not None and _stops_at(package, setup, files, kind):
-        return passed(f"setup.py has an entry for {files[0]}")
+    if error is not None and error.status == "failed" and despite_errors:
+        error = passed(f"setup.py has an entry for {files[0]}") if _stops_at(package, setup, files, kind) else None
+    elif error is not None and error.status == "failed":
+        error = error._replace(message=f"a build fails: {error.message}")
+    if error is not None:
+        return error
     copies = [copy for copy in setup.copies if copy.source in files]
     inside = [copy for copy in copies if copy.target.startswith(package.share)]
     twice = sorted({copy.target for copy in inside if posixpath.basename(copy.target) == posixpath.basename(files[0])})

@@ -1,4 +1,4 @@
-"""What else a build needs: the other arguments of setup(), setup.cfg, pyproject.toml, and that colcon finds the package."""
+"""What else a build needs: the other arguments of setup(), setup.cfg and pyproject.toml."""
 
 import re
 import tomllib
@@ -11,8 +11,10 @@ from grader.static_python.values import UNKNOWN_KEYS, Unknown, Value, unknown_in
 from grader.text import enumerated
 
 # Arguments that run other code in the build, or change where files are.
-_NOT_EVALUATED = ("cmdclass", "distclass", "ext_modules", "package_dir", "options", "command_options", "script_args",
-                  "script_name", "src_root", "command_packages", "use_scm_version", "scripts", "py_modules", UNKNOWN_KEYS)  # fmt: skip
+_NOT_EVALUATED = (
+    "cmdclass", "distclass", "ext_modules", "package_dir", "options", "command_options", "script_args", "script_name",
+    "src_root", "command_packages", "use_scm_version", "scripts", "py_modules", UNKNOWN_KEYS,
+)  # fmt: skip
 # The arguments that name the Python packages; without one, setuptools searches for packages, but not in the folders
 # below, those of `FlatLayoutPackageFinder.DEFAULT_EXCLUDE`.
 _PACKAGES = ("packages", "py_modules", "ext_modules", "package_dir", UNKNOWN_KEYS)
@@ -36,7 +38,9 @@ _REQUIREMENTS = ("install_requires", "tests_require")
 _AT_HAND = ("setuptools", "wheel")  # what setup_requires may name without a download
 # The sections of setup.cfg that concern a build: of these, the options that are known to be accepted.
 _SECTIONS = {"develop": {"script_dir", "install_scripts"}, "install": {"install_scripts", "install-scripts"}}
-_OF_TOOLS = re.compile(r"flake8|pycodestyle|pydocstyle|pep8|mypy\b.*|isort|pylint|yapf|black|tool:.*|coverage:.*|bdist_wheel|sdist|test|pep257|autopep8|tox.*")  # fmt: skip
+_OF_TOOLS = re.compile(
+    r"flake8|pycodestyle|pydocstyle|pep8|pep257|mypy\b.*|isort|pylint|yapf|black|tool:.*|coverage:.*|bdist_wheel|sdist|test"
+)
 _MAX_SETTINGS = 64 * 1024  # bytes
 
 # A fault, or what is not evaluated.
@@ -136,8 +140,8 @@ def _cfg(text: str, unknown: Callable[[str], Unknown]) -> Iterator[Finding]:
     try:
         parser.read_string(text)
         options = {section: {*map(str, parser[section])} for section in parser.sections()}
-        for section in options:
-            for option in options[section]:
+        for section, names in options.items():
+            for option in names:
                 parser.get(section, option)
     except Error as error:
         yield f"setup.cfg cannot be read: {' '.join(str(error).split())[:200]}"

@@ -101,7 +101,7 @@ class _PackageFolder:
             raise SearchError(f"{path} is an ignored file")
         return real
 
-    def glob(self, evaluation: Evaluation, call: Call) -> Value:
+    def glob(self, _: Evaluation, call: Call) -> Value:
         pattern, start = call.argument(0, "pathname"), call.kwargs.get("root_dir")
         options = [call.kwargs.get(name, False) for name in ("recursive", "include_hidden")]
         if isinstance(pattern, PurePosixPath):

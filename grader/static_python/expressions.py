@@ -5,7 +5,6 @@ outside of the allow-list is reached. `files` adds what an expression in a file 
 """
 
 import ast
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
@@ -13,6 +12,7 @@ from typing import Any
 from grader.static_python.budget import Budget
 from grader.static_python.builtins import call, truth
 from grader.static_python.operators import attribute, compare, operate, subscript
+from grader.static_python.parse import parse_expression
 from grader.static_python.values import ExpressionFails, Scope, Undetermined, Value, call_plain, iterate
 
 _MAX_LENGTH = 4_000  # characters of an expression
@@ -29,7 +29,9 @@ def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
     if len(text) > _MAX_LENGTH:
         raise Undetermined("the expression is too long")
     budget.charge(len(text))
-    node = _parse(text) if len(text) > _MAX_KEPT else _kept(text)
+    node = parse_expression(text) if len(text) > _MAX_KEPT else _kept(text)
+    if node is None:
+        raise Undetermined("the expression is nested too deeply")
     if isinstance(node, str):
         raise ExpressionFails(node)
     try:
@@ -38,23 +40,7 @@ def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
         raise Undetermined("the expression is nested too deeply") from None
 
 
-def _parse(text: str) -> ast.expr | str:
-    """Return an expression, or Python's message on why it is none. Raises Undetermined if it is nested too deeply."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            return ast.parse(text, mode="eval").body
-    except SyntaxError as error:
-        return f"SyntaxError: {error.msg}"
-    except (RecursionError, MemoryError, SystemError):  # how deep differs between versions; CPython 3.11 may miscount
-        raise Undetermined("the expression is nested too deeply") from None
-    except (ValueError, OverflowError) as error:
-        return f"{type(error).__name__}: {error}"
-
-
-_kept = lru_cache(1_000)(_parse)
-
-
+_kept = lru_cache(1_000)(parse_expression)
 # What makes a value that no function has measured yet.
 _MAKES_VALUES = frozenset({ast.Constant, ast.UnaryOp, ast.List, ast.Tuple, ast.ListComp, ast.Set, ast.Dict})
 

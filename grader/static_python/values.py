@@ -90,7 +90,7 @@ class BoundMethod(Record):
 class Call(Record):
     """A call that is recorded, by the full name of what is called; it is its own result.
 
-    `owner` is the call whose result it is a method of; `method_calls` are the methods that are recorded of its own result.
+    `owner` is the call whose result it is a method of.
     """
 
     name: str
@@ -182,8 +182,8 @@ class Items:
     def __init__(self, items: Iterable[Value]) -> None:
         self.iterator: Iterator[Value] = iter(items)
 
-    def __repr__(self) -> str:
-        return "an iterator"
+
+Items.__name__ = "iterator"  # as Python's messages name it
 
 
 class DottedDict(dict[Value, Value]):
@@ -214,7 +214,7 @@ def iterate(value: Value) -> Iterator[Value]:
     if isinstance(value, PLAIN) or (callable(value) and not isinstance(value, OPAQUE)):
         found: Iterator[Value] = call_plain(iter, value)
         return found
-    refuse(value, "this loop is not supported")
+    return refuse(value, "this loop is not supported")
 
 
 def refuse(value: Value, message: str) -> NoReturn:
@@ -284,25 +284,13 @@ def str_of(value: Value) -> str:
     return str(value)
 
 
-def joined(pieces: Iterable[str]) -> str:
-    """Return one text of pieces; raise Undetermined as soon as it is too long."""
-    kept: list[str] = []
-    length = 0
-    for piece in pieces:
-        length += len(piece)
-        if length > MAX_TEXT:
-            too_large("text")
-        kept.append(piece)
-    return "".join(kept)
-
-
 def has_text(value: Value) -> bool:
     """Return whether the text of a value is the same in every run."""
     if isinstance(value, dict):
         value = (*value.keys(), *value.values())
     if isinstance(value, list | tuple):
         return all(map(has_text, value))
-    return not isinstance(value, (*OPAQUE, StringIO, PurePosixPath, *_VIEWS))
+    return isinstance(value, Items) or not isinstance(value, (*OPAQUE, StringIO, PurePosixPath, *_VIEWS))
 
 
 def too_large(what: str) -> NoReturn:

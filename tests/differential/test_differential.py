@@ -46,9 +46,7 @@ def test_mutated_urdfs() -> None:
 
 
 @pytest.mark.exhaustive
-@pytest.mark.parametrize(
-    "oracle", [pytest.param(name, marks=_NEEDS.get(name, ())) for name in ORACLES]
-)
+@pytest.mark.parametrize("oracle", [pytest.param(name, marks=_NEEDS.get(name, ())) for name in ORACLES])
 def test_each_oracle(oracle: str) -> None:
     """Some thousand inputs of another range of seeds agree; `pinocchio` needs the extra `oracle`."""
     count = 300 if oracle == "colcon" else 2000
