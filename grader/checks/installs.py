@@ -79,7 +79,7 @@ def _build_error(package: Package, setup: "Setup") -> Outcome | None:
         message, problem = "; ".join(first_lines(messages, 3)), messages[0] + hint
         return failed(message, setup.location(at), detail=hint if len(messages) == 1 else "", problem=problem)
     if not setup.is_called:
-        message = "a build fails: setup.py does not call setup()"
+        message = "setup.py does not call setup()"
         return failed(message, setup.location(setup.called_at), problem=message)
     if setup.doubt is not None:
         reason = f"{setup.doubt.reason} (line {setup.doubt.at.line} of setup.py)"
@@ -133,10 +133,12 @@ def _require_installed(
     if isinstance(setup, Outcome):
         return setup
     error = _build_error(package, setup)
-    if error is not None and (error.status == "pending" or not despite_errors):
-        return error if error.status == "pending" else error._replace(message=f"a build fails: {error.message}")
-    if error is not None and _stops_at(package, setup, files, kind):
-        return passed(f"setup.py has an entry for {files[0]}")
+    if error is not None and error.status == "failed" and despite_errors:
+        error = passed(f"setup.py has an entry for {files[0]}") if _stops_at(package, setup, files, kind) else None
+    elif error is not None and error.status == "failed":
+        error = error._replace(message=f"a build fails: {error.message}")
+    if error is not None:
+        return error
     copies = [copy for copy in setup.copies if copy.source in files]
     inside = [copy for copy in copies if copy.target.startswith(package.share)]
     twice = sorted({copy.target for copy in inside if posixpath.basename(copy.target) == posixpath.basename(files[0])})

@@ -1,4 +1,4 @@
-"""What else a build needs: the other arguments of setup(), setup.cfg, pyproject.toml, and that colcon finds the package."""
+"""What else a build needs: the other arguments of setup(), setup.cfg and pyproject.toml."""
 
 import re
 import tomllib
@@ -10,10 +10,11 @@ from grader.package.globbing import PackageListing
 from grader.static_python.values import UNKNOWN_KEYS, Unknown, Value, unknown_in
 from grader.text import enumerated
 
-
 # Arguments that run other code in the build, or change where files are.
-_NOT_EVALUATED = ("cmdclass", "distclass", "ext_modules", "package_dir", "options", "command_options", "script_args",
-                  "script_name", "src_root", "command_packages", "use_scm_version", "scripts", "py_modules", UNKNOWN_KEYS)  # fmt: skip
+_NOT_EVALUATED = (
+    "cmdclass", "distclass", "ext_modules", "package_dir", "options", "command_options", "script_args", "script_name",
+    "src_root", "command_packages", "use_scm_version", "scripts", "py_modules", UNKNOWN_KEYS,
+)  # fmt: skip
 # The arguments that name the Python packages; without one, setuptools searches for packages, but not in the folders
 # below, those of `FlatLayoutPackageFinder.DEFAULT_EXCLUDE`.
 _PACKAGES = ("packages", "py_modules", "ext_modules", "package_dir", UNKNOWN_KEYS)
@@ -37,7 +38,9 @@ _REQUIREMENTS = ("install_requires", "tests_require")
 _AT_HAND = ("setuptools", "wheel")  # what setup_requires may name without a download
 # The sections of setup.cfg that concern a build: of these, the options that are known to be accepted.
 _SECTIONS = {"develop": {"script_dir", "install_scripts"}, "install": {"install_scripts", "install-scripts"}}
-_OF_TOOLS = re.compile(r"flake8|pycodestyle|pydocstyle|pep8|mypy\b.*|isort|pylint|yapf|black|tool:.*|coverage:.*|bdist_wheel|sdist|test|pep257|autopep8|tox.*")  # fmt: skip
+_OF_TOOLS = re.compile(
+    r"flake8|pycodestyle|pydocstyle|pep8|pep257|mypy\b.*|isort|pylint|yapf|black|tool:.*|coverage:.*|bdist_wheel|sdist|test"
+)
 _MAX_SETTINGS = 64 * 1024  # bytes
 
 # A fault, or what is not evaluated.
@@ -45,7 +48,7 @@ Finding = str | Unknown
 
 
 def argument_findings(
-    kwargs: Mapping[str, Value], listing: PackageListing, unknown: Callable[[str], Unknown]
+    kwargs: Mapping[str, Value], listing: PackageListing, unknown: Callable[[str], Unknown], is_configured: bool
 ) -> Iterator[Finding]:
     """Yield what is wrong with the arguments of setup() besides data_files, and what of them is not evaluated."""
     for name in _NOT_EVALUATED:
@@ -54,22 +57,23 @@ def argument_findings(
     for name in _TEXTS:
         if not isinstance(kwargs.get(name), str | Unknown | None):
             yield unknown(f"this value of {name} is not evaluated")
-    for check in (_version, _entry_points, _requirements, _packages):
-        yield from check(kwargs, listing, unknown)
+    for check in (_version, _entry_points, _requirements):
+        yield from check(kwargs, unknown)
+    yield from _packages(kwargs, listing, unknown)
+    if not is_configured and all(kwargs.get(name) is None for name in _PACKAGES) and "src" not in listing.folders:
+        yield from _discovery(listing)
 
 
-def _version(kwargs: Mapping[str, Value], _: PackageListing, unknown: Callable[[str], Unknown]) -> Iterator[Finding]:
+def _version(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> Iterator[Finding]:
     version = kwargs.get("version")
     if isinstance(version, str):
-        if not _VERSION.fullmatch(version):
+        if version and not _VERSION.fullmatch(version):
             yield f"the version {version!r} is not valid: write numbers with dots, such as 0.1.0"
     elif not isinstance(version, int | float | None):
         yield unknown_in(version) or unknown("this version is not evaluated")
 
 
-def _entry_points(
-    kwargs: Mapping[str, Value], _: PackageListing, unknown: Callable[[str], Unknown]
-) -> Iterator[Finding]:
+def _entry_points(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> Iterator[Finding]:
     groups = kwargs.get("entry_points")
     if groups is None:
         return
@@ -84,9 +88,7 @@ def _entry_points(
             yield f"the entry point {line!r} is not valid: write name = package.module:function"
 
 
-def _requirements(
-    kwargs: Mapping[str, Value], _: PackageListing, unknown: Callable[[str], Unknown]
-) -> Iterator[Finding]:
+def _requirements(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> Iterator[Finding]:
     for name in (*_REQUIREMENTS, "setup_requires"):
         given = kwargs.get(name)
         listed = [given] if isinstance(given, str) else given if isinstance(given, list | tuple) else []
@@ -112,8 +114,10 @@ def _packages(
                 yield f"packages lists {name!r}, but there is no such folder"
     elif packages is not None and not isinstance(packages, Unknown):
         yield unknown("this value of packages is not evaluated")
-    if any(kwargs.get(name) is not None for name in _PACKAGES) or "src" in listing.folders:
-        return
+
+
+def _discovery(listing: PackageListing) -> Iterator[Finding]:
+    """Yield the error of setuptools where it searches for packages and finds several."""
     folders = [name for name in listing.names("") if name in listing.folders and name.isidentifier()]
     found = sorted(name for name in folders if name not in _NO_PACKAGES and not name.startswith("_"))
     if len(found) > 1:
@@ -136,8 +140,8 @@ def _cfg(text: str, unknown: Callable[[str], Unknown]) -> Iterator[Finding]:
     try:
         parser.read_string(text)
         options = {section: {*map(str, parser[section])} for section in parser.sections()}
-        for section in options:
-            for option in options[section]:
+        for section, names in options.items():
+            for option in names:
                 parser.get(section, option)
     except Error as error:
         yield f"setup.cfg cannot be read: {' '.join(str(error).split())[:200]}"

@@ -10,8 +10,8 @@ from typing import NamedTuple
 from grader.files.names import ignored_part
 from grader.names import did_you_mean
 from grader.package.globbing import PackageListing, SearchError
-from grader.static_python.parse import Position
 from grader.static_python.library import MAX_PATH, PACKAGE_FOLDER
+from grader.static_python.parse import Position
 from grader.static_python.values import PLAIN, Call, Function, Items, QualifiedName, Unknown, Value, unknown_in
 from grader.text import enumerated
 
@@ -46,7 +46,7 @@ class DataFiles:
 
     listing: PackageListing
     root: str  # the absolute path that stands for the package's folder
-    positions: Mapping[str, Position]  # the origin of each path
+    written: Mapping[str, Position]  # where each text is written
     is_first: bool = True  # whether it is the run of setup.py in which colcon asks for data_files
     copies: list[InstalledFile] = field(default_factory=list)
     stops: list[InstallError] = field(default_factory=list)
@@ -72,13 +72,17 @@ class DataFiles:
             reason = f"several files are installed as {target}: {enumerated(sorted(sources[target]))}"
             self.unknown.append(Unknown(reason, at))
 
+    def _origin(self, path: str, at: Position) -> Position:
+        """Return the position of the search that finds a path, or where it is written."""
+        return self.listing.positions.get(path) or self.written.get(path, at) if path else at
+
     def _give_up(self, value: Value, reason: str, at: Position) -> None:
         """Add the unknown parts of a value, or that it is not supported."""
         self.doubts.append(unknown_in(value) or Unknown(reason, at))
 
     def stop(self, reason: str, at: Position, path: str = "") -> None:
         """Add an error that stops the build."""
-        self.stops.append(InstallError(path, reason, self.positions.get(path, at) if path else at))
+        self.stops.append(InstallError(path, reason, self._origin(path, at)))
 
     def _entry(self, entry: Value, at: Position) -> None:
         """Add an entry, which colcon takes as a file, or as a tuple of a folder and a list of files."""
@@ -133,7 +137,7 @@ class DataFiles:
     def _file(self, file: Value, folder: str, at: Position) -> None:
         self.listing.budget.charge(5)
         if isinstance(file, str):
-            self._path(file, folder, self.positions.get(file, at))
+            self._path(file, folder, self._origin(file, at))
         else:
             self._not_text(file, "a file of an entry", at)
 

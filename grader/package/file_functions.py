@@ -12,7 +12,7 @@ from pathlib import PurePosixPath
 from grader.errors import InputError
 from grader.files.names import ignored_part
 from grader.package.globbing import PackageListing, SearchError
-from grader.static_python.file_expressions import EvaluationStopped, FileExpressions, FunctionTable
+from grader.static_python.evaluation import Evaluation, EvaluationStopped, FunctionTable
 from grader.static_python.values import (
     Call,
     ExpressionFails,
@@ -33,7 +33,7 @@ _MAX_READ = 128 * 1024  # bytes
 def file_functions(listing: PackageListing, root: str) -> FunctionTable:
     """Return the functions by full name; `root` is the absolute path that represents the package's folder."""
     folder = _PackageFolder(listing, root)
-    functions: dict[str, Callable[[FileExpressions, Call], Value]] = {
+    functions: dict[str, Callable[[Evaluation, Call], Value]] = {
         "glob.glob": folder.glob,
         "glob.iglob": lambda evaluation, call: Items(folder.glob(evaluation, call)),
         "os.listdir": folder.listdir,
@@ -63,7 +63,7 @@ def file_functions(listing: PackageListing, root: str) -> FunctionTable:
 
 
 def _evaluate(
-    function: Callable[[FileExpressions, Call], Value], listing: PackageListing, evaluation: FileExpressions, call: Call
+    function: Callable[[Evaluation, Call], Value], listing: PackageListing, evaluation: Evaluation, call: Call
 ) -> Value:
     """Evaluate a search, charge it and record whether the order of files in a folder matters."""
     known([call.args, [*call.kwargs.values()]])
@@ -101,7 +101,7 @@ class _PackageFolder:
             raise SearchError(f"{path} is an ignored file")
         return real
 
-    def glob(self, evaluation: FileExpressions, call: Call) -> Value:
+    def glob(self, _: Evaluation, call: Call) -> Value:
         pattern, start = call.argument(0, "pathname"), call.kwargs.get("root_dir")
         options = [call.kwargs.get(name, False) for name in ("recursive", "include_hidden")]
         if isinstance(pattern, PurePosixPath):
@@ -124,7 +124,7 @@ class _PackageFolder:
             return Unknown(str(error), call.at)
         return self.listing.record(posixpath.join(folder, pattern), found, call.at)
 
-    def path_glob(self, _: FileExpressions, call: Call, prefix: str = "") -> Value:
+    def path_glob(self, _: Evaluation, call: Call, prefix: str = "") -> Value:
         pattern = call.argument(1, "pattern")
         is_supported = call.kwargs.keys() <= {"pattern"} and len(call.args) + len(call.kwargs) == 2
         if not isinstance(pattern, str) or not is_supported:
@@ -134,26 +134,26 @@ class _PackageFolder:
         self.listing.order_matters |= len(found) > 1
         return Items(self.listing.record(str(PurePosixPath(folder) / pattern), found, call.at))
 
-    def test(self, answer: Callable[[str | None], bool], _: FileExpressions, call: Call) -> Value:
+    def test(self, answer: Callable[[str | None], bool], _: Evaluation, call: Call) -> Value:
         if len(call.args) != 1 or call.kwargs:
-            raise ExpressionFails("a test of a path takes one argument")
+            raise Undetermined("this test of a path is not supported")
         return answer(self.real(call.args[0]))
 
-    def listdir(self, _: FileExpressions, call: Call) -> Value:
+    def listdir(self, _: Evaluation, call: Call) -> Value:
         path = call.argument(0, "path")
         return self._names("." if path is None else path)
 
-    def iterdir(self, _: FileExpressions, call: Call) -> Value:
+    def iterdir(self, _: Evaluation, call: Call) -> Value:
         found = [call.args[0] / name for name in self._names(call.args[0])]
         self.listing.order_matters |= len(found) > 1
         return Items(found)
 
-    def walk(self, evaluation: FileExpressions, call: Call) -> Value:
+    def walk(self, evaluation: Evaluation, call: Call) -> Value:
         if len(call.args) != 1 or not call.kwargs.keys() <= {"followlinks"}:
             raise Undetermined("this walk through folders is not supported")
         return Items(self._steps(evaluation, self.real(call.args[0]), str(call.args[0])))
 
-    def _steps(self, evaluation: FileExpressions, real: str | None, spelled: str) -> Iterator[Value]:
+    def _steps(self, evaluation: Evaluation, real: str | None, spelled: str) -> Iterator[Value]:
         """Yield the steps of os.walk: the caller may change the list of folders before the next step."""
         if real is None or real not in self.listing.folders:
             return
@@ -169,11 +169,11 @@ class _PackageFolder:
         for name in folders:
             yield from self._steps(evaluation, self.real(_below(real, name)), posixpath.join(spelled, name))
 
-    def chdir(self, _: FileExpressions, call: Call) -> Value:
+    def chdir(self, _: Evaluation, call: Call) -> Value:
         if len(call.args) != 1 or self.real(call.args[0]) != "":
             raise EvaluationStopped("a change of the working folder is not evaluated", call.at)
 
-    def open(self, evaluation: FileExpressions, call: Call) -> Value:
+    def open(self, evaluation: Evaluation, call: Call) -> Value:
         path, mode = call.argument(0, "file"), call.argument(1, "mode")
         if (
             mode not in (None, "r", "rt")
@@ -195,12 +195,12 @@ class _PackageFolder:
         evaluation.budget.charge(1, len(text))
         return StringIO(text.replace("\r\n", "\n").replace("\r", "\n"))
 
-    def read_text(self, evaluation: FileExpressions, call: Call) -> Value:
+    def read_text(self, evaluation: Evaluation, call: Call) -> Value:
         if not call.kwargs.keys() <= {"encoding"} or len(call.args) != 1:
             raise Undetermined("this use of read_text is not supported")
         return self.open(evaluation, call).read()
 
-    def find_packages(self, _: FileExpressions, call: Call) -> Value:
+    def find_packages(self, _: Evaluation, call: Call) -> Value:
         """Return the folders with an __init__.py; those without need other rules."""
         where, exclude, include = (
             call.argument(place, name) for place, name in enumerate(("where", "exclude", "include"))

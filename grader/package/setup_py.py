@@ -2,7 +2,6 @@
 
 import ast
 from dataclasses import dataclass, replace
-from itertools import chain
 
 from grader.files.tree import Tree
 from grader.package.build_settings import argument_findings, file_findings
@@ -11,7 +10,7 @@ from grader.package.file_functions import file_functions
 from grader.package.globbing import ORDERS, EmptyGlob, PackageListing
 from grader.source import Location, Source
 from grader.static_python.budget import Budget
-from grader.static_python.file_expressions import EvaluationStopped, FileExpressions, PythonError
+from grader.static_python.evaluation import Evaluation, EvaluationStopped, PythonError
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.library import PACKAGE_FOLDER, standard_functions
 from grader.static_python.parse import START, Code, Position, SyntaxFault, position_of
@@ -84,7 +83,7 @@ def read_setup(code: Code | SyntaxFault, tree: Tree, budget: Budget | None = Non
         setups.append(_evaluate(code, PackageListing(tree, budget, ORDERS[0]), written, f"{_ROOT}/setup.py"))
     orders = ORDERS[1:] if listing.order_matters else ()
     setups += [_evaluate(code, PackageListing(tree, budget, order), written, "setup.py") for order in orders]
-    results = {(it.name, frozenset(it.copies), it.is_called, bool(it.stops or it.faults)) for it in setups}
+    results = {(it.name, frozenset(it.copies), it.is_called, bool(it.faults)) for it in setups}
     doubts = [unknown for it in setups[1:] for unknown in it.unknown]
     if len(results) == 1 and not doubts:
         return setups[0]
@@ -101,14 +100,20 @@ def _evaluate(code: Code, listing: PackageListing, written: dict[str, Position],
     data_files = DataFiles(listing, _ROOT, written, is_first=file == "setup.py")
     calls: list[Call] = []
 
-    def setup(_: FileExpressions, call: Call) -> Value:
+    def setup(_: Evaluation, call: Call) -> Value:
         calls.append(call)
         _read_call(data_files, call)
         return Unknown("the result of setup() is not evaluated", call.at)
 
+    def write(_: Evaluation, call: Call) -> None:
+        if "file" not in call.kwargs:
+            data_files.stop("setup.py prints something, and colcon reads what it prints: print to sys.stderr", call.at)
+        elif not isinstance(call.kwargs["file"], QualifiedName) or call.kwargs["file"].name != "sys.stderr":
+            raise EvaluationStopped("this use of print is not evaluated", call.at)
+
     functions = {**standard_functions(_ROOT), **file_functions(listing, _ROOT), **dict.fromkeys(_SETUPS, setup)}
     interpreter = Interpreter(
-        {**functions, "builtins.print": _print},
+        {**functions, "builtins.print": write},
         {"__file__": file},
         stand_ins=(_ROOT,),
         budget=listing.budget,
@@ -125,7 +130,7 @@ def _evaluate(code: Code, listing: PackageListing, written: dict[str, Position],
         stops=tuple(data_files.stops),
         empty=tuple(listing.empty),
         faults=tuple(sorted(interpreter.errors, key=lambda error: error.at)),
-        unknown=(*doubts, *data_files.unknown),
+        unknown=tuple(dict.fromkeys([*doubts, *data_files.unknown])),
         doubt=doubts[0] if doubts else None,
         is_called=bool(calls) or interpreter.doubt is not None,
         called_at=calls[0].at if calls else START,
@@ -144,17 +149,10 @@ def _read_call(data_files: DataFiles, call: Call) -> None:
     entries = call.kwargs.get("data_files")
     if entries is not None:
         data_files.read(entries, call.at)
-    findings = (argument_findings(call.kwargs, data_files.listing, unknown), file_findings(data_files.listing, unknown))
-    for finding in chain.from_iterable(findings):
+    of_files = [*file_findings(data_files.listing, unknown)]
+    is_configured = any(isinstance(finding, Unknown) for finding in of_files)
+    for finding in (*argument_findings(call.kwargs, data_files.listing, unknown, is_configured), *of_files):
         if isinstance(finding, str):
             data_files.stop(finding, call.at)
         else:
             data_files.doubts.append(finding)
-
-
-def _print(_: FileExpressions, call: Call) -> None:
-    """Print: colcon reads what setup.py prints, and stops at anything that it does not expect."""
-    if "file" not in call.kwargs:
-        raise ExpressionFails("colcon cannot build a package whose setup.py prints something: print to sys.stderr")
-    if not isinstance(call.kwargs["file"], QualifiedName) or call.kwargs["file"].name != "sys.stderr":
-        raise EvaluationStopped("this use of print is not evaluated", call.at)

@@ -3,31 +3,14 @@
 from collections.abc import Collection
 from pathlib import PurePosixPath
 
-from grader.static_python.values import (
-    MAX_BITS,
-    MAX_PARTS,
-    MAX_TEXT,
-    OPAQUE,
-    PLAIN,
-    SCALARS,
-    EvaluationSignal,
-    Items,
-    Namespace,
-    PlainFunction,
-    Undetermined,
-    Unknown,
-    Value,
-    parts_of,
-    reason_of,
-    too_large,
-)
+from grader.static_python import values as py
 
 READING = 500_000  # parts that reading one submission may produce or look at: some 0.5 s
 CHARACTERS, _BITS = 16, 256  # that count as one part
 FOLDER = "the name of a folder on the machine is not known"
 
 
-class OutOfBudget(EvaluationSignal):
+class OutOfBudget(py.EvaluationSignal):
     """The budget of a submission is spent: nothing more of it can be expanded or evaluated."""
 
 
@@ -53,12 +36,12 @@ class Budget:
         if self.left < 0:
             raise OutOfBudget(f"reading this takes more work than one submission may use ({self.limit:,} parts)")
 
-    def measure(self, value: Value, kind: str = "plain") -> int:
+    def measure(self, value: py.Value, kind: str = "plain") -> int:
         """Charge a value and return its size: its parts, each as often as it occurs. Raises Undetermined.
 
         `kind` is that of the function that is given the value.
         """
-        if isinstance(value, SCALARS):
+        if isinstance(value, py.SCALARS):
             size = 1 + self._size_alone(value, kind)
             self.charge(size)
             return size
@@ -66,15 +49,15 @@ class Budget:
         while pending:
             part = pending.pop()
             size += 1 + self._size_alone(part, kind)
-            inside = parts_of(part)
-            if size + len(pending) + len(inside) > MAX_PARTS:
-                too_large("value")
+            inside = py.parts_of(part)
+            if size + len(pending) + len(inside) > py.MAX_PARTS:
+                py.too_large("value")
             self.charge(len(inside))
             pending += inside
         self.charge(size)
         return size
 
-    def checked(self, value: Value, kind: str = "holds") -> Value:
+    def checked(self, value: py.Value, kind: str = "holds") -> py.Value:
         """Return a value that was produced, once it is charged. Raises Undetermined for one that is too large."""
         if type(value) not in (float, bool):
             self.measure(value, kind)
@@ -82,35 +65,31 @@ class Budget:
             self.rooted(value)
         return value
 
-    def rooted(self, value: Value) -> Value:
+    def rooted(self, value: py.Value) -> py.Value:
         """Return a text or path in which a stand-in is at most the beginning. Raises Undetermined."""
         for text in map(str, value if isinstance(value, tuple) else [value]):
             for stand_in in self.stand_ins:
                 rest = text.removeprefix(stand_in)
                 if stand_in.strip("/") in rest or (rest != text and not rest.startswith("/") and rest):
-                    raise Undetermined(FOLDER)
+                    raise py.Undetermined(FOLDER)
         return value
 
-    def _size_alone(self, part: Value, kind: str) -> int:
+    def _size_alone(self, part: py.Value, kind: str) -> int:
         """Return the size of a part beyond one. Raises Undetermined for one that is too large, or not known."""
         if isinstance(part, str):
-            if len(part) > MAX_TEXT:
-                too_large("text")
+            if len(part) > py.MAX_TEXT:
+                py.too_large("text")
             if self.stand_ins and kind == "plain" and any(stand_in in part for stand_in in self.stand_ins):
-                raise Undetermined(FOLDER)
+                raise py.Undetermined(FOLDER)
             return len(part) // CHARACTERS
         if isinstance(part, int):
-            if part.bit_length() > MAX_BITS:
-                too_large("number")
+            if part.bit_length() > py.MAX_BITS:
+                py.too_large("number")
             return part.bit_length() // _BITS
         if isinstance(part, PurePosixPath):
             return self._size_alone(str(part), kind)
-        if isinstance(part, PLAIN) or (kind == "holds" and isinstance(part, OPAQUE)):
+        if isinstance(part, py.PLAIN) or (kind == "holds" and isinstance(part, py.OPAQUE)):
             return 0
-        if isinstance(part, Items | Namespace | PlainFunction):  # a plain function itself refuses these
+        if isinstance(part, py.Items | py.Namespace | py.PlainFunction):  # a plain function itself refuses these
             return 0
-        if isinstance(part, Unknown):
-            raise Undetermined(part.reason, part.at)
-        raise Undetermined(
-            reason_of(part) or f"values of the type {type(part).__name__} are not supported", getattr(part, "at", None)
-        )
+        return py.refuse(part, f"values of the type {type(part).__name__} are not supported")

@@ -5,14 +5,14 @@ outside of the allow-list is reached. `files` adds what an expression in a file 
 """
 
 import ast
-import warnings
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
 from grader.static_python.budget import Budget
 from grader.static_python.builtins import call, truth
 from grader.static_python.operators import attribute, compare, operate, subscript
+from grader.static_python.parse import parse_expression
 from grader.static_python.values import ExpressionFails, Scope, Undetermined, Value, call_plain, iterate
 
 _MAX_LENGTH = 4_000  # characters of an expression
@@ -29,7 +29,9 @@ def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
     if len(text) > _MAX_LENGTH:
         raise Undetermined("the expression is too long")
     budget.charge(len(text))
-    node = _parse(text) if len(text) > _MAX_KEPT else _kept(text)
+    node = parse_expression(text) if len(text) > _MAX_KEPT else _kept(text)
+    if node is None:
+        raise Undetermined("the expression is nested too deeply")
     if isinstance(node, str):
         raise ExpressionFails(node)
     try:
@@ -38,23 +40,7 @@ def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
         raise Undetermined("the expression is nested too deeply") from None
 
 
-def _parse(text: str) -> ast.expr | str:
-    """Return an expression, or Python's message on why it is none. Raises Undetermined if it is nested too deeply."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            return ast.parse(text, mode="eval").body
-    except SyntaxError as error:
-        return f"SyntaxError: {error.msg}"
-    except (RecursionError, MemoryError, SystemError):  # how deep differs between versions; CPython 3.11 may miscount
-        raise Undetermined("the expression is nested too deeply") from None
-    except (ValueError, OverflowError) as error:
-        return f"{type(error).__name__}: {error}"
-
-
-_kept = lru_cache(1_000)(_parse)
-
-
+_kept = lru_cache(1_000)(parse_expression)
 # What makes a value that no function has measured yet.
 _MAKES_VALUES = frozenset({ast.Constant, ast.UnaryOp, ast.List, ast.Tuple, ast.ListComp, ast.Set, ast.Dict})
 
@@ -79,13 +65,11 @@ class Expressions:
         """Return the value of a part of an expression: in a file, it may be Unknown."""
         return self.value(node, scope)
 
-    def of_constant(self, node: ast.Constant, scope: Scope) -> Value:
-        """Return the value of a literal."""
+    def _of_constant(self, node: ast.Constant, scope: Scope) -> Value:
         del scope
         return node.value
 
-    def of_name(self, node: ast.Name, scope: Scope) -> Value:
-        """Return the value of a name."""
+    def _of_name(self, node: ast.Name, scope: Scope) -> Value:
         if node.id.startswith("__"):
             raise ExpressionFails(f"names that begin with two underscores are not allowed: {node.id}")
         try:
@@ -93,25 +77,26 @@ class Expressions:
         except KeyError:
             return self._find(node.id)
 
-    def of_binop(self, node: ast.BinOp, scope: Scope) -> Value:
-        """Return the value of a binary operator: both operands are evaluated first."""
+    def _of_binop(self, node: ast.BinOp, scope: Scope) -> Value:
         left, right = self.evaluate(node.left, scope), self.evaluate(node.right, scope)
         return operate(node.op, left, right, self.budget)
 
-    def of_ifexp(self, node: ast.IfExp, scope: Scope) -> Value:
-        """Return the value of a conditional expression."""
-        return self.evaluate(node.body if truth(self.evaluate(node.test, scope)) else node.orelse, scope)
+    def _of_ifexp(self, node: ast.IfExp, scope: Scope) -> Value:
+        holds = self.test(self.evaluate(node.test, scope), [node.body, node.orelse])
+        return self.evaluate(node.body if holds else node.orelse, scope)
 
-    def of_attribute(self, node: ast.Attribute, scope: Scope) -> Value:
-        """Return the value of an attribute."""
+    def _of_attribute(self, node: ast.Attribute, scope: Scope) -> Value:
         return attribute(self.evaluate(node.value, scope), node.attr, self.budget)
 
-    def of_subscript(self, node: ast.Subscript, scope: Scope) -> Value:
-        """Return the value of an item or of a slice."""
-        return subscript(self.evaluate(node.value, scope), self.key(node.slice, scope), self.budget)
+    def _of_subscript(self, node: ast.Subscript, scope: Scope) -> Value:
+        return self.item(self.evaluate(node.value, scope), self.key(node.slice, scope), node)
 
-    def of_unaryop(self, node: ast.UnaryOp, scope: Scope) -> Value:
-        """Return the value of `not`, + and - of a value."""
+    def item(self, owner: Value, key: Value, node: ast.expr) -> Value:
+        """Return the value of owner[key]."""
+        del node
+        return subscript(owner, key, self.budget)
+
+    def _of_unaryop(self, node: ast.UnaryOp, scope: Scope) -> Value:
         if type(node.op) not in _UNARY:
             raise Undetermined("an expression of this kind is not supported")
         operand = self.evaluate(node.operand, scope)
@@ -123,26 +108,21 @@ class Expressions:
         """Return the values of the elements of a list, or of the arguments of a call."""
         return [self.evaluate(element, scope) for element in nodes]
 
-    def of_list(self, node: ast.List, scope: Scope) -> Value:
-        """Return a list."""
+    def _of_list(self, node: ast.List, scope: Scope) -> Value:
         return self.elements(node.elts, scope)
 
-    def of_tuple(self, node: ast.Tuple, scope: Scope) -> Value:
-        """Return a tuple."""
+    def _of_tuple(self, node: ast.Tuple, scope: Scope) -> Value:
         return tuple(self.elements(node.elts, scope))
 
-    def of_listcomp(self, node: ast.ListComp, scope: Scope) -> Value:
-        """Return the list of a comprehension."""
-        return [self.evaluate(node.elt, inner) for inner in self.rounds(node.generators, self.inner(scope))]
+    def _of_listcomp(self, node: ast.ListComp, scope: Scope) -> Value:
+        return [self.evaluate(node.elt, inner) for inner in self.rounds(node.generators, Scope({}, scope))]
 
-    def of_await(self, node: ast.expr, scope: Scope) -> Value:
-        """Fail: await and yield belong into functions."""
+    def _of_await(self, _: ast.expr, __: Scope) -> Value:
         raise ExpressionFails("SyntaxError: await and yield belong into functions")
 
-    of_yield = of_yieldfrom = of_await
+    _of_yield = _of_yieldfrom = _of_await
 
-    def of_compare(self, node: ast.Compare, scope: Scope) -> Value:
-        """Return the value of comparisons, which end with the first that does not hold."""
+    def _of_compare(self, node: ast.Compare, scope: Scope) -> Value:
         left = self.evaluate(node.left, scope)
         for op, comparator in zip(node.ops, node.comparators, strict=True):
             right = self.evaluate(comparator, scope)
@@ -151,14 +131,19 @@ class Expressions:
             left = right
         return True
 
-    def of_boolop(self, node: ast.BoolOp, scope: Scope) -> Value:
-        """Return the value of `and` and `or`."""
+    def _of_boolop(self, node: ast.BoolOp, scope: Scope) -> Value:
         value: Value = None
-        for operand in node.values:
+        for index, operand in enumerate(node.values, 1):
             value = self.evaluate(operand, scope)
-            if operand is node.values[-1] or truth(value) != isinstance(node.op, ast.And):
+            others = node.values[index:]
+            if not others or self.test(value, others) != isinstance(node.op, ast.And):
                 break
         return value
+
+    def test(self, value: Value, branches: Sequence[ast.expr]) -> bool:
+        """Return whether a condition holds, which decides which of the branches are evaluated."""
+        del branches
+        return truth(value)
 
     def key(self, key: ast.expr, scope: Scope) -> Value:
         """Return the value of a subscript's key, which may be a slice."""
@@ -168,8 +153,7 @@ class Expressions:
         self.budget.measure(bounds)
         return slice(*bounds)
 
-    def of_call(self, node: ast.Call, scope: Scope) -> Value:
-        """Return the value of a call: the function and all arguments are evaluated first."""
+    def _of_call(self, node: ast.Call, scope: Scope) -> Value:
         function = self.evaluate(node.func, scope)
         args = self.elements(node.args, scope)
         kwargs: dict[str, Value] = {}
@@ -182,7 +166,7 @@ class Expressions:
             kwargs[keyword.arg] = self.evaluate(keyword.value, scope)
         return self.called(function, args, kwargs, node)
 
-    def unpack(self, kwargs: dict[str, Value], value: Value, node: ast.expr) -> None:
+    def unpack(self, _: dict[str, Value], __: Value, ___: ast.expr) -> None:
         """Add the arguments that ** unpacks."""
         raise Undetermined("arguments with ** are not supported")
 
@@ -190,34 +174,35 @@ class Expressions:
         """Return the value of a call of a value."""
         return call(function, args, kwargs, self.budget, lambda inner, items: self.called(inner, items, {}, node))
 
-    def inner(self, scope: Scope) -> Scope:
-        """Return the scope of a comprehension."""
-        return Scope({}, scope)
+    def rounds(
+        self, loops: Sequence[ast.comprehension], scope: Scope, first: Iterator[Value] | None = None, depth: int = 0
+    ) -> Iterator[Scope]:
+        """Yield the scope once for each round of nested loops, charged by depth: each loop around passes them on.
 
-    def rounds(self, loops: list[ast.comprehension], scope: Scope, depth: int = 0) -> Iterator[Scope]:
-        """Yield the scope once for each round of nested loops, charged by depth: each loop around passes them on."""
+        `first` are the items of the first loop, if they are evaluated already.
+        """
         if not loops:
             yield scope
             return
         loop, *nested = loops
-        items = self.evaluate(loop.iter, scope if depth else scope.outer or scope)
-        for item in iterate(self.budget.checked(items)):
+        items = self.evaluate(loop.iter, scope if depth else scope.outer or scope) if first is None else None
+        for item in first or iterate(self.budget.checked(items)):
             self.budget.charge(_OF_NODE + len(scope.names) + depth)
             self.bind(loop.target, item, scope)
-            if all(truth(self.evaluate(condition, scope)) for condition in loop.ifs):
-                yield from self.rounds(nested, scope, depth + 1)
+            if all(self.test(self.evaluate(condition, scope), loop.ifs) for condition in loop.ifs):
+                yield from self.rounds(nested, scope, None, depth + 1)
 
     def bind(self, target: ast.expr, value: Value, scope: Scope) -> None:
         """Bind the names of a target to a value."""
         match target:
             case ast.Name(id=name):
-                scope.bind(name, value)
+                scope.names[name] = value
             case ast.Tuple(elts=targets) | ast.List(elts=targets):
                 self.unpack_items(targets, value, scope)
             case _:
                 raise Undetermined("this loop is not supported")
 
-    def unpack_items(self, targets: list[ast.expr], value: Value, scope: Scope) -> None:
+    def unpack_items(self, targets: Sequence[ast.expr], value: Value, scope: Scope) -> None:
         """Bind several targets to the items of a value."""
         values = list(iterate(value))
         if len(values) != len(targets):
@@ -240,7 +225,7 @@ def kinds_of(evaluator: type) -> Mapping[type, Callable[[Any, Any, Scope], Value
     """Return the methods of an evaluator by the kind of node that each evaluates."""
     nodes = (kind for kind in vars(ast).values() if isinstance(kind, type) and issubclass(kind, ast.AST))
     return {
-        kind: found for kind in nodes if (found := getattr(evaluator, f"of_{kind.__name__.lower()}", None)) is not None
+        kind: found for kind in nodes if (found := getattr(evaluator, f"_of_{kind.__name__.lower()}", None)) is not None
     }
 
 

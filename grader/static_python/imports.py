@@ -86,7 +86,7 @@ CONSTANTS = {
 
 def is_local(module: str, local_modules: Collection[str]) -> bool:
     """Return whether a module is beside the file, where Python looks first."""
-    return module.split(".")[0] in local_modules
+    return module.split(".", maxsplit=1)[0] in local_modules
 
 
 def import_error(module: str, name: str, exports: Mapping[str, Collection[str]]) -> str | None:
@@ -109,25 +109,31 @@ def _import_error(module: str, name: str) -> str | None:
     homes = [home for home, names in _LAUNCH_NAMES.items() if name in names]
     if module in _LAUNCH_NAMES and homes and module not in homes:
         return f"{module} has no {name!r}: import it from {homes[-1]}"
-    if module == "setuptools" and name not in _SETUPTOOLS and name != "*":
-        return f"setuptools has no {name!r}{did_you_mean(name, _SETUPTOOLS_PUBLIC[:3])}"
-    if module in _INSPECTED and name != "*":
-        found = import_module(module)  # one of the few above, never a student's choice
-        if name in _ADDED:
-            return UNCERTAIN
-        return None if hasattr(found, name) else f"{module} has no {name!r}{did_you_mean(name, dir(found))}"
     if top in _REMOVED:
         return f"there is no module {top!r} in Python 3.12"
-    if top in _INSTALLED_WITH_ROS or full in ("setuptools", "distutils", *_INSPECTED) or full == "__future__":
-        return None
-    if full in [f"{home}.command.{command}" for home in ("setuptools", "distutils") for command in _COMMANDS]:
-        return None if name in (full, full.rpartition(".")[2]) else UNCERTAIN
-    if (module, name) == ("distutils.core", "setup") or (top in sys.stdlib_module_names and full == top and not module):
-        return None
+    if name != "*" and (module in _INSPECTED or module == "setuptools"):
+        return _missing_name(module, name)
+    commands = [f"{home}.command.{command}" for home in ("setuptools", "distutils") for command in _COMMANDS]
+    is_there = (
+        top in _INSTALLED_WITH_ROS
+        or full in ("setuptools", "distutils", "__future__", *_INSPECTED)
+        or (full in commands and name in (full, full.rpartition(".")[2]))
+        or (module, name) == ("distutils.core", "setup")
+        or (top in sys.stdlib_module_names and full == top and not module)
+    )
     guess = closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil"))
-    is_known = top in sys.stdlib_module_names or top == "setuptools"
-    is_misspelt = guess and not top.startswith(guess) and not is_known
-    return f"there is no module {top!r}; did you mean {guess!r}?" if is_misspelt else UNCERTAIN
+    if is_there or not guess or top.startswith(guess) or top in sys.stdlib_module_names or top == "setuptools":
+        return None if is_there else UNCERTAIN
+    return f"there is no module {top!r}; did you mean {guess!r}?"
+
+
+def _missing_name(module: str, name: str) -> str | None:
+    if module == "setuptools":
+        missing, guess = name not in _SETUPTOOLS, did_you_mean(name, _SETUPTOOLS_PUBLIC[:3])
+    else:
+        found = import_module(module)  # one of the few above, never a student's choice
+        missing, guess = not hasattr(found, name), did_you_mean(name, dir(found))
+    return UNCERTAIN if name in _ADDED else f"{module} has no {name!r}{guess}" if missing else None
 
 
 def attribute_error(module: str, name: str) -> str | None:

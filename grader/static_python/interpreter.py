@@ -6,25 +6,13 @@ from collections.abc import Collection, Mapping, Sequence
 from functools import partial
 from io import StringIO
 
+from grader.static_python import values as py
 from grader.static_python.budget import Budget, OutOfBudget
-from grader.static_python.file_expressions import EvaluationStopped, ExitFlow, FunctionTable, RaisedFlow
-from grader.static_python.parse import START, Code, Position, position_of
+from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable, RaisedFlow
+from grader.static_python.parse import Code, Position, bound_in, own_nodes, position_of
 from grader.static_python.statements import LoopFlow, ReturnFlow, Statements
-from grader.static_python.values import (
-    UNKNOWN_KEYS,
-    BoundMethod,
-    Call,
-    ExpressionFails,
-    Function,
-    Scope,
-    Undetermined,
-    Unknown,
-    Value,
-    iterate,
-)
 
 _STEPS = 100_000  # what the evaluation of one file may use
-_IN_CLASS = (ast.FunctionDef, ast.Pass, ast.Expr, ast.Assign)
 
 
 class Interpreter(Statements):
@@ -33,30 +21,24 @@ class Interpreter(Statements):
     def __init__(
         self,
         functions: FunctionTable,
-        names: Mapping[str, Value],
+        names: Mapping[str, py.Value],
         *,
         stand_ins: Collection[str] = (),
         budget: Budget | None = None,
         exports: Mapping[str, Collection[str]] | None = None,
         local_modules: Collection[str] = (),
     ) -> None:
-        """`names` are those that Python itself binds, such as __file__.
+        """`functions` may be called, by full name; `names` are bound from the beginning, such as __file__.
 
-        Args:
-            functions: What may be called, by full name.
-            names: The names that are bound from the beginning.
-            stand_ins: Texts that stand for folders that are not known.
-            budget: What the evaluation is charged to.
-            exports: The names that modules export, besides those of Python itself.
-            local_modules: The modules beside the file, which are imported before any other.
+        `stand_ins` are texts that stand for folders that are not known; `exports` has the names of modules, besides
+        those of Python itself; `local_modules` are beside the file, and imported before any other.
         """
         super().__init__(functions, names, budget or Budget(_STEPS))
         self.budget.stand_ins = stand_ins
-        self.at = START  # the statement that is evaluated
         self.exports = exports or {}
         self.local_modules = local_modules
 
-    def run(self, code: Code) -> Scope:
+    def run(self, code: Code) -> py.Scope:
         """Evaluate a whole file and return the scope of its names. Never raises."""
         try:
             self._block(code.tree.body, self.module)
@@ -68,51 +50,48 @@ class Interpreter(Statements):
             self.errors.append(error.error)
         return self.module
 
-    def call_from_outside(self, function: Function, at: Position, args: Sequence[Value] | None = ()) -> Value:
+    def call_from_outside(self, function: py.Function, at: Position, args: Sequence[py.Value] | None = ()) -> py.Value:
         """Return the value of a call of one of the file's functions. Never raises.
 
         With `args` None, the arguments are unknown, and no error or doubt in the call counts: it may never happen.
         """
-        unknown = {UNKNOWN_KEYS: Unknown("an event is known only at run time", at)} if args is None else {}
+        unknown = {py.UNKNOWN_KEYS: py.Unknown("an event is known only at run time", at)} if args is None else {}
         recorded, doubt = list(self.errors), self.doubt
         try:
-            return self.call_function(function, Call("", list(args or ()), unknown, at))
+            return self.call_function(function, py.Call("", list(args or ()), unknown, at))
         except (EvaluationStopped, OutOfBudget, RecursionError) as error:
             return self._stop(error, at)
-        except (ExitFlow, LoopFlow, ExpressionFails, Undetermined, RaisedFlow):
-            return self.doubted(Unknown("the file exits here", at))
+        except (ExitFlow, LoopFlow, py.ExpressionFails, py.Undetermined, RaisedFlow):
+            return self.doubted(py.Unknown("the file exits here", at))
         finally:
             if args is None:
                 self.errors, self.doubt = recorded, doubt
 
-    def _stop(self, error: Exception, at: Position | None = None) -> Unknown:
+    def _stop(self, error: Exception, at: Position | None = None) -> py.Unknown:
         self.handlers = 0
         is_deep = isinstance(error, RecursionError)
         reason = "the file is too deeply nested, which is not evaluated" if is_deep else str(error)
-        return self.doubted(Unknown(reason, getattr(error, "at", None) or at or self.at))
+        return self.doubted(py.Unknown(reason, getattr(error, "at", None) or at or self.at))
 
-    def _block(self, body: list[ast.stmt], scope: Scope) -> None:
+    def _block(self, body: list[ast.stmt], scope: py.Scope) -> None:
         for statement in body:
             self.budget.charge(1)
             self.at = position_of(statement)
             self.statement(statement, scope)
 
-    def on_functiondef(self, node: ast.FunctionDef, scope: Scope) -> None:
-        """Bind a function, as its decorators return it."""
+    def _on_functiondef(self, node: ast.FunctionDef, scope: py.Scope) -> None:
         at = position_of(node)
-        decorators = [self.evaluate(decorator, scope) for decorator in node.decorator_list]
+        if node.decorator_list or getattr(node, "type_params", []):
+            raise EvaluationStopped("a function with a decorator or type parameters is not evaluated", at)
         parameters = node.args
         every = (*parameters.posonlyargs, *parameters.args, *parameters.kwonlyargs, parameters.vararg, parameters.kwarg)
-        function: Value = self.function(parameters, scope, at, partial(self._function_body, node), _bound_in(node))
-        if not getattr(node, "type_params", ()):
-            for annotation in (*(parameter.annotation for parameter in every if parameter), node.returns):
-                self.annotation(annotation, scope)
-        for decorator in reversed(decorators):
-            function = self.call_value(decorator, Call("", [function], {}, at))
-        scope.bind(node.name, function)
+        function: py.Value = self.function(parameters, scope, at, partial(self._function_body, node), bound_in(node))
+        for annotation in (*(parameter.annotation for parameter in every if parameter), node.returns):
+            self.annotation(annotation, scope)
+        scope.names[node.name] = function
 
-    def _function_body(self, node: ast.FunctionDef, scope: Scope) -> Value:
-        if any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in _own_nodes(node)):
+    def _function_body(self, node: ast.FunctionDef, scope: py.Scope) -> py.Value:
+        if any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in own_nodes(node)):
             raise EvaluationStopped("a generator function is not evaluated", position_of(node))
         try:
             self._block(node.body, scope)
@@ -120,46 +99,24 @@ class Interpreter(Statements):
             return flow.value
         return None
 
-    def on_classdef(self, node: ast.ClassDef, scope: Scope) -> None:
-        """Bind a class that only defines methods and plain values; it is not called."""
-        for base in (*node.bases, *node.keywords, *node.decorator_list):
-            if not isinstance(base, ast.Name | ast.Attribute):
-                raise EvaluationStopped("this class is not evaluated", position_of(node))
-            self.evaluate(base, scope)
-        inner = Scope({}, scope)
-        for statement in node.body:
-            is_plain = not any(isinstance(part, ast.Call) for part in _own_nodes(statement))
-            if not isinstance(statement, _IN_CLASS) or not is_plain or node.decorator_list:
-                raise EvaluationStopped("this class is not evaluated", position_of(statement))
-            self.statement(statement, inner)
-        scope.bind(node.name, Unknown(f"the class {node.name} is not evaluated", position_of(node)))
-
-    def on_typealias(self, node: ast.stmt, scope: Scope) -> None:
-        """Bind the name of a type (Python 3.12), whose value is evaluated only when it is used."""
-        name = node.name.id  # type: ignore[attr-defined]
-        scope.bind(name, Unknown("a type is not evaluated", position_of(node)))
-
-    def on_if(self, node: ast.If, scope: Scope) -> None:
-        """Evaluate the branch whose condition holds."""
+    def _on_if(self, node: ast.If, scope: py.Scope) -> None:
         self._block(node.body if self.holds(node.test, scope) else node.orelse, scope)
 
-    def on_while(self, node: ast.While, scope: Scope) -> None:
-        """Evaluate rounds as long as the condition holds."""
+    def _on_while(self, node: ast.While, scope: py.Scope) -> None:
         while self.holds(node.test, scope):
             if not self._round(node.body, scope):
                 return
         self._block(node.orelse, scope)
 
-    def on_for(self, node: ast.For, scope: Scope) -> None:
-        """Evaluate a round for each item."""
-        items = iterate(self.evaluate(node.iter, scope))
+    def _on_for(self, node: ast.For, scope: py.Scope) -> None:
+        items = py.iterate(self.evaluate(node.iter, scope))
         for item in items:
             self.bind(node.target, item, scope)
             if not self._round(node.body, scope):
                 return
         self._block(node.orelse, scope)
 
-    def _round(self, body: list[ast.stmt], scope: Scope) -> bool:
+    def _round(self, body: list[ast.stmt], scope: py.Scope) -> bool:
         """Evaluate one round of a loop; return whether the loop goes on."""
         try:
             self._block(body, scope)
@@ -167,14 +124,13 @@ class Interpreter(Statements):
             return not flow.is_break
         return True
 
-    def on_with(self, node: ast.With, scope: Scope) -> None:
-        """Evaluate a block with files that are opened for reading, or what the table knows to enter."""
-        entered: list[Value] = []
+    def _on_with(self, node: ast.With, scope: py.Scope) -> None:
+        entered: list[py.Value] = []
         for item in node.items:
             value = self.evaluate(item.context_expr, scope)
             at = position_of(item.context_expr)
-            if isinstance(value, Call):
-                self.call_value(BoundMethod(value, "__enter__"), Call("", [], {}, at))
+            if isinstance(value, py.Call):
+                self.call_value(py.BoundMethod(value, "__enter__"), py.Call("", [], {}, at))
             elif not isinstance(value, StringIO):
                 raise EvaluationStopped("this use of with is not evaluated", at)
             entered.append(value)
@@ -187,22 +143,19 @@ class Interpreter(Statements):
                 if isinstance(value, StringIO):
                     value.close()
 
-    def on_try(self, node: ast.Try, scope: Scope) -> None:
+    def _on_try(self, node: ast.Try, scope: py.Scope) -> None:
         """Evaluate a block; an error in it is certain, because the evaluation stops where one is only possible."""
         leaving = (part for it in node.finalbody for part in ast.walk(it))
-        catches = any(isinstance(part, ast.Return | ast.Break | ast.Continue) for part in leaving)
-        before = self.handlers
-        self.handlers += catches
+        if any(isinstance(part, ast.Return | ast.Break | ast.Continue) for part in leaving):
+            raise EvaluationStopped("leaving a finally block is not evaluated", position_of(node))
         try:
             self._guarded(node, scope)
         except (RaisedFlow, ReturnFlow, LoopFlow, ExitFlow):
-            self.handlers = before
-            self._block(node.finalbody, scope)  # a flow that begins in it replaces this one
+            self._block(node.finalbody, scope)
             raise
-        self.handlers = before
         self._block(node.finalbody, scope)
 
-    def _guarded(self, node: ast.Try, scope: Scope) -> None:
+    def _guarded(self, node: ast.Try, scope: py.Scope) -> None:
         before = self.handlers
         self.handlers += bool(node.handlers)
         try:
@@ -215,7 +168,7 @@ class Interpreter(Statements):
             self.handlers = before
         self._block(node.orelse, scope)
 
-    def _handle(self, node: ast.Try, raised: RaisedFlow, scope: Scope) -> None:
+    def _handle(self, node: ast.Try, raised: RaisedFlow, scope: py.Scope) -> None:
         """Evaluate the first handler that catches an error; raise it again where none does."""
         for handler in node.handlers:
             catches = _catches(handler.type, raised.kind)
@@ -223,10 +176,10 @@ class Interpreter(Statements):
                 raise EvaluationStopped("whether an error is caught here is not evaluated", position_of(handler))
             if catches:
                 if handler.name is not None:
-                    scope.bind(handler.name, Unknown("the error is not evaluated", position_of(handler)))
+                    scope.names[handler.name] = py.Unknown("the error is not evaluated", position_of(handler))
                 self._block(handler.body, scope)
                 if handler.name is not None:
-                    scope.declared.get(handler.name, scope).names.pop(handler.name, None)
+                    scope.names.pop(handler.name, None)
                 return
         self.error(raised.error.message, raised.error.at, raised.kind)
 
@@ -240,35 +193,3 @@ def _catches(kinds: ast.expr | None, raised: type[BaseException]) -> bool | None
     if any(isinstance(kind, type) and issubclass(raised, kind) for kind in types):
         return True
     return None if None in types else False
-
-
-def _own_nodes(node: ast.AST) -> "list[ast.AST]":
-    """Return the nodes of a function or statement, without those of the functions and classes in it."""
-    found: list[ast.AST] = []
-    pending = list(ast.iter_child_nodes(node)) if isinstance(node, ast.FunctionDef) else [node]
-    while pending:
-        part = pending.pop()
-        found.append(part)
-        if not isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
-            pending += ast.iter_child_nodes(part)
-    return found
-
-
-def _bound_in(node: ast.FunctionDef) -> frozenset[str]:
-    """Return the names that a function binds itself."""
-    nodes = _own_nodes(node)
-    declared = {name for part in nodes if isinstance(part, ast.Global | ast.Nonlocal) for name in part.names}
-    loops = [part.target for part in nodes if isinstance(part, ast.comprehension)]  # they have scopes of their own
-    inner = {id(part) for target in loops for part in ast.walk(target)}
-    names: set[str] = set()
-    for part in nodes:
-        match part:
-            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) if id(part) not in inner:
-                names.add(name)
-            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
-                names.add(name)
-            case ast.ExceptHandler(name=str() as name) | ast.MatchAs(name=str() as name):
-                names.add(name)
-            case ast.alias(name=full, asname=asname):
-                names.add(asname or full.partition(".")[0])
-    return frozenset(names - declared)

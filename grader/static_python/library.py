@@ -6,23 +6,13 @@ from functools import cache
 from itertools import chain
 from pathlib import PurePosixPath
 
-from grader.static_python.file_expressions import EvaluationStopped, ExitFlow, FileExpressions, FunctionTable
-from grader.static_python.values import (
-    Call,
-    ExpressionFails,
-    Items,
-    PlainFunction,
-    QualifiedName,
-    Undetermined,
-    Unknown,
-    Value,
-    iterate,
-    known,
-)
+from grader.static_python import values as py
+from grader.static_python.evaluation import Evaluation, EvaluationStopped, ExitFlow, FunctionTable
 
 MAX_PATH = 4_096  # characters
 PACKAGE_FOLDER = "<package>"  # stands for the name of the package's folder, which the submission does not determine
 _ENVIRONMENT = "the environment is known only at run time"
+_OWN = ("dirname", "basename", "normpath", "split", "splitext", "isabs")
 _EXITS = ("sys.exit", "os._exit", "builtins.exit", "builtins.quit")
 
 
@@ -30,17 +20,17 @@ _EXITS = ("sys.exit", "os._exit", "builtins.exit", "builtins.quit")
 def standard_functions(working_folder: str) -> FunctionTable:
     """Return the functions by full name; `working_folder` is where Python runs, as an absolute path."""
 
-    def absolute(path: Value) -> str:
+    def absolute(path: py.Value) -> str:
         return posixpath.normpath(posixpath.join(working_folder, path))
 
-    def relative(path: Value, start: Value = ".") -> str:
+    def relative(path: py.Value, start: py.Value = ".") -> str:
         return posixpath.relpath(absolute(path), absolute(start))
 
-    own: dict[str, Callable[..., Value]] = {
+    own: dict[str, Callable[..., py.Value]] = {
         "abspath": absolute, "realpath": absolute, "relpath": relative, "join": _join,
-        **{name: getattr(posixpath, name) for name in ("dirname", "basename", "normpath", "split", "splitext", "isabs")},
+        **{name: getattr(posixpath, name) for name in _OWN},
     }  # fmt: skip
-    of_paths: dict[str, Callable[..., Value]] = {
+    of_paths: dict[str, Callable[..., py.Value]] = {
         **{f"os.path.{name}": function for name, function in own.items()},
         **{f"pathlib.{name}": _path for name in ("Path", "PurePath", "PosixPath", "PurePosixPath")},
         **{f"pathlib.Path.{name}": lambda path: PurePosixPath(absolute(path)) for name in ("resolve", "absolute")},
@@ -48,62 +38,52 @@ def standard_functions(working_folder: str) -> FunctionTable:
         "os.getcwd": lambda: working_folder,
         "pathlib.Path.cwd": lambda: PurePosixPath(working_folder),
     }
-    return {**_FUNCTIONS, **{name: PlainFunction(name, run, "path") for name, run in of_paths.items()}}
+    return {**_FUNCTIONS, **{name: py.PlainFunction(name, run, "path") for name, run in of_paths.items()}}
 
 
-def _of_path(value: Value) -> Value:
+def _of_path(value: py.Value) -> py.Value:
     if not isinstance(value, str | PurePosixPath):
-        raise ExpressionFails(f"a path is a string, and this is of the type {type(value).__name__}")
+        raise py.ExpressionFails(f"a path is a string, and this is of the type {type(value).__name__}")
     return value
 
 
-def _join(first: Value, *parts: Value) -> str:
+def _join(first: py.Value, *parts: py.Value) -> str:
     if not all(isinstance(value, str | PurePosixPath) for value in (first, *parts)):
         message = "os.path.join takes strings, and one argument is not a string: is a bracket misplaced?"
-        raise ExpressionFails(message)
+        raise py.ExpressionFails(message)
     return _bounded(posixpath.join(first, *parts))
 
 
-def _path(*parts: Value) -> PurePosixPath:
+def _path(*parts: py.Value) -> PurePosixPath:
     return PurePosixPath(_bounded(str(PurePosixPath(*map(_of_path, parts)))))
 
 
 def _bounded(path: str) -> str:
     if len(path) > MAX_PATH:
-        raise Undetermined("a path grows too long")
+        raise py.Undetermined("a path grows too long")
     return path
 
 
-def leave(evaluation: FileExpressions, call: Call) -> Value:
+def leave(evaluation: Evaluation, call: py.Call) -> py.Value:
     """End the program, if nothing can catch it."""
     if evaluation.handlers:
         raise EvaluationStopped("the end of the program, which may be caught, is not evaluated", call.at)
-    if call.args and known(call.args[0]) not in (0, None):
+    if call.args and py.known(call.args[0]) not in (0, None):
         evaluation.error("the file exits here with an error", call.at)
     raise ExitFlow
 
 
-def _set(_: FileExpressions, call: Call) -> Value:
-    if call.kwargs or len(call.args) > 1:
-        raise ExpressionFails("set takes one value, whose items it contains")
-    items = known(list(iterate(call.args[0])) if call.args else [])
-    try:
-        return set(items)
-    except TypeError as error:
-        raise ExpressionFails(f"TypeError: {error}") from None
+def _getenv(_: Evaluation, call: py.Call) -> py.Value:
+    return py.Unknown(_ENVIRONMENT, call.at)
 
 
-def _getenv(_: FileExpressions, call: Call) -> Value:
-    return Unknown(_ENVIRONMENT, call.at)
+def _environment(_: Evaluation, call: py.Call) -> py.Value:
+    raise py.Undetermined(_ENVIRONMENT, call.at)
 
 
-def _environment(_: FileExpressions, call: Call) -> Value:
-    raise Undetermined(_ENVIRONMENT, call.at)
-
-
-def _print(evaluation: FileExpressions, call: Call) -> None:
+def _print(evaluation: Evaluation, call: py.Call) -> None:
     if not call.kwargs.keys() <= {"file", "end", "sep", "flush"} or not isinstance(
-        call.kwargs.get("file"), QualifiedName | None
+        call.kwargs.get("file"), py.QualifiedName | None
     ):
         raise EvaluationStopped("this use of print is not evaluated", call.at)
     evaluation.budget.measure(call.args, "holds")
@@ -111,12 +91,11 @@ def _print(evaluation: FileExpressions, call: Call) -> None:
 
 _FUNCTIONS: FunctionTable = {
     **dict.fromkeys(_EXITS, leave),
-    **dict.fromkeys(("builtins.set", "builtins.frozenset"), _set),
     **dict.fromkeys(("os.environ.get", "os.getenv"), _getenv),
     "os.environ.__getitem__": _environment,
     "builtins.print": _print,
-    "itertools.chain": PlainFunction("chain", lambda *lists: Items(chain(*map(iterate, lists))), "holds"),
-    "itertools.chain.from_iterable": PlainFunction(
-        "chain.from_iterable", lambda lists: Items(chain.from_iterable(map(iterate, iterate(lists)))), "holds"
+    "itertools.chain": py.PlainFunction("chain", lambda *lists: py.Items(chain(*map(py.iterate, lists))), "holds"),
+    "itertools.chain.from_iterable": py.PlainFunction(
+        "chain.from_iterable", lambda lists: py.Items(chain.from_iterable(map(py.iterate, py.iterate(lists)))), "holds"
     ),
 }

@@ -2,38 +2,26 @@
 
 import ast
 import builtins
+from copy import copy
 
+from grader.static_python import values as py
 from grader.static_python.builtins import truth
-from grader.static_python.file_expressions import EvaluationStopped, ExitFlow, FileExpressions
-from grader.static_python.imports import import_error, imported_names, is_local
+from grader.static_python.evaluation import EvaluationStopped, ExitFlow
+from grader.static_python.file_expressions import FileExpressions
+from grader.static_python.imports import UNCERTAIN, USUAL_NAMES, import_error, imported_names, is_local
 from grader.static_python.operators import operate
 from grader.static_python.parse import Position, position_of
-from grader.static_python.values import (
-    PLAIN,
-    Call,
-    EvaluationSignal,
-    ExpressionFails,
-    QualifiedName,
-    Scope,
-    Undetermined,
-    Unknown,
-    Value,
-    call_plain,
-    iterate,
-    known,
-    reason_of,
-)
 
 
-class ReturnFlow(EvaluationSignal):
+class ReturnFlow(py.EvaluationSignal):
     """A return statement, with its value."""
 
-    def __init__(self, value: Value) -> None:
+    def __init__(self, value: py.Value) -> None:
         super().__init__()
         self.value = value
 
 
-class LoopFlow(EvaluationSignal):
+class LoopFlow(py.EvaluationSignal):
     """A break or continue statement."""
 
     def __init__(self, *, is_break: bool) -> None:
@@ -44,216 +32,157 @@ class LoopFlow(EvaluationSignal):
 class Statements(FileExpressions):
     """Adds the statements without blocks to the expressions."""
 
-    def statement(self, node: ast.stmt, scope: Scope) -> None:
+    def statement(self, node: ast.stmt, scope: py.Scope) -> None:
         """Evaluate a statement; stop at one of a kind that is not supported."""
-        kind = getattr(self, f"on_{type(node).__name__.lower()}", None)
+        kind = getattr(self, f"_on_{type(node).__name__.lower()}", None)
         if kind is None:
             raise EvaluationStopped(
                 f"a statement of the kind {type(node).__name__} is not evaluated", position_of(node)
             )
         try:
             kind(node, scope)
-        except ExpressionFails as error:  # of the statement itself, such as an assignment
+        except py.ExpressionFails as error:  # of the statement itself, such as an assignment
             self.error(str(error), position_of(node), error.kind)
-        except Undetermined as error:
+        except py.Undetermined as error:
             raise EvaluationStopped(
                 f"this statement is not evaluated: {error}", error.at or position_of(node)
             ) from None
 
-    def bind(self, target: ast.expr, value: Value, scope: Scope) -> None:
+    def bind(self, target: ast.expr, value: py.Value, scope: py.Scope) -> None:
         """Bind the names of a target to a value, or change an item."""
         match target:
             case ast.Subscript(value=owner, slice=key):
                 self._store(self.evaluate(owner, scope), self.key(key, scope), value, position_of(target))
             case ast.Attribute(value=owner, attr=name):
                 changed = self.evaluate(owner, scope)
-                if isinstance(changed, PLAIN):
-                    raise ExpressionFails(f"{type(changed).__name__!r} has no attribute {name!r}", AttributeError)
+                if isinstance(changed, py.PLAIN):
+                    raise py.ExpressionFails(f"{type(changed).__name__!r} has no attribute {name!r}", AttributeError)
                 raise EvaluationStopped(f"a change of the attribute {name} is not evaluated", position_of(target))
             case _:
                 super().bind(target, value, scope)
 
-    def unpack_items(self, targets: list[ast.expr], value: Value, scope: Scope) -> None:
-        """Bind several targets, of which one may be starred, to the items of a value."""
-        if isinstance(value, Unknown):
-            self.doubted(value)
-            for target in targets:
-                self.bind(target.value if isinstance(target, ast.Starred) else target, value, scope)
-            return
-        starred = next((place for place, target in enumerate(targets) if isinstance(target, ast.Starred)), None)
-        if starred is None:
-            super().unpack_items(targets, value, scope)
-            return
-        values, after = list(iterate(value)), len(targets) - starred - 1
-        if len(values) < len(targets) - 1:
-            raise ExpressionFails(
-                f"ValueError: cannot unpack {len(values)} values into {len(targets)} names", ValueError
-            )
-        end = len(values) - after
-        values[starred:end] = [values[starred:end]]
-        for target, item in zip(targets, values, strict=True):
-            self.bind(target.value if isinstance(target, ast.Starred) else target, item, scope)
-
-    def _store(self, owner: Value, key: Value, value: Value, at: Position) -> None:
+    def _store(self, owner: py.Value, key: py.Value, value: py.Value, at: Position) -> None:
         """Set an item of a list or dict."""
-        if isinstance(owner, QualifiedName | Call):
-            made = Call(f"{owner.name}.__setitem__", [key, value], {}, at)
-            self.call_value(QualifiedName(made.name), made)
+        if isinstance(owner, py.QualifiedName | py.Call):
+            made = py.Call(f"{owner.name}.__setitem__", [key, value], {}, at)
+            self.call_value(py.QualifiedName(made.name), made)
             return
-        if not isinstance(owner, PLAIN):
-            raise Undetermined(
-                reason_of(owner) or "this assignment to an item is not supported", getattr(owner, "at", at)
-            )
+        if not isinstance(owner, py.PLAIN):
+            py.refuse(owner, "this assignment to an item is not supported")
         if isinstance(key, slice):
-            value = list(iterate(value))
-        call_plain(_set_item, owner, known(key) if not isinstance(key, slice) else key, value)
+            value = list(py.iterate(value))
+        py.call_plain(_set_item, owner, py.known(key) if not isinstance(key, slice) else key, value)
         self.budget.charge(len(owner))
 
-    def on_assign(self, node: ast.Assign, scope: Scope) -> None:
-        """Bind targets to one value."""
+    def _on_assign(self, node: ast.Assign, scope: py.Scope) -> None:
         value = self.evaluate(node.value, scope)
         for target in node.targets:
             self.bind(target, value, scope)
 
-    def on_annassign(self, node: ast.AnnAssign, scope: Scope) -> None:
-        """Bind a target; its annotation is evaluated in a module."""
+    def _on_annassign(self, node: ast.AnnAssign, scope: py.Scope) -> None:
         if node.value is not None:
             self.bind(node.target, self.evaluate(node.value, scope), scope)
         if scope is self.module:
             self.annotation(node.annotation, scope)
 
-    def annotation(self, node: ast.expr | None, scope: Scope) -> None:
+    def annotation(self, node: ast.expr | None, scope: py.Scope) -> None:
         """Find the names of an annotation, and stop where it calls something."""
         if node is None or self.has_lazy_annotations:
             return
         for part in ast.walk(node):
             if isinstance(part, ast.Name):
-                self.of_name(part, scope)
+                self._of_name(part, scope)
             elif not isinstance(part, _IN_ANNOTATIONS):
                 raise EvaluationStopped("this annotation is not evaluated", position_of(node))
 
-    def on_augassign(self, node: ast.AugAssign, scope: Scope) -> None:
-        """Change a list, dict or set in place, or bind the value of the operator."""
+    def _on_augassign(self, node: ast.AugAssign, scope: py.Scope) -> None:
         target = node.target
         if any(isinstance(part, ast.Call | ast.NamedExpr) for part in ast.walk(target)):
-            raise Undetermined("this target is not supported")
-        load = ast.copy_location(type(target)(**{**vars_of(target), "ctx": ast.Load()}), target)
+            raise py.Undetermined("this target is not supported")
+        load = copy(target)
+        load.ctx = ast.Load()
         before, value = self.evaluate(load, scope), self.evaluate(node.value, scope)
-        if not isinstance(before, PLAIN):
-            raise Undetermined(reason_of(before) or "this value is not supported", getattr(before, "at", None))
-        if isinstance(before, list | dict | set):
-            self._change_in_place(node, before, value)
-            return
-        try:
-            found = operate(node.op, before, value, self.budget)
-        except Undetermined as error:
-            found = self.doubted(Unknown(str(error), error.at or position_of(node)))
-        self.bind(target, found, scope)
+        if not isinstance(before, py.PLAIN):
+            py.refuse(before, "this value is not supported")
+        if isinstance(before, list) and isinstance(node.op, ast.Add):
+            before.extend(list(py.iterate(value)))
+            self.budget.measure(before, "holds")
+        elif isinstance(before, list | dict):
+            raise py.Undetermined("this operator is not supported")
+        else:
+            self.bind(target, operate(node.op, before, value, self.budget), scope)
 
-    def _change_in_place(self, node: ast.AugAssign, before: Value, value: Value) -> None:
-        match node.op, before:
-            case ast.Add(), list():
-                before.extend(list(iterate(value)))
-            case ast.Mult(), list() if isinstance(value, int):
-                before[:] = operate(node.op, before, value, self.budget)
-            case ast.BitOr(), dict() if isinstance(value, dict):
-                before.update(value)
-            case _:
-                raise Undetermined("this operator is not supported")
-        self.budget.measure(before, "holds")
-
-    def on_expr(self, node: ast.Expr, scope: Scope) -> None:
-        """Evaluate an expression for what it does."""
+    def _on_expr(self, node: ast.Expr, scope: py.Scope) -> None:
         self.evaluate(node.value, scope)
 
-    def on_pass(self, node: ast.Pass, scope: Scope) -> None:
-        """Do nothing."""
+    def _on_pass(self, node: ast.Pass, scope: py.Scope) -> None:
+        pass
 
-    def on_return(self, node: ast.Return, scope: Scope) -> None:
-        """Leave a function."""
+    def _on_return(self, node: ast.Return, scope: py.Scope) -> None:
         raise ReturnFlow(self.evaluate(node.value, scope) if node.value is not None else None)
 
-    def on_break(self, node: ast.Break | ast.Continue, scope: Scope) -> None:
-        """Leave a loop, or its round."""
+    def _on_break(self, node: ast.Break | ast.Continue, scope: py.Scope) -> None:
         del scope
         raise LoopFlow(is_break=isinstance(node, ast.Break))
 
-    on_continue = on_break
+    _on_continue = _on_break
 
-    def on_global(self, node: ast.Global, scope: Scope) -> None:
-        """Declare names of the module."""
-        scope.declared |= dict.fromkeys(node.names, self.module)
-
-    def on_nonlocal(self, node: ast.Nonlocal, scope: Scope) -> None:
-        """Declare names of a function around."""
-        scope.declared |= {name: scope.holder(name) for name in node.names}
-
-    def on_assert(self, node: ast.Assert, scope: Scope) -> None:
-        """Fail if the condition does not hold."""
-        if not self.holds(node.test, scope, may_fail=True):
+    def _on_assert(self, node: ast.Assert, scope: py.Scope) -> None:
+        if not self.holds(node.test, scope):
             self.error("this assertion fails", position_of(node), AssertionError)
 
-    def holds(self, test: ast.expr, scope: Scope, *, may_fail: bool = False) -> bool:
-        """Return whether a condition holds; stop where this is unknown, or doubt where it may only fail."""
-        value = self.evaluate(test, scope)
+    def holds(self, test: ast.expr, scope: py.Scope) -> bool:
+        """Return whether a condition holds; stop where this is unknown."""
         try:
-            return truth(value)
-        except Undetermined as error:
-            unknown = Unknown(f"a condition is not evaluated: {error}", position_of(test))
-            if may_fail:
-                self.doubted(unknown)
-                return True
-            raise EvaluationStopped(unknown.reason, error.at or unknown.at) from None
+            return truth(self.evaluate(test, scope))
+        except py.Undetermined as error:
+            raise EvaluationStopped(f"a condition is not evaluated: {error}", error.at or position_of(test)) from None
 
-    def on_delete(self, node: ast.Delete, scope: Scope) -> None:
-        """Delete names and items."""
+    def _on_delete(self, node: ast.Delete, scope: py.Scope) -> None:
         for target in node.targets:
             match target:
                 case ast.Subscript(value=owner, slice=key):
                     container, item = self.evaluate(owner, scope), self.key(key, scope)
-                    if not isinstance(container, PLAIN):
-                        raise Undetermined(reason_of(container) or "this deletion is not supported")
-                    call_plain(_delete_item, container, item if isinstance(item, slice) else known(item))
+                    if not isinstance(container, py.PLAIN):
+                        raise py.Undetermined(py.reason_of(container) or "this deletion is not supported")
+                    py.call_plain(_delete_item, container, item if isinstance(item, slice) else py.known(item))
                 case ast.Name(id=name):
-                    self.of_name(ast.copy_location(ast.Name(name, ast.Load()), target), scope)
-                    scope.declared.get(name, scope).names.pop(name, None)
+                    self._of_name(ast.copy_location(ast.Name(name, ast.Load()), target), scope)
+                    scope.names.pop(name, None)
                 case _:
-                    raise Undetermined("this deletion is not supported")
+                    raise py.Undetermined("this deletion is not supported")
 
-    def on_import(self, node: ast.Import | ast.ImportFrom, scope: Scope) -> None:
-        """Bind what is imported; an import that certainly fails is an error, any other of an unknown module a doubt."""
+    def _on_import(self, node: ast.Import | ast.ImportFrom, scope: py.Scope) -> None:
         module = "" if isinstance(node, ast.Import) else "." * node.level + (node.module or "")
         at = position_of(node)
         for alias in node.names:
             if is_local(module or alias.name, self.local_modules):
                 raise EvaluationStopped(f"the file's own module {module or alias.name} is not evaluated", at)
             error = import_error(module, alias.name, self.exports)
-            if error == "?":
+            if error == UNCERTAIN:
                 self.doubted(
-                    Unknown(f"whether {module or alias.name} is installed is not known; it is not evaluated", at)
+                    py.Unknown(f"whether {module or alias.name} is installed is not known; it is not evaluated", at)
                 )
             elif error is not None:
                 self.error(error, at, ImportError)
             bound = imported_names(module, alias, self.exports)
-            self.has_star |= bound.pop("*", None) is not None
+            if error not in (None, UNCERTAIN):
+                bound = dict.fromkeys(bound, py.QualifiedName(USUAL_NAMES.get(alias.name, f"?.{alias.name}")))
+            if bound.pop("*", None) is not None:
+                raise EvaluationStopped(f"the names of {module} are not evaluated", at)
             self.has_lazy_annotations |= (module, alias.name) == ("__future__", "annotations")
             for name, value in bound.items():
-                scope.bind(name, value)
+                scope.names[name] = value
 
-    on_importfrom = on_import
+    _on_importfrom = _on_import
 
-    def on_raise(self, node: ast.Raise, scope: Scope) -> None:
-        """Raise an error: one of Python's own, or one that only a handler of every error catches."""
+    def _on_raise(self, node: ast.Raise, _: py.Scope) -> None:
+        """Raise one of Python's own errors, which ends the file if nothing can catch it."""
         raised = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
-        name = raised.id if isinstance(raised, ast.Name) else "an error"
-        for argument in node.exc.args if isinstance(node.exc, ast.Call) else []:
-            self.evaluate(argument, scope)
-        kind = getattr(builtins, name, None)
-        if not isinstance(kind, type) or not issubclass(kind, BaseException) or not issubclass(kind, Exception):
-            if self.handlers:
-                raise EvaluationStopped("which error is raised here is not evaluated", position_of(node))
-            kind = Exception
-        self.error(f"the file raises {name} here", position_of(node), kind)
+        kind = getattr(builtins, raised.id, None) if isinstance(raised, ast.Name) else None
+        if self.handlers or not isinstance(kind, type) or not issubclass(kind, Exception):
+            raise EvaluationStopped("which error is raised here is not evaluated", position_of(node))
+        self.error(f"the file raises {kind.__name__} here", position_of(node), kind)
         raise ExitFlow
 
 
@@ -262,14 +191,9 @@ _IN_ANNOTATIONS = (
 )  # fmt: skip
 
 
-def vars_of(node: ast.AST) -> dict[str, Value]:
-    """Return the fields of a node."""
-    return {name: getattr(node, name) for name in node._fields}
-
-
-def _set_item(owner: Value, key: Value, value: Value) -> None:
+def _set_item(owner: py.Value, key: py.Value, value: py.Value) -> None:
     owner[key] = value
 
 
-def _delete_item(owner: Value, key: Value) -> None:
+def _delete_item(owner: py.Value, key: py.Value) -> None:
     del owner[key]

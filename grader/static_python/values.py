@@ -2,13 +2,14 @@
 
 import ast
 from collections.abc import Callable, Collection, Iterable, Iterator
+from functools import cached_property
 from io import StringIO
 from pathlib import PurePosixPath
-from typing import Any, NoReturn
+from typing import Any, NoReturn, dataclass_transform
 
 from grader.static_python.parse import Position
 
-# A plain value is a str, number, bool, None, list, tuple, dict, set, range, StringIO (a file) or PurePosixPath.
+# A plain value is a str, number, bool, None, list, tuple, dict, range, StringIO (a file) or PurePosixPath.
 Value = Any
 
 MAX_TEXT = 100_000  # characters
@@ -20,7 +21,7 @@ _MAX_MESSAGE = 1_000  # characters
 _EMPTY: dict[str, str] = {}
 _VIEWS: tuple[Any, ...] = (type(_EMPTY.keys()), type(_EMPTY.values()), type(_EMPTY.items()))
 SCALARS = (str, int, float)
-PLAIN: tuple[Any, ...] = (*SCALARS, type(None), range, list, tuple, dict, set, PurePosixPath, StringIO, *_VIEWS)
+PLAIN: tuple[Any, ...] = (*SCALARS, type(None), range, list, tuple, dict, PurePosixPath, StringIO, *_VIEWS)
 
 
 class EvaluationSignal(Exception):
@@ -46,16 +47,25 @@ class Undetermined(EvaluationSignal):
         self.at = at
 
 
-# No dataclasses: making each one takes 1 ms of the start of every command.
+@dataclass_transform(eq_default=False)
+class Record:
+    """A class with an attribute for each annotation, as a dataclass has them, but made in no time.
+
+    Making a dataclass takes 1 ms of the start of every command.
+    """
+
+    def __init__(self, *values: Any, **named: Any) -> None:
+        for name, value in zip(type(self).__annotations__, values, strict=False):
+            setattr(self, name, value)
+        for name, value in named.items():
+            setattr(self, name, value)
 
 
-class Unknown:
+class Unknown(Record):
     """A value that is not known, and why."""
 
-    __slots__ = ("at", "reason")
-
-    def __init__(self, reason: str, at: Position) -> None:
-        self.reason, self.at = reason, at
+    reason: str
+    at: Position
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Unknown) and (self.reason, self.at) == (other.reason, other.at)
@@ -63,39 +73,36 @@ class Unknown:
     def __hash__(self) -> int:
         return hash((self.reason, self.at))
 
-    def __repr__(self) -> str:
-        return f"Unknown({self.reason!r}, {tuple(self.at)})"
 
-
-class QualifiedName:
+class QualifiedName(Record):
     """A module, or something in one, by its full name: os.path.join."""
 
-    __slots__ = ("name",)
-
-    def __init__(self, name: str) -> None:
-        self.name = name
+    name: str
 
 
-class BoundMethod:
+class BoundMethod(Record):
     """A method of a value, which is not called yet."""
 
-    __slots__ = ("name", "owner")
-
-    def __init__(self, owner: Value, name: str) -> None:
-        self.owner, self.name = owner, name
+    owner: Value
+    name: str
 
 
-class Call:
-    """A call that is recorded, by the full name of what is called; it is its own result."""
+class Call(Record):
+    """A call that is recorded, by the full name of what is called; it is its own result.
 
-    __slots__ = ("args", "at", "kwargs", "method_calls", "name", "owner")
+    `owner` is the call whose result it is a method of.
+    """
 
-    def __init__(
-        self, name: str, args: list[Value], kwargs: dict[str, Value], at: Position, owner: "Call | None" = None
-    ) -> None:
-        self.name, self.args, self.kwargs, self.at = name, args, kwargs, at
-        self.owner = owner  # the call whose result it is a method of
-        self.method_calls: list[Call] = []  # the recorded methods that were called on its own result
+    name: str
+    args: list[Value]
+    kwargs: dict[str, Value]
+    at: Position
+    owner: "Call | None" = None
+
+    @cached_property
+    def method_calls(self) -> "list[Call]":
+        """The recorded methods that were called on its own result."""
+        return []
 
     def argument(self, position: int, *names: str) -> Value:
         """Return an argument by its position or by one of its names; None where it is missing."""
@@ -105,58 +112,37 @@ class Call:
         return self.args[position] if position < len(self.args) else None
 
 
-class Function:
-    """A function or lambda of the file. `body` evaluates it in a scope."""
+class Function(Record):
+    """A function or lambda of the file. `body` evaluates it in a scope; `local` are the names that its body binds."""
 
-    __slots__ = ("at", "body", "defaults", "locals", "parameters", "scope")
-
-    def __init__(
-        self,
-        parameters: ast.arguments,
-        scope: "Scope",
-        defaults: dict[str, Value],
-        body: Callable[["Scope"], Value],
-        at: Position,
-        local: frozenset[str] = frozenset(),
-    ) -> None:
-        self.parameters, self.scope, self.defaults, self.body, self.at = parameters, scope, defaults, body, at
-        self.locals = local  # the names that its body binds
+    parameters: ast.arguments
+    scope: "Scope"
+    defaults: dict[str, Value]
+    body: Callable[["Scope"], Value]
+    at: Position
+    local: frozenset[str] = frozenset()
 
 
-class Scope:
-    """The names that are bound in a scope, and the scope around it."""
+class Scope(Record):
+    """The names that are bound in a scope, and the scope around it.
 
-    __slots__ = ("declared", "is_loop", "locals", "names", "outer")
+    The names in `local` are bound here sooner or later, and nowhere else until then.
+    """
 
-    def __init__(
-        self, names: dict[str, Value], outer: "Scope | None" = None, local: frozenset[str] = frozenset()
-    ) -> None:
-        self.names, self.outer = names, outer
-        self.locals = local  # the names that are bound here sooner or later, and nowhere else until then
-        self.declared: dict[str, Scope] = {}  # the scopes of names that are global or nonlocal here
-        self.is_loop = False  # whether it is that of a comprehension
+    names: dict[str, Value]
+    outer: "Scope | None" = None
+    local: frozenset[str] = frozenset()
 
     def find(self, name: str) -> Value:
         """Return the value of a name; raise KeyError, or ExpressionFails for one that is bound later."""
-        scope: Scope | None = self.declared.get(name, self)
+        scope: Scope | None = self
         while scope is not None:
             if name in scope.names:
                 return scope.names[name]
-            if name in scope.locals:
+            if name in scope.local:
                 raise ExpressionFails(f"the name {name!r} is used before it has a value", UnboundLocalError)
             scope = scope.outer
         raise KeyError(name)
-
-    def bind(self, name: str, value: Value) -> None:
-        """Give a name a value, in the scope that it belongs to."""
-        self.declared.get(name, self).names[name] = value
-
-    def holder(self, name: str) -> "Scope":
-        """Return the nearest scope around this one that binds a name, else the outermost."""
-        scope = self.outer or self
-        while name not in scope.names and name not in scope.locals and scope.outer is not None:
-            scope = scope.outer
-        return scope
 
 
 class PlainFunction:
@@ -164,7 +150,7 @@ class PlainFunction:
 
     `kind` is "plain" for one whose arguments are wholly known; "holds" for one that only passes on what a list
     contains, known or not; "applies" for such a one that calls functions, by the one that it is given first; "path" for
-    one whose result may begin with the stand-in of a folder.
+    one whose result may begin with the stand-in of a folder, "text" for one that may contain it.
     """
 
     __slots__ = ("kind", "name", "run")
@@ -197,12 +183,15 @@ class Items:
         self.iterator: Iterator[Value] = iter(items)
 
 
+Items.__name__ = "iterator"  # as Python's messages name it
+
+
 class DottedDict(dict[Value, Value]):
     """A dict whose items are also attributes, as xacro makes them of YAML."""
 
 
 OPAQUE = (Unknown, QualifiedName, BoundMethod, Call, Function, PlainFunction, Namespace, Items)
-_REPEATED = (list, tuple, dict, set)
+_REPEATED = (list, tuple, dict)
 
 
 def call_plain(function: Callable[..., Value], *args: Value, **kwargs: Value) -> Value:
@@ -222,12 +211,15 @@ def iterate(value: Value) -> Iterator[Value]:
     """Return what a loop over a value yields, one by one."""
     if isinstance(value, Items):
         return value.iterator
-    if isinstance(value, set) and len(value) > 1:
-        raise Undetermined("the order of a set differs between runs")
     if isinstance(value, PLAIN) or (callable(value) and not isinstance(value, OPAQUE)):
         found: Iterator[Value] = call_plain(iter, value)
         return found
-    raise Undetermined(reason_of(value) or "this loop is not supported", getattr(value, "at", None))
+    return refuse(value, "this loop is not supported")
+
+
+def refuse(value: Value, message: str) -> NoReturn:
+    """Raise Undetermined for a value that is not known, or not supported."""
+    raise Undetermined(reason_of(value) or message, getattr(value, "at", None))
 
 
 def items_of(value: Value) -> list[Value]:
@@ -241,11 +233,9 @@ def items_of(value: Value) -> list[Value]:
 def known(value: Value) -> Value:
     """Return a value if all of it is known. Raises Undetermined."""
     unknown = unknown_in(value)
-    if unknown is None and not isinstance(value, OPAQUE):
-        return value
-    raise Undetermined(
-        reason_of(unknown or value) or "this value is not supported", getattr(unknown or value, "at", None)
-    )
+    if unknown is not None or isinstance(value, OPAQUE):
+        refuse(unknown or value, "this value is not supported")
+    return value
 
 
 def reason_of(value: Value) -> str:
@@ -277,7 +267,7 @@ def parts_of(part: Value) -> Collection[Value]:
     """Return what a value contains."""
     if isinstance(part, dict):
         return [*part.keys(), *part.values()]
-    return part if isinstance(part, list | tuple | range | set) else [*part] if isinstance(part, _VIEWS) else ()
+    return part if isinstance(part, list | tuple | range) else [*part] if isinstance(part, _VIEWS) else ()
 
 
 def checked_key(key: Value) -> Value:
@@ -294,25 +284,13 @@ def str_of(value: Value) -> str:
     return str(value)
 
 
-def joined(pieces: Iterable[str]) -> str:
-    """Return one text of pieces; raise Undetermined as soon as it is too long."""
-    kept: list[str] = []
-    length = 0
-    for piece in pieces:
-        length += len(piece)
-        if length > MAX_TEXT:
-            too_large("text")
-        kept.append(piece)
-    return "".join(kept)
-
-
 def has_text(value: Value) -> bool:
     """Return whether the text of a value is the same in every run."""
     if isinstance(value, dict):
         value = (*value.keys(), *value.values())
     if isinstance(value, list | tuple):
         return all(map(has_text, value))
-    return not isinstance(value, (*OPAQUE, set, StringIO, PurePosixPath, *_VIEWS))
+    return isinstance(value, Items) or not isinstance(value, (*OPAQUE, StringIO, PurePosixPath, *_VIEWS))
 
 
 def too_large(what: str) -> NoReturn:

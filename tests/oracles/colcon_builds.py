@@ -13,7 +13,18 @@ from tests.command_line import HANG_TIMEOUT
 
 # The Python that has colcon, which is Jazzy's version; by default the one that runs the tests.
 PYTHON = os.environ.get("COLCON_PYTHON", sys.executable)
-_ARGUMENTS = ("build", "--base-paths", "src", "--executor", "sequential", "--event-handlers", "console_direct+", "log_command-")
+# What colcon installs in any case, whatever data_files says.
+IMPLIED = ("share/ament_index/resource_index/packages/my_robot", "share/my_robot/package.xml")
+_ARGUMENTS = (
+    "build",
+    "--base-paths",
+    "src",
+    "--executor",
+    "sequential",
+    "--event-handlers",
+    "console_direct+",
+    "log_command-",
+)
 
 
 class Build(NamedTuple):
@@ -31,8 +42,8 @@ def build_all(packages: Iterable[tuple[Path, dict[str, str]]], processes: int = 
 
 def _build(package: tuple[Path, dict[str, str]]) -> Build:
     workspace, texts = package
-    own = ("PYTHON", "COLCON", "SETUPTOOLS", "AMENT", "MY_")
-    environment = {name: value for name, value in os.environ.items() if not name.startswith(own)}
+    others = ("PYTHON", "COLCON", "SETUPTOOLS", "AMENT", "MY_")
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(others)}
     environment |= {"COLCON_HOME": str(workspace / "home"), "COLCON_LOG_PATH": str(workspace / "log")}
     done = subprocess.run(
         [PYTHON, "-m", "colcon", *_ARGUMENTS],
@@ -49,5 +60,15 @@ def _build(package: tuple[Path, dict[str, str]]) -> Build:
     installed = {str(path.relative_to(root)): source for path, source in sources.items()}
     has_failed = done.returncode or not (root / "share/my_robot/package.xml").exists()
     error = done.stderr.strip() or done.stdout.strip() or "the package is not built"
-    wanted = {target: it for target, it in installed.items() if it and not ignored_part(it) and not target.startswith("lib/")}
+    own = ("lib/", "share/colcon-core/", *IMPLIED)
+    wanted = {
+        target: it for target, it in installed.items() if it and not ignored_part(it) and not target.startswith(own)
+    }
     return Build(wanted, f"status {done.returncode}: {error}" if has_failed else "")
+
+
+def is_available() -> bool:
+    """Return whether the oracle's Python has colcon."""
+    return not subprocess.run(
+        [PYTHON, "-c", "import colcon_core, colcon_ros"], capture_output=True, check=False
+    ).returncode

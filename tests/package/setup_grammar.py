@@ -102,7 +102,7 @@ def other_files(seed: int) -> dict[str, str]:
     """Return the files of a package besides setup.py, by their paths; half of the seeds differ from the usual ones."""
     random = Random(~seed)
     changed = random.choice(_OTHERS) if random.random() < 0.4 else {}
-    files = {path: text.format(path) for path, text in FILES.items()} | changed
+    files = {**{path: text.format(path) for path, text in FILES.items()}, **changed}
     return {path: text for path, text in files.items() if text is not None}
 
 

@@ -68,7 +68,9 @@ def value_of(expression: str, tree: Tree, root: str = "/root", order: str = ORDE
         f"import os\nfrom glob import glob\nfrom pathlib import Path\nvalue = {expression}\n".encode(), "setup.py"
     )
     assert isinstance(code, Code)
-    interpreter = Interpreter({**standard_functions(root), **file_functions(PackageListing(tree, order=order), root)}, {})
+    interpreter = Interpreter(
+        {**standard_functions(root), **file_functions(PackageListing(tree, order=order), root)}, {}
+    )
     value = interpreter.run(code).names.get("value")
     if interpreter.errors:
         return interpreter.errors[0]
@@ -91,7 +93,9 @@ def pythons_glob(pattern: str, root: str, *, recursive: bool = True, hidden: boo
 def test_glob_finds_what_pythons_glob_finds(tree: Tree, pattern: str, recursive: bool, hidden: bool) -> None:
     """The same paths in the same spelling, for any pattern that stays inside the file tree."""
     try:
-        reported = [PackageListing(tree, order=order).glob(pattern, recursive=recursive, hidden=hidden) for order in ORDERS]
+        reported = [
+            PackageListing(tree, order=order).glob(pattern, recursive=recursive, hidden=hidden) for order in ORDERS
+        ]
     except SearchError:
         assert ".." in pattern
         return

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.static_python.budget import Budget, OutOfBudget
 from grader.static_python.builtins import BUILTINS, MATH
 from grader.static_python.expressions import evaluate
-from grader.static_python.budget import Budget, OutOfBudget
 from grader.static_python.values import ExpressionFails, Undetermined, Value
 
 NAMES: dict[str, Value] = {**BUILTINS, **MATH, "size": 4, "text": "wheel", "table": {"a": [1, 2]}, "flag": True}

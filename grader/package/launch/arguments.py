@@ -86,6 +86,10 @@ def _mapping(value: Value) -> str:
     return next(filter(None, (wrong_text(item) for pair in value.items() for item in pair)), "")
 
 
+def _period(value: Value) -> str:
+    return "" if isinstance(value, str) else typed(float)(value)  # a string is read as a number
+
+
 def _actions(value: Value) -> str:
     return "takes a list of actions: put [ ] around them" if items_in(value) is None else ""
 
@@ -102,7 +106,7 @@ def _remappings(value: Value) -> str:
 
 
 _CHECKS: Mapping[str, Callable[[Value], str]] = {
-    "text": wrong_text, "texts": _texts, "mapping": _mapping, "bool": typed(bool), "float": typed(float),
+    "text": wrong_text, "texts": _texts, "mapping": _mapping, "bool": typed(bool), "float": _period,
     "remappings": _remappings, "actions": _actions, "parameters": wrong_parameters, "parameter": wrong_parameter,
 }  # fmt: skip
 

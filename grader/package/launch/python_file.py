@@ -16,7 +16,7 @@ from grader.package.launch.arguments import bind, check
 from grader.package.launch.model import Contents, Context, LaunchFails, LaunchSignal, not_evaluated
 from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.launch.substitutions import condition, resolve
-from grader.static_python.file_expressions import FileExpressions, FunctionTable, record
+from grader.static_python.evaluation import Evaluation, FunctionTable, record
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.library import standard_functions
 from grader.static_python.parse import Code, Position
@@ -39,7 +39,7 @@ _RECORDED = (
     "xacro.process_doc", "xacro.parse.toxml", "xacro.parse.toprettyxml", "typing.List.__getitem__", "launch.logging.get_logger",
     *(f"launch.logging.get_logger.{name}" for name in ("debug", "info", "warning", "error")),
 )  # fmt: skip
-_Run = Callable[[FileExpressions, Call], Value]
+_Run = Callable[[Evaluation, Call], Value]
 
 
 class _Functions(dict[str, Any]):
@@ -66,7 +66,7 @@ def _function_of(name: str) -> _Run | None:
     return None
 
 
-def _construct(cls: LaunchClass, evaluation: FileExpressions, call: Call) -> Value:
+def _construct(cls: LaunchClass, evaluation: Evaluation, call: Call) -> Value:
     call.name = cls.name
     bind(cls, call)
     doubt = check(cls, call)
@@ -131,7 +131,7 @@ class PythonLaunchFile:
             }
         )
 
-    def _resolved(self, value: Value, evaluation: FileExpressions, call: Call) -> Value:
+    def _resolved(self, value: Value, evaluation: Evaluation, call: Call) -> Value:
         """Return the text of a substitution as Python gets it; of the contents of a file, the call itself."""
         try:
             found = resolve(value, self.context, call.at)
@@ -143,13 +143,13 @@ class PythonLaunchFile:
             return text if text is not None else record(evaluation, call)
         return found
 
-    def _perform(self, evaluation: FileExpressions, call: Call) -> Value:
+    def _perform(self, evaluation: Evaluation, call: Call) -> Value:
         return self._resolved(call.owner, evaluation, call)
 
-    def _perform_argument(self, evaluation: FileExpressions, call: Call) -> Value:
+    def _perform_argument(self, evaluation: Evaluation, call: Call) -> Value:
         return self._resolved(known_call(call.args[-1] if call.args else None), evaluation, call)
 
-    def _evaluate(self, evaluation: FileExpressions, call: Call) -> Value:
+    def _evaluate(self, evaluation: Evaluation, call: Call) -> Value:
         if call.owner is None or "predicate_expression" not in call.owner.kwargs:
             raise Undetermined("this condition is not evaluated")
         text = self._resolved(call.owner.kwargs["predicate_expression"], evaluation, call)
@@ -160,7 +160,7 @@ class PythonLaunchFile:
         except LaunchFails as error:
             raise ExpressionFails(str(error), ValueError) from None
 
-    def _package(self, evaluation: FileExpressions, call: Call) -> str:
+    def _package(self, evaluation: Evaluation, call: Call) -> str:
         name = known(call.argument(0, "package_name", "package"))
         if not isinstance(name, str):
             raise ExpressionFails("the name of a package is a string")
@@ -168,17 +168,17 @@ class PythonLaunchFile:
             evaluation.doubted(Unknown(f"whether the package {name!r} is installed is not evaluated", call.at))
         return name
 
-    def _share(self, evaluation: FileExpressions, call: Call) -> Value:
+    def _share(self, evaluation: Evaluation, call: Call) -> Value:
         return f"{SHARE}/{self._package(evaluation, call)}"
 
-    def _share_path(self, evaluation: FileExpressions, call: Call) -> Value:
+    def _share_path(self, evaluation: Evaluation, call: Call) -> Value:
         return PurePosixPath(self._share(evaluation, call))
 
-    def _prefix(self, evaluation: FileExpressions, call: Call) -> Value:
+    def _prefix(self, evaluation: Evaluation, call: Call) -> Value:
         self._package(evaluation, call)
         return PREFIX
 
-    def _open(self, evaluation: FileExpressions, call: Call) -> Value:
+    def _open(self, evaluation: Evaluation, call: Call) -> Value:
         path, position = path_text(known(call.argument(0, "file", "filename"))), 2 if call.name.startswith("codecs") else 3
         if path is None:
             message = "open takes a path, not a substitution: use Command(['cat ', ...])"
@@ -197,7 +197,7 @@ class PythonLaunchFile:
         self.context.around.texts.setdefault(text, path)
         return StringIO(text)
 
-    def _open_path(self, evaluation: FileExpressions, call: Call) -> Value:
+    def _open_path(self, evaluation: Evaluation, call: Call) -> Value:
         is_read = call.name.endswith("read_text")
         inner = [call.args[0], *(["r"] if is_read else []), *call.args[1:]]
         found = self._open(evaluation, Call("builtins.open", inner, call.kwargs, call.at))
@@ -205,12 +205,12 @@ class PythonLaunchFile:
             return found.read() if is_read else found
         return record(evaluation, Call("builtins.open.read", [], {}, call.at, found)) if is_read else found
 
-    def _exists(self, _: FileExpressions, call: Call) -> Value:
+    def _exists(self, _: Evaluation, call: Call) -> Value:
         path = path_text(known(call.args[0])) or ""
         is_there = self.context.around.read(path) is not None
         return True if is_there else Unknown(f"whether {posixpath.basename(path)} exists is not evaluated", call.at)
 
-    def _xacro(self, evaluation: FileExpressions, call: Call) -> Value:
+    def _xacro(self, evaluation: Evaluation, call: Call) -> Value:
         given = call.argument(0, "input_file_name")
         if isinstance(given, Call) and not given.name.startswith("builtins.open"):
             raise ExpressionFails(f"{call.name} takes a path, not a substitution: use Command(['xacro ', ...])")
@@ -239,13 +239,13 @@ def known_call(value: Value) -> Value:
     return value
 
 
-def _add(evaluation: FileExpressions, call: Call) -> Value:
+def _add(evaluation: Evaluation, call: Call) -> Value:
     if len(call.args) + len(call.kwargs) != 1:
         raise ExpressionFails(f"{call.name.rpartition('.')[2]} takes one action")
     record(evaluation, call)
 
 
-def _safe_load(evaluation: FileExpressions, call: Call) -> Value:
+def _safe_load(evaluation: Evaluation, call: Call) -> Value:
     given = call.argument(0, "stream")
     text = given.read() if isinstance(given, StringIO) else given
     if not isinstance(text, str) or len(text) > _MAX_YAML or re.search(r"(^|\s)[&*!]", text):
@@ -256,11 +256,11 @@ def _safe_load(evaluation: FileExpressions, call: Call) -> Value:
         raise ExpressionFails("this text is not YAML", ValueError) from None
 
 
-def _expanduser(_: FileExpressions, call: Call) -> Value:
+def _expanduser(_: Evaluation, call: Call) -> Value:
     text = path_text(known(call.args[0])) if call.args else None
     return re.sub("^~", HOME, text) if text is not None else Unknown("a path is not evaluated", call.at)
 
 
-def _expandvars(_: FileExpressions, call: Call) -> Value:
+def _expandvars(_: Evaluation, call: Call) -> Value:
     text = path_text(known(call.args[0])) if call.args else None
     return text if text is not None and "$" not in text else Unknown("the environment is not evaluated", call.at)

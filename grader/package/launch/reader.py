@@ -136,7 +136,7 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
             findings.add_fault(error, entry.at)
         elif not isinstance(description, Unknown) or interpreter.doubt is None:
             visitor.launch(description, context, entry.at)
-    elif interpreter.doubt is None and not interpreter.has_star and not interpreter.errors:
+    elif interpreter.doubt is None and not interpreter.errors:
         message = f"the file does not define the function {_ENTRY}, which ros2 launch calls"
         if entry is None:
             findings.add_fault(message, START)
