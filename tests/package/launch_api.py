@@ -14,6 +14,11 @@ from typing import Any
 TABLE = Path("grader/package/launch/api.json")
 PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml")
 SOURCE = "github.com/ros2/launch and github.com/ros2/launch_ros, branch jazzy, by python -m tests.package.launch_api"
+# What later releases export, so that a newer patch of Jazzy may: whether the name is there is not known.
+LATER = {
+    "launch.actions": {"ForEach", "ForLoop"},
+    "launch.substitutions": {"PathSubstitution", "StringJoinSubstitution"},
+}
 # What the constructors require of arguments with these annotations: each stands for the check of this name.
 CHECKS = {
     "SomeSubstitutionsType": "text",
@@ -119,7 +124,7 @@ def table(*roots: Path) -> dict[str, Any]:
     for name, module in modules.items():
         inner = {other.rpartition(".")[2] for other in modules if other.rpartition(".")[0] == name}
         full = {alias: target(module.imports.get(alias, ""), modules, classes) for alias in module.names}
-        words = [alias + (f"={full[alias]}" if inner and full.get(alias) else "") for alias in sorted(module.names | inner)]
+        words = [alias + (f"={full[alias]}" if inner and full.get(alias) else "") for alias in sorted(module.names | inner | LATER.get(name, set()))]
         exports[name] = " ".join(words)
     rows = {
         name: [base_of(name, classes), effective(name, classes), " ".join(sorted(it[2]))]

@@ -6,7 +6,7 @@ from pathlib import PurePosixPath
 from grader.names import did_you_mean
 from grader.package.launch.api import ACTION, SOURCE, LaunchClass, is_a
 from grader.package.launch.value_types import (
-    TEXT_CALLS,
+    gives_text,
     is_entity,
     is_text,
     items_in,
@@ -31,6 +31,9 @@ from grader.static_python.values import (
 )
 
 
+_OF_ONE_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
+
+
 def bind(cls: LaunchClass, call: Call) -> None:
     """Give the arguments of a constructor their names. Raises ExpressionFails as Python does, and Undetermined."""
     positional = [name for name, it in cls.parameters.items() if it.is_positional]
@@ -38,12 +41,12 @@ def bind(cls: LaunchClass, call: Call) -> None:
         raise Undetermined(f"the arguments of {cls.short}, which ** unpacks,")
     if len(call.args) > len(positional) and not cls.rest:
         names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)
-        hint = f"; name the others: {names[:100]}" if names else ""
-        raise ExpressionFails(f"{cls.short} takes {len(positional)} arguments without a name{hint}", kind=TypeError)
+        hint = "put [ ] around them" if cls.short in _OF_ONE_LIST else f"write {names[:100]}"
+        raise ExpressionFails(f"{cls.short} takes {len(positional)} argument without a name: {hint}", kind=TypeError)
     given = dict(zip(positional, call.args, strict=False))
     if twice := given.keys() & call.kwargs.keys():
         raise ExpressionFails(f"{cls.short} is given {min(twice)!r} twice", kind=TypeError)
-    for name in call.kwargs.keys() - cls.parameters.keys():
+    for name in (name for name in call.kwargs if name not in cls.parameters):
         message = f"{cls.short} has no argument {name!r}{did_you_mean(name, cls.parameters)}"
         raise ExpressionFails(message, kind=TypeError)
     kwargs = {**given, **call.kwargs}.items()
@@ -187,7 +190,7 @@ def _shutdown_handler(call: Call) -> str:
 
 def _text_substitution(call: Call) -> str:
     text = call.kwargs["text"]
-    return "" if isinstance(text, str) or (is_text(text) and text.name in TEXT_CALLS) else f"text is {kind_of(text)}, not a string"
+    return "" if isinstance(text, str) or (is_text(text) and gives_text(text.name)) else f"text is {kind_of(text)}, not a string"
 
 
 def _parameter_file(call: Call) -> str:

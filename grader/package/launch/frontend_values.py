@@ -109,7 +109,8 @@ class _ValueParser:
         names = _ARGUMENTS[name].split()
         if not len([it for it in names if it[0] != "["]) <= len(values) <= len(names):
             raise LaunchFails(f"$({name} ...) takes {len(names) or 'no'} argument{'s' * (len(names) != 1)}", self.at)
-        kwargs = dict(zip((it.strip("[]") for it in names), values, strict=False))
+        plain = ("".join(value) if all(isinstance(it, str) for it in value) else value for value in values)
+        kwargs: dict[str, Value] = dict(zip((it.strip("[]") for it in names), plain, strict=False))
         return Call(front_end("substitution")[name], [], kwargs, self.at)
 
 

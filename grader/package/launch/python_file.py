@@ -16,6 +16,7 @@ from grader.package.launch.arguments import bind, check
 from grader.package.launch.model import Contents, Context, LaunchFails, LaunchSignal, not_evaluated
 from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.launch.substitutions import condition, resolve
+from grader.package.launch.value_types import UnknownText, gives_text
 from grader.static_python.evaluation import Evaluation, FunctionTable, record
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.library import standard_functions
@@ -57,6 +58,8 @@ class _Functions(dict[str, Any]):
 def _function_of(name: str) -> _Run | None:
     """Return the constructor of a class of launch, or one that fails: of a name that a module or class does not have."""
     owner, _, own = name.rpartition(".")
+    if gives_text(owner) and gives_text(name):
+        return record
     names, cls = exports().get(owner), class_named(owner)
     if names is not None and own in names:
         made = class_named(names[own])
@@ -125,6 +128,8 @@ class PythonLaunchFile:
                 **dict.fromkeys(("os.path.exists", "os.path.isfile", "pathlib.Path.exists"), self._exists),
                 **dict.fromkeys(("xacro.process_file", "xacro.process", "xacro.parse"), self._xacro),
                 **dict.fromkeys(("yaml.safe_load", "yaml.load"), _safe_load),
+                **dict.fromkeys(("os.environ.__getitem__", "os.environ.get", "os.getenv"), _variable),
+                "os.path.join": _join,
                 "os.path.expanduser": _expanduser,
                 "os.path.expandvars": _expandvars,
                 "pathlib.Path.home": lambda *_: PurePosixPath(HOME),
@@ -179,10 +184,10 @@ class PythonLaunchFile:
         return PREFIX
 
     def _open(self, evaluation: Evaluation, call: Call) -> Value:
-        path, position = path_text(known(call.argument(0, "file", "filename"))), 2 if call.name.startswith("codecs") else 3
+        file, position = call.argument(0, "file", "filename"), 2 if call.name.startswith("codecs") else 3
+        path = path_text(file if isinstance(file, Call) and class_named(file.name) is not None else known(file))
         if path is None:
-            message = "open takes a path, not a substitution: use Command(['cat ', ...])"
-            raise ExpressionFails(message)
+            raise ExpressionFails("open takes a path, not a substitution: use Command(['cat ', ...])")
         mode, encoding = known(call.argument(1, "mode")), known(call.argument(position, "encoding"))
         errors = known(call.argument(position + 1, "errors"))
         if not isinstance(mode, str | None) or set(mode or "r") & set("wax+"):
@@ -254,6 +259,23 @@ def _safe_load(evaluation: Evaluation, call: Call) -> Value:
         return evaluation.budget.checked(yaml.safe_load(text))
     except (yaml.YAMLError, ValueError, RecursionError):
         raise ExpressionFails("this text is not YAML", ValueError) from None
+
+
+def _variable(_: Evaluation, call: Call) -> Value:
+    """Return a variable of the environment: whether it is set is not known."""
+    name, default = known(call.argument(0, "key")), known(call.argument(1, "default"))
+    if name == "HOME":
+        return HOME
+    reason = "the environment is not evaluated"
+    if call.name.endswith("__getitem__"):
+        raise Undetermined(reason)
+    return (UnknownText if isinstance(default, str) else Unknown)(reason, call.at)
+
+
+def _join(evaluation: Evaluation, call: Call) -> Value:
+    if any(isinstance(value, Call) and class_named(value.name) is not None for value in call.args):
+        raise ExpressionFails("os.path.join takes strings, not substitutions: use PathJoinSubstitution([...])")
+    return evaluation.call_value(standard_functions(WORKING_FOLDER)["os.path.join"], call)
 
 
 def _expanduser(_: Evaluation, call: Call) -> Value:

@@ -172,11 +172,13 @@ def _forgotten(node: Call, findings: Findings) -> StartedNode:
 
 
 def _launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
+    named = {reference.path for reference in findings.references if reference.purpose != "read"}
+    references = [it for it in findings.references if it.purpose != "read" or it.path not in named]
     order = attrgetter("location.line", "location.column", "message")
     return Launch(
         source=source,
         nodes=tuple(findings.nodes),
-        references=tuple(findings.references),
+        references=tuple(dict.fromkeys(references)),
         faults=tuple(sorted(set(findings.faults), key=order)),
         unknown=tuple(dict.fromkeys(findings.unknown)),
         doubts=tuple(dict.fromkeys(findings.doubts)),

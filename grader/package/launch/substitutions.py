@@ -12,7 +12,7 @@ import yaml
 from grader.package.launch.commands import command_output
 from grader.package.launch.model import Contents, Context, LaunchFails, NotEvaluated, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
-from grader.package.launch.value_types import TEXT_CALLS
+from grader.package.launch.value_types import gives_text
 from grader.static_python.budget import Budget, OutOfBudget
 from grader.static_python.builtins import BUILTINS, MATH
 from grader.static_python.expressions import evaluate
@@ -45,7 +45,9 @@ def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Res
     match value:
         case str() | Contents() | Unknown():
             return value
-        case Call() if value.name in TEXT_CALLS or value.name.startswith("xacro."):
+        case Call() if value.name.endswith(".perform"):
+            return resolve(value.owner if value.owner is not None else value.args[-1], context, at, depth + 1)
+        case Call() if gives_text(value.name) or value.name.startswith("xacro."):
             return _python_text(value, context)
         case Call():
             return _Substitution(value, context, depth).value()

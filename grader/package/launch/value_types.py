@@ -10,27 +10,44 @@ from grader.static_python.values import Call, Function, Items, QualifiedName, Un
 # Calls of Python functions that are not evaluated, but certainly give a text.
 TEXT_CALLS = frozenset(
     {"builtins.open.read", "xacro.process_file.toxml", "xacro.process_file.toprettyxml", "xacro.process.toxml",
-     "pathlib.Path.read_text", "xacro.process", "subprocess.check_output.decode"}
+     "xacro.parse.toxml", "xacro.parse.toprettyxml", "pathlib.Path.read_text", "xacro.process", "subprocess.check_output.decode"}
 )  # fmt: skip
+TEXT_METHODS = ("replace", "strip", "lstrip", "rstrip", "expandtabs", "decode")
 SCALARS = (bool, int, float, str)
 TYPED = ("launch_ros.parameter_descriptions.ParameterValue", "launch_ros.parameter_descriptions.Parameter")
 FILE = "launch_ros.parameter_descriptions.ParameterFile"
-_COLLECTIONS = (list, tuple, dict, set, frozenset)
+_COLLECTIONS = (list, tuple, dict, set, frozenset, type({}.items()), type({}.keys()), type({}.values()))
 _NAMES = {type(None): "None", bool: "a boolean", int: "a number", float: "a number", dict: "a dict", Function: "a function"}
+
+
+class UnknownText(Unknown):
+    """A value that is not known, but certainly is a text."""
+
+    __slots__ = ()
+
+
+def gives_text(name: str) -> bool:
+    """Return whether a function that is not evaluated, or a method of the text that it gives, certainly gives a text."""
+    owner, _, method = name.rpartition(".")
+    while method in TEXT_METHODS and name not in TEXT_CALLS:
+        name, (owner, _, method) = owner, owner.rpartition(".")
+    return name in TEXT_CALLS or method == "perform"
 
 
 def is_text(value: Value) -> bool:
     """Return whether a value is a string or a substitution. Raises Undetermined."""
     match value:
+        case UnknownText():
+            return True
         case Unknown():
             raise Undetermined(value.reason)
         case QualifiedName():
             raise Undetermined(f"the value of {value.name}")
         case Call() if class_named(value.name) is not None:
             return is_a(value.name, SUBSTITUTION)
-        case Call() if value.name not in TEXT_CALLS:
+        case Call() if not gives_text(value.name):
             raise Undetermined(f"the result of {value.name}")
-    return isinstance(value, str | Call)
+    return isinstance(value, str | Call | UnknownText)
 
 
 def is_entity(call: Call) -> bool:
