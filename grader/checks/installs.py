@@ -60,7 +60,7 @@ def installs_files(package: Package, *, files: list[str]) -> Outcome:
 
 
 def setup_imports(package: Package) -> Outcome:
-    """`setup.py` builds: Python runs it to its end, and colcon and setuptools accept what it says."""
+    """A build of the package succeeds: Python runs `setup.py` to its end, and colcon accepts what it says."""
     setup = _readable_setup(package)
     return setup if isinstance(setup, Outcome) else _build_error(package, setup) or passed("setup.py builds")
 

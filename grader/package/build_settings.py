@@ -10,11 +10,6 @@ from grader.package.globbing import PackageListing
 from grader.static_python.values import UNKNOWN_KEYS, Unknown, Value, unknown_in
 from grader.text import enumerated
 
-# Arguments that run other code in the build, or change where files are.
-_NOT_EVALUATED = (
-    "cmdclass", "distclass", "ext_modules", "package_dir", "options", "command_options", "script_args", "script_name",
-    "src_root", "command_packages", "use_scm_version", "scripts", "py_modules", UNKNOWN_KEYS,
-)  # fmt: skip
 # The arguments that name the Python packages; without one, setuptools searches for packages, but not in the folders
 # below, those of `FlatLayoutPackageFinder.DEFAULT_EXCLUDE`.
 _PACKAGES = ("packages", "py_modules", "ext_modules", "package_dir", UNKNOWN_KEYS)
@@ -31,9 +26,15 @@ _VERSION = re.compile(
     re.IGNORECASE,
 )
 _ENTRY_POINT = re.compile(r"\s*[^=\s][^=]*=\s*[\w.]+\s*(?::\s*[\w.]+\s*)?(?:\[.*\]\s*)?")
-_REQUIREMENT = re.compile(r"\s*[A-Za-z0-9](?:[\w.-]*[A-Za-z0-9])?(?:\s*(?:[<>~!=]=?|===)\s*[\w.*+!-]+\s*,?)*\s*")
+_REQUIREMENT = re.compile(
+    r"\s*[A-Za-z0-9](?:[\w.-]*[A-Za-z0-9])?(?:\[[\w, -]*\])?(?:\s*(?:[<>~!=]=?|===)\s*[\w.*+!-]+\s*,?)*\s*"
+)
 _TEXTS = ("name", "description", "long_description", "author", "author_email", "maintainer", "maintainer_email", "url",
           "license", "download_url", "long_description_content_type", "python_requires", "test_suite")  # fmt: skip
+_LISTS = ("keywords", "classifiers", "platforms")
+_FLAGS = ("zip_safe", "include_package_data")
+# The arguments that are checked below.
+_CHECKED = ("version", "packages", "py_modules", "data_files", "entry_points", "extras_require", "setup_requires")
 _REQUIREMENTS = ("install_requires", "tests_require")
 _AT_HAND = ("setuptools", "wheel")  # what setup_requires may name without a download
 # The sections of setup.cfg that concern a build: of these, the options that are known to be accepted.
@@ -51,17 +52,36 @@ def argument_findings(
     kwargs: Mapping[str, Value], listing: PackageListing, unknown: Callable[[str], Unknown], is_configured: bool
 ) -> Iterator[Finding]:
     """Yield what is wrong with the arguments of setup() besides data_files, and what of them is not evaluated."""
-    for name in _NOT_EVALUATED:
-        if kwargs.get(name):
-            yield unknown(f"{'unpacked arguments' if name == UNKNOWN_KEYS else name} of setup() is not evaluated")
-    for name in _TEXTS:
-        if not isinstance(kwargs.get(name), str | Unknown | None):
-            yield unknown(f"this value of {name} is not evaluated")
+    for name, value in kwargs.items():
+        if name == UNKNOWN_KEYS:
+            yield unknown("unpacked arguments of setup() are not evaluated")
+        elif name not in (*_CHECKED, *_REQUIREMENTS) and not _is_usual(name, value):
+            yield unknown_in(value) or unknown(f"this value of {name} in setup() is not evaluated")
     for check in (_version, _entry_points, _requirements):
         yield from check(kwargs, unknown)
     yield from _packages(kwargs, listing, unknown)
+    modules = kwargs.get("py_modules") or []
+    if not _is_list(modules) or any(f"{name.replace('.', '/')}.py" not in listing.files for name in modules):
+        yield unknown("this value of py_modules is not evaluated")
     if not is_configured and all(kwargs.get(name) is None for name in _PACKAGES) and "src" not in listing.folders:
         yield from _discovery(listing)
+
+
+def _is_usual(name: str, value: Value) -> bool:
+    """Return whether setuptools certainly accepts an argument."""
+    if value is None:
+        return True
+    if name in _TEXTS:
+        return isinstance(value, str | Unknown)
+    if name == "package_data":
+        return isinstance(value, dict) and all(isinstance(key, str) and _is_list(it) for key, it in value.items())
+    if name in _LISTS:
+        return isinstance(value, str) or _is_list(value)
+    return name in _FLAGS and isinstance(value, bool)
+
+
+def _is_list(value: Value) -> bool:
+    return isinstance(value, list | tuple) and all(isinstance(item, str) for item in value)
 
 
 def _version(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> Iterator[Finding]:

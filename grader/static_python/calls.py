@@ -125,6 +125,7 @@ class Calls(Evaluation):
         """Run a method that changes a list or dict: Python's own."""
         try:
             self.budget.measure([made.args, [*made.kwargs.values()]], "holds")
+            self.budget.charge(len(owner) // 16 if name != "append" else 0)
             args, kwargs = made.args, made.kwargs
             if name == "sort":
                 arguments = [owner, *args]
@@ -135,6 +136,7 @@ class Calls(Evaluation):
             elif name != "append":
                 py.known(args if name not in ("insert", "setdefault") else args[:1])
             if name in ("remove", "index", "count"):
+                self.budget.measure(owner, "holds")
                 py.known(owner)
             return self.budget.checked(py.call_plain(getattr(owner, name), *args, **kwargs))
         except py.Undetermined as error:

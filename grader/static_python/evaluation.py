@@ -88,14 +88,6 @@ class Evaluation(Expressions):
         if len(self.errors) < _MAX_ERRORS and all(message != error.message for error in self.errors):
             self.errors.append(PythonError(message, at))
 
-    def record(self, made: py.Call) -> py.Call:
-        """Record a call that is not evaluated further, and return it as its result."""
-        if len(self.calls) < _MAX_CALLS:
-            self.calls.append(made)
-            if made.owner is not None:
-                made.owner.method_calls.append(made)
-        return made
-
     def evaluate(self, node: ast.expr, scope: py.Scope) -> py.Value:
         """Return the value of an expression; Unknown, with the reason, where it cannot be determined.
 
@@ -141,5 +133,9 @@ class Evaluation(Expressions):
 
 
 def record(evaluation: Evaluation, made: py.Call) -> py.Call:
-    """Record a call: a function for the table."""
-    return evaluation.record(made)
+    """Record a call that is not evaluated further, and return it as its result: a function for the table."""
+    if len(evaluation.calls) < _MAX_CALLS:
+        evaluation.calls.append(made)
+        if made.owner is not None:
+            made.owner.method_calls.append(made)
+    return made

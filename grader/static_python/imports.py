@@ -84,11 +84,6 @@ CONSTANTS = {
 }
 
 
-def is_local(module: str, local_modules: Collection[str]) -> bool:
-    """Return whether a module is beside the file, where Python looks first."""
-    return module.split(".", maxsplit=1)[0] in local_modules
-
-
 def import_error(module: str, name: str, exports: Mapping[str, Collection[str]]) -> str | None:
     """Return what is wrong with `import name` or `from module import name`: None where it works, UNCERTAIN, or why."""
     if module.startswith("."):

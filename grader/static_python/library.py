@@ -34,7 +34,6 @@ def standard_functions(working_folder: str) -> FunctionTable:
         **{f"os.path.{name}": function for name, function in own.items()},
         **{f"pathlib.{name}": _path for name in ("Path", "PurePath", "PosixPath", "PurePosixPath")},
         **{f"pathlib.Path.{name}": lambda path: PurePosixPath(absolute(path)) for name in ("resolve", "absolute")},
-        "os.fspath": lambda path: str(_of_path(path)),
         "os.getcwd": lambda: working_folder,
         "pathlib.Path.cwd": lambda: PurePosixPath(working_folder),
     }
@@ -77,10 +76,6 @@ def _getenv(_: Evaluation, call: py.Call) -> py.Value:
     return py.Unknown(_ENVIRONMENT, call.at)
 
 
-def _environment(_: Evaluation, call: py.Call) -> py.Value:
-    raise py.Undetermined(_ENVIRONMENT, call.at)
-
-
 def _print(evaluation: Evaluation, call: py.Call) -> None:
     if not call.kwargs.keys() <= {"file", "end", "sep", "flush"} or not isinstance(
         call.kwargs.get("file"), py.QualifiedName | None
@@ -92,7 +87,6 @@ def _print(evaluation: Evaluation, call: py.Call) -> None:
 _FUNCTIONS: FunctionTable = {
     **dict.fromkeys(_EXITS, leave),
     **dict.fromkeys(("os.environ.get", "os.getenv"), _getenv),
-    "os.environ.__getitem__": _environment,
     "builtins.print": _print,
     "itertools.chain": py.PlainFunction("chain", lambda *lists: py.Items(chain(*map(py.iterate, lists))), "holds"),
     "itertools.chain.from_iterable": py.PlainFunction(

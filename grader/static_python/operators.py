@@ -44,27 +44,18 @@ def has_attribute(owner: py.Value, name: str) -> bool:
 
 
 def method(owner: py.Value, name: str, budget: Budget) -> py.PlainFunction | None:
-    """Return a method of a plain value that changes nothing; None for any other."""
+    """Return a method of a plain value that changes nothing, whose work is charged; None for any other."""
     run = next((table.get(name) for kind, table in _METHODS.items() if isinstance(owner, kind)), None)
     if run is None:
         return None
     kind = "holds" if isinstance(owner, list | tuple | dict) else _KINDS.get(name, "plain")
-    return py.PlainFunction(name, lambda *args, **kwargs: _call(run, owner, args, kwargs, budget, kind), kind)
 
+    def charged(*args: py.Value, **kwargs: py.Value) -> py.Value:
+        if run is not _get:
+            budget.charge(budget.measure(owner, kind), sum(search_cost(owner, value) for value in args))
+        return py.call_plain(run, owner, *args, **kwargs)
 
-def _call(
-    run: Callable[..., py.Value],
-    owner: py.Value,
-    args: tuple[py.Value, ...],
-    kwargs: dict[str, py.Value],
-    budget: Budget,
-    kind: str,
-) -> py.Value:
-    """Call a method; its arguments are charged."""
-    if run is not _get:
-        cost = sum(search_cost(owner, value) for value in args)
-        budget.charge(budget.measure(owner, kind), cost)
-    return py.call_plain(run, owner, *args, **kwargs)
+    return py.PlainFunction(name, charged, kind)
 
 
 def search_cost(text: py.Value, part: py.Value) -> int:
@@ -103,12 +94,6 @@ def _join(separator: str, items: py.Value) -> str:
     return separator.join(parts)
 
 
-def _joinpath(path: PurePosixPath, *parts: py.Value) -> PurePosixPath:
-    if sum(len(str(part)) for part in parts) > py.MAX_TEXT:
-        py.too_large("text")
-    return path.joinpath(*parts)
-
-
 def _get(table: dict[py.Value, py.Value], key: py.Value, default: py.Value = None) -> py.Value:
     return table.get(py.known(key), default)
 
@@ -117,8 +102,7 @@ def _named(kind: type, *names: str) -> dict[str, Callable[..., py.Value]]:
     return {name: getattr(kind, name) for name in names}
 
 
-_OF_PATHS = ("joinpath", "as_posix", "with_name", "with_suffix", "with_stem", "relative_to", "read", "readline",
-             "readlines", "close", "removeprefix", "rstrip", "lstrip", "strip", "replace", "split")  # fmt: skip
+_OF_PATHS = ("joinpath", "as_posix", "with_name", "with_suffix", "with_stem", "relative_to", "read", "close", "replace")
 _KINDS = {**dict.fromkeys(_OF_PATHS, "path"), "format": "text", "join": "text"}
 _METHODS: Mapping[type, Mapping[str, Callable[..., py.Value]]] = {
     str: {
@@ -129,9 +113,7 @@ _METHODS: Mapping[type, Mapping[str, Callable[..., py.Value]]] = {
     },
     dict: {"get": _get, **_named(dict, "keys", "values", "items", "copy")},
     list: _named(list, "copy"),
-    PurePosixPath: {"joinpath": _joinpath,
-                    **_named(PurePosixPath, "as_posix", "with_name", "with_suffix", "with_stem", "relative_to",
-                             "is_absolute")},
+    PurePosixPath: _named(PurePosixPath, *_OF_PATHS[:6]),
     StringIO: _named(StringIO, "read", "readline", "readlines", "close"),
 }  # fmt: skip
 

@@ -2,13 +2,14 @@
 
 import ast
 import builtins
+import operator
 from copy import copy
 
 from grader.static_python import values as py
 from grader.static_python.builtins import truth
 from grader.static_python.evaluation import EvaluationStopped, ExitFlow
 from grader.static_python.file_expressions import FileExpressions
-from grader.static_python.imports import UNCERTAIN, USUAL_NAMES, import_error, imported_names, is_local
+from grader.static_python.imports import UNCERTAIN, USUAL_NAMES, import_error, imported_names
 from grader.static_python.operators import operate
 from grader.static_python.parse import Position, position_of
 
@@ -71,7 +72,7 @@ class Statements(FileExpressions):
             py.refuse(owner, "this assignment to an item is not supported")
         if isinstance(key, slice):
             value = list(py.iterate(value))
-        py.call_plain(_set_item, owner, py.known(key) if not isinstance(key, slice) else key, value)
+        py.call_plain(operator.setitem, owner, py.known(key) if not isinstance(key, slice) else key, value)
         self.budget.charge(len(owner))
 
     def _on_assign(self, node: ast.Assign, scope: py.Scope) -> None:
@@ -145,7 +146,7 @@ class Statements(FileExpressions):
                     container, item = self.evaluate(owner, scope), self.key(key, scope)
                     if not isinstance(container, py.PLAIN):
                         raise py.Undetermined(py.reason_of(container) or "this deletion is not supported")
-                    py.call_plain(_delete_item, container, item if isinstance(item, slice) else py.known(item))
+                    py.call_plain(operator.delitem, container, item if isinstance(item, slice) else py.known(item))
                 case ast.Name(id=name):
                     self._of_name(ast.copy_location(ast.Name(name, ast.Load()), target), scope)
                     scope.names.pop(name, None)
@@ -156,7 +157,7 @@ class Statements(FileExpressions):
         module = "" if isinstance(node, ast.Import) else "." * node.level + (node.module or "")
         at = position_of(node)
         for alias in node.names:
-            if is_local(module or alias.name, self.local_modules):
+            if (module or alias.name).split(".")[0] in self.local_modules:
                 raise EvaluationStopped(f"the file's own module {module or alias.name} is not evaluated", at)
             error = import_error(module, alias.name, self.exports)
             if error == UNCERTAIN:
@@ -189,11 +190,3 @@ class Statements(FileExpressions):
 _IN_ANNOTATIONS = (
     ast.Attribute, ast.Subscript, ast.Constant, ast.BinOp, ast.BitOr, ast.Tuple, ast.List, ast.expr_context, ast.Index,
 )  # fmt: skip
-
-
-def _set_item(owner: py.Value, key: py.Value, value: py.Value) -> None:
-    owner[key] = value
-
-
-def _delete_item(owner: py.Value, key: py.Value) -> None:
-    del owner[key]

@@ -22,6 +22,7 @@ from grader.static_python.values import (
 )
 
 _OLD_BUILTINS = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")
+_NOT_IN_XACRO = ("iter", "next")
 _PLAIN_SEPARATORS = re.compile(r"[^\]\[\\^-]+")
 _OF_EVENT = 10  # what a part of the file is charged
 _MAX_NUMBER = 100  # characters
@@ -89,7 +90,7 @@ _XACRO: dict[str, Value] = {
 GLOBALS: Mapping[str, Value] = {
     **MATH,
     **{name: BUILTINS[name] for name in _OLD_BUILTINS},
-    "python": namespace("python", BUILTINS),
+    "python": namespace("python", {name: it for name, it in BUILTINS.items() if name not in _NOT_IN_XACRO}),
     "math": namespace("math", MATH),
     "dotify": _XACRO["dotify"],
     "abs_filename": _XACRO["abs_filename"],

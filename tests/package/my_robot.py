@@ -42,12 +42,17 @@ ADDED = {
     "folder_in_urdf_passed_by": ["urdf/old/my_robot_1.urdf"],
     "hidden_file_named": ["urdf/.hidden.urdf"],
     "hidden_files": ["urdf/.hidden.urdf"],
+    "ignored_by_ament": ["AMENT_IGNORE"],
     "same_target_twice": ["other/box.urdf"],
     "two_sources_for_one_target": ["meshes/a/two.stl"],
     "urdf_below_resource": ["resource/deep/README", "resource/deep/er/picture.png"],
 }
 INSTEAD = {
     "data_files_in_setup_cfg": {"setup.cfg": "[options.data_files]\nshare/my_robot = package.xml\n"},
+    "own_module_named_glob": {"glob.py": "def glob(pattern):\n    return []\n"},
+    "pyproject_that_is_no_toml": {"pyproject.toml": "name = \n"},
+    "script_dir_in_install": {"setup.cfg": "[install]\nscript_dir=$base/lib/my_robot\n"},
+    "setup_cfg_without_a_section": {"setup.cfg": "script_dir=$base/lib/my_robot\n"},
     "packages_in_setup_cfg": {
         "setup.cfg": "[options]\npackages = find:\n[options.packages.find]\ninclude = my_robot\n"
     },
