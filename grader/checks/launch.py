@@ -61,7 +61,7 @@ def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool 
     started = {node.name for node in launch.nodes if node.when}
     missing = [choice for choice in (node.split(" or ") for node in nodes) if started.isdisjoint(choice)]
     listed = ", ".join(" or ".join(choice) for choice in missing)
-    if missing and not launch.doubts and not _may_start(launch, missing):
+    if missing and not _may_start(launch, missing):
         message = f"starts {', '.join(sorted(started)) or 'nothing'}"
         reason, at = _why_missing(launch, {node for choice in missing for node in choice})
         what, detail = f"the launch file does not start {listed}", f"; it {message}{reason}"

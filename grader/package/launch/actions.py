@@ -78,6 +78,8 @@ class ActionVisitor:
 
     def _add_of_form(self, signal: LaunchSignal, context: Context, when: bool | None) -> None:
         """Add an error in the form of a description: launch looks at all of it before it executes any of it."""
+        if isinstance(signal, NotEvaluated):
+            self.findings.add_unknown(str(signal), signal.at)
         silent, self.findings.is_silent = self.findings.is_silent, self.findings.is_silent and not self.is_loaded
         self.findings.add(signal, context.when if self.is_loaded else when)
         self.findings.is_silent = silent
@@ -116,6 +118,8 @@ class ActionVisitor:
                 raise NotEvaluated(f"what {kind} does is not evaluated", call.at)
         except LaunchSignal as signal:
             self.findings.add(signal, when)
+            if isinstance(signal, NotEvaluated) and kind not in self._PROCESSES and when is not False:
+                self.findings.add_unknown(str(signal), signal.at)
         for contents, at in context.reads[start:] if when else ():
             self.findings.refer("read", contents, Call("", [], {}, at))
         del context.reads[start:]
@@ -154,6 +158,7 @@ class ActionVisitor:
             if items is None:
                 raise LaunchFails(f"expected a list of actions, found {kind_of(actions)}", call.at)
         except Undetermined as error:
+            self.findings.add_unknown(str(error), call.at)
             self.findings.add_doubt(str(error), call.at)
         except LaunchSignal as signal:
             self.findings.add(signal, when)
@@ -392,10 +397,11 @@ class ActionVisitor:
             self._fields(node, context, _both(when, self._holds(node, context)))
 
     # What each kind of action does, besides the evaluation of its arguments.
+    _PROCESSES: ClassVar = ("Node", "LifecycleNode", "ExecuteProcess", "ComposableNodeContainer")
     _IDLE: ClassVar = frozenset({"LogInfo", "SetRemap", "SetROSLogDir", "LifecycleTransition"})
     _EXECUTES: ClassVar[Mapping[str, Callable[..., None]]] = {
         "DeclareLaunchArgument": _declare, "SetLaunchConfiguration": _assign, "UnsetLaunchConfiguration": _unset,
-        **dict.fromkeys(("Node", "LifecycleNode", "ExecuteProcess", "ComposableNodeContainer"), _process),
+        **dict.fromkeys(_PROCESSES, _process),
         **dict.fromkeys(("TimerAction", "ROSTimer"), _timer), "LoadComposableNodes": _load,
         "IncludeLaunchDescription": _include, "LaunchDescription": _description, "GroupAction": _group,
         "RegisterEventHandler": _register, "OpaqueFunction": _opaque_function,

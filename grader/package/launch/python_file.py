@@ -197,7 +197,7 @@ class PythonLaunchFile:
         self.reads.append((Contents(path, by), call.at))
         text = self.context.around.read(path) if by == "open" else None
         if text is None:
-            call.name, call.args, call.kwargs = "builtins.open", [path], {}
+            call.name, call.args, call.kwargs = "builtins.open", [path], {"by": by}
             return record(evaluation, call)
         self.context.around.texts.setdefault(text, path)
         return StringIO(text)

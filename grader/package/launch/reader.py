@@ -143,6 +143,7 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
         else:
             findings.add_doubt(f"{_ENTRY}, which the file does not define itself,", START)
     if interpreter.doubt is not None:
+        findings.add_unknown(interpreter.doubt.reason, interpreter.doubt.at)
         findings.add_doubt(interpreter.doubt.reason, interpreter.doubt.at)
     for fault in interpreter.errors:
         findings.add_fault(fault.message, fault.at)

@@ -110,7 +110,7 @@ def _python_text(call: Call, context: Context) -> Resolved:
     given = call.kwargs.get("mappings")
     pairs = given.items() if isinstance(given, dict) else ()
     arguments = tuple((str(name), value if isinstance(value, str) else None) for name, value in pairs)
-    by = "xacro" if call.name.startswith("xacro.") else "decode"
+    by = "xacro" if call.name.startswith("xacro.") else call.kwargs.get("by", "decode")
     found = Contents(path, by, arguments)
     context.reads.append((found, call.at))
     return found
