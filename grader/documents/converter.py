@@ -21,6 +21,7 @@ PAGE_BREAK = "\f"  # a line of its own before every page but the first
 PICTURE = "\ufffc"  # a line of its own after the text that a picture is below, or at the end of its page
 MARKS = ("drawing", "pict")  # elements of Word that contain pictures
 _MAX_TEXT = 1024 * 1024
+_MAX_BLOCKS = 15_000  # paragraphs and tables of a Word file; python-docx takes 0.1 ms for each
 _MIN_WORDS = 2  # in a line, on average
 _MAX_PLACED = 20_000  # characters of a page whose words are joined by their positions
 _WEIGHT = 4.0  # of the length of texts, by which pypdf divides to get the width of a column
@@ -108,6 +109,8 @@ def opened(data: bytes) -> Any:
 
 def _docx(data: bytes) -> bytes:
     document = opened(data)
+    if len(document.element.body) > _MAX_BLOCKS:
+        raise ValueError("it has more paragraphs than a text document")
     lists = _Lists(document)
     lines: list[str] = []
     for block in document.iter_inner_content():  # paragraphs and tables in their order
