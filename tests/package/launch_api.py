@@ -124,7 +124,10 @@ def table(*roots: Path) -> dict[str, Any]:
     for name, module in modules.items():
         inner = {other.rpartition(".")[2] for other in modules if other.rpartition(".")[0] == name}
         full = {alias: target(module.imports.get(alias, ""), modules, classes) for alias in module.names}
-        words = [alias + (f"={full[alias]}" if inner and full.get(alias) else "") for alias in sorted(module.names | inner | LATER.get(name, set()))]
+        words = [
+            alias + (f"={full[alias]}" if inner and full.get(alias) else "")
+            for alias in sorted(module.names | inner | LATER.get(name, set()))
+        ]
         exports[name] = " ".join(words)
     rows = {
         name: [base_of(name, classes), effective(name, classes), " ".join(sorted(it[2]))]

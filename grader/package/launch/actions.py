@@ -34,7 +34,9 @@ class ActionVisitor:
     call_function: Callable[[Function, Position, Sequence[Value] | None, Context], Value]
     visited: set[int] = field(default_factory=set)  # the ids of the calls that are part of the description
     executed: dict[int, bool | None] = field(default_factory=dict)  # the processes, by id: each is executed once
-    later: list[tuple[Value, Call, Context, Call | None]] = field(default_factory=list)  # what timers and events execute
+    later: list[tuple[Value, Call, Context, Call | None]] = field(
+        default_factory=list
+    )  # what timers and events execute
     pushed: list[Context] = field(default_factory=list)
     is_loaded: bool = True  # whether an action is part of the description as it is loaded
     steps: int = 0
@@ -103,7 +105,11 @@ class ActionVisitor:
         if not isinstance(name, str):
             raise NotEvaluated("the name of this launch configuration is not evaluated", given.at)
         actual = context.arguments.get(name)
-        if isinstance(actual, Unknown) or isinstance(expected, Unknown) or (actual is None and UNKNOWN_KEYS in context.arguments):
+        if (
+            isinstance(actual, Unknown)
+            or isinstance(expected, Unknown)
+            or (actual is None and UNKNOWN_KEYS in context.arguments)
+        ):
             return None
         return (expected == actual) == (kind == "LaunchConfigurationEquals")
 
@@ -136,7 +142,9 @@ class ActionVisitor:
                     case "text" if not (name == "output" and isinstance(value, dict)):
                         resolve(value, context, call.at)
                     case "texts" | "mapping":
-                        pairs = value.items() if isinstance(value, dict) else ((item,) for item in items_in(value) or ())
+                        pairs = (
+                            value.items() if isinstance(value, dict) else ((item,) for item in items_in(value) or ())
+                        )
                         for item in (item for pair in pairs for item in pair):
                             resolve(item, context, call.at)
                     case "bool" if not isinstance(value, bool):
@@ -354,14 +362,18 @@ class ActionVisitor:
             evaluate_dict({"": call.kwargs["value"]}, context, call.at)
         elif when:
             found = resolve(call.kwargs["filename"], context, call.at)
-            raise NotEvaluated(f"whether {found if isinstance(found, str) else 'a file'} exists is not evaluated", call.at)
+            raise NotEvaluated(
+                f"whether {found if isinstance(found, str) else 'a file'} exists is not evaluated", call.at
+            )
 
     def _sim_time(self, call: Call, context: Context, when: bool | None) -> None:
         del context
         value = call.kwargs["value"]
         if when is not False and not isinstance(value, bool):
             unknown = isinstance(value, Unknown)
-            raise (NotEvaluated if unknown else LaunchFails)("SetUseSimTime takes True or False, in Python only", call.at)
+            raise (NotEvaluated if unknown else LaunchFails)(
+                "SetUseSimTime takes True or False, in Python only", call.at
+            )
 
     def _shutdown(self, call: Call, context: Context, when: bool | None) -> None:
         del context
@@ -383,7 +395,11 @@ class ActionVisitor:
         if isinstance(on_exit, list):
             self._perhaps(on_exit, call, context, when and None)
         if composed := call.kwargs.get("composable_node_descriptions"):
-            self._load(Call(call.name, [], {"target_container": "", "composable_node_descriptions": composed}, call.at), context, when)
+            self._load(
+                Call(call.name, [], {"target_container": "", "composable_node_descriptions": composed}, call.at),
+                context,
+                when,
+            )
 
     def _load(self, call: Call, context: Context, when: bool | None) -> None:
         """Evaluate the nodes that a container loads."""

@@ -62,7 +62,9 @@ def class_named(name: str) -> LaunchClass | None:
             named = own.removesuffix("!")
             parameters[named] = Parameter(named, check, own.endswith("!"), is_positional)
     inherited = class_named(base)
-    return LaunchClass(name, base, parameters, frozenset(methods.split()) | (inherited.methods if inherited else set()), rest)
+    return LaunchClass(
+        name, base, parameters, frozenset(methods.split()) | (inherited.methods if inherited else set()), rest
+    )
 
 
 def is_a(name: str, base: str) -> bool:

@@ -30,7 +30,6 @@ from grader.static_python.values import (
     iterate,
 )
 
-
 _OF_ONE_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
 
 
@@ -118,8 +117,10 @@ def _declaration(call: Call) -> str:
     choices, default = call.kwargs.get("choices"), call.kwargs.get("default_value")
     if choices is not None and not isinstance(choices, Unknown) and not items_in(choices):
         return "choices is empty, or no list"
-    is_known = isinstance(choices, list | tuple) and not any(isinstance(it, Unknown) for it in choices)
-    if is_known and isinstance(default, str) and default not in choices:
+    known = (
+        choices if isinstance(choices, list | tuple) and not any(isinstance(it, Unknown) for it in choices) else None
+    )
+    if known is not None and isinstance(default, str) and default not in known:
         return f"the default {default!r} of {call.kwargs['name']!r} is not one of its choices"
     return ""
 
@@ -166,7 +167,11 @@ def _event_handler(call: Call) -> str:
         raise Undetermined(target.reason)
     if isinstance(target, Call) and not is_a(target.name, ACTION):
         return f"target_action is {kind_of(target)}, not an action"
-    return "" if target is None or isinstance(target, Call | Function | QualifiedName) else "target_action is not an action"
+    return (
+        ""
+        if target is None or isinstance(target, Call | Function | QualifiedName)
+        else "target_action is not an action"
+    )
 
 
 def _description(call: Call) -> str:
@@ -176,21 +181,31 @@ def _description(call: Call) -> str:
 
 def _load(call: Call) -> str:
     target, nodes = call.kwargs["target_container"], call.kwargs["composable_node_descriptions"]
-    is_container = isinstance(target, Call) and is_a(target.name, "launch_ros.actions.composable_node_container.ComposableNodeContainer")
+    is_container = isinstance(target, Call) and is_a(
+        target.name, "launch_ros.actions.composable_node_container.ComposableNodeContainer"
+    )
     wrong = "" if is_container else wrong_text(target)
-    return wrong and f"target_container {wrong}" or ("" if items_in(nodes) is not None else "put [ ] around the nodes")
+    if wrong:
+        return f"target_container {wrong}"
+    return "" if items_in(nodes) is not None else "put [ ] around the nodes"
 
 
 def _shutdown_handler(call: Call) -> str:
     value = call.kwargs["on_shutdown"]
-    if not isinstance(value, Function) and not all(isinstance(it, Call) and is_entity(it) for it in items_in(value) or [value]):
+    if not isinstance(value, Function) and not all(
+        isinstance(it, Call) and is_entity(it) for it in items_in(value) or [value]
+    ):
         raise Undetermined(f"what {kind_of(value)} does at the end")
     return ""
 
 
 def _text_substitution(call: Call) -> str:
     text = call.kwargs["text"]
-    return "" if isinstance(text, str) or (is_text(text) and gives_text(text.name)) else f"text is {kind_of(text)}, not a string"
+    return (
+        ""
+        if isinstance(text, str) or (is_text(text) and gives_text(text.name))
+        else f"text is {kind_of(text)}, not a string"
+    )
 
 
 def _parameter_file(call: Call) -> str:
@@ -211,5 +226,3 @@ _SPECIAL: Mapping[str, Callable[[Call], str]] = {
     "ParameterValue": wrong_typed, "LoadComposableNodes": _load, "OnShutdown": _shutdown_handler,
     **dict.fromkeys(("OnProcessExit", "OnProcessStart", "OnProcessIO", "OnExecutionComplete"), _event_handler),
 }  # fmt: skip
-
-

@@ -76,7 +76,7 @@ def _action(entity: Entity, findings: Findings) -> Call:
         raise LaunchFails(f"there is no action {kind!r}{did_you_mean(kind, _ACTIONS)}", entity.at)
     given = _attributes(entity, f"if unless {_ACTIONS[kind]}")
     condition = _condition(given, entity)
-    if kind in ("set_remap",):
+    if kind == "set_remap":
         given = {"src": given["from"], "dst": given["to"]}
     kwargs = {_ARGUMENTS.get(name, name): _value(entity, name, value) for name, value in given.items()}
     if condition is not None:
@@ -114,7 +114,11 @@ def _attributes(entity: Entity, known: str) -> dict[str, Any]:
         plain = name.removesuffix("-sep") if not entity.is_yaml else name
         if plain not in names or plain in lists or plain == "children":
             right = _ROS1_ATTRIBUTES.get(entity.kind, {}).get(name)
-            hint = (f" in ROS 2; write {right!r}" if right else " in ROS 2") if right is not None else did_you_mean(name, names)
+            hint = (
+                (f" in ROS 2; write {right!r}" if right else " in ROS 2")
+                if right is not None
+                else did_you_mean(name, names)
+            )
             raise LaunchFails(f"<{entity.kind}> has no attribute {name!r}{hint}", entity.at)
         if plain == name:
             found[name] = _typed(entity, name, value, names[name])
@@ -174,7 +178,11 @@ def _value(entity: Entity, name: str, value: Any) -> Value:
 
 def _add_elements(entity: Entity, kwargs: dict[str, Value], findings: Findings) -> None:
     """Add the arguments that the elements in an entity stand for."""
-    nested = {name: inner for name, inner in entity.nested.items() if f"{name}[]" in _ACTIONS[entity.kind].replace("!", "").split()}
+    nested = {
+        name: inner
+        for name, inner in entity.nested.items()
+        if f"{name}[]" in _ACTIONS[entity.kind].replace("!", "").split()
+    }
     for name, inner in nested.items():
         match name:
             case "param":
@@ -210,7 +218,9 @@ def _pairs(entity: Entity) -> dict[str, list[Value]]:
 def _composable(entity: Entity) -> Call:
     given = _attributes(entity, _NESTED[entity.kind])
     condition = _condition(given, entity)
-    kwargs: dict[str, Value] = {_ARGUMENTS.get(name, name): parse_value(value, entity.at) for name, value in given.items()}
+    kwargs: dict[str, Value] = {
+        _ARGUMENTS.get(name, name): parse_value(value, entity.at) for name, value in given.items()
+    }
     if condition is not None:
         kwargs["condition"] = condition
     kwargs["parameters"] = [_parameter(it) for it in entity.nested.get("param", [])]

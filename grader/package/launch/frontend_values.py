@@ -64,7 +64,9 @@ class _ValueParser:
             self.position += 2
             return self.substitution(quote, depth + 1)
         start = self.position
-        while self.position < len(self.text) and not self.text.startswith("$(", self.position) and self.next not in ends:
+        while (
+            self.position < len(self.text) and not self.text.startswith("$(", self.position) and self.next not in ends
+        ):
             is_escape = self.next == "\\" and self.text[self.position + 1 : self.position + 2] not in ("", " ", "\n")
             self.position += 2 if is_escape else 1
         return re.sub(r"\\(.)", r"\1", self.text[start : self.position])
@@ -93,7 +95,9 @@ class _ValueParser:
         while self.next and self.next not in _BEFORE_NEXT[quote]:
             found.append(self.part(_BEFORE_NEXT[quote], quote, depth))
         if not found:
-            raise LaunchFails(f"an argument is missing in {self.text[:60]!r}: write one space between arguments", self.at)
+            raise LaunchFails(
+                f"an argument is missing in {self.text[:60]!r}: write one space between arguments", self.at
+            )
         return found
 
     def call(self, name: str, values: list[list[Value]]) -> Call:
@@ -105,7 +109,10 @@ class _ValueParser:
             raise LaunchFails("$(command ...) needs quotes around its command: $(command 'xacro ...')", self.at)
         if name not in _ARGUMENTS:
             similar = closest(name, _ARGUMENTS)
-            raise LaunchFails(f"there is no substitution $({name} ...){f'; did you mean $({similar} ...)?' if similar else ''}", self.at)
+            raise LaunchFails(
+                f"there is no substitution $({name} ...){f'; did you mean $({similar} ...)?' if similar else ''}",
+                self.at,
+            )
         names = _ARGUMENTS[name].split()
         if not len([it for it in names if it[0] != "["]) <= len(values) <= len(names):
             raise LaunchFails(f"$({name} ...) takes {len(names) or 'no'} argument{'s' * (len(names) != 1)}", self.at)

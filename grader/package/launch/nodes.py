@@ -91,7 +91,9 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
     """Add the node that a Node action starts, and the files that it is given."""
     own = call.kwargs.get("package")
     if own is None:
-        words = _words([call.kwargs["executable"], *(items_in(call.kwargs.get("arguments") or []) or [])], context, call.at)
+        words = _words(
+            [call.kwargs["executable"], *(items_in(call.kwargs.get("arguments") or []) or [])], context, call.at
+        )
         if words[0] == _RVIZ:
             _start(findings, _RVIZ, _RVIZ, call, context, when)
             return
@@ -100,7 +102,11 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
         _start(findings, package, executable, call, context, when)
         return
     unknown = executable if own is not None and isinstance(package, str) else package
-    reason = "a node without a package is a program of the machine" if own is None else "the program of a node is not evaluated"
+    reason = (
+        "a node without a package is a program of the machine"
+        if own is None
+        else "the program of a node is not evaluated"
+    )
     findings.add_unknown(unknown.reason if own is not None and isinstance(unknown, Unknown) else reason, call.at)
 
 
@@ -222,7 +228,11 @@ def _origin(text: str, context: Context, at: Position) -> Resolved:
     files = [path for read, path in texts.items() if "<robot" in read]
     part = Unknown("robot_description is given a part of the text of a file, which is not evaluated", at)
     if "<robot" in text:
-        return Contents(files[0], "open") if len(files) == 1 else Unknown("a robot that the launch file contains is not evaluated", at)
+        return (
+            Contents(files[0], "open")
+            if len(files) == 1
+            else Unknown("a robot that the launch file contains is not evaluated", at)
+        )
     return part if not text or any(text in read for read in texts) else text
 
 
@@ -240,7 +250,8 @@ def _find_configuration(findings: Findings, call: Call, context: Context) -> Non
         )
         findings.refer("rviz", None, call, wrong=message)
     elif path is None or PART_UNKNOWN in path:
-        found = (_attempt(piece, context, call.at) for piece in arguments if not isinstance(arguments, str))
+        pieces = arguments if isinstance(arguments, list | tuple) else []
+        found = (_attempt(piece, context, call.at) for piece in pieces)
         unnamed = Unknown("the file that it opens is known only at run time", call.at)
         findings.refer("rviz", next((it for it in found if isinstance(it, Unknown)), unnamed), call)
     elif path != path.lstrip():

@@ -85,7 +85,9 @@ def _yaml_of(name: str, value: Value, context: Context, at: Position) -> Any:
         return yaml.load(text or "''", Loader=_LOADER)  # noqa: S506  a safe loader
     except (yaml.YAMLError, ValueError, RecursionError):
         if isinstance(found, Contents) and found.by == "xacro":
-            raise NotEvaluated(f"whether the output of xacro is YAML, as which {name!r} is read, is not evaluated", at) from None
+            raise NotEvaluated(
+                f"whether the output of xacro is YAML, as which {name!r} is read, is not evaluated", at
+            ) from None
         hint = "write ParameterValue(..., value_type=str)"
         raise LaunchFails(f"the parameter {name!r} is read as YAML, which fails: {hint}", at) from None
 
@@ -101,7 +103,9 @@ def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> No
 
 def _evaluate_typed(call: Call, context: Context) -> None:
     value = call.kwargs["value"]
-    if isinstance(value, SCALARS) or (isinstance(value, list | tuple) and not any(isinstance(it, Call) for it in value)):
+    if isinstance(value, SCALARS) or (
+        isinstance(value, list | tuple) and not any(isinstance(it, Call) for it in value)
+    ):
         return
     try:
         kind = type_of(call)

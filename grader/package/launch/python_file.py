@@ -107,16 +107,16 @@ class PythonLaunchFile:
 
     def _functions(self) -> FunctionTable:
         find = [
-            f"launch_ros.substitutions.find_package.{name}" for name in ("FindPackageShare.find", "FindPackagePrefix.find")
+            f"launch_ros.substitutions.find_package.{name}"
+            for name in ("FindPackageShare.find", "FindPackagePrefix.find")
         ]
-        performs = [name for name in _methods("perform", SUBSTITUTION)]
         adds = [f"{DESCRIPTION}.{name}" for name in ("add_action", "add_entity")]
         return _Functions(
             {
                 **standard_functions(WORKING_FOLDER),
                 **dict.fromkeys(_RECORDED, record),
                 **dict.fromkeys(adds, _add),
-                **dict.fromkeys(performs, self._perform),
+                **dict.fromkeys(_methods("perform", SUBSTITUTION), self._perform),
                 **dict.fromkeys(_methods("evaluate", CONDITION), self._evaluate),
                 "launch.launch_context.LaunchContext.perform_substitution": self._perform_argument,
                 "launch.utilities.perform_substitutions": self._perform_argument,

@@ -22,7 +22,13 @@ from grader.static_python.values import Call, Function, Unknown, Value
 _ENTRY = "generate_launch_description"
 _NODE = "launch_ros.actions.node.Node"
 _MAX_INCLUDES = 10
-_JOINED = ("nodes", "references", "faults", "unknown", "doubts")  # what a launch file shares with those that it includes
+_JOINED = (
+    "nodes",
+    "references",
+    "faults",
+    "unknown",
+    "doubts",
+)  # what a launch file shares with those that it includes
 
 # Returns the bytes of an installed file and its path in the submission, by its path below the prefix; None for other
 # files.

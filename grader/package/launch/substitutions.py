@@ -168,7 +168,9 @@ class _Substitution:
             return arguments[name]
         default = self.call.kwargs.get("default")
         if UNKNOWN_KEYS in arguments:
-            raise NotEvaluated(f"whether {name!r} is declared in a file that is not submitted is not evaluated", self.call.at)
+            raise NotEvaluated(
+                f"whether {name!r} is declared in a file that is not submitted is not evaluated", self.call.at
+            )
         if default is not None:
             items = default if isinstance(default, list | tuple) else [default]
             return self.resolve([item if isinstance(item, str | Call | Unknown) else str(item) for item in items])
@@ -270,7 +272,9 @@ def _plain(value: Value) -> Value:
     """Return an operand of EqualsSubstitution, which takes any value, as the text that it is compared as."""
     if isinstance(value, bool | None):
         return str(value).lower() if value is not None else ""
-    is_text = isinstance(value, str | Call | Unknown) or (isinstance(value, list | tuple) and any(isinstance(it, Call) for it in value))
+    is_text = isinstance(value, str | Call | Unknown) or (
+        isinstance(value, list | tuple) and any(isinstance(it, Call) for it in value)
+    )
     return value if is_text else str(value)
 
 

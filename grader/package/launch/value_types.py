@@ -16,8 +16,16 @@ TEXT_METHODS = ("replace", "strip", "lstrip", "rstrip", "expandtabs", "decode")
 SCALARS = (bool, int, float, str)
 TYPED = ("launch_ros.parameter_descriptions.ParameterValue", "launch_ros.parameter_descriptions.Parameter")
 FILE = "launch_ros.parameter_descriptions.ParameterFile"
-_COLLECTIONS = (list, tuple, dict, set, frozenset, type({}.items()), type({}.keys()), type({}.values()))
-_NAMES = {type(None): "None", bool: "a boolean", int: "a number", float: "a number", dict: "a dict", Function: "a function"}
+_VIEWS: tuple[type, ...] = tuple(type(view()) for view in ({}.keys, {}.values, {}.items))
+_COLLECTIONS: tuple[type, ...] = (list, tuple, dict, set, frozenset, *_VIEWS)
+_NAMES = {
+    type(None): "None",
+    bool: "a boolean",
+    int: "a number",
+    float: "a number",
+    dict: "a dict",
+    Function: "a function",
+}
 
 
 class UnknownText(Unknown):
@@ -92,7 +100,9 @@ def typed(kind: type) -> Callable[[Value], str]:
             return "" if isinstance(value, kind) else f"takes {_WANTED[kind]} or a substitution"
         if isinstance(value, list | tuple) and any(isinstance(item, Call | Unknown) for item in value):
             return wrong_text(value)
-        return "" if not isinstance(value, _COLLECTIONS) and is_text(value) else f"takes {_WANTED[kind]} or a substitution"
+        return (
+            "" if not isinstance(value, _COLLECTIONS) and is_text(value) else f"takes {_WANTED[kind]} or a substitution"
+        )
 
     return checked
 
@@ -156,5 +166,3 @@ def type_of(call: Call) -> "type | None":
     if found is None:
         raise Undetermined(f"the type {name}")
     return found
-
-
