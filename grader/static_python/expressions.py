@@ -61,9 +61,7 @@ class Expressions:
         value: Value = kind(self, node, scope)
         return self.budget.checked(value) if type(node) in _MAKES_VALUES else value
 
-    def evaluate(self, node: ast.expr, scope: Scope) -> Value:
-        """Return the value of a part of an expression: in a file, it may be Unknown."""
-        return self.value(node, scope)
+    evaluate = value  # of a part of an expression: in a file, it may be Unknown
 
     def _of_constant(self, node: ast.Constant, scope: Scope) -> Value:
         del scope
