@@ -202,6 +202,8 @@ class Expressions:
 
     def unpack_items(self, targets: Sequence[ast.expr], value: Value, scope: Scope) -> None:
         """Bind several targets to the items of a value."""
+        if any(isinstance(target, ast.Starred) for target in targets):
+            raise Undetermined("a target with a star is not supported")
         values = list(iterate(value))
         if len(values) != len(targets):
             message = f"ValueError: cannot unpack {len(values)} values into {len(targets)} names"

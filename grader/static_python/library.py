@@ -24,7 +24,7 @@ def standard_functions(working_folder: str) -> FunctionTable:
         return posixpath.normpath(posixpath.join(working_folder, path))
 
     def relative(path: py.Value, start: py.Value = ".") -> str:
-        return posixpath.relpath(absolute(path), absolute(start))
+        return posixpath.relpath(absolute(path) if path else path, absolute(start))
 
     own: dict[str, Callable[..., py.Value]] = {
         "abspath": absolute, "realpath": absolute, "relpath": relative, "join": _join,
