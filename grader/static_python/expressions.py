@@ -115,11 +115,6 @@ class Expressions:
     def _of_listcomp(self, node: ast.ListComp, scope: Scope) -> Value:
         return [self.evaluate(node.elt, inner) for inner in self.rounds(node.generators, Scope({}, scope))]
 
-    def _of_await(self, _: ast.expr, __: Scope) -> Value:
-        raise ExpressionFails("SyntaxError: await and yield belong into functions")
-
-    _of_yield = _of_yieldfrom = _of_await
-
     def _of_compare(self, node: ast.Compare, scope: Scope) -> Value:
         left = self.evaluate(node.left, scope)
         for op, comparator in zip(node.ops, node.comparators, strict=True):
