@@ -91,9 +91,8 @@ def _range(*bounds: int) -> range:
     return numbers
 
 
-def _len(value: py.Value) -> int:
-    known: Any = value if isinstance(value, (*py.PLAIN, py.Items)) else py.known(value)
-    return len(known)
+def _sized(value: py.Value) -> py.Value:
+    return value if isinstance(value, (*py.PLAIN, py.Items)) else py.known(value)
 
 
 def _next(value: py.Value, *default: py.Value) -> py.Value:
@@ -101,10 +100,6 @@ def _next(value: py.Value, *default: py.Value) -> py.Value:
         return next(value.iterator if isinstance(value, py.Items) else py.known(value), *default)
     except StopIteration:
         return _refuse("the end of an iterator")
-
-
-def _reversed(value: py.Value) -> py.Items:
-    return py.Items(reversed(value if not isinstance(value, py.OPAQUE) else py.known(value)))
 
 
 def _map(apply: Apply, function: py.Value, first: py.Value, *lists: py.Value) -> py.Items:
@@ -145,10 +140,11 @@ def _keyed(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
 
 
 _HOLDING: dict[str, Callable[..., Any]] = {
-    "list": _of_items(list), "tuple": _of_items(tuple), "dict": make_dict, "len": _len, "next": _next,
+    "list": _of_items(list), "tuple": _of_items(tuple), "dict": make_dict, "next": _next,
+    "len": lambda value: len(_sized(value)), "reversed": lambda value: py.Items(reversed(_sized(value))),
     "bool": lambda *args: truth(*args) if args else False, "iter": lambda value: py.Items(py.iterate(value)),
     "enumerate": lambda value, start=0: py.Items(enumerate(py.iterate(value), py.known(start))),
-    "zip": lambda *values: py.Items(zip(*map(py.iterate, values), strict=False)), "reversed": _reversed,
+    "zip": lambda *values: py.Items(zip(*map(py.iterate, values), strict=False)),
     "any": lambda items: any(map(truth, py.iterate(items))), "all": lambda items: all(map(truth, py.iterate(items))),
 }  # fmt: skip
 _APPLYING: dict[str, Callable[..., Any]] = {

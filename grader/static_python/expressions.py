@@ -61,9 +61,7 @@ class Expressions:
         value: Value = kind(self, node, scope)
         return self.budget.checked(value) if type(node) in _MAKES_VALUES else value
 
-    def evaluate(self, node: ast.expr, scope: Scope) -> Value:
-        """Return the value of a part of an expression: in a file, it may be Unknown."""
-        return self.value(node, scope)
+    evaluate = value  # of a part of an expression: in a file, it may be Unknown
 
     def _of_constant(self, node: ast.Constant, scope: Scope) -> Value:
         del scope
@@ -116,11 +114,6 @@ class Expressions:
 
     def _of_listcomp(self, node: ast.ListComp, scope: Scope) -> Value:
         return [self.evaluate(node.elt, inner) for inner in self.rounds(node.generators, Scope({}, scope))]
-
-    def _of_await(self, _: ast.expr, __: Scope) -> Value:
-        raise ExpressionFails("SyntaxError: await and yield belong into functions")
-
-    _of_yield = _of_yieldfrom = _of_await
 
     def _of_compare(self, node: ast.Compare, scope: Scope) -> Value:
         left = self.evaluate(node.left, scope)
@@ -204,6 +197,8 @@ class Expressions:
 
     def unpack_items(self, targets: Sequence[ast.expr], value: Value, scope: Scope) -> None:
         """Bind several targets to the items of a value."""
+        if any(isinstance(target, ast.Starred) for target in targets):
+            raise Undetermined("a target with a star is not supported")
         values = list(iterate(value))
         if len(values) != len(targets):
             message = f"ValueError: cannot unpack {len(values)} values into {len(targets)} names"

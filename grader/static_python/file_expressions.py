@@ -111,5 +111,4 @@ class FileExpressions(Calls):
         return self.function(node.args, scope, position_of(node), lambda inner: self.evaluate(node.body, inner))
 
 
-_OUTSIDE = (ast.Await, ast.Yield, ast.YieldFrom)  # of functions, these are errors in xacro
-FileExpressions.KINDS = {kind: run for kind, run in kinds_of(FileExpressions).items() if kind not in _OUTSIDE}
+FileExpressions.KINDS = kinds_of(FileExpressions)

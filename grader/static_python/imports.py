@@ -81,6 +81,7 @@ CONSTANTS = {
     "os.curdir": ".",
     "os.pardir": "..",
     "os.name": "posix",
+    "sys.platform": "linux",
 }
 
 

@@ -8,6 +8,7 @@ from io import StringIO
 
 from grader.static_python import values as py
 from grader.static_python.budget import Budget, OutOfBudget
+from grader.static_python.builtins import truth
 from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable, RaisedFlow
 from grader.static_python.parse import Code, Position, bound_in, own_nodes, position_of
 from grader.static_python.statements import LoopFlow, ReturnFlow, Statements
@@ -100,10 +101,10 @@ class Interpreter(Statements):
         return None
 
     def _on_if(self, node: ast.If, scope: py.Scope) -> None:
-        self._block(node.body if self.holds(node.test, scope) else node.orelse, scope)
+        self._block(node.body if truth(self.evaluate(node.test, scope)) else node.orelse, scope)
 
     def _on_while(self, node: ast.While, scope: py.Scope) -> None:
-        while self.holds(node.test, scope):
+        while truth(self.evaluate(node.test, scope)):
             if not self._round(node.body, scope):
                 return
         self._block(node.orelse, scope)

@@ -86,9 +86,9 @@ def _parse(data: bytes, path: str) -> Code | SyntaxFault:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # such as an invalid escape sequence, which Python accepts
             try:
-                tree = ast.parse(text)
+                tree = ast.parse(text, feature_version=_JAZZY)
             except SystemError:  # CPython 3.11 miscounts its depth if its garbage collector runs meanwhile: try again
-                tree = ast.parse(text)
+                tree = ast.parse(text, feature_version=_JAZZY)
             # Never run: the compiler finds errors that the grammar allows.
             compile(tree, path, "exec", dont_inherit=True)
             return Code(source, tree)

@@ -129,15 +129,8 @@ class Statements(FileExpressions):
     _on_continue = _on_break
 
     def _on_assert(self, node: ast.Assert, scope: py.Scope) -> None:
-        if not self.holds(node.test, scope):
+        if not truth(self.evaluate(node.test, scope)):
             self.error("this assertion fails", position_of(node), AssertionError)
-
-    def holds(self, test: ast.expr, scope: py.Scope) -> bool:
-        """Return whether a condition holds; stop where this is unknown."""
-        try:
-            return truth(self.evaluate(test, scope))
-        except py.Undetermined as error:
-            raise EvaluationStopped(f"a condition is not evaluated: {error}", error.at or position_of(test)) from None
 
     def _on_delete(self, node: ast.Delete, scope: py.Scope) -> None:
         for target in node.targets:

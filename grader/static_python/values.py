@@ -5,9 +5,10 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 from functools import cached_property
 from io import StringIO
 from pathlib import PurePosixPath
-from typing import Any, NoReturn, dataclass_transform
+from typing import TYPE_CHECKING, Any, NoReturn, dataclass_transform
 
-from grader.static_python.parse import Position
+if TYPE_CHECKING:
+    from grader.static_python.parse import Position
 
 # A plain value is a str, number, bool, None, list, tuple, dict, range, StringIO (a file) or PurePosixPath.
 Value = Any
@@ -42,7 +43,7 @@ class ExpressionFails(EvaluationSignal):
 class Undetermined(EvaluationSignal):
     """The value of an expression cannot be determined statically; the text says why, and `at` where, if it is known."""
 
-    def __init__(self, message: str, at: Position | None = None) -> None:
+    def __init__(self, message: str, at: "Position | None" = None) -> None:
         super().__init__(message)
         self.at = at
 
@@ -65,7 +66,7 @@ class Unknown(Record):
     """A value that is not known, and why."""
 
     reason: str
-    at: Position
+    at: "Position"
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Unknown) and (self.reason, self.at) == (other.reason, other.at)
@@ -96,7 +97,7 @@ class Call(Record):
     name: str
     args: list[Value]
     kwargs: dict[str, Value]
-    at: Position
+    at: "Position"
     owner: "Call | None" = None
 
     @cached_property
@@ -119,7 +120,7 @@ class Function(Record):
     scope: "Scope"
     defaults: dict[str, Value]
     body: Callable[["Scope"], Value]
-    at: Position
+    at: "Position"
     local: frozenset[str] = frozenset()
 
 

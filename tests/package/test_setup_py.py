@@ -21,7 +21,7 @@ UNKNOWN: dict[str, str] = {
     "data_files_in_setup_cfg": "line 3: the section [options.data_files] of setup.cfg is not evaluated",
     "destination_with_dots": "line 5: the target share/my_robot/../my_robot/rviz is not supported",
     "environment_chooses_the_setup": "line 4: the value of os.environ is not evaluated",
-    "environment_condition": "line 6: a condition is not evaluated: the environment is known only at run time",
+    "environment_condition": "line 6: this statement is not evaluated: the environment is known only at run time",
     "environment_in_destination": "line 4: the environment is known only at run time",
     "files_are_made": "line 4: shutil.copy is not evaluated",
     "folder_name_for_the_package": "line 4: the name of a folder on the machine is not known",

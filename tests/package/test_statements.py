@@ -1,5 +1,6 @@
 """Whatever statement is put at any place into a setup.py, nothing is stated that Python does not do."""
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 from random import Random
@@ -84,6 +85,12 @@ def compared(folder: Path, texts: list[str]) -> list[str]:
     setups = [read_setup(parse(text.encode(), "setup.py"), tree) for text in texts]
     pairs = zip(texts, setups, run_all(folder, texts), strict=True)
     return [f"{found}:\n{text}" for text, setup, ran in pairs if (found := wrong(setup, ran))]
+
+
+def test_short_programs(package: Path) -> None:
+    """Programs that change the list of files, read a file, or raise an error: before the list, and after it."""
+    programs: list[str] = json.loads(Path(__file__).with_name("programs.json").read_text("utf-8"))
+    assert compared(package, [file.replace("{}", program) for program in programs for file in FILES[:2]]) == []
 
 
 def test_statements_at_random_places(package: Path) -> None:

@@ -66,7 +66,7 @@ def test_the_value_is_pythons(text: str) -> None:
 @pytest.mark.parametrize(
     "text",
     ["1 +", "missing", "1 / 0", "'a' + 1", "[][0]", "dict()['a']", "size.missing", "float('x')", "5(3)", "len(5)", "1\n2",
-     "x = 1", "sqrt(-1)", "max()", "dict(a=1, a=2)", "await 1", "''.join([1])", "sorted([1, 'a'])", "-text", ""],
+     "x = 1", "sqrt(-1)", "max()", "dict(a=1, a=2)", "''.join([1])", "sorted([1, 'a'])", "-text", ""],
 )  # fmt: skip
 def test_what_python_refuses_fails(text: str) -> None:
     """An expression for which Python raises an error fails with its message."""
@@ -82,7 +82,7 @@ def test_what_python_refuses_fails(text: str) -> None:
      "'a' * 10**9", "[0] * 10**9", "10**9 * 'a'", "range(10**9)", "factorial(10**6)", "round(1, -10**9)",
      "'a'.ljust(10**9)", "[[[0] * 99] * 99] * 99", "size is 4", "(a := 1)", "[]" + "()" * 400, "-" * 3000 + "1",
      "f'{text}'", "{size}", "{'a': 1}", "[*text]", "max(*[1, 2])", "dict(**table)", "lambda: 1", "(x for x in [1])",
-     "~size", "size << 1", "1j", "b'a'", "...", "divmod(7, 2)",
+     "~size", "size << 1", "await 1", "1j", "b'a'", "...", "divmod(7, 2)",
      "isinstance(1, int)", "text.zfill(9)", "(-8) ** 0.5", "dict([(0.5, 1)])", "dict([(2**40, 1)])"],
 )  # fmt: skip
 def test_what_is_dangerous_or_unknown_has_no_value(text: str) -> None:

@@ -381,11 +381,11 @@ def test_a_wrong_depth_count_of_cpython_is_harmless(monkeypatch: pytest.MonkeyPa
     calls: list[str] = []
     parse_once: Any = ast.parse
 
-    def miscounting(text: str, *rest: Any) -> Any:
+    def miscounting(text: str, **rest: Any) -> Any:
         calls.append(text)
         if len(calls) == 1:
             raise SystemError("AST constructor recursion depth mismatch (before=50, after=47)")
-        return parse_once(text, *rest)
+        return parse_once(text, **rest)
 
     monkeypatch.setattr(ast, "parse", miscounting)
     assert isinstance(parse(b"x = 1\n", "setup.py"), Code)
