@@ -65,10 +65,7 @@ def read_yaml(data: bytes, path: str) -> YamlNode:
         mark = error.problem_mark or error.context_mark
         location = _location(source, mark) if mark else Location(path, 1, 1)
         message = " ".join(filter(None, (error.context, error.problem)))
-        is_deep = "nesting depth" in message  # a limit of newer versions of libyaml
-        raise YamlFault(
-            "the file is too deeply nested" if is_deep else message or "this is not YAML", location
-        ) from None
+        raise YamlFault(message or "this is not YAML", location) from None
     except yaml.YAMLError as error:  # such as characters that YAML forbids
         raise YamlFault(" ".join(str(error).split())[:200], Location(path, 1, 1)) from None
     except RecursionError:
