@@ -68,14 +68,19 @@ def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool 
         return judged(False, what, tuple(sorted(started)), tuple(nodes), at=at, detail=detail)
     if launch.doubts:
         return _doubtful(launch)
-    if missing:
-        reason = f": {launch.unknown[0].message}" if launch.unknown else ""
-        message = f"cannot determine statically whether {listed} is started{reason}; needs manual grading"
-        return pending(message, "cannot determine statically which nodes the launch file starts")
-    unknown = next((it for it in places if it.state == "unknown" and _stops(it.file) and it.file.path), None)
-    if unknown is not None:
-        return pending(f"{unknown.text}, and the launch file reads it; needs manual grading", _UNKNOWN_FILES)
+    unknown = next((it.text for it in places if it.state == "unknown" and _stops(it.file) and it.file.path), "")
+    if missing or unknown:
+        return _undecided(launch, listed, unknown)
     return judged(True, f"the launch file starts {', '.join(sorted(started))}", tuple(sorted(started)), tuple(nodes))
+
+
+def _undecided(launch: "Launch", missing: str, unknown: str) -> Outcome:
+    """Return that whether nodes are started is not known, or whether a file that the launch file reads is there."""
+    if not missing:
+        return pending(f"{unknown}, and the launch file reads it; needs manual grading", _UNKNOWN_FILES)
+    reason = f": {launch.unknown[0].message}" if launch.unknown else ""
+    message = f"cannot determine statically whether {missing} is started{reason}; needs manual grading"
+    return pending(message, "cannot determine statically which nodes the launch file starts")
 
 
 def _doubtful(launch: "Launch") -> Outcome:

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 
 WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file", "read": "file"}
 ENDINGS = {
-    "urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".launch", ".yaml", ".yml"), "read": ("",)
+    "urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".launch", ".yaml", ".yml"),
+    "read": ("",)
 }  # fmt: skip
 
 

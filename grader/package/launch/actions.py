@@ -5,10 +5,11 @@ from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 from grader.package.launch.api import CONDITION, ENTITY, SOURCE, class_named, is_a
+from grader.package.launch.effects import EFFECTS
 from grader.package.launch.known_files import start_known_file
 from grader.package.launch.model import Context, Findings, LaunchFails, LaunchSignal, NotEvaluated, Resolved
-from grader.package.launch.nodes import absolute_namespace, evaluate_node, evaluate_process, start_node, start_process
-from grader.package.launch.parameters import evaluate_dict, evaluate_parameters
+from grader.package.launch.nodes import evaluate_node, evaluate_process, start_node, start_process
+from grader.package.launch.parameters import evaluate_parameters
 from grader.package.launch.substitutions import boolean, condition, known_text, resolve
 from grader.package.launch.value_types import items_in, kind_of
 from grader.static_python.parse import START, Position
@@ -18,7 +19,6 @@ _MAX_ACTIONS = 5_000
 _MAX_DEPTH = 40
 CIRCULAR_INCLUDE = "it includes itself"
 _HANDLER = "launch.event_handler.BaseEventHandler"
-_SEARCHED = ("AMENT_PREFIX_PATH", "PATH", "PYTHONPATH", "LD_LIBRARY_PATH")  # by which packages and programs are found
 _LATE = ("sigterm_timeout", "sigkill_timeout", "default_value")  # arguments that are not evaluated at once
 
 # Takes the path of a launch file below the prefix and the context for it; returns why it is not read, or nothing.
@@ -37,7 +37,6 @@ class ActionVisitor:
     later: list[tuple[Value, Call, Context, Call | None]] = field(
         default_factory=list
     )  # what timers and events execute
-    pushed: list[Context] = field(default_factory=list)
     is_loaded: bool = True  # whether an action is part of the description as it is loaded
     steps: int = 0
     depth: int = 0
@@ -120,6 +119,8 @@ class ActionVisitor:
         try:
             if own is not None:
                 own(self, call, context, when)
+            elif kind in EFFECTS:
+                EFFECTS[kind](self.findings, call, context, when)
             elif kind not in self._IDLE:
                 raise NotEvaluated(f"what {kind} does is not evaluated", call.at)
         except LaunchSignal as signal:
@@ -138,22 +139,7 @@ class ActionVisitor:
             if value is None or name in _LATE:
                 continue
             try:
-                match test:
-                    case "text" if not (name == "output" and isinstance(value, dict)):
-                        resolve(value, context, call.at)
-                    case "texts" | "mapping":
-                        pairs = (
-                            value.items() if isinstance(value, dict) else ((item,) for item in items_in(value) or ())
-                        )
-                        for item in (item for pair in pairs for item in pair):
-                            resolve(item, context, call.at)
-                    case "bool" if not isinstance(value, bool):
-                        boolean(known_text(value, context, call.at), call.at)
-                    case "parameters":
-                        evaluate_parameters(value, context, call.at)
-                    case "remappings":
-                        for rule in items_in(value) or ():
-                            resolve(rule[0], context, call.at), resolve(rule[1], context, call.at)
+                _evaluate(value, name, test, context, call.at)
             except LaunchSignal as signal:
                 self.findings.add(signal, when)
             except Undetermined as error:
@@ -272,115 +258,6 @@ class ActionVisitor:
         if reason:
             context.arguments[UNKNOWN_KEYS] = Unknown(reason, call.at)
 
-    def _declare(self, call: Call, context: Context, when: bool | None) -> None:
-        name, choices = call.kwargs["name"], call.kwargs.get("choices")
-        if not isinstance(name, str):
-            raise NotEvaluated("the name of this launch argument is not evaluated", call.at)
-        if when is False:
-            return
-        default = call.kwargs.get("default_value")
-        is_given = name in context.given or (name in context.arguments and call.kwargs.get("condition") is not None)
-        if default is None and not is_given:
-            raise LaunchFails(f"the launch argument {name!r} has no default, and no value is given", call.at)
-        if name not in context.arguments:
-            self._set(name, default, call, context, when)
-        value = context.arguments[name]
-        if choices is not None and when:
-            if not isinstance(value, str) or not isinstance(choices, list | tuple):
-                raise NotEvaluated(f"whether {name!r} is one of its choices is not evaluated", call.at)
-            if value not in choices:
-                raise LaunchFails(f"the value {value!r} of {name!r} is not one of its choices", call.at)
-
-    def _assign(self, call: Call, context: Context, when: bool | None) -> None:
-        if when is not False:
-            self._set(known_text(call.kwargs["name"], context, call.at), call.kwargs["value"], call, context, when)
-
-    def _set(self, name: str, value: Value, call: Call, context: Context, when: bool | None) -> None:
-        uncertain = Unknown(f"the launch argument {name!r} is set under a condition", call.at)
-        try:
-            context.arguments[name] = resolve(value, context, call.at) if when else uncertain
-        except LaunchSignal as signal:
-            context.arguments[name] = Unknown(str(signal), signal.at)
-            raise
-
-    def _unset(self, call: Call, context: Context, when: bool | None) -> None:
-        if when:
-            context.arguments.pop(known_text(call.kwargs["name"], context, call.at), None)
-        elif when is None:
-            raise NotEvaluated("a launch argument that is unset under a condition is not evaluated", call.at)
-
-    def _environment(self, call: Call, context: Context, when: bool | None) -> None:
-        if when is False:
-            return
-        name, value = (call.kwargs.get(it) for it in ("name", "value"))
-        variable = known_text(name, context, call.at)
-        if (not variable or "=" in variable) and not call.name.endswith("UnsetEnvironmentVariable"):
-            raise LaunchFails(f"an environment variable cannot be called {variable!r}", call.at)
-        is_set = call.name.endswith("SetEnvironmentVariable") and when
-        found: Resolved | None = resolve(value, context, call.at) if is_set else None
-        if not is_set and not (call.name.endswith("UnsetEnvironmentVariable") and when):
-            found = Unknown("the environment is not evaluated", call.at)
-        context.environment[variable] = found
-        if variable in _SEARCHED and not call.name.endswith("AppendEnvironmentVariable"):
-            raise NotEvaluated(f"what is found with another {variable} is not evaluated", call.at)
-
-    def _push(self, call: Call, context: Context, when: bool | None) -> None:
-        if when is None:
-            raise NotEvaluated("what is pushed under a condition is not evaluated", call.at)
-        if when:
-            self.pushed.append(context.copy())
-
-    def _pop(self, call: Call, context: Context, when: bool | None) -> None:
-        if when is None:
-            raise NotEvaluated("what is popped under a condition is not evaluated", call.at)
-        if when and not self.pushed:
-            raise LaunchFails("nothing has been pushed before", call.at)
-        if when:
-            kept = self.pushed.pop()
-            context.arguments, context.environment = kept.arguments, kept.environment
-
-    def _reset(self, call: Call, context: Context, when: bool | None) -> None:
-        own = call.kwargs.get("launch_configurations") or {}
-        if when is None:
-            raise NotEvaluated("what is reset under a condition is not evaluated", call.at)
-        if not isinstance(own, dict):
-            raise LaunchFails(f"launch_configurations is {kind_of(own)}, not a dict", call.at)
-        kept = {known_text(name, context, call.at): resolve(value, context, call.at) for name, value in own.items()}
-        if when:
-            context.arguments.clear()
-            context.arguments.update(kept)
-
-    def _namespace(self, call: Call, context: Context, when: bool | None) -> None:
-        if when is not False:
-            pushed = known_text(call.kwargs["namespace"], context, call.at)
-            full = absolute_namespace(context.arguments.get("ros_namespace", ""), pushed, call.at)
-            context.arguments["ros_namespace"] = full if when else Unknown("the namespace is not evaluated", call.at)
-
-    def _set_parameter(self, call: Call, context: Context, when: bool | None) -> None:
-        self.findings.sets_parameters = True
-        if when is not False and "value" in call.kwargs:
-            evaluate_dict({"": call.kwargs["value"]}, context, call.at)
-        elif when:
-            found = resolve(call.kwargs["filename"], context, call.at)
-            raise NotEvaluated(
-                f"whether {found if isinstance(found, str) else 'a file'} exists is not evaluated", call.at
-            )
-
-    def _sim_time(self, call: Call, context: Context, when: bool | None) -> None:
-        del context
-        value = call.kwargs["value"]
-        if when is not False and not isinstance(value, bool):
-            unknown = isinstance(value, Unknown)
-            raise (NotEvaluated if unknown else LaunchFails)(
-                "SetUseSimTime takes True or False, in Python only", call.at
-            )
-
-    def _shutdown(self, call: Call, context: Context, when: bool | None) -> None:
-        del context
-        event = call.kwargs.get("event")
-        if when is not False and not (isinstance(event, Call) and not event.name.endswith("Shutdown")):
-            raise NotEvaluated("what a shutdown stops is not evaluated", call.at)
-
     def _process(self, call: Call, context: Context, when: bool | None) -> None:
         """Start a process, which an action can do once only."""
         before, self.executed[id(call)] = self.executed.get(id(call), False), when
@@ -407,26 +284,40 @@ class ActionVisitor:
         target = call.kwargs["target_container"]
         if when is not False and not (isinstance(target, Call) and is_a(target.name, ENTITY)):
             resolve(target, context, call.at)
-        for node in items_in(call.kwargs["composable_node_descriptions"]) or ():
+        nodes = items_in(call.kwargs["composable_node_descriptions"])
+        if nodes is None:
+            raise LaunchFails("composable_node_descriptions has to be a list: put [ ] around it", call.at)
+        for node in nodes:
             if not isinstance(node, Call) or not node.name.endswith("ComposableNode"):
                 raise NotEvaluated("this composable node is not evaluated", call.at)
             self._fields(node, context, _both(when, self._holds(node, context)))
 
-    # What each kind of action does, besides the evaluation of its arguments.
+    # What each kind of action does, besides the evaluation of its arguments and what EFFECTS lists.
     _PROCESSES: ClassVar = ("Node", "LifecycleNode", "ExecuteProcess", "ComposableNodeContainer")
-    _IDLE: ClassVar = frozenset({"LogInfo", "SetRemap", "SetROSLogDir", "LifecycleTransition"})
+    _IDLE: ClassVar = frozenset({"LogInfo", "SetRemap", "SetROSLogDir", "ResetEnvironment", "LifecycleTransition"})
     _EXECUTES: ClassVar[Mapping[str, Callable[..., None]]] = {
-        "DeclareLaunchArgument": _declare, "SetLaunchConfiguration": _assign, "UnsetLaunchConfiguration": _unset,
-        **dict.fromkeys(_PROCESSES, _process),
-        **dict.fromkeys(("TimerAction", "ROSTimer"), _timer), "LoadComposableNodes": _load,
+        **dict.fromkeys(_PROCESSES, _process), **dict.fromkeys(("TimerAction", "ROSTimer"), _timer),
         "IncludeLaunchDescription": _include, "LaunchDescription": _description, "GroupAction": _group,
-        "RegisterEventHandler": _register, "OpaqueFunction": _opaque_function,
-        **dict.fromkeys(("SetEnvironmentVariable", "AppendEnvironmentVariable", "UnsetEnvironmentVariable"), _environment),
-        **dict.fromkeys(("PushLaunchConfigurations", "PushEnvironment"), _push), "ResetLaunchConfigurations": _reset,
-        **dict.fromkeys(("PopLaunchConfigurations", "PopEnvironment"), _pop), "PushROSNamespace": _namespace,
-        **dict.fromkeys(("SetParameter", "SetParametersFromFile"), _set_parameter),
-        **dict.fromkeys(("Shutdown", "EmitEvent"), _shutdown), "SetUseSimTime": _sim_time,
+        "RegisterEventHandler": _register, "OpaqueFunction": _opaque_function, "LoadComposableNodes": _load,
     }  # fmt: skip
+
+
+def _evaluate(value: Value, name: str, test: str, context: Context, at: Position) -> None:
+    """Evaluate an argument of an action, which has the check `test`. Raises LaunchSignal, and Undetermined."""
+    match test:
+        case "text" if not (name == "output" and isinstance(value, dict)):
+            resolve(value, context, at)
+        case "texts" | "mapping":
+            pairs = value.items() if isinstance(value, dict) else ((item,) for item in items_in(value) or ())
+            for item in (item for pair in pairs for item in pair):
+                resolve(item, context, at)
+        case "bool" if not isinstance(value, bool):
+            boolean(known_text(value, context, at), at)
+        case "parameters":
+            evaluate_parameters(value, context, at)
+        case "remappings":
+            for rule in items_in(value) or ():
+                resolve(rule[0], context, at), resolve(rule[1], context, at)
 
 
 def _both(one: bool | None, other: bool | None) -> bool | None:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 ENTITY = "launch.launch_description_entity.LaunchDescriptionEntity"
 ACTION = "launch.action.Action"
+PROCESS = "launch.actions.execute_local.ExecuteLocal"
 CONDITION = "launch.condition.Condition"
 SUBSTITUTION = "launch.substitution.Substitution"
 SOURCE = "launch.launch_description_source.LaunchDescriptionSource"
@@ -15,7 +16,7 @@ DESCRIPTION = "launch.launch_description.LaunchDescription"
 
 
 class Parameter(NamedTuple):
-    """A parameter of a constructor. `check` names what its value has to be; empty where the constructor takes anything."""
+    """A parameter of a constructor. `check` names what its value has to be; empty where it takes anything."""
 
     name: str
     check: str

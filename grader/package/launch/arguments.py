@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from pathlib import PurePosixPath
 
 from grader.names import did_you_mean
-from grader.package.launch.api import ACTION, SOURCE, LaunchClass, is_a
+from grader.package.launch.api import ACTION, PROCESS, SOURCE, LaunchClass, is_a
 from grader.package.launch.value_types import (
     gives_text,
     is_entity,
@@ -165,13 +165,13 @@ def _event_handler(call: Call) -> str:
     target = call.kwargs.get("target_action")
     if isinstance(target, Unknown):
         raise Undetermined(target.reason)
-    if isinstance(target, Call) and not is_a(target.name, ACTION):
-        return f"target_action is {kind_of(target)}, not an action"
-    return (
-        ""
-        if target is None or isinstance(target, Call | Function | QualifiedName)
-        else "target_action is not an action"
-    )
+    if isinstance(target, Function | QualifiedName):
+        raise Undetermined("the events that a function chooses")
+    kind = ACTION if call.name.endswith("OnExecutionComplete") else PROCESS
+    is_other = isinstance(target, Call) and not is_a(target.name, kind)
+    if is_other or not isinstance(target, Call | Function | QualifiedName | None):
+        return f"target_action is {kind_of(target)}, not {'an action' if kind == ACTION else 'a node or process'}"
+    return ""
 
 
 def _description(call: Call) -> str:
@@ -180,14 +180,10 @@ def _description(call: Call) -> str:
 
 
 def _load(call: Call) -> str:
-    target, nodes = call.kwargs["target_container"], call.kwargs["composable_node_descriptions"]
-    is_container = isinstance(target, Call) and is_a(
-        target.name, "launch_ros.actions.composable_node_container.ComposableNodeContainer"
-    )
-    wrong = "" if is_container else wrong_text(target)
-    if wrong:
-        return f"target_container {wrong}"
-    return "" if items_in(nodes) is not None else "put [ ] around the nodes"
+    target = call.kwargs["target_container"]
+    is_action = isinstance(target, Call) and is_a(target.name, PROCESS)
+    wrong = "" if is_action else wrong_text(target)
+    return wrong and f"target_container {wrong}"
 
 
 def _shutdown_handler(call: Call) -> str:

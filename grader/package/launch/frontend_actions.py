@@ -159,14 +159,20 @@ def _value(entity: Entity, name: str, value: Any) -> Value:
         return value
     if name in ("cmd", "args", "ros_args"):
         return command_line(value, entity.at)
-    if name == "on_exit":
-        if value != "shutdown":
-            raise LaunchFails(f"on_exit is 'shutdown', not {value!r}", entity.at)
-        return [Call(front_end("action")["shutdown"], [], {}, entity.at)]
+    if name == "on_exit" and value != "shutdown":
+        raise LaunchFails(f"on_exit is 'shutdown', not {value!r}", entity.at)
     if name in ("respawn_delay", "sigkill_timeout", "sigterm_timeout"):
         if not isinstance(value, int | float) or value < 0:
             raise LaunchFails(f"{name} is {value!r}, not a number of seconds", entity.at)
         return str(value) if name != "respawn_delay" else value
+    return (
+        [Call(front_end("action")["shutdown"], [], {}, entity.at)]
+        if name == "on_exit"
+        else _parsed(entity, name, value)
+    )
+
+
+def _parsed(entity: Entity, name: str, value: Any) -> Value:
     if name == "respawn" or entity.kind == "set_parameter":
         parts = parse_value(value, entity.at)
         text = "launch.substitutions.text_substitution.TextSubstitution"

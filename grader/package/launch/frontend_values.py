@@ -22,7 +22,8 @@ _ARGUMENTS = {
     "find-pkg-share": "package", "find-pkg-prefix": "package", "exec-in-pkg": "executable package", "find-exec": "name",
     "anon": "name", "eval": "expression [python_modules]", "file-content": "path", "dirname": "", "filename": "",
     "log_dir": "", "launch_log_dir": "", "not": "value", "and": "left right", "or": "left right",
-    "equals": "left right", "not-equals": "left right", "if": "condition if_value [else_value]", "param": "name [default]",
+    "equals": "left right", "not-equals": "left right", "if": "condition if_value [else_value]",
+    "param": "name [default]",
 }  # fmt: skip
 # The substitutions of ROS 1 and their names in ROS 2.
 _ROS1 = {"find": "find-pkg-share", "arg": "var", "optenv": "env"}

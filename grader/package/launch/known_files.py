@@ -15,9 +15,9 @@ _GIVEN: Mapping[str, Purpose] = {STATE_PUBLISHER: "urdf", _RVIZ: "rviz"}  # the 
 
 # Packages that ROS 2 consists of, or that labs take for granted, whether package.xml names them or not.
 _OF_ROS = frozenset(
-    {"rviz2", "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui", "xacro", "tf2_ros", "rclpy",
-     "rclcpp", "launch", "launch_ros", "ros2launch", "turtlesim", "demo_nodes_cpp", "demo_nodes_py", "rqt_graph",
-     "rqt_gui", "tf2_tools", "image_tools", "rosbag2", "ros2bag", "teleop_twist_keyboard"}
+    {"rviz2", "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui", "xacro", "tf2_ros",
+     "rclpy", "rclcpp", "launch", "launch_ros", "ros2launch", "turtlesim", "demo_nodes_cpp", "demo_nodes_py",
+     "rqt_graph", "rqt_gui", "tf2_tools", "rosbag2", "ros2bag", "teleop_twist_keyboard"}
 )  # fmt: skip
 
 

@@ -58,6 +58,7 @@ class Surroundings:
     has_program: Callable[[str, str], bool | None]  # whether a package has a program; None where this is not known
     texts: dict[str, str] = field(default_factory=dict)
     steps_left: int = _MAX_STEPS
+    pushed: "list[Context]" = field(default_factory=list)
 
 
 @dataclass(slots=True)

@@ -1,4 +1,4 @@
-"""Launch files in Python, evaluated without running them: what they create, and what the functions that they call give."""
+"""Launch files in Python, evaluated without running them: what they create, and what the functions they call give."""
 
 import posixpath
 import re
@@ -17,6 +17,7 @@ from grader.package.launch.model import Contents, Context, LaunchFails, LaunchSi
 from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.launch.substitutions import condition, resolve
 from grader.package.launch.value_types import UnknownText, gives_text
+from grader.static_python.calls import Calls
 from grader.static_python.evaluation import Evaluation, FunctionTable, record
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.library import standard_functions
@@ -36,8 +37,9 @@ _MODULE = "python_launch_file"  # the __name__ of a launch file
 _AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
 _MAX_YAML = 20_000  # characters
 _RECORDED = (
-    "builtins.open.read", "builtins.open.close", "builtins.open.__enter__", "xacro.process_file.toxml", "xacro.process_file.toprettyxml",
-    "xacro.process_doc", "xacro.parse.toxml", "xacro.parse.toprettyxml", "typing.List.__getitem__", "launch.logging.get_logger",
+    "builtins.open.read", "builtins.open.close", "builtins.open.__enter__", "xacro.process_file.toxml",
+    "xacro.process_file.toprettyxml", "xacro.process_doc", "xacro.parse.toxml", "xacro.parse.toprettyxml",
+    "typing.List.__getitem__", "launch.logging.get_logger",
     *(f"launch.logging.get_logger.{name}" for name in ("debug", "info", "warning", "error")),
 )  # fmt: skip
 _Run = Callable[[Evaluation, Call], Value]
@@ -56,7 +58,7 @@ class _Functions(dict[str, Any]):
 
 
 def _function_of(name: str) -> _Run | None:
-    """Return the constructor of a class of launch, or one that fails: of a name that a module or class does not have."""
+    """Return the constructor of a class of launch, or one that fails: of a name that is not there."""
     owner, _, own = name.rpartition(".")
     if gives_text(owner) and gives_text(name):
         return record
@@ -272,7 +274,7 @@ def _variable(_: Evaluation, call: Call) -> Value:
     return (UnknownText if isinstance(default, str) else Unknown)(reason, call.at)
 
 
-def _join(evaluation: Evaluation, call: Call) -> Value:
+def _join(evaluation: Calls, call: Call) -> Value:
     if any(isinstance(value, Call) and class_named(value.name) is not None for value in call.args):
         raise ExpressionFails("os.path.join takes strings, not substitutions: use PathJoinSubstitution([...])")
     return evaluation.call_value(standard_functions(WORKING_FOLDER)["os.path.join"], call)

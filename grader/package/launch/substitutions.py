@@ -203,10 +203,12 @@ class _Substitution:
 
     def package_folder(self) -> Resolved:
         package = self.argument("package")
-        if isinstance(package, str) and not self.context.around.is_installed(package):
-            raise NotEvaluated(f"whether the package {package!r} is installed is not evaluated", self.call.at)
-        is_share = self.call.name.endswith("Share")
-        return package if not isinstance(package, str) else f"{SHARE}/{package}" if is_share else PREFIX
+        if isinstance(package, Unknown):
+            return package
+        if not isinstance(package, str) or not self.context.around.is_installed(package):
+            shown = repr(package) if isinstance(package, str) else "that is read from a file"
+            raise NotEvaluated(f"whether the package {shown} is installed is not evaluated", self.call.at)
+        return f"{SHARE}/{package}" if self.call.name.endswith("Share") else PREFIX
 
     def executable(self) -> Resolved:
         folder, texts = self.package_folder(), self.texts(*map(self.call.kwargs.get, ("executable", "package")))

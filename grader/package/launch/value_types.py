@@ -10,14 +10,15 @@ from grader.static_python.values import Call, Function, Items, QualifiedName, Un
 # Calls of Python functions that are not evaluated, but certainly give a text.
 TEXT_CALLS = frozenset(
     {"builtins.open.read", "xacro.process_file.toxml", "xacro.process_file.toprettyxml", "xacro.process.toxml",
-     "xacro.parse.toxml", "xacro.parse.toprettyxml", "pathlib.Path.read_text", "xacro.process", "subprocess.check_output.decode"}
+     "xacro.parse.toxml", "xacro.parse.toprettyxml", "xacro.process"}
 )  # fmt: skip
 TEXT_METHODS = ("replace", "strip", "lstrip", "rstrip", "expandtabs", "decode")
 SCALARS = (bool, int, float, str)
 TYPED = ("launch_ros.parameter_descriptions.ParameterValue", "launch_ros.parameter_descriptions.Parameter")
 FILE = "launch_ros.parameter_descriptions.ParameterFile"
-_VIEWS: tuple[type, ...] = tuple(type(view()) for view in ({}.keys, {}.values, {}.items))
-_COLLECTIONS: tuple[type, ...] = (list, tuple, dict, set, frozenset, *_VIEWS)
+_EMPTY: dict[str, str] = {}
+_VIEWS = (type(_EMPTY.keys()), type(_EMPTY.values()), type(_EMPTY.items()))
+_COLLECTIONS: Any = (list, tuple, dict, set, frozenset, *_VIEWS)
 _NAMES = {
     type(None): "None",
     bool: "a boolean",
@@ -35,7 +36,7 @@ class UnknownText(Unknown):
 
 
 def gives_text(name: str) -> bool:
-    """Return whether a function that is not evaluated, or a method of the text that it gives, certainly gives a text."""
+    """Return whether a function that is not evaluated, or a method of what it gives, certainly gives a text."""
     owner, _, method = name.rpartition(".")
     while method in TEXT_METHODS and name not in TEXT_CALLS:
         name, (owner, _, method) = owner, owner.rpartition(".")
@@ -73,10 +74,12 @@ def items_in(value: Value) -> list[Value] | None:
         raise Undetermined(f"the result of {value.name}")
     if isinstance(value, Items):
         return list(iterate(value))
-    return list(value) if isinstance(value, (*_COLLECTIONS, str, range)) else None
+    kinds: Any = (*_COLLECTIONS, str, range)
+    return list(value) if isinstance(value, kinds) else None
 
 
 def wrong_text(value: Value) -> str:
+    """Return what is wrong with a value that has to be a text, or nothing. Raises Undetermined."""
     if isinstance(value, _COLLECTIONS):
         wrong = next((item for item in value if not is_text(item)), "")
         return f"takes strings and substitutions, not {kind_of(wrong)} in a list" if wrong != "" else ""
@@ -116,14 +119,13 @@ def wrong_parameters(value: Value) -> str:
         raise Undetermined(value.reason)
     if not isinstance(value, list):
         return "has to be a list: put [ ] around it"
-    for item in value:
-        if isinstance(item, dict):
-            if wrong := _wrong_dict(item):
-                return wrong
-        elif not (isinstance(item, Call) and item.name in (*TYPED, FILE)) and not isinstance(item, PurePosixPath):
-            if wrong := wrong_text(item):
-                return wrong
-    return ""
+    return next(filter(None, map(_wrong_item, value)), "")
+
+
+def _wrong_item(item: Value) -> str:
+    if isinstance(item, PurePosixPath) or (isinstance(item, Call) and item.name in (*TYPED, FILE)):
+        return ""
+    return _wrong_dict(item) if isinstance(item, dict) else wrong_text(item)
 
 
 def _wrong_dict(table: dict[Any, Value]) -> str:
@@ -151,7 +153,7 @@ def wrong_typed(call: Call) -> str:
     if isinstance(value, SCALARS):
         return "" if kind is None or isinstance(value, kind) else f"the value is {kind_of(value)}, not {kind.__name__}"
     if isinstance(value, list | tuple) and not any(isinstance(it, Call | Unknown) for it in value):
-        is_wrong = kind is not None or not value or not all(isinstance(it, SCALARS) for it in value)
+        is_wrong = kind is not None or not all(isinstance(it, SCALARS) for it in value)
         return f"the value is {kind_of(value)}" if is_wrong else ""
     return wrong_text(value)
 
