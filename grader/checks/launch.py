@@ -153,6 +153,10 @@ def launch_finds_files(package: Package, *, name: str, built: bool = True, start
         return pending(f"{unknown.text}; needs manual grading", _UNKNOWN_FILES)
     if launch.doubts and not launch.faults:
         return _doubtful(launch)
+    return _found(places)
+
+
+def _found(places: Sequence[FilePlace]) -> Outcome:
     if any(it.state == "missing" for it in places):
         return passed("the launch file looks for files of the package")
     found = dict.fromkeys(it.text for it in places if it.text)
