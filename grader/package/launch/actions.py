@@ -217,7 +217,10 @@ class ActionVisitor:
                 if is_certain:
                     self._defer(listed, handler, context, when, target)
                 elif actions is not None and not handler.name.endswith("OnProcessIO"):
-                    loaded, self.is_loaded = self.is_loaded, self.is_loaded and value is actions
+                    loaded, self.is_loaded = (
+                        self.is_loaded,
+                        self.is_loaded and value is actions and not handler.name.endswith("OnShutdown"),
+                    )
                     self._perhaps(listed, handler, context, when and None)
                     self.is_loaded = loaded
 
@@ -271,6 +274,8 @@ class ActionVisitor:
         on_exit = call.kwargs.get("on_exit")
         if isinstance(on_exit, list):
             self._perhaps(on_exit, call, context, when and None)
+        elif not isinstance(on_exit, Function | Call | Unknown | QualifiedName | None):
+            raise NotEvaluated("this value of on_exit is not evaluated", call.at)
         if composed := call.kwargs.get("composable_node_descriptions"):
             self._load(
                 Call(call.name, [], {"target_container": "", "composable_node_descriptions": composed}, call.at),

@@ -94,7 +94,8 @@ def _pop(findings: Findings, call: Call, context: Context, when: bool | None) ->
 
 def _reset(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
     del findings
-    own = call.kwargs.get("launch_configurations") or {}
+    given = call.kwargs.get("launch_configurations")
+    own = {} if given is None else given
     if when is None:
         raise NotEvaluated("what is reset under a condition is not evaluated", call.at)
     if not isinstance(own, dict):
