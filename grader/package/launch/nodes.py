@@ -254,6 +254,9 @@ def _find_configuration(findings: Findings, call: Call, context: Context) -> Non
         found = (_attempt(piece, context, call.at) for piece in pieces)
         unnamed = Unknown("the file that it opens is known only at run time", call.at)
         findings.refer("rviz", next((it for it in found if isinstance(it, Unknown)), unnamed), call)
+    elif path.startswith("/") and f"-d{path}" in words:
+        message = "whether rviz2 takes -d and a path as one word is not evaluated"
+        findings.refer("rviz", Unknown(message, call.at), call)
     elif path != path.lstrip():
         findings.refer("rviz", None, call, wrong="'-d' and the path have to be two items of arguments: ['-d', path]")
     elif path:
