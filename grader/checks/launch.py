@@ -138,7 +138,7 @@ def launch_finds_files(package: Package, *, name: str, built: bool = True, start
     launch = _launch(package, name)
     places = _places(package, launch, "urdf", "rviz", "include", built=built)
     if not started:
-        places = [it for it in places if not _stops(it.file) and it.state != "unknown"]
+        places = _others(places)
     wrong = [it for it in places if it.state == "wrong"]
     if wrong:
         return _wrong(package, wrong)
@@ -156,6 +156,17 @@ def launch_finds_files(package: Package, *, name: str, built: bool = True, start
     return _found(places)
 
 
+def _others(places: Sequence[FilePlace]) -> list[FilePlace]:
+    """Return files that a launch does not stop at, but for unknown ones and those with the mistake that stops it."""
+    stopping = {_is_local(it) for it in places if it.state == "wrong" and _stops(it.file)}
+    others = (it for it in places if not _stops(it.file) and it.state != "unknown")
+    return [it for it in others if it.state != "wrong" or _is_local(it) not in stopping]
+
+
+def _is_local(place: FilePlace) -> bool:
+    return place.file.path is not None and is_of_one_machine(place.file.path)
+
+
 def _found(places: Sequence[FilePlace]) -> Outcome:
     if any(it.state == "missing" for it in places):
         return passed("the launch file looks for files of the package")
@@ -165,7 +176,7 @@ def _found(places: Sequence[FilePlace]) -> Outcome:
 
 def _wrong(package: Package, wrong: Sequence[FilePlace]) -> Outcome:
     message = "; ".join(dict.fromkeys(it.text for it in wrong))
-    is_local = any(it.file.path is not None and is_of_one_machine(it.file.path) for it in wrong)
+    is_local = any(map(_is_local, wrong))
     if is_local:
         message += f"; use get_package_share_directory({package.name!r}), which returns the installed folder"
     first, mistake = wrong[0].file, wrong[0].mistake or (_ON_ONE_MACHINE if is_local else _NOT_INSTALLED)

@@ -3,8 +3,10 @@
 import posixpath
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 from operator import attrgetter
 from pathlib import PurePosixPath
+from typing import Any
 
 from grader.package.launch.actions import CIRCULAR_INCLUDE, ActionVisitor, Include
 from grader.package.launch.api import DESCRIPTION, is_a
@@ -30,6 +32,11 @@ _JOINED = (
     "doubts",
 )  # what a launch file shares with those that it includes
 
+_MAX_KEPT = 4  # launch files
+# The results of launch files that are read again: those of a handout, or while hints are searched. Each with what it
+# asked, and the answers.
+_KEPT: dict[tuple[bytes, str, str], tuple[list[tuple[str, tuple[str, ...], Any]], Launch]] = {}
+
 # Returns the bytes of an installed file and its path in the submission, by its path below the prefix; None for other
 # files.
 Opener = Callable[[str], "tuple[bytes, str] | None"]
@@ -53,16 +60,30 @@ def read_launch(
         is_installed: Whether a package certainly is on the machine.
         has_program: Whether such a package has a program.
     """
+    questions: dict[str, Callable[..., Any]] = {"open": opener, "package": is_installed, "program": has_program}
+    kept = _KEPT.get((data, path, installed))
+    if kept is not None and all(questions[name](*asked) == answer for name, asked, answer in kept[0]):
+        return kept[1]
+    answers: list[tuple[str, tuple[str, ...], Any]] = []
+
+    def ask(name: str, *asked: str) -> Any:
+        answer = questions[name](*asked)
+        answers.append((name, asked, answer))
+        return answer
 
     def read(path: str) -> str | None:
-        found = opener(posixpath.normpath(path).removeprefix(f"{PREFIX}/")) if path.startswith(f"{PREFIX}/") else None
+        is_below = path.startswith(f"{PREFIX}/")
+        found = ask("open", posixpath.normpath(path).removeprefix(f"{PREFIX}/")) if is_below else None
         try:
             return found[0].decode().replace("\r\n", "\n") if found is not None else None
         except UnicodeDecodeError:
             return None
 
-    around = Surroundings(read, is_installed, has_program)
-    return _LaunchReader(opener).read(data, path, installed, Context(f"{PREFIX}/{installed}", around))
+    around = Surroundings(read, partial(ask, "package"), partial(ask, "program"))
+    launch = _LaunchReader(partial(ask, "open")).read(data, path, installed, Context(f"{PREFIX}/{installed}", around))
+    _KEPT.pop(next(iter(_KEPT)) if len(_KEPT) >= _MAX_KEPT else (b"", "", ""), None)
+    _KEPT[data, path, installed] = (answers, launch)
+    return launch
 
 
 @dataclass(slots=True)
