@@ -54,6 +54,7 @@ class ActionVisitor:
         """Visit an action."""
         self.steps += 1
         if self.depth > _MAX_DEPTH or self.steps > _MAX_ACTIONS:
+            self.findings.add_unknown("a launch file with so many actions is not evaluated", START)
             self.findings.add_doubt("a launch file with so many actions is not evaluated", START)
             return
         self.depth += 1

@@ -127,7 +127,8 @@ class _LaunchReader:
         launch = self.read(*found, target, context)
         faults = (*launch.faults, *filter(None, [launch.syntax]))
         if context.when is not True:  # an error in the file counts only if it is included
-            launch, faults = replace(launch, doubts=(*launch.doubts, *faults)), ()
+            launch = replace(launch, doubts=(*launch.doubts, *faults), unknown=(*launch.unknown, *faults))
+            faults = ()
         included.append(replace(launch, faults=faults))
         return ""
 
@@ -150,7 +151,7 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
     code = parse(data, path)
     if isinstance(code, SyntaxFault):
         syntax = LaunchFault(f"Python cannot read the file: {code.message}", code.location)
-        return Launch(code.source, syntax) if code.sure else Launch(code.source, doubts=(syntax,))
+        return Launch(code.source, syntax) if code.sure else Launch(code.source, unknown=(syntax,), doubts=(syntax,))
     findings = Findings(lambda position: location_in(code.source, position))
     file = PythonLaunchFile(context)
     entry = file.run(code, installed).get(_ENTRY)
@@ -168,7 +169,8 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
         if entry is None:
             findings.add_fault(message, START)
         else:
-            findings.add_doubt(f"{_ENTRY}, which the file does not define itself,", START)
+            findings.add_unknown(f"{_ENTRY}, which the file does not define itself, is not evaluated", START)
+            findings.add_doubt(f"{_ENTRY}, which the file does not define itself, is not evaluated", START)
     if interpreter.doubt is not None:
         findings.add_unknown(interpreter.doubt.reason, interpreter.doubt.at)
         findings.add_doubt(interpreter.doubt.reason, interpreter.doubt.at)
