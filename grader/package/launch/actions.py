@@ -91,6 +91,8 @@ class ActionVisitor:
         given = call.kwargs.get("condition")
         if given is None:
             return True
+        if isinstance(given, Unknown):
+            raise NotEvaluated(given.reason, given.at)
         if not isinstance(given, Call):
             raise LaunchFails(f"condition is {kind_of(given)}, not a condition such as IfCondition(...)", call.at)
         kind = given.name.rpartition(".")[2]

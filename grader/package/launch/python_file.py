@@ -95,7 +95,8 @@ class PythonLaunchFile:
     def run(self, code: Code, installed: str) -> dict[str, Value]:
         """Evaluate the file, and return its names."""
         names = {"__file__": f"{PREFIX}/{installed}", "__name__": _MODULE}
-        known_names = {module: own.keys() for module, own in exports().items()}
+        packages_last = sorted(exports().items(), key=lambda it: -it[0].count("."))
+        known_names = {module: own.keys() for module, own in packages_last}
         self.interpreter = Interpreter(self._functions(), names, stand_ins=(PREFIX, HOME), exports=known_names)
         return self.interpreter.run(code).names
 

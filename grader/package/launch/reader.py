@@ -171,15 +171,23 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
         else:
             findings.add_unknown(f"{_ENTRY}, which the file does not define itself, is not evaluated", START)
             findings.add_doubt(f"{_ENTRY}, which the file does not define itself, is not evaluated", START)
+    _add_python(findings, file)
+    nodes = [call for call in interpreter.calls if call.name == _NODE and id(call) not in visitor.visited]
+    return _launch(code.source, findings, tuple(_forgotten(node, findings) for node in nodes))
+
+
+def _add_python(findings: Findings, file: PythonLaunchFile) -> None:
+    """Add what Python raises, what is not evaluated, and what the file reads."""
+    interpreter = file.interpreter
     if interpreter.doubt is not None:
         findings.add_unknown(interpreter.doubt.reason, interpreter.doubt.at)
         findings.add_doubt(interpreter.doubt.reason, interpreter.doubt.at)
+    if interpreter.errors:  # the description is not loaded, so what is wrong with the rest of it does not count
+        findings.faults, findings.doubts = [], []
     for fault in interpreter.errors:
         findings.add_fault(fault.message, fault.at)
     for contents, at in file.reads:
         findings.refer("read", contents, Call("", [], {}, at))
-    nodes = [call for call in interpreter.calls if call.name == _NODE and id(call) not in visitor.visited]
-    return _launch(code.source, findings, tuple(_forgotten(node, findings) for node in nodes))
 
 
 def _description_error(value: Value) -> str:

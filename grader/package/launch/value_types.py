@@ -1,6 +1,7 @@
 """The values that launch and launch_ros take as texts and as parameters of nodes, and what is wrong with others."""
 
 from collections.abc import Callable
+from io import StringIO
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -90,6 +91,8 @@ def kind_of(value: Value) -> str:
     """Return what a value is, in words."""
     if isinstance(value, Call):
         return f"{value.name.rpartition('.')[2]}(...)"
+    if isinstance(value, StringIO):
+        return "an open file: add .read()"
     if isinstance(value, PurePosixPath):
         return "a path: write str(...) around it"
     return _NAMES.get(type(value), f"a {type(value).__name__}")
