@@ -65,7 +65,8 @@ def check(cls: LaunchClass, call: Call) -> Unknown | None:
         optional, own = test.endswith("?"), _CHECKS.get(test.removesuffix("?"))
         try:
             if own is not None and not (value is None and optional) and (wanted := own(value)):
-                raise ExpressionFails(f"{name} of {cls.short} {wanted}, not {kind_of(value)}", kind=TypeError)
+                tail = "" if wanted.startswith("has a value") else f", not {kind_of(value)}"
+                raise ExpressionFails(f"{name} of {cls.short} {wanted}{tail}", kind=TypeError)
         except Undetermined as error:
             doubt = doubt or Unknown(str(error), call.at)
     special = _SPECIAL.get(cls.short)
