@@ -65,7 +65,6 @@ def _run(arguments: list[str]) -> int:
 
 
 if __name__ == "__main__":
-    # `python -m` puts the current folder first on the path; it may be a student's, and nothing there may be imported.
     if not sys.flags.safe_path:
         del sys.path[0]
     main()

@@ -23,7 +23,7 @@ from grader.files import limits
 from grader.grading.rubric import load_rubric, shipped_rubrics
 from grader.package import package
 from grader.robot import diagnostics
-from grader.static_python import closed, closed_values
+from grader.static_python import budget, expressions, values
 from grader.submission import packages
 from grader.workers import pool
 from tests.command_line import ROOT, run
@@ -151,11 +151,11 @@ LIMITS: dict[str, dict[str, tuple[float, ...]]] = {
         "{} GiB of memory | graded again": (pool.MAX_MEMORY / MIB / 1024,),
     },
     "xacro.md": {
-        "| work to read one submission | {:,} parts |": (closed_values.READING,),
+        "| work to read one submission | {:,} parts |": (budget.READING,),
         "| {:,}; {:,} |\n| parts of a list or dict, with everything in it | {:,} |": (
-            closed._MAX_LENGTH,
-            closed_values.MAX_TEXT,
-            closed_values.MAX_PARTS,
+            expressions._MAX_LENGTH,
+            values.MAX_TEXT,
+            values.MAX_PARTS,
         ),
     },
     "rubric-test.md": {"(default: {}, sampled": (signature(run_test).parameters["mutants"].default,)},

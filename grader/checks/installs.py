@@ -1,4 +1,4 @@
-"""Checks of setup.py: what a build of the package installs, and whether every name in it is defined."""
+"""Checks of setup.py: whether a build of the package succeeds, and what it installs."""
 
 import posixpath
 from collections.abc import Sequence
@@ -30,7 +30,7 @@ ABOUT = {
 _ENDINGS: dict[FileKind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
 
 
-def build_installs(package: Package, *, kind: FileKind, name: str) -> Outcome:
+def build_installs(package: Package, *, kind: FileKind, name: str, despite_errors: bool = False) -> Outcome:
     """A build of the package installs its URDF, launch file or RViz file, below share/<package>.
 
     setup.py is evaluated statically; what cannot be determined needs manual grading.
@@ -38,11 +38,12 @@ def build_installs(package: Package, *, kind: FileKind, name: str) -> Outcome:
     Args:
         kind: The kind of the file.
         name: The file's name, which decides if the package has several files of the kind.
+        despite_errors: Whether an error that stops the build is ignored, which `setup_imports` reports.
     """
     files = files_of(package, kind, name)
     if not files:
         raise package.missing(kind)
-    return _require_installed(package, files, kind)
+    return _require_installed(package, files, kind, despite_errors=despite_errors)
 
 
 def installs_files(package: Package, *, files: list[str]) -> Outcome:
@@ -55,18 +56,36 @@ def installs_files(package: Package, *, files: list[str]) -> Outcome:
     if not found:
         patterns = enumerated([repr(pattern) for pattern in files], word="or")
         raise MissingElement("file", files[0], message=f"the package has no file that matches {patterns}")
-    return _require_installed(package, found, None)
+    return _require_installed(package, found, None, despite_errors=False)
 
 
 def setup_imports(package: Package) -> Outcome:
-    """Every name that setup.py uses is defined, and what it imports is there."""
+    """A build of the package succeeds: Python runs `setup.py` to its end, and colcon accepts what it says."""
     setup = _readable_setup(package)
-    if isinstance(setup, Outcome):
-        return setup
-    if not setup.faults:
-        return passed("every name that setup.py uses is defined")
-    messages = list(dict.fromkeys(fault.message for fault in setup.faults))
-    return failed("; ".join(first_lines(messages, 3)), setup.location(setup.faults[0].at), problem=messages[0])
+    return setup if isinstance(setup, Outcome) else _build_error(package, setup) or passed("setup.py builds")
+
+
+def _build_error(package: Package, setup: "Setup") -> Outcome | None:
+    """Return why a build of the package fails, or that this cannot be determined; None if it succeeds."""
+    if package.ignored_by:
+        message = f"colcon does not build the package, because there is a file {package.ignored_by}"
+        return failed(message, problem=message)
+    stops = [stop for stop in setup.stops if stop.path != MANIFEST or package.manifest is not None]
+    errors = [(fault.message, "", fault.at) for fault in setup.faults]
+    errors += [(stop.message, stop.hint, stop.at) for stop in stops]
+    if errors:
+        messages = list(dict.fromkeys(message for message, _, _ in errors))
+        _, hint, at = errors[0]
+        message, problem = "; ".join(first_lines(messages, 3)), messages[0] + hint
+        return failed(message, setup.location(at), detail=hint if len(messages) == 1 else "", problem=problem)
+    if not setup.is_called:
+        message = "setup.py does not call setup()"
+        return failed(message, setup.location(setup.called_at), problem=message)
+    if setup.doubt is not None:
+        reason = f"{setup.doubt.reason} (line {setup.doubt.at.line} of setup.py)"
+        message = f"cannot determine statically whether setup.py builds: {reason}"
+        return pending(f"{message}; needs manual grading", "cannot determine statically whether setup.py builds")
+    return None
 
 
 def files_of(package: Package, kind: FileKind, name: str) -> Sequence[str]:
@@ -107,13 +126,19 @@ def _readable_setup(package: Package) -> "Setup | Outcome":
     return setup
 
 
-def _require_installed(package: Package, files: Sequence[str], kind: FileKind | None) -> Outcome:
+def _require_installed(
+    package: Package, files: Sequence[str], kind: FileKind | None, *, despite_errors: bool
+) -> Outcome:
     setup = _readable_setup(package)
     if isinstance(setup, Outcome):
         return setup
-    stopped = _build_stop(package, setup, files, kind)
-    if stopped is not None:
-        return stopped
+    error = _build_error(package, setup)
+    if error is not None and error.status == "failed" and despite_errors:
+        error = passed(f"setup.py has an entry for {files[0]}") if _stops_at(package, setup, files, kind) else None
+    elif error is not None and error.status == "failed":
+        error = error._replace(message=f"a build fails: {error.message}")
+    if error is not None:
+        return error
     copies = [copy for copy in setup.copies if copy.source in files]
     inside = [copy for copy in copies if copy.target.startswith(package.share)]
     twice = sorted({copy.target for copy in inside if posixpath.basename(copy.target) == posixpath.basename(files[0])})
@@ -134,24 +159,15 @@ def _require_installed(package: Package, files: Sequence[str], kind: FileKind | 
     raise _why_not_installed(package, setup, files, kind)
 
 
-def _build_stop(package: Package, setup: "Setup", files: Sequence[str], kind: FileKind | None) -> Outcome | None:
-    """Return that a build stops at the entry for these files; other criteria report a missing package.xml."""
+def _stops_at(package: Package, setup: "Setup", files: Sequence[str], kind: FileKind | None) -> bool:
+    """Return whether a build stops at the entry for these files, so that it is there."""
     folders = {posixpath.dirname(path) for path in files}
-    for stop in setup.stops:
-        if stop.path == MANIFEST and package.manifest is None:
-            continue
-        owner = _owner(stop.path, package) or "urdf"  # one mistake costs one criterion: of an unknown kind, the first
-        if owner == kind or posixpath.dirname(stop.path) in folders:
-            message, problem = f"the build stops here: {stop.message}", stop.message + stop.hint
-            return failed(message, setup.location(stop.at), detail=stop.hint, problem=problem)
-    return None
+    owners = ((_owner(stop.path, package), posixpath.dirname(stop.path)) for stop in setup.stops if stop.path)
+    return any(owner == kind or folder in folders for owner, folder in owners)
 
 
 def _why_not_installed(package: Package, setup: "Setup", files: Sequence[str], kind: FileKind | None) -> MissingElement:
-    """Return why a build does not install files: no call of setup(), no entry, or a pattern without a match."""
-    if not setup.is_called:
-        message = "a build installs nothing: setup.py does not call setup()"
-        return MissingElement("call of setup", package.folder, message=message)
+    """Return why a build does not install files: no entry, or a pattern without a match."""
     what, message = f"installed {kind or files[0]}", f"a build does not install {files[0]}"
     empty = _pattern_for(setup.empty, files, kind)
     if empty is None:

@@ -14,7 +14,7 @@ from grader.source import Location
 from grader.text import enumerated
 
 if TYPE_CHECKING:
-    from grader.package.launch.model import Launch
+    from grader.package.launch.model import Launch, NamedFile, Purpose
 
 # What the edits for hints may change.
 ABOUT = {
@@ -41,34 +41,69 @@ def launch_found(package: Package, *, name: str) -> Outcome:
     return failed(f"there is no launch file {name!r}", detail=detail)
 
 
-def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
+def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool = True) -> Outcome:
     """The launch file starts these nodes, with the defaults of its arguments.
 
-    Launch files that it includes count, if they are part of the submission or of a well-known package.
+    Launch files that it includes count, if they are part of the submission or of a well-known package. What ros2 launch
+    stops at fails: an error in the file, a wrong argument of an action, a file that it reads and that is not installed.
 
     Args:
         name: The file's name, such as view.launch.py.
         nodes: The nodes, each as "package/executable", or as one name if both are the same; "a or b" leaves a choice.
+        built: Whether a build must install the files that it reads; if not, files of the package count as found.
     """
     launch = _launch(package, name)
-    if launch.faults and not launch.nodes:
-        raise _fault_that_stops(package, name, launch)
     if launch.faults:
-        return failed(_faults(launch), launch.faults[0].location, problem=launch.faults[0].message)
+        raise _fault_that_stops(package, name, launch)
+    places = _places(package, launch, "read", "urdf", "include", built=built)
+    if wrong := [it for it in places if it.state == "wrong" and _stops(it.file)]:
+        return _wrong(package, wrong)
     started = {node.name for node in launch.nodes if node.when}
     missing = [choice for choice in (node.split(" or ") for node in nodes) if started.isdisjoint(choice)]
     listed = ", ".join(" or ".join(choice) for choice in missing)
-    if missing and _may_start(launch, missing):
-        reason = f": {launch.unknown[0].message}" if launch.unknown else ""
-        message = f"cannot determine statically whether {listed} is started{reason}; needs manual grading"
-        return pending(message, "cannot determine statically which nodes the launch file starts")
-    running = tuple(sorted(started))
-    message = f"starts {', '.join(running) or 'nothing'}"
+    if missing and not _may_start(launch, missing):
+        message = f"starts {', '.join(sorted(started)) or 'nothing'}"
+        reason, at = _why_missing(launch, {node for choice in missing for node in choice})
+        what, detail = f"the launch file does not start {listed}", f"; it {message}{reason}"
+        return judged(False, what, tuple(sorted(started)), tuple(nodes), at=at, detail=detail)
+    if launch.doubts:
+        return _doubtful(launch)
+    unknown = next((it.text for it in places if it.state == "unknown" and _stops(it.file) and it.file.path), "")
+    if missing or unknown:
+        return _undecided(launch, listed, unknown)
+    return judged(True, f"the launch file starts {', '.join(sorted(started))}", tuple(sorted(started)), tuple(nodes))
+
+
+def _undecided(launch: "Launch", missing: str, unknown: str) -> Outcome:
+    """Return that whether nodes are started is not known, or whether a file that the launch file reads is there."""
     if not missing:
-        return judged(True, f"the launch file {message}", running, tuple(nodes))
-    reason, at = _why_missing(launch, {node for choice in missing for node in choice})
-    what, detail = f"the launch file does not start {listed}", f"; it {message}{reason}"
-    return judged(False, what, running, tuple(nodes), at=at, detail=detail)
+        return pending(f"{unknown}, and the launch file reads it; needs manual grading", _UNKNOWN_FILES)
+    reason = f": {launch.unknown[0].message}" if launch.unknown else ""
+    message = f"cannot determine statically whether {missing} is started{reason}; needs manual grading"
+    return pending(message, "cannot determine statically which nodes the launch file starts")
+
+
+def _doubtful(launch: "Launch") -> Outcome:
+    """Return that whether the launch file starts is not known, and why."""
+    reason, at = launch.doubts[0].message, launch.doubts[0].location
+    what = "cannot determine statically whether ros2 launch starts the file"
+    return pending(f"{what}: line {at.line}: {reason}; needs manual grading", what)
+
+
+def _places(package: Package, launch: "Launch", *purposes: "Purpose", built: bool) -> list[FilePlace]:
+    """Return where a launch file looks for files. Raises MissingElement for one that a build does not install."""
+    places = [place_of(package, file) for file in launch.named(*purposes)]
+    present = set(map(posixpath.basename, package.tree.files))
+    for it in places:
+        is_needed = built or posixpath.basename(it.file.path or "") not in present
+        if it.state == "missing" and is_needed and not any(wrong.state == "wrong" for wrong in places):
+            raise _missing(package, it)
+    return places
+
+
+def _stops(file: "NamedFile") -> bool:
+    """Return whether ros2 launch stops if it does not find a file."""
+    return file.purpose in ("read", "include") or file.by != ""
 
 
 def _may_start(launch: "Launch", missing: Sequence[Sequence[str]]) -> bool:
@@ -90,7 +125,7 @@ def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | 
     return "", next((node.location for node in similar), None)
 
 
-def launch_finds_files(package: Package, *, name: str, built: bool = True) -> Outcome:
+def launch_finds_files(package: Package, *, name: str, built: bool = True, started: bool = True) -> Outcome:
     """The launch file looks for the URDF and RViz files where a build of the package installs them.
 
     What it reads as text, with `open` or `cat`, must be UTF-8, unless it names the encoding.
@@ -98,21 +133,41 @@ def launch_finds_files(package: Package, *, name: str, built: bool = True) -> Ou
     Args:
         name: The file's name, such as view.launch.py.
         built: Whether a build must install the files; if not, files of the package count as found.
+        started: Whether ros2 launch starts the file; if not, what stops it, and what is unknown then, does not count.
     """
     launch = _launch(package, name)
-    places = [place_of(package, file) for file in launch.named("urdf", "rviz", "include")]
+    places = _places(package, launch, "urdf", "rviz", "include", built=built)
+    if not started:
+        places = _others(places)
     wrong = [it for it in places if it.state == "wrong"]
     if wrong:
         return _wrong(package, wrong)
-    present = set(map(posixpath.basename, package.tree.files))
-    for it in places:
-        if it.state == "missing" and (built or posixpath.basename(it.file.path or "") not in present):
-            raise _missing(package, it)
-    if all(it.file.purpose == "include" for it in places):
-        return _no_files(package, name, launch)
+    if not started:
+        return passed("the launch file looks for no file in a wrong place")
     unknown = next((it for it in places if it.state == "unknown"), None)
+    if launch.faults and (unknown or all(it.file.purpose == "include" for it in places)):
+        raise _fault_that_stops(package, name, launch)
+    if all(it.file.purpose == "include" for it in places):
+        return _no_files(launch)
     if unknown is not None:
         return pending(f"{unknown.text}; needs manual grading", _UNKNOWN_FILES)
+    if launch.doubts and not launch.faults:
+        return _doubtful(launch)
+    return _found(places)
+
+
+def _others(places: Sequence[FilePlace]) -> list[FilePlace]:
+    """Return files that a launch does not stop at, but for unknown ones and those with the mistake that stops it."""
+    stopping = {_is_local(it) for it in places if it.state == "wrong" and _stops(it.file)}
+    others = (it for it in places if not _stops(it.file) and it.state != "unknown")
+    return [it for it in others if it.state != "wrong" or _is_local(it) not in stopping]
+
+
+def _is_local(place: FilePlace) -> bool:
+    return place.file.path is not None and is_of_one_machine(place.file.path)
+
+
+def _found(places: Sequence[FilePlace]) -> Outcome:
     if any(it.state == "missing" for it in places):
         return passed("the launch file looks for files of the package")
     found = dict.fromkeys(it.text for it in places if it.text)
@@ -121,7 +176,7 @@ def launch_finds_files(package: Package, *, name: str, built: bool = True) -> Ou
 
 def _wrong(package: Package, wrong: Sequence[FilePlace]) -> Outcome:
     message = "; ".join(dict.fromkeys(it.text for it in wrong))
-    is_local = any(it.file.path is not None and is_of_one_machine(it.file.path) for it in wrong)
+    is_local = any(map(_is_local, wrong))
     if is_local:
         message += f"; use get_package_share_directory({package.name!r}), which returns the installed folder"
     first, mistake = wrong[0].file, wrong[0].mistake or (_ON_ONE_MACHINE if is_local else _NOT_INSTALLED)
@@ -129,12 +184,11 @@ def _wrong(package: Package, wrong: Sequence[FilePlace]) -> Outcome:
     return failed(message, first.location, problem=problem, mistake=mistake)
 
 
-def _no_files(package: Package, name: str, launch: "Launch") -> Outcome:
+def _no_files(launch: "Launch") -> Outcome:
     """Return why a launch file names neither a URDF nor an RViz file."""
-    if launch.faults:
-        raise _fault_that_stops(package, name, launch)
-    if launch.unknown:
-        return pending(f"{_UNKNOWN_FILES}: {launch.unknown[0].message}; needs manual grading", _UNKNOWN_FILES)
+    unknown = launch.doubts or launch.unknown
+    if unknown:
+        return pending(f"{_UNKNOWN_FILES}: {unknown[0].message}; needs manual grading", _UNKNOWN_FILES)
     raise MissingElement("named file", "", message="the launch file names neither a URDF nor an RViz file")
 
 

@@ -13,8 +13,11 @@ from grader.package.package import Package
 if TYPE_CHECKING:
     from grader.package.launch.model import NamedFile
 
-WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file"}
-ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".launch", ".yaml", ".yml")}
+WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file", "read": "file"}
+ENDINGS = {
+    "urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".launch", ".yaml", ".yml"),
+    "read": ("",)
+}  # fmt: skip
 
 
 class FilePlace(NamedTuple):

@@ -12,7 +12,7 @@ from grader.names import did_you_mean
 from grader.robot.catalogue import RAW_XACRO
 from grader.robot.reader import find_xacro
 from grader.source import LazyLocation, Location, Source
-from grader.static_python.closed_values import OutOfBudget
+from grader.static_python.budget import OutOfBudget
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import counted, enumerated, quoted

@@ -100,7 +100,7 @@ def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Tabl
         raise InputError(f"{shown} is not a CSV file: it contains a NUL character")
     header = re.match(r'\s*((?:"(?:[^"]++|"")*+"|[^"\r\n])*+)', text)
     found = re.findall(f"[{DELIMITERS}]", re.sub(r'"[^"]*"', "", header[1] if header else "")) or [","]
-    delimiter = max(found, key=found.count) if is_from_person else found[0]
+    delimiter = max(dict.fromkeys(found), key=found.count) if is_from_person else found[0]
     return Table(_rows(text, delimiter, shown), delimiter, encoding, bom)
 
 

@@ -9,7 +9,6 @@ IGNORED_FOLDERS = BUILD_FOLDERS | {"node_modules", "site-packages", "__pycache__
 # The ends of the names of files that a build copies, and that a submission may lack.
 _COPIED = (".urdf", ".xacro", ".rviz", "launch.py", "launch.xml", "launch.yaml", "launch.yml", "/package.xml")
 LITTER = frozenset({"Thumbs.db", "desktop.ini", "Icon\r"})  # of an operating system
-_IGNORED_FILES = LITTER | {"AMENT_IGNORE", "COLCON_IGNORE"}
 
 
 def ignored_part(path: str) -> str | None:
@@ -18,7 +17,7 @@ def ignored_part(path: str) -> str | None:
     for index, folder in enumerate(folders):
         if folder in IGNORED_FOLDERS or folder.startswith("."):
             return "/".join(folders[: index + 1])
-    return path if name.startswith(".") or name in _IGNORED_FILES else None
+    return path if name.startswith(".") or name in LITTER else None
 
 
 def is_generated(path: str) -> bool:

@@ -1,48 +1,21 @@
 """The files that data_files of a setup.py installs, in the order of setuptools' install_data."""
 
 import posixpath
-import re
 from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
-from grader.errors import InputError
 from grader.files.names import ignored_part
-from grader.files.tree import Tree
 from grader.names import did_you_mean
 from grader.package.globbing import PackageListing, SearchError
-from grader.static_python.evaluation import EvaluationStopped
+from grader.static_python.library import MAX_PATH, PACKAGE_FOLDER
 from grader.static_python.parse import Position
-from grader.static_python.values import (
-    MAX_PATH,
-    PACKAGE_FOLDER,
-    UNKNOWN_KEYS,
-    Call,
-    Unknown,
-    Value,
-    names_package_folder,
-    unknown_in,
-)
+from grader.static_python.values import PLAIN, Call, Function, Items, QualifiedName, Unknown, Value, unknown_in
 from grader.text import enumerated
 
-# Other arguments that install files and are not evaluated.
-_OTHER_WAYS = ("package_data", "include_package_data", "cmdclass", UNKNOWN_KEYS)
-# The arguments that name the Python packages; without one, setuptools searches for packages, but not in the folders
-# below, those of `FlatLayoutPackageFinder.DEFAULT_EXCLUDE`.
-_PACKAGES = ("packages", "py_modules", "ext_modules", "package_dir", UNKNOWN_KEYS)
-_NO_PACKAGES = frozenset(
-    {"ci", "bin", "debian", "doc", "docs", "documentation", "manpages", "news", "newsfragments", "changelog", "test",
-     "tests", "unit_test", "unit_tests", "example", "examples", "scripts", "tools", "util", "utils", "python", "build",
-     "benchmark", "benchmarks", "exercise", "exercises", "htmlcov", "tasks", "dist", "venv", "env", "requirements",
-     "fabfile", "site_scons"}
-)  # fmt: skip
-# The same arguments in setup.cfg and pyproject.toml: packages = find:, [tool.setuptools.packages.find].
-_SET_PACKAGES = rb"(?m)^\s*(packages|package[_-]dir|py[_-]modules|ext[_-]modules)\b|setuptools\.packages"
 _MAX_GUESSES = 10
-_MAX_COPIES = 20_000
-_MAX_SETTINGS = 64 * 1024  # bytes
 
 
 class InstalledFile(NamedTuple):
@@ -71,145 +44,147 @@ class InstallError(NamedTuple):
 class DataFiles:
     """Installs the files of data_files as setuptools' install_data does, without touching any."""
 
-    tree: Tree
     listing: PackageListing
     root: str  # the absolute path that stands for the package's folder
-    positions: Mapping[str, Position]  # the origin of each path
+    written: Mapping[str, Position]  # where each text is written
+    is_first: bool = True  # whether it is the run of setup.py in which colcon asks for data_files
     copies: list[InstalledFile] = field(default_factory=list)
     stops: list[InstallError] = field(default_factory=list)
-    unknown: list[Unknown] = field(default_factory=list)
+    unknown: list[Unknown] = field(default_factory=list)  # what is installed as well, or elsewhere
+    doubts: list[Unknown] = field(default_factory=list)  # with these, whether the build succeeds is not known either
 
-    def read(self, call: Call) -> None:
-        """Add the files that a call of setup() installs."""
-        for name in _OTHER_WAYS:
-            if call.kwargs.get(name):
-                what = "unpacked arguments" if name == UNKNOWN_KEYS else name
-                self.unknown.append(Unknown(f"{what} may install files, too", call.at))
-        if call.uncertainty is not None:
-            self.unknown.append(call.uncertainty)
+    def read(self, entries: Value, at: Position) -> None:
+        """Add the files of the argument data_files."""
+        if not isinstance(entries, list | tuple):
+            self._give_up(entries, "this value of data_files is not evaluated", at)
             return
-        self._find_packages(call)
-        entries = call.kwargs.get("data_files")
-        if not entries and _configures(self.tree, b"data[_-]files"):
-            self._give_up(None, "data_files is set in setup.cfg or pyproject.toml, which is not supported", call.at)
-        if isinstance(entries, list | tuple):
-            for entry in entries:
-                self._entry(entry, call.at)
-        elif entries is not None:
-            self._give_up(entries, "data_files is known only at run time", call.at)
+        for entry in entries:
+            self._entry(entry, at)
 
-    def finish(self, change: Call | None) -> None:
-        """Remove what is not certain: files with the same target, and everything if the file itself changes files."""
+    def finish(self) -> None:
+        """Remove what is not certain: files with the same target."""
         sources: dict[str, set[str]] = defaultdict(set)
         for copy in self.copies:
             sources[copy.target].add(copy.source)
         several = [copy for copy in self.copies if len(sources[copy.target]) > 1]
         self.copies = [copy for copy in self.copies if len(sources[copy.target]) == 1]
         for target, at in {copy.target: copy.at for copy in several}.items():
-            self._give_up(None, f"several files are installed as {target}: {enumerated(sorted(sources[target]))}", at)
-        if change is not None:
-            self.copies.clear()
-            self.stops.clear()
-            self._give_up(None, "setup.py itself makes or changes files", change.at)
+            reason = f"several files are installed as {target}: {enumerated(sorted(sources[target]))}"
+            self.unknown.append(Unknown(reason, at))
+
+    def _origin(self, path: str, at: Position) -> Position:
+        """Return the position of the search that finds a path, or where it is written."""
+        return self.listing.positions.get(path) or self.written.get(path, at) if path else at
 
     def _give_up(self, value: Value, reason: str, at: Position) -> None:
         """Add the unknown parts of a value, or that it is not supported."""
-        self.unknown.append(unknown_in(value) or Unknown(reason, at))
+        self.doubts.append(unknown_in(value) or Unknown(reason, at))
 
-    def _stop(self, path: str, reason: str, at: Position) -> None:
-        self.stops.append(InstallError(path, reason, self.positions.get(path, at) if path else at))
+    def stop(self, reason: str, at: Position, path: str = "") -> None:
+        """Add an error that stops the build."""
+        self.stops.append(InstallError(path, reason, self._origin(path, at)))
 
     def _entry(self, entry: Value, at: Position) -> None:
+        """Add an entry, which colcon takes as a file, or as a tuple of a folder and a list of files."""
         match entry:
-            case str() | PurePosixPath():
+            case str():
                 self._file(entry, "", at)
-            case [str() as path]:
-                self._stop(path, "an entry is a folder and a list of files; the list is missing", at)
-            case [str() | PurePosixPath() as folder, files]:
-                self._folder(str(folder), files, at)
-            case [folder, _]:
-                self._give_up(folder, "a folder in data_files is known only at run time", at)
+            case (folder, files) if isinstance(entry, tuple):
+                self._folder(folder, files, at)
+            case Unknown() | Call():
+                self._give_up(entry, "an entry of data_files is not evaluated", at)
+            case [str() as path, *_] if len(entry) == 1:
+                self.stop("an entry is a folder and a list of files; the list is missing", at, path)
+            case list() | dict() | set():
+                self.stop("an entry of data_files is not a tuple: write (folder, [files])", at)
             case _:
-                self._give_up(entry, "an entry of data_files is known only at run time", at)
+                self.stop("an entry of data_files is not a tuple of a folder and a list of files", at)
 
-    def _folder(self, folder: str, files: Value, at: Position) -> None:
-        if ".." in folder.split("/") or names_package_folder(folder) or folder.startswith(self.root):
-            self._give_up(None, f"the target {folder.replace(PACKAGE_FOLDER, '...')} is not supported", at)
-        elif len(folder) > MAX_PATH:
-            self._give_up(None, "a folder in data_files is too long", at)
+    def _folder(self, folder: Value, files: Value, at: Position) -> None:
+        if not isinstance(folder, str):
+            self._not_text(folder, "the folder of an entry", at)
+        elif folder.startswith(self.root):
+            self._give_up(None, "a target in the package itself is not supported", at)
+        elif folder.startswith("/"):
+            self.stop(f"the folder {folder!r} is absolute; colcon takes one below the prefix, such as share/...", at)
+        elif ".." in folder.split("/") or len(folder) > MAX_PATH:
+            self.unknown.append(Unknown(f"the target {folder[:MAX_PATH]} is not supported", at))
         elif isinstance(files, str) and files:
-            self._stop(files, "the files of an entry are a string, not a list: write [...] around it", at)
-        elif isinstance(files, list | tuple):
+            self.stop("the files of an entry are a string, not a list: write [...] around it", at, files)
+        elif isinstance(files, list):
             for file in files:
                 self._file(file, folder, at)
         else:
-            self._give_up(files, "the files of an entry are known only at run time", at)
+            self._not_list(files, at)
+
+    def _not_list(self, files: Value, at: Position) -> None:
+        if isinstance(files, Items):
+            self.stop("the files of an entry are an iterator, not a list: write list(...) around it", at)
+        elif isinstance(files, (*PLAIN, QualifiedName, Function)):
+            kind = type(files).__name__
+            self.stop(f"the files of an entry are of the type {kind}, not a list: write list(...) around it", at)
+        else:
+            self._give_up(files, "the files of an entry are not evaluated", at)
+
+    def _not_text(self, value: Value, what: str, at: Position) -> None:
+        if isinstance(value, PurePosixPath):
+            self.stop(f"{what} is a path, and colcon takes strings only: write str(...) around it", at)
+        elif isinstance(value, (*PLAIN, Items, QualifiedName, Function)):
+            self.stop(f"{what} is not a string: is a bracket misplaced?", at)
+        else:
+            self._give_up(value, f"{what} is not evaluated", at)
 
     def _file(self, file: Value, folder: str, at: Position) -> None:
-        if len(self.copies) + len(self.stops) + len(self.unknown) > _MAX_COPIES:
-            raise EvaluationStopped("it installs too many files")
-        if isinstance(file, list | tuple | dict | int | float | None) and unknown_in(file) is None:
-            self._stop("", "an entry of data_files contains something other than a file: is a bracket misplaced?", at)
-        elif isinstance(file, str | PurePosixPath):
-            self._path(file, folder, self.positions.get(str(file), at))
+        self.listing.budget.charge(5)
+        if isinstance(file, str):
+            self._path(file, folder, self._origin(file, at))
         else:
-            self._give_up(file, "a file in data_files is known only at run time", at)
+            self._not_text(file, "a file of an entry", at)
 
-    def _path(self, file: str | PurePosixPath, folder: str, at: Position) -> None:
-        text = str(file).removeprefix(self.root + "/")
+    def _path(self, text: str, folder: str, at: Position) -> None:
+        is_absolute = text.startswith(self.root + "/")
+        text = text.removeprefix(self.root + "/")
         if len(text) > MAX_PATH:
             self._give_up(None, "the path of a file is too long", at)
             return
         try:
             path = self.listing.real(text)
         except SearchError:
-            self._give_up(None, f"{text} is outside of the package", at)
+            if text.startswith("/"):
+                self.stop("the path is absolute, and colcon takes paths in the package only", at, text)
+            else:
+                self._give_up(None, f"{text} is outside of the package", at)
             return
-        if names_package_folder(text):
+        if PACKAGE_FOLDER in text:
             self._give_up(None, "the name of the package's folder is not known", at)
-        elif isinstance(file, PurePosixPath) and not folder:
-            self._give_up(None, "some versions of setuptools do not accept a path here", at)
-        elif path is not None and path in self.tree.files:
-            target = posixpath.normpath(posixpath.join(folder, posixpath.basename(path)))
-            self.copies.append(InstalledFile(path, target, at))
-        elif path is not None:
+        elif is_absolute and self.is_first:
+            self.stop("the path is absolute, and colcon takes paths in the package only", at, text)
+            self._copy(path, folder, at)
+        elif path is not None and not self._copy(path, folder, at):
             reason = f"it is a folder, and only files can be installed{self._narrower(path)}"
             self.stops.append(InstallError(text, reason, at))
-        elif str(PurePosixPath(text)) in self.tree.files:
-            self._give_up(None, f"whether {text} names a file depends on the version of setuptools", at)
-        elif ignored_part(posixpath.normpath(text)):
+        elif path is None and str(PurePosixPath(text)) in self.listing.files:
+            self.stop("there is no such file: a path of a file does not end in /", at, text)
+        elif path is None and ignored_part(posixpath.normpath(text)):
             self._give_up(None, f"{text} is an ignored file", at)
-        else:
-            guess = did_you_mean(text, self.tree.files) if len(self.stops) < _MAX_GUESSES else ""
+        elif path is None:
+            guess = did_you_mean(text, self.listing.files) if len(self.stops) < _MAX_GUESSES else ""
             self.stops.append(InstallError(text, "there is no such file", at, guess))
+
+    def _copy(self, path: str | None, folder: str, at: Position) -> bool:
+        """Install a file of the package; return whether it is one."""
+        if path is None or path not in self.listing.files:
+            return False
+        target = posixpath.normpath(posixpath.join(folder, posixpath.basename(path)))
+        self.copies.append(InstalledFile(path, target, at))
+        return True
 
     def _narrower(self, folder: str) -> str:
         """Return the hint about a pattern that matches the other files next to a folder, but not the folder."""
         above = posixpath.dirname(folder)
         names = self.listing.names(above) if above else []
-        beside = [posixpath.splitext(name)[1] for name in names if posixpath.join(above, name) in self.tree.files]
+        beside = [posixpath.splitext(name)[1] for name in names if posixpath.join(above, name) in self.listing.files]
         if not any(beside):
             return ""
         most_common = max(sorted(set(beside) - {""}), key=beside.count)
         return f": a pattern such as '*{most_common}' does not match it"
-
-    def _find_packages(self, call: Call) -> None:
-        """Add the error of setuptools where it searches for packages and finds several."""
-        if any(call.kwargs.get(name) is not None for name in _PACKAGES) or "src" in self.tree.folders:
-            return
-        if _configures(self.tree, _SET_PACKAGES):
-            return
-        folders = [name for name in self.listing.names("") if name in self.tree.folders and name.isidentifier()]
-        found = sorted(name for name in folders if name not in _NO_PACKAGES and not name.startswith("_"))
-        if len(found) > 1:
-            reason = f"packages=[...] is missing, and setuptools cannot choose between the folders {enumerated(found)}"
-            self._stop("", reason, call.at)
-
-
-def _configures(tree: Tree, pattern: bytes) -> bool:
-    """Return whether setup.cfg or pyproject.toml may contain a key."""
-    files = [tree.files[name] for name in ("setup.cfg", "pyproject.toml") if name in tree.files]
-    try:
-        return any(re.search(pattern, file.read(_MAX_SETTINGS, first=True)) for file in files)
-    except InputError:
-        return True

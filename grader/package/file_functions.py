@@ -2,39 +2,52 @@
 
 import posixpath
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from functools import partial
+from io import StringIO
 from pathlib import PurePosixPath
 
+from grader.errors import InputError
 from grader.files.names import ignored_part
 from grader.package.globbing import PackageListing, SearchError
 from grader.static_python.evaluation import Evaluation, EvaluationStopped, FunctionTable
-from grader.static_python.operators import WalkFolders
-from grader.static_python.parse import Position
-from grader.static_python.values import Call, Unknown, Value, distinct, items_of, path_text, unknown_in
+from grader.static_python.values import (
+    Call,
+    ExpressionFails,
+    Items,
+    PlainFunction,
+    Undetermined,
+    Unknown,
+    Value,
+    known,
+    path_text,
+)
 
-WRITING = "builtins.open(w)"  # the name of a call that opens a file to write into it
 _OUTSIDE = "it reads files outside of the package"
 _GLOB_OPTIONS = {"pathname", "root_dir", "recursive", "include_hidden"}
+_MAX_READ = 128 * 1024  # bytes
 
 
 def file_functions(listing: PackageListing, root: str) -> FunctionTable:
     """Return the functions by full name; `root` is the absolute path that represents the package's folder."""
     folder = _PackageFolder(listing, root)
     functions: dict[str, Callable[[Evaluation, Call], Value]] = {
-        "builtins.set": folder.set,
-        "builtins.frozenset": folder.set,
         "glob.glob": folder.glob,
-        "glob.iglob": folder.glob,
-        "glob.escape": folder.escape,
+        "glob.iglob": lambda evaluation, call: Items(folder.glob(evaluation, call)),
         "os.listdir": folder.listdir,
         "os.walk": folder.walk,
         "os.chdir": folder.chdir,
         "builtins.open": folder.open,
+        "io.open": folder.open,
+        "pathlib.Path.open": folder.open,
+        "pathlib.Path.read_text": folder.read_text,
         "pathlib.Path.iterdir": folder.iterdir,
         "pathlib.Path.glob": folder.path_glob,
         "pathlib.Path.rglob": partial(folder.path_glob, prefix="**/"),
+        "setuptools.find_packages": folder.find_packages,
+        "setuptools.find_namespace_packages": folder.find_packages,
     }
     tests: dict[str, Callable[[str | None], bool]] = {
         "exists": lambda path: path is not None,
@@ -44,23 +57,21 @@ def file_functions(listing: PackageListing, root: str) -> FunctionTable:
     for name, test in tests.items():
         functions[f"pathlib.Path.{name}"] = partial(folder.test, test)
         functions[f"os.path.{name.replace('_', '')}"] = partial(folder.test, test)
-    return {name: partial(_evaluate, function, listing) for name, function in functions.items()}
+    table: FunctionTable = {name: partial(_evaluate, function, listing) for name, function in functions.items()}
+    escape = PlainFunction("escape", lambda pathname: re.sub(r"([*?\[])", r"[\1]", pathname), "path")
+    return {**table, "glob.escape": escape}
 
 
 def _evaluate(
     function: Callable[[Evaluation, Call], Value], listing: PackageListing, evaluation: Evaluation, call: Call
 ) -> Value:
-    """Evaluate a search, count its steps and record whether the order of files in a folder, or of a set, matters."""
-    before = listing.names_read
+    """Evaluate a search, charge it and record whether the order of files in a folder matters."""
+    known([call.args, [*call.kwargs.values()]])
     try:
         found = function(evaluation, call)
     except SearchError as error:
-        return Unknown(str(error), call.at)
-    finally:
-        evaluation.step((listing.names_read - before) // 10)
-    if isinstance(found, list):
-        steps = [names for step in found if isinstance(step, tuple) for names in step[1:]]  # of os.walk
-        listing.order_matters |= any(len(names) > 1 for names in (found, *steps))
+        raise Undetermined(str(error)) from None
+    listing.order_matters |= isinstance(found, list) and len(found) > 1
     return found
 
 
@@ -79,8 +90,7 @@ class _PackageFolder:
         if text is not None and text.startswith(self.root + "/"):
             text = text.removeprefix(self.root).lstrip("/") or "."
         if text is None or text.startswith("/"):
-            unknown = unknown_in(value)
-            raise SearchError(_OUTSIDE if unknown is None else unknown.reason)
+            raise SearchError(_OUTSIDE)
         return text
 
     def real(self, value: Value) -> str | None:
@@ -91,104 +101,139 @@ class _PackageFolder:
             raise SearchError(f"{path} is an ignored file")
         return real
 
-    def set(self, _: Evaluation, call: Call) -> Value:
-        items = items_of(call.args[0]) if call.args else []
-        unknown = call.unknown("the items of this value are known only at run time")
-        return self.listing.ordered(distinct(items)) if items is not None else unknown
-
-    def glob(self, evaluation: Evaluation, call: Call) -> Value:
+    def glob(self, _: Evaluation, call: Call) -> Value:
         pattern, start = call.argument(0, "pathname"), call.kwargs.get("root_dir")
         options = [call.kwargs.get(name, False) for name in ("recursive", "include_hidden")]
         if isinstance(pattern, PurePosixPath):
-            evaluation.error("glob takes a string, and this is a path: write str(...) around it", call.at)
-        unknown = unknown_in([pattern, start, *options])
-        plain = isinstance(start, str | PurePosixPath | None)
-        plain &= all(isinstance(value, int | None) for value in options)
-        is_supported = plain and call.kwargs.keys() <= _GLOB_OPTIONS and len(call.args) <= 1
-        if unknown or not is_supported or not isinstance(pattern, str):
-            return unknown or Unknown("this search for files is not supported", call.at)
+            raise ExpressionFails("glob takes a string, and this is a path: write str(...) around it")
+        if not call.kwargs.keys() <= {*_GLOB_OPTIONS, "dir_fd"} or len(call.args) + ("pathname" in call.kwargs) != 1:
+            raise ExpressionFails("glob takes one pattern, and the options recursive, root_dir and include_hidden")
+        if not isinstance(pattern, str):
+            raise ExpressionFails(f"glob takes a string, and this is of the type {type(pattern).__name__}")
+        if not isinstance(start, str | PurePosixPath | None) or "dir_fd" in call.kwargs:
+            raise Undetermined("this search for files is not supported")
         if pattern == self.root:
             return [pattern]
         above = self.root + "/" if pattern.startswith(self.root + "/") else ""
-        folder = "" if start is None or above else self.inside(start)
         pattern = pattern.removeprefix(above)
         recursive, hidden = map(bool, options)
-        found = self.listing.glob(pattern, recursive=recursive, hidden=hidden, start=folder, above=above)
+        try:
+            folder = "" if start is None or above else self.inside(start)
+            found = self.listing.glob(pattern, recursive=recursive, hidden=hidden, start=folder, above=above)
+        except SearchError as error:  # glob raises no error of its own
+            return Unknown(str(error), call.at)
         return self.listing.record(posixpath.join(folder, pattern), found, call.at)
-
-    def escape(self, _: Evaluation, call: Call) -> Value:
-        if len(call.args) == 1 and isinstance(call.args[0], str):
-            return re.sub(r"([*?\[])", r"[\1]", call.args[0])
-        return call.unknown("the pattern is known only at run time")
 
     def path_glob(self, _: Evaluation, call: Call, prefix: str = "") -> Value:
         pattern = call.argument(1, "pattern")
         is_supported = call.kwargs.keys() <= {"pattern"} and len(call.args) + len(call.kwargs) == 2
         if not isinstance(pattern, str) or not is_supported:
-            return call.unknown("this search for files is not supported")
+            raise Undetermined("this search for files is not supported")
         folder = self.inside(call.args[0])
         found = [call.args[0] / path for path in self.listing.path_glob(folder, prefix + pattern)]
-        return self.listing.record(str(PurePosixPath(folder) / pattern), found, call.at)
+        self.listing.order_matters |= len(found) > 1
+        return Items(self.listing.record(str(PurePosixPath(folder) / pattern), found, call.at))
 
     def test(self, answer: Callable[[str | None], bool], _: Evaluation, call: Call) -> Value:
         if len(call.args) != 1 or call.kwargs:
-            return call.unknown("this test of a path is not supported")
+            raise Undetermined("this test of a path is not supported")
         return answer(self.real(call.args[0]))
 
-    def listdir(self, evaluation: Evaluation, call: Call) -> Value:
+    def listdir(self, _: Evaluation, call: Call) -> Value:
         path = call.argument(0, "path")
-        return self._names(evaluation, "." if path is None else path, call.at)
+        return self._names("." if path is None else path)
 
-    def iterdir(self, evaluation: Evaluation, call: Call) -> Value:
-        return [call.args[0] / name for name in self._names(evaluation, call.args[0], call.at)]
+    def iterdir(self, _: Evaluation, call: Call) -> Value:
+        found = [call.args[0] / name for name in self._names(call.args[0])]
+        self.listing.order_matters |= len(found) > 1
+        return Items(found)
 
-    def walk(self, _: Evaluation, call: Call) -> Value:
-        if len(call.args) != 1 or not call.kwargs.keys() <= {"topdown", "followlinks"}:
-            return call.unknown("this walk through folders is not supported")
-        real = self.real(call.args[0])
-        steps: list[Value] = []
-        pending = [(real, str(call.args[0]))] if real is not None and real in self.listing.folders else []
-        while pending:
-            folder, spelled = pending.pop()
-            paths = {name: f"{folder}/{name}" if folder else name for name in self.listing.names(folder)}
-            folders = [name for name, path in paths.items() if path in self.listing.folders]
-            steps.append((spelled, WalkFolders(folders), [name for name in paths if name not in folders]))
-            pending += [(paths[name], posixpath.join(spelled, name)) for name in reversed(folders)]
-        return steps
+    def walk(self, evaluation: Evaluation, call: Call) -> Value:
+        if len(call.args) != 1 or not call.kwargs.keys() <= {"followlinks"}:
+            raise Undetermined("this walk through folders is not supported")
+        return Items(self._steps(evaluation, self.real(call.args[0]), str(call.args[0])))
+
+    def _steps(self, evaluation: Evaluation, real: str | None, spelled: str) -> Iterator[Value]:
+        """Yield the steps of os.walk: the caller may change the list of folders before the next step."""
+        if real is None or real not in self.listing.folders:
+            return
+        evaluation.budget.charge(10)
+        try:
+            names = self.listing.names(real)
+        except SearchError as error:
+            raise Undetermined(str(error)) from None
+        self.listing.order_matters |= len(names) > 1
+        paths = {name: _below(real, name) for name in names}
+        folders = [name for name, path in paths.items() if path in self.listing.folders]
+        yield (spelled, folders, [name for name in paths if name not in folders])
+        for name in folders:
+            yield from self._steps(evaluation, self.real(_below(real, name)), posixpath.join(spelled, name))
 
     def chdir(self, _: Evaluation, call: Call) -> Value:
-        try:
-            stays = len(call.args) == 1 and self.real(call.args[0]) == ""
-        except SearchError:
-            stays = False
-        if not stays:
-            raise EvaluationStopped("a change of the working folder is not supported")
+        if len(call.args) != 1 or self.real(call.args[0]) != "":
+            raise EvaluationStopped("a change of the working folder is not evaluated", call.at)
 
     def open(self, evaluation: Evaluation, call: Call) -> Value:
-        opened = Call("builtins.open", call.args, call.kwargs, call.at)
         path, mode = call.argument(0, "file"), call.argument(1, "mode")
-        if mode is not None and (not isinstance(mode, str) or set(mode) & set("wax+")):
-            evaluation.calls.append(Call(WRITING, call.args, call.kwargs, call.at))
-            evaluation.may_have_failed = True
-            return opened
-        try:
-            real = self.real(path)
-        except SearchError:
-            evaluation.may_have_failed = True
-            return opened
+        if (
+            mode not in (None, "r", "rt")
+            or not call.kwargs.keys() <= {"file", "mode", "encoding"}
+            or len(call.args) > 2
+        ):
+            raise EvaluationStopped(
+                "a file that is opened to write into it, or by other options, is not evaluated", call.at
+            )
+        real = self.real(path)
         if real is None:
-            evaluation.error(f"there is no file {str(path)!r}", call.at, FileNotFoundError)
-        elif real in self.listing.folders:
-            evaluation.error(f"{str(path)!r} is a folder, not a file", call.at, IsADirectoryError)
-        return opened
+            raise ExpressionFails(f"there is no file {str(path)!r}", FileNotFoundError)
+        if real in self.listing.folders:
+            raise ExpressionFails(f"{str(path)!r} is a folder, not a file", IsADirectoryError)
+        try:
+            text = self.listing.files[real].read(_MAX_READ).decode()
+        except (InputError, UnicodeDecodeError):
+            raise Undetermined(f"the text of {real} cannot be read") from None
+        evaluation.budget.charge(1, len(text))
+        return StringIO(text.replace("\r\n", "\n").replace("\r", "\n"))
 
-    def _names(self, evaluation: Evaluation, path: Value, at: Position) -> list[Value]:
+    def read_text(self, evaluation: Evaluation, call: Call) -> Value:
+        if not call.kwargs.keys() <= {"encoding"} or len(call.args) != 1:
+            raise Undetermined("this use of read_text is not supported")
+        return self.open(evaluation, call).read()
+
+    def find_packages(self, _: Evaluation, call: Call) -> Value:
+        """Return the folders with an __init__.py; those without need other rules."""
+        where, exclude, include = (
+            call.argument(place, name) for place, name in enumerate(("where", "exclude", "include"))
+        )
+        lists = [(), ["*"]]
+        for given, index in ((exclude, 0), (include, 1)):
+            if given is not None:
+                lists[index] = given
+        is_known = where in (None, ".", "./") and call.kwargs.keys() <= {"where", "exclude", "include"}
+        if not is_known or "namespace" in call.name or not all(isinstance(it, list | tuple) for it in lists):
+            return Unknown("which packages there are is not evaluated", call.at)
+        return [name for name in self._packages("") if _fits(name, lists[1]) and not _fits(name, lists[0])]
+
+    def _packages(self, folder: str) -> Iterator[str]:
+        for name in self.listing.names(folder):
+            path = _below(folder, name)
+            if "." not in name and f"{path}/__init__.py" in self.listing.files:
+                yield path.replace("/", ".")
+                yield from self._packages(path)
+
+    def _names(self, path: Value) -> list[Value]:
         """Return the names in a folder; it is an error if there is none."""
         real = self.real(path)
         if real in self.listing.folders:
             return list(self.listing.names(real or ""))
         if real is None:
-            evaluation.error(f"there is no folder {str(path)!r}", at, FileNotFoundError)
-        else:
-            evaluation.error(f"{str(path)!r} is a file, not a folder", at, NotADirectoryError)
-        return []
+            raise ExpressionFails(f"there is no folder {str(path)!r}", FileNotFoundError)
+        raise ExpressionFails(f"{str(path)!r} is a file, not a folder", NotADirectoryError)
+
+
+def _below(folder: str, name: str) -> str:
+    return f"{folder}/{name}" if folder else name
+
+
+def _fits(name: str, patterns: Value) -> bool:
+    return any(isinstance(pattern, str) and fnmatchcase(name, pattern) for pattern in patterns)

@@ -11,6 +11,7 @@ from itertools import chain
 from typing import NamedTuple
 
 from grader.files.tree import Tree
+from grader.static_python.budget import Budget
 from grader.static_python.parse import Position
 from grader.static_python.values import Value
 
@@ -40,11 +41,12 @@ class EmptyGlob(NamedTuple):
 class PackageListing:
     """The folders of a file tree, listed in one of the possible orders. Paths are relative to the tree's root."""
 
-    def __init__(self, tree: Tree, order: str = ORDERS[0]) -> None:
+    def __init__(self, tree: Tree, budget: Budget | None = None, order: str = ORDERS[0]) -> None:
+        self.tree = tree
+        self.budget = budget or Budget()
         self.files = tree.files
         self.folders = tree.folders | tree.unseen | {""}
         self._unseen = {path for path in tree.unseen if path.rpartition("/")[2] != _COMPILED}
-        self.names_read = 0  # by searches
         self.order_matters = False  # whether a search has returned several names
         self.positions: dict[str, Position] = {}  # of the searches that found a path
         self.empty: dict[EmptyGlob, None] = {}  # in the order of the searches
@@ -76,14 +78,21 @@ class PackageListing:
         if folder in self._unseen:
             raise SearchError("it searches an ignored folder")
         found = self._children.get(folder, [])
-        self.names_read += 1 + len(found)
+        self.budget.charge(1 + len(found))
         return found
+
+    def modules(self) -> frozenset[str]:
+        """Return the names of the modules and packages beside setup.py, which are imported before any other."""
+        files = (name.removesuffix(".py") for name in self._children.get("", ()) if name.endswith(".py"))
+        packages = (name for name in self._children.get("", ()) if f"{name}/__init__.py" in self.files)
+        return frozenset((*files, *packages)) - {"setup"}
 
     def real(self, path: str) -> str | None:
         """Return the file or folder at a path, without dots; None where there is nothing. Raises SearchError."""
         if path.startswith("/"):
             raise SearchError(_OUTSIDE)
         here = ""
+        self.budget.charge(1, len(path))
         for index, part in enumerate(path.split("/")):
             if here not in self.folders or not path:
                 return None
@@ -157,6 +166,7 @@ class _GlobSearch:
         found: list[str] = []
         for path in dict.fromkeys(folders):
             found += [posixpath.join(path, name) for name in self._in_folder(path, last, folders_only=folders_only)]
+            self.listing.budget.charge(len(found) // 16)
             _limit(found)
         return found
 

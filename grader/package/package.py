@@ -11,6 +11,7 @@ from grader.files.tree import Tree
 from grader.names import closest
 from grader.package.launch.places import ENDINGS, PREFIX, SHARE, is_in_launch_folder, is_launch_named, launch_stem
 from grader.source import Location, Source
+from grader.static_python.budget import Budget
 from grader.text import enumerated, was_not_committed
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
@@ -40,6 +41,8 @@ class Package:
     packages: dict[str, "Package"]  # all of the submission, by their names
     generated: tuple[str, ...] = ()  # paths in the submission that a build has copied
     lab_name: str = ""  # the name that the lab gives it
+    ignored_by: str = ""  # the path of a file for which colcon ignores it
+    budget: Budget = field(default_factory=Budget, init=False)  # of the evaluation of its files
     _launches: "dict[str, Launch]" = field(default_factory=dict, init=False)
     _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False)
 
@@ -102,7 +105,7 @@ class Package:
             code = parse(file.read(PYTHON_LIMIT), path)
         except InputError as error:
             code = SyntaxFault(Source(path, ""), str(error), Location(path, 1, 1), sure=False)
-        return read_setup(code, self.tree)
+        return read_setup(code, self.tree, self.budget)
 
     @cached_property
     def installed(self) -> dict[str, str]:
@@ -158,7 +161,7 @@ class Package:
         try:
             data = self.tree.files[path].read(PYTHON_LIMIT) if text is None else text
             installed = self.target(path) or f"share/{self.name}/{path}"
-            launch = read_launch(data, own, installed, self._open_installed)
+            launch = read_launch(data, own, installed, self._open_installed, self._is_on_machine, self._has_program)
         except InputError as error:
             launch = Launch(Source(own, ""), unread=str(error))
         return self._launches.setdefault(path, launch) if text is None else launch
@@ -203,6 +206,20 @@ class Package:
         """Return the file of the package that a build installs at a path, which begins with the prefix's stand-in."""
         shares = tuple(f"{SHARE}/{name}/" for name in self.names)
         return self.installed.get(path.removeprefix(f"{PREFIX}/")) if path.startswith(shares) else None
+
+    def _is_on_machine(self, name: str) -> bool:
+        """Return whether a package certainly is on the machine: submitted, declared as needed, or part of ROS 2."""
+        from grader.package.launch.known_files import is_of_ros  # late: as the readers of launch files
+
+        return self.find(name) is not None or self.depends_on(name) or is_of_ros(name)
+
+    def _has_program(self, package: str, name: str) -> bool | None:
+        """Return whether a package has a program, as far as its setup.py tells; one that is not submitted has it."""
+        owner = self.find(package)
+        if owner is None:
+            return True
+        setup = owner.setup
+        return setup.has_program(name) if setup is not None and not owner.is_cmake else None
 
     def _open_installed(self, path: str) -> tuple[bytes, str] | None:
         """Return what a build of any submitted package installs at a path below the prefix, with the file's path."""

@@ -8,7 +8,7 @@ import yaml
 
 from grader.source import Location, Source
 
-_MAX_EVENTS = 100_000
+_MAX_EVENTS = 25_000
 _MAX_ALIASES = 1000
 _MAX_DEPTH = 200  # the parser gets slower with each open bracket
 _DEEP = "the file is too deeply nested"

@@ -2,193 +2,190 @@
 
 import ast
 import builtins
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import partial
+from io import StringIO
 
-from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable, LoopFlow, RaisedFlow, ReturnFlow
-from grader.static_python.parse import Code, Position, position_of
-from grader.static_python.statements import StatementEvaluator
-from grader.static_python.values import UNKNOWN_KEYS, Call, Function, Scope, Unknown, Value, items_of, truth
+from grader.static_python import values as py
+from grader.static_python.budget import Budget, OutOfBudget
+from grader.static_python.builtins import truth
+from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable, RaisedFlow
+from grader.static_python.parse import Code, Position, bound_in, own_nodes, position_of
+from grader.static_python.statements import LoopFlow, ReturnFlow, Statements
 
-_CONDITION = "a condition is known only at run time"
+_STEPS = 100_000  # what the evaluation of one file may use
 
 
-class Interpreter(StatementEvaluator):
+class Interpreter(Statements):
     """Adds the statements that have blocks."""
 
-    def __init__(self, functions: FunctionTable, names: Mapping[str, Value]) -> None:
-        """`names` are those that Python itself binds, such as __file__."""
-        super().__init__(functions, {"__name__": "__main__", **names})
-        self.stop_reason = ""  # why the file is not evaluated to its end
-        self._has_generators = True
-        self._generators: dict[ast.AST, bool] = {}
+    def __init__(
+        self,
+        functions: FunctionTable,
+        names: Mapping[str, py.Value],
+        *,
+        stand_ins: Collection[str] = (),
+        budget: Budget | None = None,
+        exports: Mapping[str, Collection[str]] | None = None,
+        local_modules: Collection[str] = (),
+    ) -> None:
+        """`functions` may be called, by full name; `names` are bound from the beginning, such as __file__.
 
-    def run(self, code: Code) -> Scope:
+        `stand_ins` are texts that stand for folders that are not known; `exports` has the names of modules, besides
+        those of Python itself; `local_modules` are beside the file, and imported before any other.
+        """
+        super().__init__(functions, names, budget or Budget(_STEPS))
+        self.budget.stand_ins = stand_ins
+        self.exports = exports or {}
+        self.local_modules = local_modules
+
+    def run(self, code: Code) -> py.Scope:
         """Evaluate a whole file and return the scope of its names. Never raises."""
-        self._has_generators = "yield" in code.source.text
         try:
             self._block(code.tree.body, self.module)
-        except (EvaluationStopped, RecursionError) as error:
+        except (EvaluationStopped, OutOfBudget, RecursionError) as error:
             self._stop(error)
         except (ReturnFlow, LoopFlow, ExitFlow):  # also a break outside of a loop, which ast accepts
             pass
+        except RaisedFlow as error:
+            self.errors.append(error.error)
         return self.module
 
-    def call_from_outside(self, function: Function, at: Position, args: Sequence[Value] | None = ()) -> Value:
+    def call_from_outside(self, function: py.Function, at: Position, args: Sequence[py.Value] | None = ()) -> py.Value:
         """Return the value of a call of one of the file's functions. Never raises.
 
-        With `args` None, the arguments are unknown, and no error in the call counts: it may never happen.
+        With `args` None, the arguments are unknown, and no error or doubt in the call counts: it may never happen.
         """
-        unknown = {UNKNOWN_KEYS: Unknown("an event is known only at run time", at)} if args is None else {}
-        recorded = list(self.errors)
+        unknown = {py.UNKNOWN_KEYS: py.Unknown("an event is known only at run time", at)} if args is None else {}
+        recorded, doubt = list(self.errors), self.doubt
         try:
-            return self.call_function(function, Call("", list(args or ()), unknown, at))
-        except (EvaluationStopped, RecursionError) as error:
-            return Unknown(self._stop(error), at)
-        except (ExitFlow, LoopFlow):
-            return Unknown("the file exits here", at)
+            return self.call_function(function, py.Call("", list(args or ()), unknown, at))
+        except (EvaluationStopped, OutOfBudget, RecursionError) as error:
+            return self._stop(error, at)
+        except (ExitFlow, LoopFlow, py.ExpressionFails, py.Undetermined, RaisedFlow):
+            return self.doubted(py.Unknown("the file exits here", at))
         finally:
             if args is None:
-                self.errors = recorded
+                self.errors, self.doubt = recorded, doubt
 
-    def _functiondef(self, node: ast.FunctionDef | ast.AsyncFunctionDef, scope: Scope) -> None:
-        function = self.function(node.args, scope, position_of(node), partial(self._function_body, node))
-        for parameter in getattr(node, "type_params", ()):  # Python 3.12
-            scope.bind(parameter.name, Unknown("a type is not supported", position_of(node)))
-        decorated = Unknown("a decorator is not supported", position_of(node))
-        scope.bind(node.name, decorated if node.decorator_list else function)
-
-    def _if(self, node: ast.If, scope: Scope) -> None:
-        condition = truth(self.evaluate(node.test, scope))
-        if condition is None:
-            self._branches([node.body, node.orelse], scope, position_of(node))
-        else:
-            self._block(node.body if condition else node.orelse, scope)
-
-    def _while(self, node: ast.While, scope: Scope) -> None:
-        before = self.uncertainty
-        if truth(self.evaluate(node.test, scope)) is False:
-            self._block(node.orelse, scope)
-        else:  # the body twice: its first round may change what the second one does
-            self._branches([node.body, node.body, node.orelse], scope, position_of(node))
-        self.uncertainty = before
-
-    def _match(self, node: ast.Match, scope: Scope) -> None:
-        self.evaluate(node.subject, scope)
-        for pattern in ast.walk(node):
-            if isinstance(pattern, ast.MatchAs | ast.MatchStar) and pattern.name is not None:
-                scope.bind(pattern.name, Unknown("a pattern is not supported", position_of(node)))
-        self._branches([case.body for case in node.cases], scope, position_of(node))
-
-    def _with(self, node: ast.With | ast.AsyncWith, scope: Scope) -> None:
-        for item in node.items:
-            value = self.evaluate(item.context_expr, scope)
-            if item.optional_vars is not None:
-                self.assign(item.optional_vars, value, scope)
-        self._block(node.body, scope)
-
-    _asyncfunctiondef, _asyncwith = _functiondef, _with
-
-    def _stop(self, error: Exception) -> str:
+    def _stop(self, error: Exception, at: Position | None = None) -> py.Unknown:
+        self.handlers = 0
         is_deep = isinstance(error, RecursionError)
-        self.stop_reason = "the file is too deeply nested to evaluate" if is_deep else str(error)
-        return self.stop_reason
+        reason = "the file is too deeply nested, which is not evaluated" if is_deep else str(error)
+        return self.doubted(py.Unknown(reason, getattr(error, "at", None) or at or self.at))
 
-    def _block(self, body: list[ast.stmt], scope: Scope) -> None:
+    def _block(self, body: list[ast.stmt], scope: py.Scope) -> None:
         for statement in body:
-            self.step()
-            if self.may_have_failed and self.handlers and self.uncertainty is None:
-                self.uncertainty = Unknown("an earlier error may have been caught", position_of(statement))
+            self.budget.charge(1)
+            self.at = position_of(statement)
             self.statement(statement, scope)
 
-    def _branches(self, bodies: list[list[ast.stmt]], scope: Scope, at: Position, reason: str = _CONDITION) -> None:
-        """Evaluate blocks of which only a run decides which are executed."""
-        for body in bodies:
-            with self.uncertain(reason, at):
-                self._block(body, scope)
+    def _on_functiondef(self, node: ast.FunctionDef, scope: py.Scope) -> None:
+        at = position_of(node)
+        if node.decorator_list or getattr(node, "type_params", []):
+            raise EvaluationStopped("a function with a decorator or type parameters is not evaluated", at)
+        parameters = node.args
+        every = (*parameters.posonlyargs, *parameters.args, *parameters.kwonlyargs, parameters.vararg, parameters.kwarg)
+        function: py.Value = self.function(parameters, scope, at, partial(self._function_body, node), bound_in(node))
+        for annotation in (*(parameter.annotation for parameter in every if parameter), node.returns):
+            self.annotation(annotation, scope)
+        scope.names[node.name] = function
 
-    def _function_body(self, node: ast.FunctionDef | ast.AsyncFunctionDef, scope: Scope, at: Position) -> Value:
-        if self._has_generators and node not in self._generators:
-            self._generators[node] = any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in ast.walk(node))
-        if self._generators.get(node):
-            return Unknown("a generator function is not supported", at)
-        before = self.uncertainty
+    def _function_body(self, node: ast.FunctionDef, scope: py.Scope) -> py.Value:
+        if any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in own_nodes(node)):
+            raise EvaluationStopped("a generator function is not evaluated", position_of(node))
         try:
             self._block(node.body, scope)
         except ReturnFlow as flow:
-            return flow.value if self.uncertainty is before or self.uncertainty is None else self.uncertainty
-        finally:
-            self.uncertainty = before
+            return flow.value
         return None
 
-    def _for(self, node: ast.For | ast.AsyncFor, scope: Scope) -> None:
-        items = items_of(self.evaluate(node.iter, scope))
-        before = self.uncertainty
-        if items is None:
-            for body in (node.body, node.body, node.orelse):  # the body twice, as that of a while loop
-                with self.uncertain("the items of a loop are known only at run time", position_of(node)):
-                    self.assign(node.target, None, scope)
-                    self._block(body, scope)
-        for item in items or ():
-            self.step()
-            self.assign(node.target, item, scope)
-            try:
-                self._block(node.body, scope)
-            except LoopFlow as flow:
-                if flow.is_break:
-                    break
-        else:
-            self._block(node.orelse if items is not None else [], scope)
-        self.uncertainty = before
+    def _on_if(self, node: ast.If, scope: py.Scope) -> None:
+        self._block(node.body if truth(self.evaluate(node.test, scope)) else node.orelse, scope)
 
-    def _try(self, node: ast.Try | ast.TryStar, scope: Scope) -> None:
-        if not node.handlers:
-            self._block(node.body, scope)
-        else:
-            raised, may_have_failed = self._guard(node.body, scope)
-            if raised is not None:
-                self._handle(node, raised, scope)
-            elif may_have_failed:
-                bodies = [node.orelse, *(handler.body for handler in node.handlers)]
-                self._branches(bodies, scope, position_of(node), "whether an error is raised is known only at run time")
-            else:
-                self._block(node.orelse, scope)
-        self._block(node.finalbody, scope)
+    def _on_while(self, node: ast.While, scope: py.Scope) -> None:
+        while truth(self.evaluate(node.test, scope)):
+            if not self._round(node.body, scope):
+                return
+        self._block(node.orelse, scope)
 
-    _asyncfor, _trystar = _for, _try
+    def _on_for(self, node: ast.For, scope: py.Scope) -> None:
+        items = py.iterate(self.evaluate(node.iter, scope))
+        for item in items:
+            self.bind(node.target, item, scope)
+            if not self._round(node.body, scope):
+                return
+        self._block(node.orelse, scope)
 
-    def _guard(self, body: list[ast.stmt], scope: Scope) -> tuple[RaisedFlow | None, bool]:
-        """Evaluate a block whose errors are caught; return the certainly raised error, and whether another may be."""
-        before, failed_before, self.may_have_failed = self.uncertainty, self.may_have_failed, False
-        self.handlers += 1
-        raised: RaisedFlow | None = None
+    def _round(self, body: list[ast.stmt], scope: py.Scope) -> bool:
+        """Evaluate one round of a loop; return whether the loop goes on."""
         try:
             self._block(body, scope)
-        except RaisedFlow as error:
-            raised = error
-        finally:
-            self.handlers -= 1
-            failed, self.may_have_failed = self.may_have_failed, self.may_have_failed or failed_before
-        self.uncertainty = before
-        return raised, failed
+        except LoopFlow as flow:
+            return not flow.is_break
+        return True
 
-    def _handle(self, node: ast.Try | ast.TryStar, raised: RaisedFlow, scope: Scope) -> None:
+    def _on_with(self, node: ast.With, scope: py.Scope) -> None:
+        entered: list[py.Value] = []
+        for item in node.items:
+            value = self.evaluate(item.context_expr, scope)
+            at = position_of(item.context_expr)
+            if isinstance(value, py.Call):
+                self.call_value(py.BoundMethod(value, "__enter__"), py.Call("", [], {}, at))
+            elif not isinstance(value, StringIO):
+                raise EvaluationStopped("this use of with is not evaluated", at)
+            entered.append(value)
+            if item.optional_vars is not None:
+                self.bind(item.optional_vars, value, scope)
+        try:
+            self._block(node.body, scope)
+        finally:
+            for value in entered:
+                if isinstance(value, StringIO):
+                    value.close()
+
+    def _on_try(self, node: ast.Try, scope: py.Scope) -> None:
+        """Evaluate a block; an error in it is certain, because the evaluation stops where one is only possible."""
+        leaving = (part for it in node.finalbody for part in ast.walk(it))
+        if any(isinstance(part, ast.Return | ast.Break | ast.Continue) for part in leaving):
+            raise EvaluationStopped("leaving a finally block is not evaluated", position_of(node))
+        try:
+            self._guarded(node, scope)
+        except (RaisedFlow, ReturnFlow, LoopFlow, ExitFlow):
+            self._block(node.finalbody, scope)
+            raise
+        self._block(node.finalbody, scope)
+
+    def _guarded(self, node: ast.Try, scope: py.Scope) -> None:
+        before = self.handlers
+        self.handlers += bool(node.handlers)
+        try:
+            self._block(node.body, scope)
+        except RaisedFlow as raised:
+            self.handlers = before
+            self._handle(node, raised, scope)
+            return
+        finally:
+            self.handlers = before
+        self._block(node.orelse, scope)
+
+    def _handle(self, node: ast.Try, raised: RaisedFlow, scope: py.Scope) -> None:
         """Evaluate the first handler that catches an error; raise it again where none does."""
         for handler in node.handlers:
             catches = _catches(handler.type, raised.kind)
-            if catches is False:
-                continue
-            if handler.name is not None:
-                scope.bind(handler.name, Unknown("the error is known only at run time", position_of(handler)))
+            if catches is None:
+                raise EvaluationStopped("whether an error is caught here is not evaluated", position_of(handler))
             if catches:
+                if handler.name is not None:
+                    scope.names[handler.name] = py.Unknown("the error is not evaluated", position_of(handler))
                 self._block(handler.body, scope)
+                if handler.name is not None:
+                    scope.names.pop(handler.name, None)
                 return
-            reason = "which error is raised is known only at run time"
-            self._branches([handler.body], scope, position_of(handler), reason)
         self.error(raised.error.message, raised.error.at, raised.kind)
 
 
-def _catches(kinds: ast.expr | None, raised: type[Exception]) -> bool | None:
+def _catches(kinds: ast.expr | None, raised: type[BaseException]) -> bool | None:
     """Return whether `except kinds:` catches an error; None where this is unknown."""
     if kinds is None:
         return True

@@ -1,213 +1,205 @@
-"""Operators, comparisons and subscripts of abstract values, and changes of lists and dicts."""
+"""Operators, subscripts, attributes and methods: Python's own, from an allow-list, on values of bounded size."""
 
 import ast
 import operator
-from collections.abc import Callable
-from contextlib import suppress
-from pathlib import PurePosixPath
-from typing import Any
+import re
+from collections.abc import Callable, Mapping
+from io import StringIO
+from pathlib import PosixPath, PurePosixPath
 
-from grader.static_python.evaluation import Evaluation, EvaluationStopped
-from grader.static_python.parse import Position
-from grader.static_python.values import (
-    MAX_ITEMS,
-    MAX_PATH,
-    MAX_TEXT,
-    UNKNOWN_KEYS,
-    Call,
-    QualifiedName,
-    Unknown,
-    Value,
-    as_text,
-    items_of,
-    names_package_folder,
-    size,
-)
+from grader.static_python import values as py
+from grader.static_python.budget import CHARACTERS, Budget
 
-_TYPE_NAMES: dict[type, str] = {
-    str: "a string", list: "a list", tuple: "a tuple", dict: "a dict", type(None): "None", PurePosixPath: "a path",
-    int: "a number", float: "a number",
+_WIDE = re.compile(r"\*|\d{3}")
+_FIELD = re.compile(r"\{(?:\w*)\}")
+_PYTHON_3_12 = ("walk", "with_segments", "is_junction")  # what paths have since then
+_NUMBERS = (float, int)
+
+
+def attribute(owner: py.Value, name: str, budget: Budget) -> py.Value:
+    """Return the value of an attribute: of a namespace, of a dict from YAML, or a method of a plain value."""
+    if name.startswith("__"):
+        raise py.ExpressionFails(f"names that begin with two underscores are not allowed: {name}")
+    if isinstance(owner, py.Namespace):
+        if hasattr(dict, name):  # a namespace of xacro is a dict
+            raise py.Undetermined(f"the method {name} of a namespace is not supported")
+        return owner.find(name)
+    found = method(owner, name, budget)
+    if found is not None:
+        return found
+    if has_attribute(owner, name):
+        raise py.Undetermined(f"the attribute {name} is not supported")
+    if isinstance(owner, py.DottedDict) and name in owner:
+        return owner[name]
+    if isinstance(owner, py.PLAIN):
+        raise py.ExpressionFails(f"{type(owner).__name__!r} has no attribute {name!r}", AttributeError)
+    raise py.Undetermined(f"the attribute {name} of this value is not supported")
+
+
+def has_attribute(owner: py.Value, name: str) -> bool:
+    """Return whether a plain value has an attribute in Python 3.12."""
+    if isinstance(owner, PurePosixPath):
+        return hasattr(PosixPath, name) or name in _PYTHON_3_12
+    return isinstance(owner, py.PLAIN) and hasattr(owner, name)
+
+
+def method(owner: py.Value, name: str, budget: Budget) -> py.PlainFunction | None:
+    """Return a method of a plain value that changes nothing, whose work is charged; None for any other."""
+    run = next((table.get(name) for kind, table in _METHODS.items() if isinstance(owner, kind)), None)
+    if run is None:
+        return None
+    kind = "holds" if isinstance(owner, list | tuple | dict) else _KINDS.get(name, "plain")
+
+    def charged(*args: py.Value, **kwargs: py.Value) -> py.Value:
+        if run is not _get:
+            budget.charge(budget.measure(owner, kind), sum(search_cost(owner, value) for value in args))
+        return py.call_plain(run, owner, *args, **kwargs)
+
+    return py.PlainFunction(name, charged, kind)
+
+
+def search_cost(text: py.Value, part: py.Value) -> int:
+    """Return how many characters a search for one text in another looks at, at most."""
+    return len(text) * len(part) // 16 if isinstance(text, str) and isinstance(part, str) else 0
+
+
+def percent_format(template: str, value: py.Value) -> str:
+    """Return template % value."""
+    if _WIDE.search(template):
+        raise py.Undetermined("this format is not supported")
+    py.str_of(value)
+    return str(template % value)
+
+
+def _format(text: str, *args: py.Value, **kwargs: py.Value) -> str:
+    """Return text.format(...), for fields that are names or numbers."""
+    if re.search(r"[{}]", _FIELD.sub("", text)):
+        raise py.Undetermined("a format of this kind is not supported")
+    size = sum(len(py.str_of(value)) for value in (*args, *kwargs.values()))
+    if len(text) + size * text.count("{") > py.MAX_TEXT:
+        py.too_large("text")
+    return text.format(*args, **kwargs)
+
+
+def _replace(text: str, old: str, new: str, *count: int) -> str:
+    if len(text) + (text.count(old) if old else len(text) + 1) * len(new) > py.MAX_TEXT:
+        py.too_large("text")
+    return text.replace(old, new, *count)
+
+
+def _join(separator: str, items: py.Value) -> str:
+    parts = py.items_of(items)
+    if sum(len(part) + len(separator) for part in parts if isinstance(part, str)) > py.MAX_TEXT:
+        py.too_large("text")
+    return separator.join(parts)
+
+
+def _get(table: dict[py.Value, py.Value], key: py.Value, default: py.Value = None) -> py.Value:
+    return table.get(py.known(key), default)
+
+
+def _named(kind: type, *names: str) -> dict[str, Callable[..., py.Value]]:
+    return {name: getattr(kind, name) for name in names}
+
+
+_OF_PATHS = ("joinpath", "as_posix", "with_name", "with_suffix", "with_stem", "relative_to", "read", "close", "replace")
+_KINDS = {**dict.fromkeys(_OF_PATHS, "path"), "format": "text", "join": "text"}
+_METHODS: Mapping[type, Mapping[str, Callable[..., py.Value]]] = {
+    str: {
+        "replace": _replace, "join": _join, "format": _format,
+        **_named(str, "capitalize", "count", "endswith", "find", "index", "isdigit", "lower", "lstrip", "partition",
+                 "removeprefix", "removesuffix", "rfind", "rpartition", "rsplit", "rstrip", "split", "splitlines",
+                 "startswith", "strip", "title", "upper"),
+    },
+    dict: {"get": _get, **_named(dict, "keys", "values", "items", "copy")},
+    list: _named(list, "copy"),
+    PurePosixPath: _named(PurePosixPath, *_OF_PATHS[:6]),
+    StringIO: _named(StringIO, "read", "readline", "readlines", "close"),
 }  # fmt: skip
-_RUN_TIME = "its value is known only at run time"
-# The operators that are run, and the types of both operands for which they are.
-_OPERATORS: dict[type[ast.operator], tuple[Callable[[Any, Any], Any], tuple[Any, ...]]] = {
-    ast.Add: (operator.add, (str, tuple, int | float)),
-    ast.Div: (operator.truediv, ()),
-    ast.Mod: (operator.mod, ()),
-    ast.BitOr: (operator.or_, (dict,)),
-}
-_NOT_ADDED = (str, list, tuple, dict, type(None), PurePosixPath)  # of two types, Python adds none of these
-_COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
+
+
+def operate(op: ast.operator, left: py.Value, right: py.Value, budget: Budget) -> py.Value:
+    """Return the value of a binary operator."""
+    operation = _OPERATORS.get(type(op))
+    if type(left) in _NUMBERS and type(right) in _NUMBERS:
+        if isinstance(op, ast.Pow) and type(left) is type(right) is int and left.bit_length() * right > py.MAX_BITS:
+            py.too_large("number")
+        kind = "plain"
+    else:
+        kind = _kind(op, left, right)
+        for value in (left, right):
+            if not isinstance(value, (*py.PLAIN, py.Items)):  # an iterator has no operators, as Python says itself
+                py.refuse(value, "this operation is not supported")
+        size = budget.measure(left, kind) + budget.measure(right, kind)
+        made = 0
+        match op, left, right:
+            case ast.Mod(), str(), _:
+                operation, made = percent_format, size * left.count("%")
+            case (ast.Mult(), str() as text, int() as times) | (ast.Mult(), int() as times, str() as text):
+                made = len(text) * times // CHARACTERS
+            case (ast.Mult(), list() | tuple(), int() as times) | (ast.Mult(), int() as times, list() | tuple()):
+                made = size * times
+        if made > py.MAX_PARTS:
+            py.too_large("value")
+        budget.charge(max(made, 0))
+    if operation is None:
+        raise py.Undetermined("this operation is not supported")
+    return budget.checked(_run(operation, left, right), kind)
+
+
+def _kind(op: ast.operator, left: py.Value, right: py.Value) -> str:
+    """Return what the operands may contain: an operator of two lists passes their items on."""
+    if isinstance(left, _CONTAINERS) or (isinstance(right, _CONTAINERS) and not isinstance(left, str)):
+        return "holds"
+    return "text" if isinstance(op, ast.Add | ast.Div | ast.Mod) else "plain"
+
+
+def _run(operation: Callable[[py.Value, py.Value], py.Value], left: py.Value, right: py.Value) -> py.Value:
+    try:
+        return py.call_plain(operation, left, right)
+    except py.Undetermined:
+        if isinstance(left, py.PLAIN) and isinstance(right, py.PLAIN) and type(left) is not type(right):
+            kinds = f"{type(left).__name__} and {type(right).__name__}"
+            raise py.ExpressionFails(f"TypeError: no such operator for {kinds}") from None
+        raise
+
+
+def compare(op: ast.cmpop, left: py.Value, right: py.Value, budget: Budget) -> bool:
+    """Return the value of one comparison."""
+    if isinstance(op, ast.Is | ast.IsNot) and not any(
+        value is None or isinstance(value, bool) for value in (left, right)
+    ):
+        raise py.Undetermined("which values are one object is not defined")
+    for value in (left, right):
+        if not isinstance(value, py.PLAIN) and not (isinstance(value, py.Items) and isinstance(op, ast.Eq | ast.NotEq)):
+            py.refuse(value, "this comparison is not supported")
+    if type(left) not in _NUMBERS or type(right) not in _NUMBERS:
+        budget.charge(budget.measure(left) + budget.measure(right), search_cost(right, left))
+    return bool(py.call_plain(_COMPARISONS[type(op)], left, right))
+
+
+def subscript(owner: py.Value, key: py.Value, budget: Budget) -> py.Value:
+    """Return the value of owner[key]."""
+    if isinstance(owner, py.Namespace) and isinstance(key, str):
+        return owner.find(key)
+    if not isinstance(owner, (*py.PLAIN, py.Items)):
+        py.refuse(owner, "this index is not supported")
+    if isinstance(owner, str):
+        budget.measure(owner)
+    if not isinstance(key, slice):
+        budget.measure(key)  # it is hashed, and shown where it is missing
+    elif isinstance(owner, str | list | tuple):
+        budget.charge(len(owner))
+    return budget.checked(py.call_plain(operator.getitem, owner, key))
+
+
+_CONTAINERS = (list, tuple, dict)
+_OPERATORS: dict[type[ast.operator], Callable[[py.Value, py.Value], py.Value]] = {
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
+    ast.FloorDiv: operator.floordiv, ast.Mod: operator.mod, ast.Pow: operator.pow, ast.BitOr: operator.or_,
+}  # fmt: skip
+_COMPARISONS: dict[type[ast.cmpop], Callable[[py.Value, py.Value], py.Value]] = {
     ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Is: operator.is_, ast.IsNot: operator.is_not,
     ast.In: lambda left, right: left in right, ast.NotIn: lambda left, right: left not in right,
     ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge,
 }  # fmt: skip
-
-
-class WalkFolders(list[Value]):
-    """A list of folders from os.walk: a change of it changes where the walk continues."""
-
-
-def operate(evaluation: Evaluation, op: ast.operator, left: Value, right: Value, at: Position) -> Value:
-    """Return the value of a binary operator; an unknown operand has its own operators."""
-    evaluation.step(sum(len(value) for value in (left, right) if isinstance(value, str)) // 32)
-    match op, left, right:
-        case ast.Add(), list(), list() | Call():
-            joined = list(left)
-            extend(evaluation, joined, right, at)
-            return joined
-        case ast.Add(), Call(), list():
-            return [Unknown("the added value is known only at run time", at), *right]
-        case ast.Div(), Call(), _:
-            return Call("truediv", [left, right], {}, at)
-        case ast.Mod(), str(), _:  # str has its own %, which would write out an unknown value
-            return right if isinstance(right, Unknown) else _percent_format(left, right, at)
-        case ast.Div(), (str() | PurePosixPath()), (str() | PurePosixPath()) if not type(left) is type(right) is str:
-            return join_path([left, right], at)
-    return _of_plain_values(evaluation, op, left, right, at)
-
-
-def _of_plain_values(evaluation: Evaluation, op: ast.operator, left: Value, right: Value, at: Position) -> Value:
-    function, types = _OPERATORS.get(type(op), (None, ()))
-    kind = next((it for it in types if isinstance(left, it) and isinstance(right, it)), None)
-    if function is not None and kind is not None:
-        if isinstance(left, str | tuple) and len(left) + len(right) > (MAX_TEXT if kind is str else MAX_ITEMS):
-            return Unknown("a value grows too long", at)
-        try:
-            return function(left, right)
-        except OverflowError:
-            return Unknown("a number is too large", at)
-    if isinstance(op, ast.Add) and isinstance(left, _NOT_ADDED) and isinstance(right, _NOT_ADDED):
-        evaluation.error(f"Python cannot add {type_name(right)} to {type_name(left)}", at)
-    unknown = [value for value in (left, right) if isinstance(value, Unknown)]
-    if function is not None and unknown:
-        with suppress(TypeError):
-            return function(left, right)
-    return unknown[0] if unknown else Unknown("this operation is not supported", at)
-
-
-def type_name(value: Value) -> str:
-    """Return the type of a plain value for a message: "a string"; an empty text for other values."""
-    return next((name for kind, name in _TYPE_NAMES.items() if isinstance(value, kind)), "")
-
-
-def compare(evaluation: Evaluation, op: ast.cmpop, left: Value, right: Value, at: Position) -> Value:
-    """Return the value of a comparison; only plain values are compared."""
-    cost = size([left, right])
-    evaluation.step(cost // 64)
-    supported = cost < MAX_ITEMS and _is_plain(left) and _is_plain(right)
-    supported &= not isinstance(right, dict) or isinstance(left, str | int | float | PurePosixPath | None)
-    match op:
-        case ast.Is() | ast.IsNot():
-            supported &= left is None or right is None
-        case ast.In() | ast.NotIn():
-            supported &= isinstance(right, list | tuple | dict) or (isinstance(left, str) and isinstance(right, str))
-        case ast.Lt() | ast.LtE() | ast.Gt() | ast.GtE():
-            supported &= isinstance(left, int) and isinstance(right, int)
-    return _COMPARISONS[type(op)](left, right) if supported else Unknown(_RUN_TIME, at)
-
-
-def subscript(evaluation: Evaluation, owner: Value, key: Value, at: Position) -> Value:
-    """Return the value of owner[key]; the key may be a slice."""
-    if isinstance(key, slice):
-        whole = isinstance(owner, str) or (isinstance(owner, list | tuple) and are_known(evaluation, owner))
-        if whole and all(bound is None or type(bound) is int for bound in (key.start, key.stop, key.step)):
-            evaluation.step(len(owner) // 32)
-            return owner[key] if key.step != 0 else Unknown("the step of a slice is 0", at)
-        return Unknown("this slice is not supported", at)
-    evaluation.may_have_failed = True
-    if isinstance(owner, QualifiedName):
-        return Call(f"{owner.name}[]", [key], {}, at)
-    if not isinstance(owner, list | tuple) or are_known(evaluation, owner):
-        try:
-            if isinstance(owner, str | list | tuple | dict) and isinstance(key, str | int):
-                return owner[key]  # type: ignore[index]
-        except (LookupError, TypeError):
-            pass
-    return Unknown("the item at this index is known only at run time", at)
-
-
-def join_path(parts: list[Value], at: Position) -> Value:
-    """Return the path that is joined from texts and paths."""
-    if sum(len(str(part)) for part in parts) > MAX_PATH:
-        return Unknown("a path grows too long", at)
-    return PurePosixPath(*parts)
-
-
-def extend(evaluation: Evaluation, target: list[Value], value: Value, at: Position) -> None:
-    """Extend a list; an unknown part of it stays at its index."""
-    items = items_of(value)
-    evaluation.step(len(items or ()) // 64)
-    if items is None:
-        target.append(value if isinstance(value, Unknown) else Unknown("the added value is known only at run time", at))
-    elif evaluation.uncertainty is not None:
-        target += [evaluation.uncertainty] * bool(items)
-    elif isinstance(target, WalkFolders):
-        forget(target, Unknown("the walk is changed", at))
-    elif len(target) + len(items) > MAX_ITEMS:
-        target.append(Unknown("a list grows too long", at))
-    else:
-        target += items
-
-
-def store(evaluation: Evaluation, container: Value, key: Value, value: Value, at: Position) -> None:
-    """Set an item of a dict or list; where it is unknown which, forget all of them."""
-    if isinstance(container, dict) and isinstance(key, str | int) and len(container) < MAX_ITEMS:
-        container[key] = value
-    elif isinstance(container, list) and isinstance(key, int) and are_known(evaluation, container):
-        if -len(container) <= key < len(container):
-            container[key] = value
-    else:
-        forget(container, Unknown("this assignment to an item is not supported", at))
-
-
-def remove(evaluation: Evaluation, container: Value, key: Value, unknown: Unknown) -> None:
-    """Delete an item of a dict or list; where it is unknown which, forget all of them for the reason in `unknown`."""
-    match container:
-        case list() if isinstance(key, int) and not isinstance(container, WalkFolders):
-            is_known = -len(container) <= key < len(container) and are_known(evaluation, container)
-        case dict():
-            is_known = isinstance(key, str | int) and key in container and UNKNOWN_KEYS not in container
-        case _:
-            is_known = False
-    if is_known and evaluation.uncertainty is None:
-        del container[key]
-    else:
-        forget(container, unknown)
-
-
-def forget(container: Value, unknown: Unknown) -> None:
-    """Make the items of a list or dict unknown, because it is changed in a way that is not supported."""
-    match container:
-        case WalkFolders():
-            raise EvaluationStopped("os.walk whose list of folders is changed is not supported")
-        case list():
-            container[:] = [unknown]
-        case dict():
-            container.update(dict.fromkeys([*container, UNKNOWN_KEYS], unknown))
-
-
-def are_known(evaluation: Evaluation, items: "list[Value] | tuple[Value, ...]") -> bool:
-    """Return whether every item of a list is known, so that each is at its index."""
-    evaluation.step(len(items) // 64)
-    return not any(isinstance(item, Unknown) for item in items)
-
-
-def _percent_format(template: str, value: Value, at: Position) -> Value:
-    """Return the value of template % value, with %s only."""
-    texts = [as_text(item) for item in (value if isinstance(value, tuple) else [value])]
-    pieces = template.replace("%%", "\0").split("%s")
-    length = len(template) + sum(len(text or "") for text in texts)
-    odd = "\0" in template or any("%" in piece for piece in pieces)
-    if len(pieces) != len(texts) + 1 or None in texts or odd or length > MAX_TEXT:
-        return Unknown("a format of this kind is not supported", at)
-    filled = [piece + (text or "") for piece, text in zip(pieces, [*texts, ""], strict=True)]
-    return "".join(filled).replace("\0", "%")
-
-
-def _is_plain(value: Value) -> bool:
-    if isinstance(value, list | tuple | dict):
-        return all(map(_is_plain, value.values() if isinstance(value, dict) else value))
-    if isinstance(value, str | PurePosixPath) and names_package_folder(str(value)):
-        return False
-    return value is None or isinstance(value, str | int | float | PurePosixPath)

@@ -86,9 +86,9 @@ def _parse(data: bytes, path: str) -> Code | SyntaxFault:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # such as an invalid escape sequence, which Python accepts
             try:
-                tree = ast.parse(text)
+                tree = ast.parse(text, feature_version=_JAZZY)
             except SystemError:  # CPython 3.11 miscounts its depth if its garbage collector runs meanwhile: try again
-                tree = ast.parse(text)
+                tree = ast.parse(text, feature_version=_JAZZY)
             # Never run: the compiler finds errors that the grammar allows.
             compile(tree, path, "exec", dont_inherit=True)
             return Code(source, tree)
@@ -105,3 +105,49 @@ def _is_of_newer_python(error: SyntaxError, text: str) -> bool:
         return False
     in_f_string = error.msg.startswith("f-string") or _OPEN_BRACES.search((error.text or "")[:_MAX_SEARCHED].rstrip())
     return bool(in_f_string or _TYPES.search(text))
+
+
+def parse_expression(text: str) -> ast.expr | str | None:
+    """Return an expression, or Python's message on why it is none; None if it is nested too deeply."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return ast.parse(text, mode="eval").body
+    except SyntaxError as error:
+        return f"SyntaxError: {error.msg}"
+    except (RecursionError, MemoryError, SystemError):  # how deep differs between versions; CPython 3.11 may miscount
+        return None
+    except (ValueError, OverflowError) as error:
+        return f"{type(error).__name__}: {error}"
+
+
+def own_nodes(node: ast.AST) -> list[ast.AST]:
+    """Return the nodes of a function or statement, without those of the functions and classes in it."""
+    found: list[ast.AST] = []
+    pending = list(ast.iter_child_nodes(node)) if isinstance(node, ast.FunctionDef) else [node]
+    while pending:
+        part = pending.pop()
+        found.append(part)
+        if not isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
+            pending += ast.iter_child_nodes(part)
+    return found
+
+
+def bound_in(node: ast.FunctionDef) -> frozenset[str]:
+    """Return the names that a function binds itself."""
+    nodes = own_nodes(node)
+    declared = {name for part in nodes if isinstance(part, ast.Global | ast.Nonlocal) for name in part.names}
+    loops = [part.target for part in nodes if isinstance(part, ast.comprehension)]  # they have scopes of their own
+    inner = {id(part) for target in loops for part in ast.walk(target)}
+    names: set[str] = set()
+    for part in nodes:
+        match part:
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) if id(part) not in inner:
+                names.add(name)
+            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
+                names.add(name)
+            case ast.ExceptHandler(name=str() as name) | ast.MatchAs(name=str() as name):
+                names.add(name)
+            case ast.alias(name=full, asname=asname):
+                names.add(asname or full.partition(".")[0])
+    return frozenset(names - declared)

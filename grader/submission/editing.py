@@ -8,7 +8,7 @@ from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import File, Tree, make_tree
 from grader.source import Edit
-from grader.static_python.closed_values import Budget
+from grader.static_python.budget import Budget
 from grader.submission.submission import Submission
 from grader.submission.surroundings import Surroundings
 from grader.submission.urdf import Read, read_as_ros

@@ -8,7 +8,7 @@ from grader.errors import InputError, MachineError
 from grader.files.folder import is_looked_at, read_folder
 from grader.files.tree import File, Tree
 from grader.package.package import MANIFEST
-from grader.static_python.closed_values import Budget
+from grader.static_python.budget import Budget
 from grader.submission.editing import overlaid
 from grader.submission.packages import read_packages
 from grader.submission.submission import Lab, Opening, Submission

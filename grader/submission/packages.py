@@ -1,6 +1,8 @@
 """The graded package of a submission, and the reasons against the others and against files kept of earlier work."""
 
+import posixpath
 import re
+from pathlib import PurePosixPath
 
 from grader.errors import InputError
 from grader.files.tree import Tree
@@ -11,6 +13,8 @@ from grader.source import Location, Source
 from grader.submission.submission import Lab
 from grader.text import enumerated, quoted
 
+# The files that hide a folder, with all that is below, from colcon.
+_IGNORING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 _MAX_PACKAGES = 40
 _MAX_NAMED = 5  # packages in a message
 _MAX_MANIFEST_SIZE = 256 * 1024  # bytes
@@ -127,4 +131,7 @@ def _read_package(tree: Tree, folder: str, known: dict[str, Package], lab_name: 
             manifest = read_manifest(own.files[MANIFEST].read(_MAX_MANIFEST_SIZE), path)
     except InputError as error:
         manifest = Manifest(Source(path, ""), None, "", (), start, start, unread=str(error))
-    return Package(folder, own, manifest, known, tree.generated, lab_name)
+    above = [folder, *map(str, PurePosixPath(folder).parents)] if folder else [""]
+    markers = (posixpath.normpath(f"{path}/{name}").lstrip("/") for path in above for name in _IGNORING)
+    ignored_by = next((path for path in markers if path in tree.files), "")
+    return Package(folder, own, manifest, known, tree.generated, lab_name, ignored_by)

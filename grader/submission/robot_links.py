@@ -7,7 +7,7 @@ from grader.errors import InputError, NotDecided
 from grader.files.tree import Tree
 from grader.package.package import Package
 from grader.robot.model import Robot
-from grader.static_python.closed_values import Budget
+from grader.static_python.budget import Budget
 from grader.submission.packages import package_around
 from grader.submission.robots import RobotFile
 from grader.submission.submission import Lab, Opening

@@ -13,7 +13,7 @@ from grader.files.tree import File, Tree, make_tree
 from grader.package.package import NO_PACKAGE, Package
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
-from grader.static_python.closed_values import Budget
+from grader.static_python.budget import Budget
 from grader.submission.urdf import Absent, OtherCandidate, Read, Unreadable, Urdf
 from grader.text import was_not_committed
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from grader.documents.collection import DocumentCollection
     from grader.documents.evidence_files import LabelledFile
 
+_WORK_OF_READING = 1_500  # parts of a package's evaluation that take as long as reading a short URDF
 _FILES_OF_READING = 200
 _MAX_COST = 60  # of one reading, for hints
 _NO_FILES = make_tree("", (), ())
@@ -128,7 +129,8 @@ class Submission:
     def cost(self) -> int:
         """How much longer reading it takes than reading a short URDF."""
         of_urdf = self.urdf.reading.source.cost if isinstance(self.urdf, Read) else 0
-        return of_urdf + len(self.whole_tree.files) // _FILES_OF_READING
+        of_package = self.package.budget.used if self.package is not None else 0
+        return of_urdf + len(self.whole_tree.files) // _FILES_OF_READING + of_package // _WORK_OF_READING
 
     @property
     def is_costly(self) -> bool:

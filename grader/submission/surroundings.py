@@ -9,7 +9,7 @@ from grader.errors import InputError, NotDecided
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree, parents
 from grader.package.package import Package
-from grader.static_python.closed_values import Budget
+from grader.static_python.budget import Budget
 
 if TYPE_CHECKING:
     from grader.package.launch.model import NamedFile

@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 from grader.problems import Kind, Problem
 from grader.source import Location, Source
-from grader.static_python.closed_values import CHARACTERS, Budget, ExpressionFails, OutOfBudget, Undetermined, Value
+from grader.static_python.budget import CHARACTERS, Budget, OutOfBudget
+from grader.static_python.values import ExpressionFails, Undetermined, Value
 from grader.xacro import catalogue
 from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions, read_yaml_values

@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 from grader.problems import Problem
 from grader.source import Source
-from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
+from grader.static_python.budget import Budget, OutOfBudget
+from grader.static_python.values import ExpressionFails, Undetermined
 from grader.xacro import catalogue
 from grader.xacro.expanded_source import ExpandedSource
 from grader.xacro.expander import STOPS, Expander, Open

@@ -6,14 +6,14 @@ from typing import Any
 
 import yaml
 
-from grader.static_python.closed import evaluate
-from grader.static_python.closed_functions import BUILTINS, MATH, make_dict
-from grader.static_python.closed_values import (
-    Budget,
-    ClosedFunction,
+from grader.static_python.budget import Budget
+from grader.static_python.builtins import BUILTINS, MATH, make_dict
+from grader.static_python.expressions import evaluate
+from grader.static_python.values import (
     DottedDict,
     ExpressionFails,
     Namespace,
+    PlainFunction,
     Undetermined,
     Value,
     call_plain,
@@ -22,6 +22,7 @@ from grader.static_python.closed_values import (
 )
 
 _OLD_BUILTINS = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")
+_NOT_IN_XACRO = ("iter", "next")
 _PLAIN_SEPARATORS = re.compile(r"[^\]\[\\^-]+")
 _OF_EVENT = 10  # what a part of the file is charged
 _MAX_NUMBER = 100  # characters
@@ -59,8 +60,8 @@ def _dot(value: Value) -> Value:
 
 def document_functions(load_yaml: Callable[[Value], Value], argument: Callable[[str], str]) -> dict[str, Value]:
     """Return the functions that need the document: those of the namespace xacro, and the old ones outside of it."""
-    load = ClosedFunction("load_yaml", load_yaml)
-    own = {**_XACRO, "load_yaml": load, "arg": ClosedFunction("arg", argument)}
+    load = PlainFunction("load_yaml", load_yaml)
+    own = {**_XACRO, "load_yaml": load, "arg": PlainFunction("arg", argument)}
     return {"xacro": namespace("xacro", own), "load_yaml": load}
 
 
@@ -80,16 +81,16 @@ def _no_path(*_: Value) -> Value:
 
 
 _XACRO: dict[str, Value] = {
-    **{name: ClosedFunction(name, lambda *_, **__: "") for name in ("message", "warning", "error", "print_location")},
-    "fatal": ClosedFunction("fatal", _fatal),
-    "tokenize": ClosedFunction("tokenize", _tokenize),
-    "dotify": ClosedFunction("dotify", _dotify),
-    "abs_filename": ClosedFunction("abs_filename", _no_path),
+    **{name: PlainFunction(name, lambda *_, **__: "") for name in ("message", "warning", "error", "print_location")},
+    "fatal": PlainFunction("fatal", _fatal),
+    "tokenize": PlainFunction("tokenize", _tokenize),
+    "dotify": PlainFunction("dotify", _dotify),
+    "abs_filename": PlainFunction("abs_filename", _no_path),
 }
 GLOBALS: Mapping[str, Value] = {
     **MATH,
     **{name: BUILTINS[name] for name in _OLD_BUILTINS},
-    "python": namespace("python", BUILTINS),
+    "python": namespace("python", {name: it for name, it in BUILTINS.items() if name not in _NOT_IN_XACRO}),
     "math": namespace("math", MATH),
     "dotify": _XACRO["dotify"],
     "abs_filename": _XACRO["abs_filename"],

@@ -5,8 +5,9 @@ from collections.abc import Callable, Iterable, Mapping
 from keyword import iskeyword
 
 from grader.names import did_you_mean, near
-from grader.static_python.closed import evaluate
-from grader.static_python.closed_values import Budget, ExpressionFails, Undetermined, Value, joined, str_of
+from grader.static_python.budget import Budget
+from grader.static_python.expressions import evaluate
+from grader.static_python.values import MAX_TEXT, ExpressionFails, Undetermined, Value, str_of, too_large
 from grader.xacro.functions import GLOBALS
 from grader.xacro.scopes import (
     Definition,
@@ -190,3 +191,15 @@ def for_xml(value: str) -> str:
     if not value.isprintable() and _NO_XML.search(value):
         raise ExpressionFails("the value has a character that XML cannot hold")
     return value
+
+
+def joined(pieces: Iterable[str]) -> str:
+    """Return one text of pieces; raise Undetermined as soon as it is too long."""
+    kept: list[str] = []
+    length = 0
+    for piece in pieces:
+        length += len(piece)
+        if length > MAX_TEXT:
+            too_large("text")
+        kept.append(piece)
+    return "".join(kept)

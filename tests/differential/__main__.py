@@ -13,7 +13,7 @@ from tests.differential.compared import Compared, summary
 ORACLES = {
     "check_urdf": ("tests.differential.urdfs", 500),
     "pinocchio": ("tests.differential.poses", 50),
-    "setuptools": ("tests.differential.setups", 50),
+    "colcon": ("tests.differential.colcons", 20),
     "xacro": ("tests.differential.xacros", 100),
 }
 

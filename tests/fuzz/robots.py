@@ -16,8 +16,9 @@ from grader.report.screen import Screen
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading, read_urdf
 from grader.source import Source
-from grader.static_python.closed import evaluate
-from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined
+from grader.static_python.budget import Budget, OutOfBudget
+from grader.static_python.expressions import evaluate
+from grader.static_python.values import ExpressionFails, Undetermined
 from grader.xacro.functions import GLOBALS, namespace, read_yaml_values
 from grader.xml.tinyxml2.recovery import Recovery
 from grader.xml.tinyxml2.scanner import Scanner

@@ -57,6 +57,7 @@ def summarize(launch: Launch) -> list[str]:
     for kind in ("urdf", "rviz", "include"):
         found += [f"{kind} {_reference(named)}" for named in launch.named(kind)]
     found += [f"faults {_fault(fault)}" for fault in launch.faults]
+    found += [f"doubts {_fault(fault)}" for fault in launch.doubts]
     found += [f"unknown {_fault(fault)}" for fault in launch.unknown]
     found += [f"forgotten: {forgotten}"] if forgotten else []
     return found + ([f"syntax: {_fault(launch.syntax)}"] if launch.syntax is not None else [])

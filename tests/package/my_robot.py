@@ -18,7 +18,18 @@ FILES = {
     "meshes/two.stl": "solid {}\n",
     "my_robot/__init__.py": _HASH,
     "my_robot/version.py": _HASH + "__version__ = '0.0.0'\n",
-    "package.xml": _XML,
+    "package.xml": """<?xml version="1.0"?>
+<package format="3">
+  <name>my_robot</name>
+  <version>0.0.0</version>
+  <description>A package: {}</description>
+  <maintainer email="student@example.com">student</maintainer>
+  <license>Apache-2.0</license>
+  <export>
+    <build_type>ament_python</build_type>
+  </export>
+</package>
+""",
     "resource/my_robot": "{}\n",
     "rviz/my_robot.rviz": _HASH,
     "setup.cfg": _HASH + "[develop]\nscript_dir=$base/lib/my_robot\n[install]\ninstall_scripts=$base/lib/my_robot\n",
@@ -31,12 +42,17 @@ ADDED = {
     "folder_in_urdf_passed_by": ["urdf/old/my_robot_1.urdf"],
     "hidden_file_named": ["urdf/.hidden.urdf"],
     "hidden_files": ["urdf/.hidden.urdf"],
+    "ignored_by_ament": ["AMENT_IGNORE"],
     "same_target_twice": ["other/box.urdf"],
     "two_sources_for_one_target": ["meshes/a/two.stl"],
     "urdf_below_resource": ["resource/deep/README", "resource/deep/er/picture.png"],
 }
 INSTEAD = {
     "data_files_in_setup_cfg": {"setup.cfg": "[options.data_files]\nshare/my_robot = package.xml\n"},
+    "own_module_named_glob": {"glob.py": "def glob(pattern):\n    return []\n"},
+    "pyproject_that_is_no_toml": {"pyproject.toml": "name = \n"},
+    "script_dir_in_install": {"setup.cfg": "[install]\nscript_dir=$base/lib/my_robot\n"},
+    "setup_cfg_without_a_section": {"setup.cfg": "script_dir=$base/lib/my_robot\n"},
     "packages_in_setup_cfg": {
         "setup.cfg": "[options]\npackages = find:\n[options.packages.find]\ninclude = my_robot\n"
     },

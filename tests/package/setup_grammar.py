@@ -1,6 +1,9 @@
 """Random setup.py: the ways in which students and templates list data files, sometimes with a mistake."""
 
+from collections.abc import Mapping
 from random import Random
+
+from tests.package.my_robot import FILES
 
 FOLDERS = ("urdf", "launch", "rviz", "meshes", "config", "resource", "meshes/a")
 _PATTERNS = (
@@ -70,7 +73,37 @@ _MISTAKES = (
     ("os.path.join('share'", "os.path.jion('share'"), ("setup(\n", "setup(\n    cmdclass={},\n"), ("find_packages, ", ""),
 )  # fmt: skip
 
+# Other arguments of setup(), sometimes wrong.
+_ARGUMENTS = (
+    "    entry_points={'console_scripts': []},\n", "    entry_points={'console_scripts': ['talk = my_robot.talk:main']},\n",
+    "    entry_points={'console_scripts': ['talk']},\n", "    entry_points={'console_scripts': ['talk=my_robot.talk:main()']},\n",
+    "    install_requires=['setuptools'],\n", "    tests_require=['pytest'],\n", "    extras_require={'test': ['pytest']},\n",
+    "    python_requires='>=3.8',\n", "    license=['MIT'],\n", "    nothing=1,\n", "    install_requires=['a b'],\n",
+    "    setup_requires=['setuptools'],\n", "    package_data={'my_robot': ['*.yaml']},\n", "    keywords=['ROS'],\n",
+)  # fmt: skip
+
 _ADD_EXTRA = "for key, paths in extra.items():\n    data_files.append((f'share/my_robot/{key}', paths))\n"
+
+
+# What else a package may have: the text of a file, None for one that it lacks.
+_OTHERS: tuple[Mapping[str, str | None], ...] = (
+    {"COLCON_IGNORE": "#1\n"}, {"AMENT_IGNORE": "#2\n"}, {"urdf/COLCON_IGNORE": "#3\n"}, {"my_robot/__init__.py": None},
+    {"pyproject.toml": "[build-system]\nrequires = ['setuptools']\n"}, {"pyproject.toml": "[tool.black]\nline-length = 1\n"},
+    {"pyproject.toml": "name = \n"}, {"pyproject.toml": "[project]\nname = 'my_robot'\n"}, {"setup.cfg": None}, {"setup.cfg": ""},
+    {"setup.cfg": "[install]\nscript_dir=$base/lib/my_robot\n"}, {"setup.cfg": "[develop\nscript_dir=$base/lib/my_robot\n"},
+    {"setup.cfg": "script_dir=$base/lib/my_robot\n"}, {"setup.cfg": "[flake8]\nmax-line-length = 99\n"}, {"setup.cfg": "[aliases]\ntest=pytest\n"},
+    {"setup.cfg": "[install]\ninstall-scripts=$base/lib/my_robot\n"}, {"setup.cfg": "[develop]\nscript-dir=$base/lib/my_robot\n"},
+    {"setup.cfg": "[install]\nnothing=1\n"}, {"setup.cfg": "[metadata]\nname = other\n"}, {"setup.cfg": "[install]\ninstall_scripts=%x\n"},
+    {"setup.cfg": "[install]\ninstall_scripts=a\ninstall_scripts=b\n"}, {"glob.py": "def glob(*a): return []\n"}, {"other/__init__.py": "#4\n"},
+)  # fmt: skip
+
+
+def other_files(seed: int) -> dict[str, str]:
+    """Return the files of a package besides setup.py, by their paths; half of the seeds differ from the usual ones."""
+    random = Random(~seed)
+    changed = random.choice(_OTHERS) if random.random() < 0.4 else {}
+    files = {**{path: text.format(path) for path, text in FILES.items()}, **changed}
+    return {path: text for path, text in files.items() if text is not None}
 
 
 def setup_py(seed: int) -> str:
@@ -90,13 +123,36 @@ class _Writer:
         first = first if self._random.random() < 0.7 else ""
         steps = "".join(self._step() for _ in range(self._pick((0, 1, 1, 2, 3))))
         added = "".join(f" + {self._several()}" for _ in range(self._pick((0, 0, 0, 1))))
-        more = self._pick(("",) * 20 + ("    zip_safe=True,\n", "    package_data={'': ['*.yaml']},\n", "    include_package_data=True,\n"))  # fmt: skip
+        more = self._pick(("",) * 20 + (*_ARGUMENTS, "    zip_safe=True,\n", "    package_data={'': ['*.yaml']},\n", "    include_package_data=True,\n"))  # fmt: skip
         text = f"{_HEADER}{_HELPERS}\n\ndata_files = [\n{first}{listed}]{added}\n{steps}\n"
-        text += f"setup(\n    name=package_name,\n    version='0.0.0',\n    packages={self._pick(('find_packages()', '[package_name]', '[]'))},\n"
+        text += f"setup(\n    name=package_name,\n    version={self._version()},\n    {self._packages()}"
         text += f"    data_files={self._pick((*['data_files'] * 10, 'list(data_files)', 'data_files[:]'))},\n{more})\n"
         if self._random.random() < 0.12:
             text = text.replace(*self._pick(_MISTAKES), 1)
         return text
+
+    def _version(self) -> str:
+        usual = self._random.random() < 0.9
+        return (
+            "'0.0.0'"
+            if usual
+            else self._pick(("'1'", "'v1.2-beta'", "'abc'", "'1.0.0-'", "1.0", "'1.2.3.4.dev5'", "''"))
+        )
+
+    def _packages(self) -> str:
+        packages = self._pick(("find_packages()", "[package_name]", "find_packages(exclude=['test'])", "[]"))
+        if self._random.random() < 0.1:
+            packages = self._pick(
+                (
+                    "['nothing']",
+                    "'my_robot'",
+                    "find_packages('.')",
+                    "['my_robot', 'meshes']",
+                    "None",
+                    "find_packages(include=['x'])",
+                )
+            )
+        return f"packages={packages},\n" if self._random.random() < 0.95 else ""
 
     def _folder(self) -> str:
         return (

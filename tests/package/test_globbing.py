@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 from grader.files.tree import File, Tree, make_tree
 from grader.package.file_functions import file_functions
 from grader.package.globbing import ORDERS, PackageListing, SearchError
-from grader.static_python.functions import standard_functions
 from grader.static_python.interpreter import Interpreter
+from grader.static_python.library import standard_functions
 from grader.static_python.parse import Code, parse
 from grader.static_python.values import Unknown, Value
 from tests.examples import examples, spread
@@ -68,9 +68,13 @@ def value_of(expression: str, tree: Tree, root: str = "/root", order: str = ORDE
         f"import os\nfrom glob import glob\nfrom pathlib import Path\nvalue = {expression}\n".encode(), "setup.py"
     )
     assert isinstance(code, Code)
-    interpreter = Interpreter({**standard_functions(root), **file_functions(PackageListing(tree, order), root)}, {})
-    value = interpreter.run(code).names["value"]
-    return interpreter.errors[0] if interpreter.errors else value
+    interpreter = Interpreter(
+        {**standard_functions(root), **file_functions(PackageListing(tree, order=order), root)}, {}
+    )
+    value = interpreter.run(code).names.get("value")
+    if interpreter.errors:
+        return interpreter.errors[0]
+    return interpreter.doubt if value is None and interpreter.doubt else value
 
 
 def pythons_glob(pattern: str, root: str, *, recursive: bool = True, hidden: bool = False) -> list[str]:
@@ -89,7 +93,9 @@ def pythons_glob(pattern: str, root: str, *, recursive: bool = True, hidden: boo
 def test_glob_finds_what_pythons_glob_finds(tree: Tree, pattern: str, recursive: bool, hidden: bool) -> None:
     """The same paths in the same spelling, for any pattern that stays inside the file tree."""
     try:
-        reported = [PackageListing(tree, order).glob(pattern, recursive=recursive, hidden=hidden) for order in ORDERS]
+        reported = [
+            PackageListing(tree, order=order).glob(pattern, recursive=recursive, hidden=hidden) for order in ORDERS
+        ]
     except SearchError:
         assert ".." in pattern
         return

@@ -1,83 +1,83 @@
-"""The static evaluation of a setup.py gives the files that setuptools installs when it is run."""
+"""The static evaluation of a setup.py gives the files that a colcon build installs.
 
+`python -m tests.package.test_setup_py` builds the samples again and writes what colcon does.
+"""
+
+import json
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 
-from grader.files.folder import read_folder
-from grader.package.setup_py import Setup, read_setup
-from grader.static_python.parse import parse
-from tests.oracles.setuptools_builds import Build, build_all, build_of
+from tests.differential.colcons import difference, evaluated
+from tests.oracles.colcon_builds import Build, build_all, is_available
 from tests.package.my_robot import SAMPLES, make_package
 
-# The samples with unknown values, and the reason; no other sample may have any.
-UNKNOWN = {
-    "comprehension_first_of_a_listing": "the order of the files in a folder, or of a set",
-    "data_files_in_setup_cfg": "data_files is set in setup.cfg",
-    "destination_with_dots": "the target share/my_robot/../my_robot/rviz is not supported",
-    "environment_chooses_the_setup": "known only at run time",
-    "environment_condition": "known only at run time",
-    "environment_in_destination": "a format of this kind is not supported",
-    "files_are_made": "setup.py itself makes or changes files",
-    "folder_name_for_the_package": "the name of the package's folder",
-    "function_that_yields": "a generator function is not supported",
-    "hidden_file_named": "is an ignored file",
-    "list_slice_replaced": "this assignment to an item is not supported",
-    "listing_until_found": "the order of the files in a folder, or of a set",
-    "package_data_too": "package_data may install files, too",
-    "same_target_twice": "several files are installed as share/my_robot/box.urdf: other/box.urdf and urdf/box.urdf",
-    "slash_behind_a_file": "depends on the version of setuptools",
-    "try_a_module_that_is_not_there": "an earlier error may have been caught",
-    "two_sources_for_one_target": "several files are installed as share/my_robot/meshes/two.stl",
-    "walk_that_is_steered": "list of folders is changed",
-    "working_folder_is_left": "a change of the working folder",
+_RECORDED = Path(__file__).with_name("setup_samples.expected")
+
+# The samples that are not decided, or not wholly, and the reason; no other sample may have one.
+UNKNOWN: dict[str, str] = {
+    "comprehension_first_of_a_listing": "line 1: the result depends on the order of the files in a folder, or on __file__",
+    "data_files_in_setup_cfg": "line 3: the section [options.data_files] of setup.cfg is not evaluated",
+    "destination_with_dots": "line 5: the target share/my_robot/../my_robot/rviz is not supported",
+    "environment_chooses_the_setup": "line 4: the value of os.environ is not evaluated",
+    "environment_condition": "line 6: this statement is not evaluated: the environment is known only at run time",
+    "environment_in_destination": "line 4: the environment is known only at run time",
+    "files_are_made": "line 4: shutil.copy is not evaluated",
+    "folder_name_for_the_package": "line 4: the name of a folder on the machine is not known",
+    "function_that_yields": "line 7: a generator function is not evaluated",
+    "function_with_global": "line 8: a statement of the kind Global is not evaluated",
+    "hidden_file_named": "line 12: urdf/.hidden.urdf is an ignored file",
+    "listing_until_found": "line 1: the result depends on the order of the files in a folder, or on __file__",
+    "packages_in_setup_cfg": "line 3: the section [options] of setup.cfg is not evaluated; line 3: the section [options.packages.find] of setup.cfg is not evaluated",
+    "same_target_twice": "line 13: several files are installed as share/my_robot/box.urdf: other/box.urdf and urdf/box.urdf",
+    "try_a_module_that_is_not_there": "line 5: an error may be caught: whether module_of_another_machine is installed is not known; it is not evaluated",
+    "two_sources_for_one_target": "line 15: several files are installed as share/my_robot/meshes/two.stl: meshes/a/two.stl and meshes/two.stl; line 15: several files are installed as share/my_robot/meshes/two.stl: meshes/a/two.stl and meshes/two.stl",
+    "version_executed": "line 3: exec is not evaluated",
+    "working_folder_is_left": "line 5: a change of the working folder is not evaluated",
 }
 
 
-@pytest.fixture(scope="module")
-def builds(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[Build, Setup]]:
-    """Install the data files of all samples with setuptools, and determine them statically."""
-    folders = {sample: tmp_path_factory.mktemp("sample") for sample in SAMPLES}
-    sources = {sample: make_package(sample, folder / "my_robot") for sample, folder in folders.items()}
-    done = build_all(folders.values())
-    return {
-        sample: (build_of(folder, sources[sample], *result), setup_of(folder / "my_robot"))
-        for (sample, folder), result in zip(folders.items(), done, strict=True)
-    }
+def build_samples() -> dict[str, Build]:
+    """Build all samples with colcon."""
+    with TemporaryDirectory() as name:
+        folders = [Path(name, sample) for sample in SAMPLES]
+        texts = [make_package(folder.name, folder / "src/my_robot") for folder in folders]
+        return dict(zip(SAMPLES, build_all(zip(folders, texts, strict=True)), strict=True))
 
 
-def setup_of(package: Path) -> Setup:
-    """Return the statically determined files of a package."""
-    return read_setup(parse((package / "setup.py").read_bytes(), "setup.py"), read_folder(package))
+def recorded() -> dict[str, Build]:
+    """Return what colcon does with each sample: the installed files by path, or the last line of the error."""
+    table: dict[str, dict[str, str] | str] = json.loads(_RECORDED.read_text(encoding="utf-8"))
+    return {name: Build({}, found) if isinstance(found, str) else Build(found, "") for name, found in table.items()}
+
+
+def _plain(build: Build) -> dict[str, str] | str:
+    lines = [line for line in build.error.splitlines() if line.strip() and not line.startswith("Failed ")]
+    return lines[-1].strip()[:100] if lines else dict(sorted(build.installed.items()))
 
 
 @pytest.mark.parametrize("sample", SAMPLES)
-def test_setuptools_installs_the_determined_files(sample: str, builds: dict[str, tuple[Build, Setup]]) -> None:
-    """Files and locations are the same; a run that fails is predicted; unknown values have their reason."""
-    (installed, error), reported = builds[sample]
-    foretold = [*filter(None, [reported.fault]), *reported.faults, *reported.stops]
-    reason = "; ".join(unknown.reason for unknown in reported.unknown)
-    if sample in UNKNOWN:
-        assert UNKNOWN[sample] in reason
-        assert not foretold
-        assert reported.installed().items() <= installed.items()
-    elif error:
-        assert foretold, error
-    else:
-        assert not foretold
-        assert not reason
-        assert reported.installed() == installed
+def test_colcon_installs_the_determined_files(sample: str, tmp_path: Path) -> None:
+    """Files and locations are the same; a build that fails is predicted; unknown values have their reason."""
+    make_package(sample, tmp_path / "my_robot")
+    setup, ignored = evaluated(tmp_path / "my_robot")
+    build = recorded()[sample]
+    assert difference(build, setup, ignored) is None
+    reasons = "; ".join(f"line {unknown.at.line}: {unknown.reason}" for unknown in setup.unknown)
+    if sample in UNKNOWN or not build.error:
+        assert reasons == UNKNOWN.get(sample, "")
 
 
-def test_setuptools_runs(builds: dict[str, tuple[Build, Setup]]) -> None:
-    """The comparison is valid: setuptools installs the files that a plain setup.py lists."""
-    done, _ = builds["literal_lists"]
-    assert not done.error
-    assert sorted(done.installed.values()) == [
-        "launch/my_robot_rviz.launch.py",
-        "package.xml",
-        "resource/my_robot",
-        "rviz/my_robot.rviz",
-        "urdf/box.urdf",
-        "urdf/my_robot.urdf",
-    ]
+@pytest.mark.exhaustive
+@pytest.mark.skipif(not is_available(), reason="needs colcon: see CONTRIBUTING.md")
+def test_colcon_does_what_is_recorded() -> None:
+    """A build of each sample installs the recorded files, or fails."""
+    built, known = build_samples(), recorded()
+    assert {name: build.installed for name, build in built.items() if not build.error} == {
+        name: build.installed for name, build in known.items() if not build.error
+    }
+
+
+if __name__ == "__main__":
+    _RECORDED.write_text(json.dumps({name: _plain(it) for name, it in build_samples().items()}, indent=1) + "\n")

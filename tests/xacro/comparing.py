@@ -9,7 +9,7 @@ from lxml import etree
 
 from grader.errors import InputError
 from grader.robot.reader import read_urdf
-from grader.static_python.closed_values import READING, Budget
+from grader.static_python.budget import READING, Budget
 from grader.xml.catalogue import MISPLACED_DECLARATION
 from tests.xacro import oracle
 from tests.xacro.documents.document import PACKAGES, Document

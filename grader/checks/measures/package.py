@@ -44,7 +44,7 @@ def _build_types(package: Package) -> Iterator[Fact]:
 
 def _setup_names(package: Package) -> Iterator[Fact]:
     if not package.is_cmake:
-        yield _fact("setup", "imports", "Every name that setup.py uses is defined", "setup_imports")
+        yield _fact("setup", "imports", "`setup.py` builds", "setup_imports")
 
 
 def installed_files(solution: Solution) -> Facts:

@@ -1,191 +1,265 @@
 """The entities of a launch file in XML or YAML as the actions that a Python launch file would create."""
 
-import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from typing import Any
 
-from grader.names import closest
+from grader.names import did_you_mean
+from grader.package.launch.api import class_named, front_end
+from grader.package.launch.arguments import bind, check
 from grader.package.launch.frontend import Entity
-from grader.package.launch.model import Findings
-from grader.package.launch.substitutions import COMMAND_LINE
-from grader.static_python.parse import Position
-from grader.static_python.values import Call, Unknown, Value
+from grader.package.launch.frontend_values import command_line, is_typed, parse_if_text, parse_value, typed_text
+from grader.package.launch.model import Findings, LaunchFails
+from grader.package.launch.value_types import FILE, TYPED
+from grader.static_python.values import Call, ExpressionFails, Value
 
-_MAX_DEPTH = 40
-# The Python name of each substitution of the XML and YAML frontends.
-_SUBSTITUTIONS = {
-    "find-pkg-share": "launch_ros.substitutions.FindPackageShare",
-    "find-pkg-prefix": "launch_ros.substitutions.FindPackagePrefix",
-    "var": "launch.substitutions.LaunchConfiguration",
-    "command": "launch.substitutions.Command",
-    "find-exec": "launch.substitutions.FindExecutable",
-    "dirname": "launch.substitutions.ThisLaunchFileDir",
-    "env": "launch.substitutions.EnvironmentVariable",
-    "eval": "launch.substitutions.PythonExpression",
-    "file-content": "launch.substitutions.FileContent",
-    "equals": "launch.substitutions.EqualsSubstitution",
-    "not-equals": "launch.substitutions.NotEqualsSubstitution",
-    "not": "launch.substitutions.NotSubstitution",
-    "and": "launch.substitutions.AndSubstitution",
-    "or": "launch.substitutions.OrSubstitution",
-    "all": "launch.substitutions.AllSubstitution",
-    "any": "launch.substitutions.AnySubstitution",
-    "if": "launch.substitutions.IfElseSubstitution",
-}
-# The substitutions of ROS 1 and their names in ROS 2.
-_ROS1 = {"find": "find-pkg-share", "arg": "var", "optenv": "env"}
-_ON_STDERR = ("fail", "ignore", "warn", "capture")
+_PROCESS = (
+    "cwd name on_exit launch-prefix output respawn respawn_max_retries:int respawn_delay:float sigkill_timeout:float"
+    " sigterm_timeout:float shell:bool emulate_tty:bool env[]"
+)
+_NODE = f"exec! pkg args ros_args node-name exec_name namespace remap[] param[] {_PROCESS}"
+# The attributes of each element: ! is required, : precedes a type that is not text, [] are elements in it.
+_ACTIONS: Mapping[str, str] = {
+    "append_env": "name! value! prepend:bool separator", "arg": "name! default description choice[]",
+    "executable": f"cmd! {_PROCESS}", "group": "scoped:bool forwarding:bool keep[] children", "include": "file! arg[]",
+    "log": "message!", "reset_env": "", "reset": "keep[]", "set_env": "name! value!", "let": "name! value!",
+    "shutdown": "reason", "timer": "period!:float cancel_on_shutdown:bool children", "unset_env": "name!",
+    "ros_timer": "period!:float children", "node": _NODE, "node_container": f"{_NODE} composable_node[]",
+    "load_composable_node": "target! composable_node![]", "push_ros_namespace": "namespace!",
+    "push-ros-namespace": "namespace!", "set_parameter": "name! value!", "set_parameters_from_file": "filename!",
+    "set_remap": "from! to!", "set_ros_log_dir": "new_log_dir!", "set_use_sim_time": "value!",
+}  # fmt: skip
+_NESTED: Mapping[str, str] = {
+    **dict.fromkeys(("env", "keep", "arg", "extra_arg"), "name! value!"), "choice": "value!", "remap": "from! to!",
+    "param": "name from value:any type:any allow_substs:bool param[]",
+    "composable_node": "pkg! plugin! name! if unless namespace param[] remap[] extra_arg[]",
+}  # fmt: skip
+_TYPES: Mapping[str, type | None] = {"int": int, "float": float, "bool": bool, "any": None}
+_VALUE_TYPES = ("str", "bool", "float", "int", "list_of_str", "list_of_bool", "list_of_float", "list_of_int", "yaml")
+# The argument of the constructor, where it has another name than the attribute.
+_ARGUMENTS = {
+    "pkg": "package", "exec": "executable", "default": "default_value", "message": "msg", "launch-prefix": "prefix",
+    "file": "launch_description_source", "args": "arguments", "ros_args": "ros_arguments", "target": "target_container",
+    "node-name": "node_name",
+}  # fmt: skip
+_AS_TEXT = {("arg", "name"), ("arg", "description")}  # without substitutions
+_RAW = ("shell", "emulate_tty", "scoped", "forwarding", "respawn_max_retries")
 # Elements and attributes that only ROS 1 has, and what replaces them.
 _ROS1_TAGS = {
     "param": "a <param> belongs in its <node>", "rosparam": "write <param from=.../> in the <node>",
     "remap": "a <remap> belongs in its <node>", "machine": "", "test": "", "env": "write <set_env>",
 }  # fmt: skip
-_ROS1_ATTRIBUTES: dict[str, dict[str, str | None]] = {
-    "node": {"type": "exec", "package": "pkg", "executable": "exec", "ns": "namespace", "required": None},
+_ROS1_ATTRIBUTES: dict[str, dict[str, str]] = {
+    "node": {"type": "exec", "package": "pkg", "executable": "exec", "ns": "namespace", "required": ""},
     "arg": {"value": "default", "default_value": "default", "doc": "description"},
-    "param": {"command": "value", "textfile": "value"},
-    "group": {"ns": None},
-    "include": {"ns": None, "pass_all_args": None},
-}
-_NODES = {"node": "Node", "lifecycle_node": "LifecycleNode"}
-_IDLE = re.compile(r"(?:log|set|append|prepend|reset|push|pop|unset|rep|shutdown)(?:[_-]\w*)?")
-
-
-def parse_value(text: str, at: Position, findings: Findings) -> list[Value]:
-    """Return a value as a list of strings and calls of substitutions; mistakes in it are added to the findings."""
-    return _ValueParser(text, at, findings).pieces("", 0)
-
-
-@dataclass(slots=True)
-class _ValueParser:
-    """Parses a value from its beginning to its end."""
-
-    text: str
-    at: Position
-    findings: Findings
-    position: int = 0
-
-    def pieces(self, ends: str, depth: int) -> list[Value]:
-        """Return strings and substitutions, up to one of the characters that end them."""
-        found: list[Value] = []
-        plain: list[str] = []
-        while self.position < len(self.text) and self.text[self.position] not in ends:
-            if self.text.startswith("$(", self.position) and depth < _MAX_DEPTH:
-                found += ["".join(plain)] if plain else []
-                plain.clear()
-                self.position += 2
-                found.append(self.substitution(depth + 1))
-                continue
-            if self.text[self.position] == "\\" and self.position + 1 < len(self.text):
-                self.position += 1
-            plain.append(self.text[self.position])
-            self.position += 1
-        return [*found, "".join(plain)] if plain or not found else found
-
-    def substitution(self, depth: int) -> Call:
-        """Return the substitution in brackets: a name, and values separated by spaces, with or without quotes."""
-        start = self.position
-        while self.position < len(self.text) and self.text[self.position] not in " \t\n)":
-            self.position += 1
-        name = self.text[start : self.position]
-        values: list[Value] = []
-        while self.position < len(self.text) and self.text[self.position] != ")":
-            first = self.text[self.position]
-            if first in " \t\n":
-                self.position += 1
-            elif first in "'\"":
-                self.position += 1
-                values.append(self.pieces(first, depth))
-                self.position += 1
-            else:
-                values.append(self.pieces(" \t\n)", depth))
-        if self.position >= len(self.text):
-            self.findings.add_fault(f"the bracket of $({name[:40]} is not closed", self.at)
-        self.position += 1
-        return self.call(name, values)
-
-    def call(self, name: str, values: list[Value]) -> Call:
-        """Return a substitution as the call that it is in Python."""
-        if name in _ROS1:
-            message = f"$({name} ...) is a substitution of ROS 1; in ROS 2 write $({_ROS1[name]} ...)"
-            self.findings.add_fault(message, self.at)
-            name = _ROS1[name]
-        if name == "command" and len(values) > 1 and values[1] not in [[mode] for mode in _ON_STDERR]:
-            message = "$(command ...) needs quotes around its command: $(command 'xacro ...')"
-            self.findings.add_fault(message, self.at)
-            values = [[part for value in values for part in (*value, " ")]]
-        similar = closest(name, _SUBSTITUTIONS) if name not in _SUBSTITUTIONS else None
-        if similar:
-            self.findings.add_fault(f"there is no substitution $({name} ...); did you mean $({similar} ...)?", self.at)
-        return Call(_SUBSTITUTIONS.get(name, f"launch.substitutions.{name}"), values, {}, self.at)
+    "param": {"command": "value", "textfile": "value"}, "group": {"ns": ""}, "include": {"ns": "", "pass_all_args": ""},
+}  # fmt: skip
 
 
 def actions_of(parent: Entity, findings: Findings) -> list[Value]:
-    """Return the actions in an entity; errors are added to the findings."""
-    return [action for child in parent.children if (action := _action(child, findings)) is not None]
+    """Return the actions in an entity; errors, which stop the launch, are added to the findings."""
+    found: list[Value] = []
+    for entity in parent.actions:
+        try:
+            if entity.kind != "keep" or parent.kind != "group":
+                found.append(_action(entity, findings))
+        except LaunchFails as error:
+            findings.add_fault(str(error), error.at)
+    return found
 
 
-def _action(entity: Entity, findings: Findings) -> Call | None:
-    _add_ros1_errors(entity, findings)
-    name = entity.attributes.get("name")
-    given = {key: parse_value(value, entity.at, findings) for key, value in entity.attributes.items()}
-    kwargs: dict[str, Value] = {}
-    own: dict[str, Value]
-    for key, condition in (("unless", "UnlessCondition"), ("if", "IfCondition")):
-        if key in given:
-            kwargs["condition"] = Call(f"launch.conditions.{condition}", [given[key]], {}, entity.at)
-    match entity.kind:
-        case "node" | "lifecycle_node":
-            return _node(entity, given, kwargs, findings)
-        case "arg":
-            default = given.get("default", given.get("value", given.get("default_value")))
-            action, own = "DeclareLaunchArgument", {"name": name, "default_value": default}
-        case "let":
-            action, own = "SetLaunchConfiguration", {"name": name, "value": given.get("value")}
-        case "include":
-            inner = [child for child in entity.children if child.kind in ("arg", "let")]
-            values = [parse_value(child.attributes.get("value", ""), child.at, findings) for child in inner]
-            passed = [(child.attributes.get("name", ""), value) for child, value in zip(inner, values, strict=True)]
-            own = {"launch_description_source": given.get("file"), "launch_arguments": passed}
-            action = "IncludeLaunchDescription"
-        case "executable":
-            action, own = "ExecuteProcess", {"cmd": [Call(COMMAND_LINE, given.get("cmd", []), {}, entity.at)]}
-        case "group" | "timer":
-            scoped = entity.kind == "group" and entity.attributes.get("scoped", "true").lower() in ("true", "1")
-            action, own = "GroupAction", {"actions": actions_of(entity, findings), "scoped": scoped}
-        case kind:
-            if kind not in _ROS1_TAGS and not _IDLE.fullmatch(kind):
-                findings.add_unknown(f"what <{kind[:40]}> starts is known only at run time", entity.at)
-            return None
-    return Call(f"launch.actions.{action}", [], kwargs | own, entity.at)
+def _action(entity: Entity, findings: Findings) -> Call:
+    kind = entity.kind
+    if kind not in _ACTIONS:
+        if kind in _ROS1_TAGS:
+            hint = f": {_ROS1_TAGS[kind]}".removesuffix(": ")
+            raise LaunchFails(f"<{kind}> in this place is from ROS 1 and not accepted by ROS 2{hint}", entity.at)
+        raise LaunchFails(f"there is no action {kind!r}{did_you_mean(kind, _ACTIONS)}", entity.at)
+    given = _attributes(entity, f"if unless {_ACTIONS[kind]}")
+    condition = _condition(given, entity)
+    if kind == "set_remap":
+        given = {"src": given["from"], "dst": given["to"]}
+    kwargs = {_ARGUMENTS.get(name, name): _value(entity, name, value) for name, value in given.items()}
+    if condition is not None:
+        kwargs["condition"] = condition
+    _add_elements(entity, kwargs, findings)
+    return _checked(Call(front_end("action")[kind], [], kwargs, entity.at))
 
 
-def _add_ros1_errors(entity: Entity, findings: Findings) -> None:
-    """Add an error for what ROS 1 accepts and ROS 2 does not."""
-    if entity.kind in _ROS1_TAGS:
-        hint = f": {_ROS1_TAGS[entity.kind]}".removesuffix(": ")
-        findings.add_fault(f"<{entity.kind}> in this place is from ROS 1 and not accepted by ROS 2{hint}", entity.at)
-    for element in (entity, *(child for child in entity.children if child.kind == "param")):
-        for wrong, right in _ROS1_ATTRIBUTES.get(element.kind, {}).items():
-            if wrong in element.attributes:
-                hint = f"; write {right!r}" if right else ""
-                findings.add_fault(f"<{element.kind}> has no attribute {wrong!r} in ROS 2{hint}", element.at)
+def _checked(call: Call) -> Call:
+    """Return a call whose arguments its constructor accepts. Raises LaunchFails."""
+    cls = class_named(call.name)
+    try:
+        if cls is not None:
+            bind(cls, call)
+            check(cls, call)
+    except ExpressionFails as error:
+        raise LaunchFails(str(error), call.at) from None
+    return call
 
 
-def _node(entity: Entity, given: dict[str, Value], kwargs: dict[str, Value], findings: Findings) -> Call:
-    for wrong, right in _ROS1_ATTRIBUTES["node"].items():
-        if wrong in given and right is not None and right not in given:
-            given[right] = given[wrong]
-    table: dict[str, Value] = {}
-    parameters: list[Value] = [table]
-    for child in entity.children:
-        name = child.attributes.get("name")
-        if child.kind == "param" and name is not None:
-            value = next((child.attributes[key] for key in ("value", "command") if key in child.attributes), None)
-            missing = Unknown("this parameter has no value", child.at)
-            table[name] = parse_value(value, child.at, findings) if value is not None else missing
-        elif child.kind == "param":
-            parameters.append(parse_value(child.attributes.get("from", ""), child.at, findings))
-    named = {"package": given.get("pkg"), "executable": given.get("exec")}
-    kwargs |= {"parameters": parameters, **{key: value for key, value in named.items() if value is not None}}
-    kwargs["arguments"] = [Call(COMMAND_LINE, given["args"], {}, entity.at)] if "args" in given else []
-    return Call(f"launch_ros.actions.{_NODES[entity.kind]}", [], kwargs, entity.at)
+def _attributes(entity: Entity, known: str) -> dict[str, Any]:
+    """Return the attributes of an entity, of their types. Raises LaunchFails for unknown and missing ones."""
+    if entity.error:
+        raise LaunchFails(entity.error, entity.at)
+    if entity.is_yaml and entity.has_actions != ("children" in known):
+        what = "needs the key children" if "children" in known else "has no list of actions"
+        raise LaunchFails(f"{entity.kind} {what}", entity.at)
+    names = {word.partition(":")[0].rstrip("![]"): word for word in known.split()}
+    lists = {name for name, word in names.items() if word.endswith("[]")}
+    for name in () if "children" in names else [*entity.nested, *(it.kind for it in entity.actions)]:
+        if name not in lists:
+            raise LaunchFails(f"<{entity.kind}> contains no <{name}>{did_you_mean(name, lists)}", entity.at)
+    found: dict[str, Any] = {}
+    for name, value in entity.attributes.items():
+        plain = name.removesuffix("-sep") if not entity.is_yaml else name
+        if plain not in names or plain in lists or plain == "children":
+            right = _ROS1_ATTRIBUTES.get(entity.kind, {}).get(name)
+            hint = (
+                (f" in ROS 2; write {right!r}" if right else " in ROS 2")
+                if right is not None
+                else did_you_mean(name, names)
+            )
+            raise LaunchFails(f"<{entity.kind}> has no attribute {name!r}{hint}", entity.at)
+        if plain == name:
+            found[name] = _typed(entity, name, value, names[name])
+    missing = [name for name, word in names.items() if "!" in word and name not in {*found, *entity.nested}]
+    if missing:
+        raise LaunchFails(f"<{entity.kind}> needs the attribute {missing[0]!r}", entity.at)
+    return found
+
+
+def _typed(entity: Entity, name: str, value: Any, word: str) -> Any:
+    _, _, kind = word.partition(":")
+    wanted = _TYPES[kind] if kind else str
+    if entity.is_yaml:
+        if not is_typed(value, wanted):
+            what = f"{name} of {entity.kind} is {value!r}, which YAML reads as {type(value).__name__}"
+            raise LaunchFails(f"{what}: {'put quotes around it' if wanted is str else f'write a {kind}'}", entity.at)
+        return value
+    separator = entity.attributes.get(f"{name}-sep")
+    if separator:
+        return [typed_text(part, wanted, entity.at) for part in value.split(separator)]
+    return value if wanted is str else typed_text(value, wanted, entity.at)
+
+
+def _condition(given: dict[str, Any], entity: Entity) -> Call | None:
+    """Take the condition out of the attributes."""
+    own = {name: given.pop(name) for name in ("if", "unless") if name in given}
+    if len(own) > 1:
+        raise LaunchFails("if and unless cannot be used together", entity.at)
+    for name, text in own.items():
+        kind = "if_condition.IfCondition" if name == "if" else "unless_condition.UnlessCondition"
+        kwargs = {"predicate_expression": parse_value(text, entity.at)}
+        return Call(f"launch.conditions.{kind}", [], kwargs, entity.at)
+    return None
+
+
+def _value(entity: Entity, name: str, value: Any) -> Value:
+    if (entity.kind, name) in _AS_TEXT:
+        return value
+    if name in ("cmd", "args", "ros_args"):
+        return command_line(value, entity.at)
+    if name == "on_exit" and value != "shutdown":
+        raise LaunchFails(f"on_exit is 'shutdown', not {value!r}", entity.at)
+    if name in ("respawn_delay", "sigkill_timeout", "sigterm_timeout"):
+        if not isinstance(value, int | float) or value < 0:
+            raise LaunchFails(f"{name} is {value!r}, not a number of seconds", entity.at)
+        return str(value) if name != "respawn_delay" else value
+    return (
+        [Call(front_end("action")["shutdown"], [], {}, entity.at)]
+        if name == "on_exit"
+        else _parsed(entity, name, value)
+    )
+
+
+def _parsed(entity: Entity, name: str, value: Any) -> Value:
+    if name == "respawn" or entity.kind == "set_parameter":
+        parts = parse_value(value, entity.at)
+        text = "launch.substitutions.text_substitution.TextSubstitution"
+        return [Call(text, [], {"text": it}, entity.at) if isinstance(it, str) else it for it in parts]
+    if name in ("period", "prepend", "cancel_on_shutdown"):
+        return parse_if_text(value, entity.at)
+    return parse_value(value, entity.at) if isinstance(value, str) and name not in _RAW else value
+
+
+def _add_elements(entity: Entity, kwargs: dict[str, Value], findings: Findings) -> None:
+    """Add the arguments that the elements in an entity stand for."""
+    nested = {
+        name: inner
+        for name, inner in entity.nested.items()
+        if f"{name}[]" in _ACTIONS[entity.kind].replace("!", "").split()
+    }
+    for name, inner in nested.items():
+        match name:
+            case "param":
+                kwargs["parameters"] = [_parameter(it) for it in inner]
+            case "remap" | "arg":
+                pair = ("from", "to") if name == "remap" else ("name", "value")
+                found = [tuple(_pairs(it)[key] for key in pair) for it in inner]
+                kwargs["remappings" if name == "remap" else "launch_arguments"] = found
+            case "env" | "keep":
+                table = {tuple(pair["name"]): pair["value"] for pair in map(_pairs, inner)}
+                kwargs["additional_env" if name == "env" else "launch_configurations"] = table
+            case "choice":
+                kwargs["choices"] = [_choice(it) for it in inner]
+            case "composable_node":
+                kwargs["composable_node_descriptions"] = [_composable(it) for it in inner]
+    if "children" in _ACTIONS[entity.kind]:
+        kwargs["actions"] = actions_of(entity, findings)
+    if entity.kind == "load_composable_node":
+        kwargs.setdefault("composable_node_descriptions", [])
+
+
+def _choice(entity: Entity) -> str:
+    if not isinstance(entity.attributes.get("value"), str):
+        raise LaunchFails("<choice> needs the attribute 'value'", entity.at)
+    return str(entity.attributes["value"])
+
+
+def _pairs(entity: Entity) -> dict[str, list[Value]]:
+    given = _attributes(entity, _NESTED[entity.kind])
+    return {name: parse_value(value, entity.at) for name, value in given.items()}
+
+
+def _composable(entity: Entity) -> Call:
+    given = _attributes(entity, _NESTED[entity.kind])
+    condition = _condition(given, entity)
+    kwargs: dict[str, Value] = {
+        _ARGUMENTS.get(name, name): parse_value(value, entity.at) for name, value in given.items()
+    }
+    if condition is not None:
+        kwargs["condition"] = condition
+    kwargs["parameters"] = [_parameter(it) for it in entity.nested.get("param", [])]
+    return _checked(Call("launch_ros.descriptions.composable_node.ComposableNode", [], kwargs, entity.at))
+
+
+def _parameter(entity: Entity) -> Value:
+    """Return an item of the parameters of a node. Raises LaunchFails."""
+    given = _attributes(entity, _NESTED["param"])
+    if "from" in given and "name" in given:
+        raise LaunchFails("a <param> has either name or from", entity.at)
+    if "from" in given:
+        allow = given.get("allow_substs", False)
+        path = parse_value(str(given["from"]), entity.at)
+        return _checked(Call(FILE, [], {"param_file": path, "allow_substs": allow}, entity.at))
+    if "name" not in given or "allow_substs" in given:
+        raise LaunchFails("a <param> needs name, or from, which may have allow_substs", entity.at)
+    parts, inner = parse_value(given["name"], entity.at), entity.nested.get("param")
+    name: Value = parts[0] if len(parts) == 1 and isinstance(parts[0], str) else tuple(parts)
+    if inner:
+        if "value" in given or "type" in given:
+            raise LaunchFails("a <param> has either a value or other <param> in it", entity.at)
+        tables = (_parameter(it) for it in inner)
+        return {name: {key: value for table in tables if isinstance(table, dict) for key, value in table.items()}}
+    if "value" not in given:
+        raise LaunchFails("a <param> needs a value", entity.at)
+    kind = given.get("type")
+    if kind is not None and kind not in _VALUE_TYPES:
+        raise LaunchFails(f"a <param> has the type {kind!r}, which is none of {', '.join(_VALUE_TYPES)}", entity.at)
+    value = entity.attributes["value"] if not entity.is_yaml and kind == "str" else given["value"]
+    kwargs: dict[str, Value] = {"value": parse_if_text(value, entity.at)}
+    if kind is not None and kind != "yaml":
+        kwargs["value_type"] = Call(f"builtins.{kind}", [], {}, entity.at)
+        if kind in ("int", "float", "bool") and not entity.is_yaml:
+            kwargs["value"] = parse_if_text(typed_text(entity.attributes["value"], _TYPES[kind], entity.at), entity.at)
+    return {name: _checked(Call(TYPED[0], [], kwargs, entity.at))}

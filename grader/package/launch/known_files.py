@@ -7,11 +7,23 @@ from pathlib import Path
 
 from grader.package.launch.model import STATE_PUBLISHER, Contents, Context, Findings, Purpose, StartedNode
 from grader.package.launch.places import PREFIX, ROS, SHARE
-from grader.package.launch.substitutions import resolve
 from grader.static_python.values import Call, Unknown
 
 _RVIZ = "rviz2"
 _GIVEN: Mapping[str, Purpose] = {STATE_PUBLISHER: "urdf", _RVIZ: "rviz"}  # the nodes that are given a file
+
+
+# Packages that ROS 2 consists of, or that labs take for granted, whether package.xml names them or not.
+_OF_ROS = frozenset(
+    {"rviz2", "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui", "xacro", "tf2_ros",
+     "rclpy", "rclcpp", "launch", "launch_ros", "ros2launch", "turtlesim", "demo_nodes_cpp", "demo_nodes_py",
+     "rqt_graph", "rqt_gui", "tf2_tools", "rosbag2", "ros2bag", "teleop_twist_keyboard"}
+)  # fmt: skip
+
+
+def is_of_ros(package: str) -> bool:
+    """Return whether a package is on every machine that runs ROS 2 in a lab."""
+    return package in _OF_ROS or package in _starts()
 
 
 @cache
@@ -40,16 +52,16 @@ def start_known_file(findings: Findings, path: str, call: Call, context: Context
 def _refer_files(findings: Findings, call: Call, context: Context, *, is_shown: bool) -> None:
     """Add the files that the arguments of urdf_launch name."""
     given = [context.arguments.get(key) for key in ("urdf_package", "urdf_package_path")]
-    match [resolve(value, context) for value in given]:
+    match given:
         case [str() as package, str() as urdf]:
             findings.refer("urdf", Contents(f"{SHARE}/{package}/{urdf}", "xacro"), call)
-        case values:
-            unknown = next(value for value in values if not isinstance(value, str))
+        case _:
+            unknown = next(value for value in given if not isinstance(value, str))
             is_missing = None in given or isinstance(unknown, Contents)
             message = "urdf_launch needs the arguments urdf_package and urdf_package_path"
             findings.refer("urdf", None if is_missing else unknown, call, wrong=message)
-    opened = resolve(context.arguments.get("rviz_config", Contents("", "")), context)
-    if is_shown and isinstance(opened, Contents):
+    opened = context.arguments.get("rviz_config")
+    if is_shown and opened is None:
         message = "urdf_launch is included without rviz_config, so it opens its own configuration, not the lab's"
         findings.refer("rviz", None, call, wrong=message)
     elif is_shown:

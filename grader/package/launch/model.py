@@ -1,7 +1,7 @@
 """The nodes that a launch file starts and the files that it names, and the state while its actions are visited."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from grader.source import Location, Source
@@ -10,7 +10,7 @@ from grader.static_python.values import Call, Unknown, Value
 
 _MAX_STEPS = 50_000
 STATE_PUBLISHER = "robot_state_publisher"
-Purpose = Literal["urdf", "rviz", "include"]
+Purpose = Literal["urdf", "rviz", "include", "read"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,19 +28,57 @@ class Contents:
 Resolved = str | Contents | Unknown
 
 
+class LaunchSignal(Exception):
+    """What ends the evaluation of an action, with the position that it is about."""
+
+    def __init__(self, message: str, at: Position) -> None:
+        super().__init__(message)
+        self.at = at
+
+
+class LaunchFails(LaunchSignal):
+    """launch certainly raises an error if it evaluates this."""
+
+
+class NotEvaluated(LaunchSignal):
+    """Whether launch raises an error here is not known."""
+
+
+def not_evaluated(reason: str) -> str:
+    """Return a reason with the words that say what it means."""
+    return reason if "evaluated" in reason else f"{reason}, which is not evaluated"
+
+
+@dataclass(slots=True)
+class Surroundings:
+    """What a launch file finds around it. `texts` has the paths of the files that it has read, by their texts."""
+
+    read: Callable[[str], str | None]  # the text of an installed file; None where it is not installed or is no text
+    is_installed: Callable[[str], bool]  # whether a package certainly is on the machine
+    has_program: Callable[[str, str], bool | None]  # whether a package has a program; None where this is not known
+    texts: dict[str, str] = field(default_factory=dict)
+    steps_left: int = _MAX_STEPS
+    pushed: "list[Context]" = field(default_factory=list)
+
+
 @dataclass(slots=True)
 class Context:
-    """The folder of the installed launch file, the launch arguments so far, and the errors of the current action."""
+    """The path of the installed launch file, and what launch knows when it executes an action.
 
-    folder: str
-    arguments: dict[str, Value] = field(default_factory=dict)
-    errors: list[tuple[str, Position]] = field(default_factory=list)
+    `arguments` are the launch configurations; one with the name UNKNOWN_KEYS stands for any other one.
+    """
+
+    path: str
+    around: Surroundings
+    arguments: dict[str, Resolved] = field(default_factory=dict)
+    environment: dict[str, Resolved | None] = field(default_factory=dict)  # what the launch file sets; None: unset
     when: bool | None = True  # whether the file is launched at all
-    steps_left: list[int] = field(default_factory=lambda: [_MAX_STEPS])  # counts down, also for included files
+    given: frozenset[str] = frozenset()  # the launch arguments that the file is included with
+    reads: list[tuple[Contents, Position]] = field(default_factory=list)  # that the current action needs
 
-    def add_error(self, message: str, at: Position) -> None:
-        """Add an error that stops the launch if it certainly executes the current action."""
-        self.errors.append((message, at))
+    def copy(self) -> "Context":
+        """Return a context whose launch configurations and environment change on their own."""
+        return replace(self, arguments=dict(self.arguments), environment=dict(self.environment))
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +130,8 @@ class Launch:
     nodes: tuple[StartedNode, ...] = ()
     references: tuple[NamedFile, ...] = ()
     faults: tuple[LaunchFault, ...] = ()
-    unknown: tuple[LaunchFault, ...] = ()  # what cannot be determined
+    unknown: tuple[LaunchFault, ...] = ()  # what may start more
+    doubts: tuple[LaunchFault, ...] = ()  # what may stop the launch
     forgotten: tuple[StartedNode, ...] = ()  # created in the file, but not part of its LaunchDescription
     unread: str = ""  # why the file was not read at all: too large, damaged
 
@@ -119,23 +158,31 @@ class Findings:
     references: list[NamedFile] = field(default_factory=list)
     faults: list[LaunchFault] = field(default_factory=list)
     unknown: list[LaunchFault] = field(default_factory=list)
+    doubts: list[LaunchFault] = field(default_factory=list)
     sets_parameters: bool = False
+    is_silent: bool = False  # while what may never be executed is visited
 
     def add_fault(self, message: str, at: Position) -> None:
         """Add an error that stops the launch."""
         self.faults.append(LaunchFault(message, self.locate(at)))
 
     def add_unknown(self, reason: str, at: Position) -> None:
-        """Add something that cannot be determined; the same again only where others are between."""
-        fault = LaunchFault(reason, self.locate(at))
-        if fault not in self.unknown[-3:]:
-            self.unknown.append(fault)
+        """Add what may start more than is found."""
+        self.unknown.append(LaunchFault(reason, self.locate(at)))
 
-    def add_errors(self, context: Context, start: int, *, is_certain: bool) -> None:
-        """Take the errors of an action from the context; they count if the action is certainly executed."""
-        for message, at in context.errors[start:] if is_certain else ():
-            self.add_fault(message, at)
-        del context.errors[start:]
+    def add_doubt(self, reason: str, at: Position) -> None:
+        """Add what may stop the launch."""
+        self.doubts.append(LaunchFault(not_evaluated(reason), self.locate(at)))
+
+    def add(self, signal: LaunchSignal, when: bool | None) -> None:
+        """Add what ends an action: an error only if it certainly is executed."""
+        if self.is_silent:
+            return
+        if isinstance(signal, LaunchFails) and when:
+            self.add_fault(str(signal), signal.at)
+        elif when is not False:
+            reason = f"whether this is executed is not evaluated: {signal}"
+            self.add_doubt(reason if isinstance(signal, LaunchFails) else str(signal), signal.at)
 
     def refer(self, purpose: Purpose, path: Resolved | None, call: Call, value: Value = None, wrong: str = "") -> None:
         """Add the file that an action names, why it is unknown which, or what is wrong with it."""

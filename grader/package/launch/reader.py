@@ -1,50 +1,89 @@
 """Read a launch file in any of its languages, and the launch files that it includes."""
 
 import posixpath
-import re
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import partial
 from operator import attrgetter
 from pathlib import PurePosixPath
+from typing import Any
 
 from grader.package.launch.actions import CIRCULAR_INCLUDE, ActionVisitor, Include
+from grader.package.launch.api import DESCRIPTION, is_a
 from grader.package.launch.frontend import read_frontend
 from grader.package.launch.frontend_actions import actions_of
-from grader.package.launch.model import Context, Findings, Launch, LaunchFault, StartedNode
-from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
+from grader.package.launch.model import Context, Findings, Launch, LaunchFault, StartedNode, Surroundings
+from grader.package.launch.places import PREFIX
+from grader.package.launch.python_file import PythonLaunchFile
+from grader.package.launch.value_types import kind_of
 from grader.package.setup_py import location_in
-from grader.reuse import reuse
 from grader.source import Location, Source
-from grader.static_python.evaluation import Evaluation, FunctionTable
-from grader.static_python.functions import standard_functions
-from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import START, SyntaxFault, parse
-from grader.static_python.values import Call, Function, QualifiedName, Unknown, Value, path_text
+from grader.static_python.values import Call, Function, Unknown, Value
 
 _ENTRY = "generate_launch_description"
-_MODULE = "python_launch_file"  # the __name__ of a launch file
+_NODE = "launch_ros.actions.node.Node"
 _MAX_INCLUDES = 10
-_JOINED = ("nodes", "references", "faults", "unknown")  # what a launch file shares with those that it includes
-_AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
-_FIND = [f"launch_ros.substitutions.{module}FindPackageShare.find" for module in ("", "find_package.")]
+_JOINED = (
+    "nodes",
+    "references",
+    "faults",
+    "unknown",
+    "doubts",
+)  # what a launch file shares with those that it includes
+
+_MAX_KEPT = 4  # launch files
+# The results of launch files that are read again: those of a handout, or while hints are searched. Each with what it
+# asked, and the answers.
+_KEPT: dict[tuple[bytes, str, str], tuple[list[tuple[str, tuple[str, ...], Any]], Launch]] = {}
 
 # Returns the bytes of an installed file and its path in the submission, by its path below the prefix; None for other
 # files.
 Opener = Callable[[str], "tuple[bytes, str] | None"]
 
 
-def read_launch(data: bytes, path: str, installed: str, opener: Opener) -> Launch:
-    """Read a launch file and evaluate it. `installed` is its path below the prefix after a build. Never raises."""
-    return _read_alone(data, path, installed) or _LaunchReader(opener).read(data, path, installed)
+def read_launch(
+    data: bytes,
+    path: str,
+    installed: str,
+    opener: Opener,
+    is_installed: Callable[[str], bool] = lambda _: True,
+    has_program: Callable[[str, str], bool | None] = lambda *_: True,
+) -> Launch:
+    """Read a launch file and evaluate it. Never raises.
 
+    Args:
+        data: The file's contents.
+        path: Its path in the submission.
+        installed: Its path below the prefix after a build.
+        opener: Opens installed files.
+        is_installed: Whether a package certainly is on the machine.
+        has_program: Whether such a package has a program.
+    """
+    questions: dict[str, Callable[..., Any]] = {"open": opener, "package": is_installed, "program": has_program}
+    kept = _KEPT.get((data, path, installed))
+    if kept is not None and all(questions[name](*asked) == answer for name, asked, answer in kept[0]):
+        return kept[1]
+    answers: list[tuple[str, tuple[str, ...], Any]] = []
 
-@reuse
-def _read_alone(data: bytes, path: str, installed: str) -> Launch | None:
-    """Return a launch file; None for one that includes others."""
-    included: list[str] = []
-    launch = _LaunchReader(included.append).read(data, path, installed)
-    return launch if not included else None
+    def ask(name: str, *asked: str) -> Any:
+        answer = questions[name](*asked)
+        answers.append((name, asked, answer))
+        return answer
+
+    def read(path: str) -> str | None:
+        is_below = path.startswith(f"{PREFIX}/")
+        found = ask("open", posixpath.normpath(path).removeprefix(f"{PREFIX}/")) if is_below else None
+        try:
+            return found[0].decode().replace("\r\n", "\n") if found is not None else None
+        except UnicodeDecodeError:
+            return None
+
+    around = Surroundings(read, partial(ask, "package"), partial(ask, "program"))
+    launch = _LaunchReader(partial(ask, "open")).read(data, path, installed, Context(f"{PREFIX}/{installed}", around))
+    _KEPT.pop(next(iter(_KEPT)) if len(_KEPT) >= _MAX_KEPT else (b"", "", ""), None)
+    _KEPT[data, path, installed] = (answers, launch)
+    return launch
 
 
 @dataclass(slots=True)
@@ -55,9 +94,8 @@ class _LaunchReader:
     includes_left: int = _MAX_INCLUDES
     open: list[str] = field(default_factory=list)  # the files that are being read, each included by the one before
 
-    def read(self, data: bytes, path: str, installed: str, arguments: Context | None = None) -> Launch:
+    def read(self, data: bytes, path: str, installed: str, context: Context) -> Launch:
         """Return a launch file together with those that it includes."""
-        context = arguments or Context(posixpath.dirname(f"{PREFIX}/{installed}"))
         included: list[Launch] = []
 
         def include(target: str, arguments: Context) -> str:
@@ -76,7 +114,7 @@ class _LaunchReader:
             own = replace(own, **joined)
         return own
 
-    def include(self, target: str, arguments: Context, included: list[Launch]) -> str:
+    def include(self, target: str, context: Context, included: list[Launch]) -> str:
         """Read an included file; return why it is not read, or nothing."""
         if target in self.open:
             return CIRCULAR_INCLUDE
@@ -86,10 +124,11 @@ class _LaunchReader:
         if self.includes_left == 0:
             return f"it includes more than {_MAX_INCLUDES} launch files"
         self.includes_left -= 1
-        launch = self.read(*found, target, arguments)
+        launch = self.read(*found, target, context)
         faults = (*launch.faults, *filter(None, [launch.syntax]))
-        if arguments.when is not True:  # an error in the file counts only if it is included
-            launch, faults = replace(launch, unknown=(*launch.unknown, *faults)), ()
+        if context.when is not True:  # an error in the file counts only if it is included
+            launch = replace(launch, doubts=(*launch.doubts, *faults), unknown=(*launch.unknown, *faults))
+            faults = ()
         included.append(replace(launch, faults=faults))
         return ""
 
@@ -97,14 +136,14 @@ class _LaunchReader:
 def _frontend(data: bytes, path: str, context: Context, include: Include, *, is_yaml: bool) -> Launch:
     source = Source(path, data.decode("utf-8", "replace"))
     findings = Findings(lambda position: Location(path, position.line, position.column))
-    root = read_frontend(data, source, findings, is_yaml=is_yaml)
+    root = read_frontend(data, source, is_yaml=is_yaml)
     if isinstance(root, LaunchFault):
         return Launch(source, root)
+    if root.error:
+        findings.add_fault(root.error, root.at)
     actions = actions_of(root, findings)
-    unsupported, findings.unknown = findings.unknown, []
-    visitor = ActionVisitor(findings, include, lambda _, at, __: Unknown("a function is not supported here", at))
-    visitor.visit(Call("launch.LaunchDescription", [actions], {}, root.at), context, context.when)
-    findings.unknown += unsupported
+    visitor = ActionVisitor(findings, include, lambda _, at, *__: Unknown("a function is not evaluated here", at))
+    visitor.launch(Call(DESCRIPTION, [], {"initial_entities": actions}, root.at), context, root.at)
     return _launch(source, findings, ())
 
 
@@ -112,29 +151,43 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
     code = parse(data, path)
     if isinstance(code, SyntaxFault):
         syntax = LaunchFault(f"Python cannot read the file: {code.message}", code.location)
-        return Launch(code.source, syntax) if code.sure else Launch(code.source, unknown=(syntax,))
-    interpreter = Interpreter(launch_functions(), {"__file__": f"{PREFIX}/{installed}", "__name__": _MODULE})
-    names = interpreter.run(code).names
+        return Launch(code.source, syntax) if code.sure else Launch(code.source, unknown=(syntax,), doubts=(syntax,))
     findings = Findings(lambda position: location_in(code.source, position))
-    visitor = ActionVisitor(findings, include, interpreter.call_from_outside)
-    match names.get(_ENTRY):
-        case Function() as entry:
-            description = interpreter.call_from_outside(entry, entry.at)
-            if error := _description_error(description):
-                findings.add_fault(error, entry.at)
-            visitor.visit(description, context, context.when)
-        case Unknown() | QualifiedName() | Call() as description:
-            visitor.visit(description, context, context.when)
-        case _ if interpreter.stop_reason or "*" in names:
-            findings.add_unknown("what it launches is known only at run time", START)
-        case _:
-            findings.add_fault(f"the file does not define the function {_ENTRY}, which ros2 launch calls", START)
-    if interpreter.stop_reason:
-        findings.add_unknown(interpreter.stop_reason, START)
+    file = PythonLaunchFile(context)
+    entry = file.run(code, installed).get(_ENTRY)
+    visitor = ActionVisitor(findings, include, file.call)
+    interpreter = file.interpreter
+    if isinstance(entry, Function):
+        description = file.call(entry, entry.at, (), context)
+        error = _description_error(description)
+        if error:
+            findings.add_fault(error, entry.at)
+        elif not isinstance(description, Unknown) or interpreter.doubt is None:
+            visitor.launch(description, context, entry.at)
+    elif interpreter.doubt is None and not interpreter.errors:
+        message = f"the file does not define the function {_ENTRY}, which ros2 launch calls"
+        if entry is None:
+            findings.add_fault(message, START)
+        else:
+            findings.add_unknown(f"{_ENTRY}, which the file does not define itself, is not evaluated", START)
+            findings.add_doubt(f"{_ENTRY}, which the file does not define itself, is not evaluated", START)
+    _add_python(findings, file)
+    nodes = [call for call in interpreter.calls if call.name == _NODE and id(call) not in visitor.visited]
+    return _launch(code.source, findings, tuple(_forgotten(node, findings) for node in nodes))
+
+
+def _add_python(findings: Findings, file: PythonLaunchFile) -> None:
+    """Add what Python raises, what is not evaluated, and what the file reads."""
+    interpreter = file.interpreter
+    if interpreter.doubt is not None:
+        findings.add_unknown(interpreter.doubt.reason, interpreter.doubt.at)
+        findings.add_doubt(interpreter.doubt.reason, interpreter.doubt.at)
+    if interpreter.errors:  # the description is not loaded, so what is wrong with the rest of it does not count
+        findings.faults, findings.doubts = [], []
     for fault in interpreter.errors:
         findings.add_fault(fault.message, fault.at)
-    nodes = [call for call in interpreter.calls if call.name.endswith(".Node") and id(call) not in visitor.visited]
-    return _launch(code.source, findings, tuple(_forgotten(node, findings) for node in nodes))
+    for contents, at in file.reads:
+        findings.refer("read", contents, Call("", [], {}, at))
 
 
 def _description_error(value: Value) -> str:
@@ -142,12 +195,12 @@ def _description_error(value: Value) -> str:
     match value:
         case None:
             return f"{_ENTRY} does not return its LaunchDescription"
-        case Call() if not value.name.startswith(("launch.actions.", "launch_ros.actions.")):
+        case Unknown():
             return ""
-        case str() | int() | float() | list() | tuple() | dict() | Call():
-            return f"{_ENTRY} does not return a LaunchDescription([...])"
+        case Call() if is_a(value.name, DESCRIPTION):
+            return ""
         case _:
-            return ""
+            return f"{_ENTRY} does not return a LaunchDescription([...]), but {kind_of(value)}"
 
 
 def _forgotten(node: Call, findings: Findings) -> StartedNode:
@@ -157,43 +210,15 @@ def _forgotten(node: Call, findings: Findings) -> StartedNode:
 
 
 def _launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
+    named = {reference.path for reference in findings.references if reference.purpose != "read"}
+    references = [it for it in findings.references if it.purpose != "read" or it.path not in named]
     order = attrgetter("location.line", "location.column", "message")
     return Launch(
         source=source,
         nodes=tuple(findings.nodes),
-        references=tuple(findings.references),
+        references=tuple(dict.fromkeys(references)),
         faults=tuple(sorted(set(findings.faults), key=order)),
         unknown=tuple(dict.fromkeys(findings.unknown)),
+        doubts=tuple(dict.fromkeys(findings.doubts)),
         forgotten=forgotten,
     )
-
-
-@cache
-def launch_functions() -> FunctionTable:
-    """Return the functions by full name; the folders that they return are stand-ins."""
-    return {
-        **standard_functions(WORKING_FOLDER),
-        **dict.fromkeys([*_FIND, *(f"{module}.get_package_share_directory" for module in _AMENT_INDEX)], _share),
-        **dict.fromkeys((f"{module}.get_package_share_path" for module in _AMENT_INDEX), _share_path),
-        **dict.fromkeys((f"{module}.get_package_prefix" for module in _AMENT_INDEX), lambda *_: PREFIX),
-        "os.path.expanduser": _expanduser,
-        "os.path.expandvars": lambda _, call: Unknown("the environment is known only at run time", call.at),
-        "pathlib.Path.home": lambda *_: PurePosixPath(HOME),
-    }
-
-
-def _share(_: Evaluation, call: Call) -> Value:
-    name = call.argument(0, "package_name", "package")
-    if isinstance(name, str):
-        return f"{SHARE}/{name}"
-    return name if isinstance(name, Unknown) else Unknown("the package is known only at run time", call.at)
-
-
-def _share_path(evaluation: Evaluation, call: Call) -> Value:
-    found = _share(evaluation, call)
-    return PurePosixPath(found) if isinstance(found, str) else found
-
-
-def _expanduser(_: Evaluation, call: Call) -> Value:
-    text = path_text(call.args[0]) if call.args else None
-    return re.sub("^~", HOME, text) if text is not None else Unknown("a path is known only at run time", call.at)

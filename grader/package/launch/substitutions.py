@@ -1,220 +1,319 @@
-"""The values of launch's substitutions, with the defaults of the launch arguments."""
+"""The texts of launch's substitutions, with the launch configurations so far."""
 
+import builtins
 import posixpath
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import PurePosixPath
+from math import isclose
 
-from grader.package.launch.booleans import BOOLEAN_SUBSTITUTIONS, boolean_substitution, operands_of
-from grader.package.launch.commands import command_output, opened_by
-from grader.package.launch.model import Contents, Context, Resolved
+import yaml
+
+from grader.package.launch.commands import command_output
+from grader.package.launch.model import Contents, Context, LaunchFails, NotEvaluated, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
-from grader.static_python.closed import evaluate
-from grader.static_python.closed_functions import BUILTINS
-from grader.static_python.closed_values import Budget, ExpressionFails, OutOfBudget, Undetermined, str_of
-from grader.static_python.parse import START
-from grader.static_python.values import MAX_TEXT, UNKNOWN_KEYS, Call, Unknown, Value, as_text
+from grader.package.launch.value_types import gives_text
+from grader.static_python.budget import Budget, OutOfBudget
+from grader.static_python.builtins import BUILTINS, MATH
+from grader.static_python.expressions import evaluate
+from grader.static_python.parse import Position
+from grader.static_python.values import (
+    MAX_TEXT,
+    UNKNOWN_KEYS,
+    Call,
+    ExpressionFails,
+    Namespace,
+    Undetermined,
+    Unknown,
+    Value,
+    str_of,
+)
 
-COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
-# Methods whose result is the text, or the contents, of the object that they are called on.
-_OF_OWNER = ("perform", "read", "toxml", "toprettyxml", "documentElement", "decode", "strip")
-_PACKAGE_FOLDERS = (
-    "FindPackageShare", "FindPackageShareDirectory", "get_package_share_directory", "get_package_share_path",
-    "FindPackagePrefix", "FindPackage", "get_package_prefix",
-)  # fmt: skip
+_PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", "env", "rviz2"})
+_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
-def resolve(value: Value, context: Context, depth: int = 0) -> Resolved:
-    """Return the text of a value, or the contents of a file; Unknown where this is known only at run time."""
-    context.steps_left[0] -= 1
-    if depth > _MAX_DEPTH or context.steps_left[0] < 0:
-        return Unknown("a substitution is too deeply nested", START)
-    found: Resolved | None = None
-    reason = "the text of this value is known only at run time"
+def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Resolved:
+    """Return the text of a value, or the contents of a file; Unknown where it certainly is a text, but not known.
+
+    Raises LaunchFails where launch certainly raises an error, NotEvaluated where it may.
+    """
+    context.around.steps_left -= 1
+    if depth > _MAX_DEPTH or context.around.steps_left < 0:
+        raise NotEvaluated("a substitution that is nested so deeply is not evaluated", at)
     match value:
-        case Contents() | Unknown():
-            found = value
-        case str() | int() | float() | PurePosixPath():
-            found, reason = as_text(value), "a number is too long"
-        case [part]:
-            found = resolve(part, context, depth + 1)
-        case list() | tuple():
-            texts = _texts(value, context, depth)
-            found = "".join(texts) if isinstance(texts, list) else texts
+        case str() | Contents() | Unknown():
+            return value
+        case Call() if value.name.endswith(".perform"):
+            return resolve(value.owner if value.owner is not None else value.args[-1], context, at, depth + 1)
+        case Call() if gives_text(value.name) or value.name.startswith("xacro."):
+            return _python_text(value, context)
         case Call():
-            found = _Substitution(value, context, depth).value()
-    return found if found is not None else Unknown(reason, START)
+            return _Substitution(value, context, depth).value()
+        case list() | tuple() | dict() | set():
+            return _joined([resolve(part, context, at, depth + 1) for part in value], at)
+    raise NotEvaluated("the text of this value is not evaluated", at)
 
 
-def _texts(parts: list[Value] | tuple[Value, ...], context: Context, depth: int) -> list[str] | Unknown:
-    """Return the texts of some parts; Unknown if one is unknown or the contents of a file."""
-    texts: list[str] = []
-    length = 0
-    for part in parts:
-        text = resolve(part, context, depth + 1)
-        if not isinstance(text, str):
-            return text if isinstance(text, Unknown) else Unknown("the content of a file is part of a string", START)
-        texts.append(text)
-        length += len(text)
-        if length > MAX_TEXT:
-            return Unknown("a string grows too long", START)
-    return texts
+def _joined(parts: list[Resolved], at: Position) -> Resolved:
+    if len(parts) == 1:
+        return parts[0]
+    texts = [part for part in parts if isinstance(part, str)]
+    if len(texts) < len(parts):
+        unknown = (part for part in parts if isinstance(part, Unknown))
+        return next(unknown, Unknown("the content of a file is part of a string", at))
+    if sum(map(len, texts)) > MAX_TEXT:
+        raise NotEvaluated("a string grows too long", at)
+    return "".join(texts)
+
+
+def known_text(value: Value, context: Context, at: Position) -> str:
+    """Return the text of a value. Raises NotEvaluated where it is not known."""
+    found = resolve(value, context, at)
+    if isinstance(found, str):
+        return found
+    raise NotEvaluated(found.reason if isinstance(found, Unknown) else "the content of a file is used as a text", at)
+
+
+def boolean(text: str, at: Position) -> bool:
+    """Return the value of a text as launch reads it where it wants a boolean, by the rules of YAML."""
+    found = _BOOLEANS.get(text) if text in ("0", "1") else _yaml_boolean(text)
+    if found is None:
+        raise LaunchFails(f"{text[:40]!r} is neither true nor false", at)
+    return found
+
+
+def _yaml_boolean(text: str) -> bool | None:
+    try:
+        found = yaml.safe_load(text) if len(text) < 20 else None
+    except yaml.YAMLError:
+        return None
+    return found if isinstance(found, bool) else None
+
+
+def condition(text: str, at: Position) -> bool:
+    """Return the value of a text as a condition."""
+    found = _BOOLEANS.get(text.strip().lower())
+    if found is None:
+        raise LaunchFails(f"a condition is {text[:40]!r}, expected true or false", at)
+    return found
+
+
+def _python_text(call: Call, context: Context) -> Resolved:
+    """Return what a Python function reads, that is not evaluated further."""
+    while call.owner is not None:
+        call = call.owner
+    path = call.argument(0, "file", "input_file_name")
+    if not isinstance(path, str):
+        return path if isinstance(path, Unknown) else Unknown(f"the result of {call.name} is not evaluated", call.at)
+    given = call.kwargs.get("mappings")
+    pairs = given.items() if isinstance(given, dict) else ()
+    arguments = tuple((str(name), value if isinstance(value, str) else None) for name, value in pairs)
+    by = "xacro" if call.name.startswith("xacro.") else call.kwargs.get("by", "decode")
+    found = Contents(path, by, arguments)
+    context.reads.append((found, call.at))
+    return found
 
 
 @dataclass(slots=True)
 class _Substitution:
-    """A call of a substitution, or of a function that Python, xacro or ament_index has for the same purpose."""
-
     call: Call
     context: Context
     depth: int
 
     def value(self) -> Resolved:
-        """Return the text that the call gives, or the contents of a file."""
-        name = self.call.name.rpartition(".")[2]
-        if name in _METHODS:
-            return _METHODS[name](self)
-        if name.endswith("LaunchDescriptionSource"):
-            return self.argument("launch_file_path", "location")
-        if name in BOOLEAN_SUBSTITUTIONS:
-            operands = [self.resolve(operand) for operand in operands_of(self.call)]
-            return boolean_substitution(name, operands, self.call.at)
-        return self.python_function(name)
-
-    def python_function(self, name: str) -> Resolved:
-        """Return what a function of Python or xacro gives; Unknown for all others."""
-        full = self.call.name
-        match name:
-            case "join" if full == "os.path.join":
-                self.needs_texts("os.path.join takes strings, not substitutions: use PathJoinSubstitution([...])")
-                return self.path(self.call.args)
-            case "process_file" | "process" if full.startswith("xacro."):
-                self.needs_texts(f"xacro.{name} takes a path, not a substitution: use Command(['xacro ', ...])", 1)
-                return self.contents("xacro", "input_file_name", arguments=self.mappings())
-            case "open" if full in ("builtins.open", "io.open", "codecs.open"):
-                self.needs_texts("open takes a path, not a substitution: use Command(['cat ', ...])", 1)
-                return self.contents(opened_by(self.call), "file", "filename")
-            case "EnvironmentVariable" | "getenv" | "environ[]" | "get" if "nviron" in full or name == "getenv":
-                is_home = self.argument("name") == "HOME"
-                return HOME if is_home else Unknown("the environment is known only at run time", self.call.at)
-        return Unknown(f"the result of {name} is known only at run time", self.call.at)
-
-    def parse(self) -> Resolved:
-        """Return what xacro.parse gives, of an open file or of the contents."""
-        opened = self.argument()
-        return Contents(opened.path, "xacro") if isinstance(opened, Contents) else opened
-
-    def expanduser(self) -> Resolved:
-        """Return a path with the home folder instead of ~."""
-        text = self.argument()
-        return text.replace("~", HOME, 1) if isinstance(text, str) and text.startswith("~") else text
+        perform = _PERFORMS.get(self.call.name.rpartition(".")[2])
+        if perform is None:
+            raise NotEvaluated(f"{self.call.name.rpartition('.')[2]} is not evaluated", self.call.at)
+        return perform(self)
 
     def resolve(self, value: Value) -> Resolved:
-        return resolve(value, self.context, self.depth + 1)
+        return resolve(value, self.context, self.call.at, self.depth + 1)
 
-    def argument(self, *names: str) -> Resolved:
-        return self.resolve(self.call.argument(0, *names))
+    def argument(self, name: str, default: Value = "") -> Resolved:
+        return self.resolve(self.call.kwargs.get(name, default))
 
-    def contents(self, by: str, *names: str, arguments: tuple[tuple[str, str | None], ...] = ()) -> Resolved:
-        path = self.argument(*names)
-        return Contents(path, by, arguments) if isinstance(path, str) else path
+    def texts(self, *values: Value) -> list[str] | Unknown:
+        """Return the texts of some values; Unknown if one of them is."""
+        found = [self.resolve(value) for value in values]
+        unknown = next((it for it in found if isinstance(it, Unknown)), None)
+        texts = [it for it in found if isinstance(it, str)]
+        return texts if len(texts) == len(found) else unknown or Unknown("the content of a file is used", self.call.at)
 
-    def mappings(self) -> tuple[tuple[str, str | None], ...]:
-        """Return the arguments that xacro.process_file gets."""
-        given = self.call.kwargs.get("mappings")
-        values = {name: self.resolve(value) for name, value in given.items()} if isinstance(given, dict) else {}
-        return tuple((name, value if isinstance(value, str) else None) for name, value in values.items())
-
-    def needs_texts(self, message: str, count: int | None = None) -> None:
-        """Add an error if a function of Python gets a substitution: without .perform or .find it has no text yet."""
-        names = [value.name for value in self.call.args[:count] if isinstance(value, Call)]
-        if any(it.startswith(("launch.", "launch_ros.")) and not it.endswith((".perform", ".find")) for it in names):
-            self.context.add_error(message, self.call.at)
-
-    def path(self, parts: Value) -> Resolved:
-        if not isinstance(parts, list | tuple):
-            return self.resolve(parts)
-        texts = _texts(parts, self.context, self.depth)
+    def booleans(self, *values: Value) -> list[bool]:
+        texts = self.texts(*values)
         if isinstance(texts, Unknown):
-            return texts
-        return posixpath.join(*texts) if texts else Unknown("a path is empty", self.call.at)
+            raise NotEvaluated(texts.reason, texts.at)
+        return [boolean(text, self.call.at) for text in texts]
 
-    def joined_path(self) -> Resolved:
-        if len(self.call.args) > 1:
-            message = "PathJoinSubstitution takes one list: put [ ] around the parts of the path"
-            self.context.add_error(message, self.call.at)
-            return self.path(self.call.args)
-        return self.path(self.call.argument(0, "substitutions"))
+    def combined(self, function: Callable[[list[bool]], bool]) -> str:
+        names = [name for name in ("value", "left", "right") if name in self.call.kwargs]
+        operands = [*(self.call.kwargs[name] for name in names), *self.call.args]
+        return str(function(self.booleans(*operands))).lower()
 
-    def package_folder(self) -> Resolved:
-        package = self.argument("package", "package_name")
-        is_share = "share" in self.call.name.rpartition(".")[2].lower()
-        folder = f"{SHARE}/{package}" if is_share else PREFIX
-        return folder if isinstance(package, str) else package
+    def compared(self, *, equal: bool) -> Resolved:
+        texts = self.texts(*(_plain(self.call.kwargs[name]) for name in ("left", "right")))
+        return texts if isinstance(texts, Unknown) else str(_are_equal(*texts) == equal).lower()
 
-    def executable(self) -> Resolved:
-        names = [self.argument("executable"), self.resolve(self.call.argument(1, "package"))]
-        unknown = next((name for name in names if not isinstance(name, str)), None)
-        return f"{PREFIX}/lib/{names[1]}/{names[0]}" if unknown is None else unknown
+    def if_else(self) -> Resolved:
+        is_chosen = self.booleans(self.call.kwargs["condition"])[0]
+        return self.argument("if_value" if is_chosen else "else_value")
 
     def configuration(self) -> Resolved:
-        name = self.argument("variable_name")
+        name, arguments = self.argument("variable_name"), self.context.arguments
         if not isinstance(name, str):
-            return name
-        value = self.context.arguments.get(name, self.call.argument(1, "default"))
-        if value is not None or name in self.context.arguments:
-            return self.resolve(value)
-        if UNKNOWN_KEYS in self.context.arguments:
-            return Unknown(f"the launch argument {name!r} may be declared in an included file", self.call.at)
+            raise NotEvaluated("the name of a launch configuration is not evaluated", self.call.at)
+        if name in arguments:
+            return arguments[name]
+        default = self.call.kwargs.get("default")
+        if UNKNOWN_KEYS in arguments:
+            raise NotEvaluated(
+                f"whether {name!r} is declared in a file that is not submitted is not evaluated", self.call.at
+            )
+        if default is not None:
+            items = default if isinstance(default, list | tuple) else [default]
+            return self.resolve([item if isinstance(item, str | Call | Unknown) else str(item) for item in items])
         message = f"the launch argument {name!r} is used, but DeclareLaunchArgument does not declare it before"
-        self.context.add_error(message, self.call.at)
-        return Unknown(f"the launch argument {name!r} is not declared", self.call.at)
+        raise LaunchFails(message, self.call.at)
+
+    def variable(self) -> Resolved:
+        default = self.call.kwargs.get("default_value")
+        found = self.resolve(default) if default is not None else None
+        name = self.argument("name")
+        if isinstance(name, str) and name in self.context.environment:
+            value = self.context.environment[name]
+            if value is None and found is None:
+                raise LaunchFails(f"the environment variable {name!r} is not set", self.call.at)
+            return value if value is not None else found or ""
+        if name == "HOME":
+            return HOME
+        if found is None:
+            raise NotEvaluated(f"whether the environment variable {name!r} is set is not evaluated", self.call.at)
+        return Unknown("the environment is not evaluated", self.call.at)
+
+    def path(self) -> Resolved:
+        parts = self.call.kwargs["substitutions"]
+        texts = self.texts(*(parts if isinstance(parts, list | tuple) else [parts]))
+        if isinstance(texts, Unknown):
+            return texts
+        if not texts:
+            raise LaunchFails("PathJoinSubstitution is given no path", self.call.at)
+        return posixpath.join(*texts)
+
+    def package_folder(self) -> Resolved:
+        package = self.argument("package")
+        if isinstance(package, Unknown):
+            return package
+        if not isinstance(package, str) or not self.context.around.is_installed(package):
+            shown = repr(package) if isinstance(package, str) else "that is read from a file"
+            raise NotEvaluated(f"whether the package {shown} is installed is not evaluated", self.call.at)
+        return f"{SHARE}/{package}" if self.call.name.endswith("Share") else PREFIX
+
+    def executable(self) -> Resolved:
+        folder, texts = self.package_folder(), self.texts(*map(self.call.kwargs.get, ("executable", "package")))
+        return f"{folder}/lib/{texts[1]}/{texts[0]}" if isinstance(texts, list) else texts
+
+    def program(self) -> Resolved:
+        name = self.argument("name")
+        if isinstance(name, str) and name not in _PROGRAMS:
+            raise NotEvaluated(f"whether the program {name!r} is installed is not evaluated", self.call.at)
+        return name
 
     def command(self) -> Resolved:
-        """Return the contents of the file that a command prints, for xacro and cat."""
-        parts = self.call.argument(0, "command")
+        mode = self.argument("on_stderr", "fail")
+        if isinstance(mode, str) and mode not in ("fail", "ignore", "warn", "capture"):
+            raise LaunchFails("on_stderr is one of fail, ignore, warn, capture", self.call.at)
+        parts = self.call.kwargs["command"]
         texts = [self.resolve(piece) for piece in (parts if isinstance(parts, list | tuple) else [parts])]
-        return command_output(texts, self.context, self.call.at)
+        return self.read(command_output(texts, self.call.at))
+
+    def read(self, contents: Contents) -> Contents:
+        self.context.reads.append((contents, self.call.at))
+        return contents
+
+    def file_content(self) -> Resolved:
+        path = self.argument("path")
+        return self.read(Contents(path, "open")) if isinstance(path, str) else path
 
     def expression(self) -> Resolved:
         """Return the value of a Python expression that contains plain values only."""
-        text = self.argument("expression")
-        unknown = Unknown("the value of this expression is known only at run time", self.call.at)
-        if not isinstance(text, str):
-            return text if isinstance(text, Unknown) else unknown
+        texts = self.texts(self.call.kwargs["expression"])
+        if isinstance(texts, Unknown):
+            raise NotEvaluated(f"this expression is not evaluated: {texts.reason}", self.call.at)
+        modules = self.call.kwargs.get("python_modules", ["math"])
+        names = [modules] if isinstance(modules, str) else modules if isinstance(modules, list | tuple) else [None]
+        if not all(isinstance(name, str) and name in sys.stdlib_module_names for name in names):
+            raise NotEvaluated("the modules of this expression are not evaluated", self.call.at)
         budget = Budget(_WORK)
         try:
-            return str_of(evaluate(text, _builtin, budget))
-        except (ExpressionFails, Undetermined, OutOfBudget):
-            return unknown
+            return str_of(evaluate(texts[0], _find if list(names) == ["math"] else _unknown, budget))
+        except ExpressionFails as error:
+            raise LaunchFails(f"the expression {texts[0][:60]!r} fails: {error}", self.call.at) from None
+        except (Undetermined, OutOfBudget) as error:
+            raise NotEvaluated(f"this expression is not evaluated: {error}", self.call.at) from None
         finally:
-            self.context.steps_left[0] -= budget.used
+            self.context.around.steps_left -= budget.used
 
 
-def _builtin(name: str) -> Value:
-    if name not in BUILTINS:
-        raise Undetermined(f"the name {name} is known only at run time")
-    return BUILTINS[name]
+def _find(name: str) -> Value:
+    if name in BUILTINS or name in MATH:
+        return MATH.get(name, BUILTINS.get(name))
+    if name == "math":
+        return Namespace("math", MATH.__getitem__)
+    if hasattr(builtins, name) or name.startswith("__"):
+        return _unknown(name)
+    raise ExpressionFails(f"the name {name!r} is not defined", NameError)
 
 
-_METHODS: dict[str, Callable[[_Substitution], Resolved]] = {
-    **dict.fromkeys(_OF_OWNER, lambda substitution: substitution.resolve(substitution.call.owner)),
-    **dict.fromkeys(_PACKAGE_FOLDERS, _Substitution.package_folder),
-    COMMAND_LINE.rpartition(".")[2]: lambda substitution: substitution.resolve(substitution.call.args or ""),
-    "TextSubstitution": lambda substitution: substitution.argument("text"),
-    "PathSubstitution": lambda substitution: substitution.argument("path"),
-    "ParameterValue": lambda substitution: substitution.argument("value"),
-    "ParameterFile": lambda substitution: substitution.argument("param_file"),
-    "FindExecutable": lambda substitution: substitution.argument("name"),
-    "ExecutableInPackage": _Substitution.executable,
+def _unknown(name: str) -> Value:
+    raise Undetermined(f"the name {name!r} is not evaluated")
+
+
+def _plain(value: Value) -> Value:
+    """Return an operand of EqualsSubstitution, which takes any value, as the text that it is compared as."""
+    if isinstance(value, bool | None):
+        return str(value).lower() if value is not None else ""
+    is_text = isinstance(value, str | Call | Unknown) or (
+        isinstance(value, list | tuple) and any(isinstance(it, Call) for it in value)
+    )
+    return value if is_text else str(value)
+
+
+def _are_equal(left: str, right: str) -> bool:
+    """Return whether two texts are equal to launch: true equals True, and 1 equals 1.0."""
+    values = [_BOOLEANS.get(text.lower()) for text in (left, right)]
+    if None not in values:
+        return values[0] == values[1]
+    try:
+        return isclose(float(left), float(right))
+    except ValueError:
+        return left == right
+
+
+_PERFORMS: dict[str, Callable[[_Substitution], Resolved]] = {
+    "TextSubstitution": lambda it: it.argument("text"),
     "LaunchConfiguration": _Substitution.configuration,
-    "PathJoinSubstitution": _Substitution.joined_path,
-    "ThisLaunchFileDir": lambda substitution: substitution.context.folder,
+    "PathJoinSubstitution": _Substitution.path,
     "Command": _Substitution.command,
-    "parse": _Substitution.parse,
-    "expanduser": _Substitution.expanduser,
-    "FileContent": lambda substitution: substitution.contents("open", "path"),
     "PythonExpression": _Substitution.expression,
-    "truediv": lambda substitution: substitution.path(substitution.call.args),
+    "FindPackageShare": _Substitution.package_folder,
+    "FindPackagePrefix": _Substitution.package_folder,
+    "FindPackage": _Substitution.package_folder,
+    "ExecutableInPackage": _Substitution.executable,
+    "FindExecutable": _Substitution.program,
+    "EnvironmentVariable": _Substitution.variable,
+    "FileContent": _Substitution.file_content,
+    "ThisLaunchFile": lambda it: it.context.path,
+    "ThisLaunchFileDir": lambda it: posixpath.dirname(it.context.path),
+    "AnonName": lambda it: it.argument("name") and Unknown("an anonymous name is not evaluated", it.call.at),
+    "LaunchLogDir": lambda it: Unknown("the folder of the log is not evaluated", it.call.at),
+    "EqualsSubstitution": lambda it: it.compared(equal=True),
+    "NotEqualsSubstitution": lambda it: it.compared(equal=False),
+    "NotSubstitution": lambda it: it.combined(lambda values: not values[0]),
+    "AndSubstitution": lambda it: it.combined(all),
+    "OrSubstitution": lambda it: it.combined(any),
+    "AllSubstitution": lambda it: it.combined(all),
+    "AnySubstitution": lambda it: it.combined(any),
+    "IfElseSubstitution": _Substitution.if_else,
 }

@@ -1,0 +1,182 @@
+"""Values in XML and YAML launch files: texts with substitutions, by launch's grammar, and texts that are numbers."""
+
+import re
+import shlex
+from dataclasses import dataclass
+from typing import Any
+
+import yaml
+
+from grader.names import closest
+from grader.package.launch.api import front_end
+from grader.package.launch.model import LaunchFails
+from grader.static_python.parse import Position
+from grader.static_python.values import Call, Value
+
+_MAX_DEPTH = 40
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
+_BEFORE_NEXT = {"": " '\"()", "'": " '()", '"': ' "()'}  # what ends a value, in no quotes and in each kind of quotes
+# The names of the arguments of each substitution; those in brackets may be missing.
+_ARGUMENTS = {
+    "var": "variable_name [default]", "env": "name [default_value]", "command": "command [on_stderr]",
+    "find-pkg-share": "package", "find-pkg-prefix": "package", "exec-in-pkg": "executable package", "find-exec": "name",
+    "anon": "name", "eval": "expression [python_modules]", "file-content": "path", "dirname": "", "filename": "",
+    "log_dir": "", "launch_log_dir": "", "not": "value", "and": "left right", "or": "left right",
+    "equals": "left right", "not-equals": "left right", "if": "condition if_value [else_value]",
+    "param": "name [default]",
+}  # fmt: skip
+# The substitutions of ROS 1 and their names in ROS 2.
+_ROS1 = {"find": "find-pkg-share", "arg": "var", "optenv": "env"}
+_ON_STDERR = (["fail"], ["ignore"], ["warn"], ["capture"])
+
+
+def parse_value(text: str, at: Position) -> list[Value]:
+    """Return a value as a list of strings and substitutions. Raises LaunchFails."""
+    parser = _ValueParser(text, at)
+    found = parser.template("", 0)
+    return found or [""]
+
+
+@dataclass(slots=True)
+class _ValueParser:
+    """Parses a value from its beginning to its end."""
+
+    text: str
+    at: Position
+    position: int = 0
+
+    @property
+    def next(self) -> str:
+        return self.text[self.position : self.position + 1]
+
+    def template(self, quote: str, depth: int) -> list[Value]:
+        """Return strings and substitutions, up to the closing quote or the end."""
+        found: list[Value] = []
+        while self.position < len(self.text) and (not quote or self.next != quote):
+            found.append(self.part(quote, quote, depth))
+        if quote and self.position >= len(self.text):
+            raise LaunchFails(f"a quote is not closed in {self.text[:60]!r}", self.at)
+        self.position += len(quote)
+        return found
+
+    def part(self, ends: str, quote: str, depth: int) -> Value:
+        """Return a substitution, or a string up to the next one or an end."""
+        if self.text.startswith("$(", self.position):
+            self.position += 2
+            return self.substitution(quote, depth + 1)
+        start = self.position
+        while (
+            self.position < len(self.text) and not self.text.startswith("$(", self.position) and self.next not in ends
+        ):
+            is_escape = self.next == "\\" and self.text[self.position + 1 : self.position + 2] not in ("", " ", "\n")
+            self.position += 2 if is_escape else 1
+        return re.sub(r"\\(.)", r"\1", self.text[start : self.position])
+
+    def substitution(self, quote: str, depth: int) -> Call:
+        """Return the substitution in brackets: a name, and values separated by one space each."""
+        name = _NAME.match(self.text, self.position)
+        if name is None or depth > _MAX_DEPTH:
+            raise LaunchFails(f"there is no name of a substitution after $( in {self.text[:60]!r}", self.at)
+        self.position, values = name.end(), list[list[Value]]()
+        while self.next == " ":
+            self.position += 1
+            values.append(self.value(quote, depth))
+        if self.next != ")":
+            what = "is not closed" if not self.next else f"has {self.next!r} in an argument without quotes"
+            raise LaunchFails(f"the bracket of $({name[0][:40]} {what}", self.at)
+        self.position += 1
+        return self.call(name[0], values)
+
+    def value(self, quote: str, depth: int) -> list[Value]:
+        if not quote and self.next in ("'", '"'):
+            own = self.next
+            self.position += 1
+            return self.template(own, depth)
+        found: list[Value] = []
+        while self.next and self.next not in _BEFORE_NEXT[quote]:
+            found.append(self.part(_BEFORE_NEXT[quote], quote, depth))
+        if not found:
+            raise LaunchFails(
+                f"an argument is missing in {self.text[:60]!r}: write one space between arguments", self.at
+            )
+        return found
+
+    def call(self, name: str, values: list[list[Value]]) -> Call:
+        """Return a substitution as the call that it is in Python. Raises LaunchFails."""
+        if name in _ROS1:
+            right = _ROS1[name]
+            raise LaunchFails(f"$({name} ...) is a substitution of ROS 1; in ROS 2 write $({right} ...)", self.at)
+        if name == "command" and len(values) > 1 and values[1] not in _ON_STDERR:
+            raise LaunchFails("$(command ...) needs quotes around its command: $(command 'xacro ...')", self.at)
+        if name not in _ARGUMENTS:
+            similar = closest(name, _ARGUMENTS)
+            raise LaunchFails(
+                f"there is no substitution $({name} ...){f'; did you mean $({similar} ...)?' if similar else ''}",
+                self.at,
+            )
+        names = _ARGUMENTS[name].split()
+        if not len([it for it in names if it[0] != "["]) <= len(values) <= len(names):
+            raise LaunchFails(f"$({name} ...) takes {len(names) or 'no'} argument{'s' * (len(names) != 1)}", self.at)
+        plain = ("".join(value) if all(isinstance(it, str) for it in value) else value for value in values)
+        kwargs: dict[str, Value] = dict(zip((it.strip("[]") for it in names), plain, strict=False))
+        return Call(front_end("substitution")[name], [], kwargs, self.at)
+
+
+def command_line(text: str, at: Position) -> list[list[Value]]:
+    """Return the words of a line as launch splits it: strings are split, the values of substitutions are not."""
+    words: list[list[Value]] = [[]]
+    for piece in parse_value(text, at):
+        if not isinstance(piece, str):
+            words[-1].append(piece)
+            continue
+        try:
+            found = shlex.split(piece)
+        except ValueError:
+            raise LaunchFails("quotes cannot enclose a substitution in a line of arguments: remove them", at) from None
+        if piece[:1].isspace() or not found:
+            words.append([])
+        words[-1] += found[:1]
+        words += [[word] for word in found[1:]]
+        if piece[-1:].isspace():
+            words.append([])
+    return [word for word in words if word]
+
+
+def typed_text(text: str, kind: type | None, at: Position) -> Any:
+    """Return the value of a text in XML as a type; a text that is none of it stays a text. `kind` None is any type."""
+    if kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            return text
+    text = {"1": "true", "0": "false"}.get(text, text) if kind is bool else text
+    try:
+        found = yaml.safe_load(text) if text else text
+    except (yaml.YAMLError, ValueError, RecursionError):
+        return text
+    if not is_typed(found, kind):
+        raise LaunchFails(f"{text[:40]!r} is of no type that is accepted here: put quotes in it", at)
+    return found
+
+
+def is_typed(value: Any, kind: type | None) -> bool:
+    """Return whether a value is a text or of a type; with None, whether it is a scalar or a list of one type."""
+    if kind is not None:
+        return isinstance(value, str | kind)
+    if not isinstance(value, list):
+        return isinstance(value, str | int | float)
+    own = next((type(item) for item in value if not isinstance(item, str)), str)
+    return own in (str, int, float, bool) and all(isinstance(item, own | str) for item in value)
+
+
+def parse_if_text(value: Any, at: Position) -> Any:
+    """Return a value whose texts are parsed. Raises LaunchFails."""
+    if isinstance(value, list):
+        found = [parse_if_text(item, at) for item in value]
+        if len({type(item) for item in found if not isinstance(item, list)}) > 1:
+            raise LaunchFails("a list has values of different types", at)
+        return found
+    if not isinstance(value, str):
+        return value
+    parts = parse_value(value, at)
+    return parts[0] if len(parts) == 1 and isinstance(parts[0], str) else parts

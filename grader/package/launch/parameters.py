@@ -1,0 +1,130 @@
+"""The parameters of nodes, as launch_ros evaluates them before it starts a node: texts have the types of YAML."""
+
+from collections.abc import Iterator
+from pathlib import PurePosixPath
+from typing import Any
+
+import yaml
+
+from grader.package.launch.model import Contents, Context, LaunchFails, NotEvaluated
+from grader.package.launch.substitutions import boolean, resolve
+from grader.package.launch.value_types import FILE, SCALARS, TYPED, kind_of, type_of
+from grader.static_python.parse import Position
+from grader.static_python.values import Call, Undetermined, Unknown, Value
+
+_MAX_YAML = 200_000  # characters
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+def evaluate_parameters(parameters: list[Value], context: Context, at: Position) -> None:
+    """Evaluate the parameters of a node, as launch_ros does before it starts the node. Raises LaunchSignal."""
+    for item in parameters:
+        if isinstance(item, dict):
+            evaluate_dict(item, context, at)
+        elif isinstance(item, Call) and item.name in TYPED:
+            resolve(item.kwargs["name"], context, item.at)
+            _evaluate_typed(item, context)
+        elif isinstance(item, Call) and item.name == FILE:
+            _evaluate_file(item, context)
+        elif not isinstance(item, PurePosixPath):
+            resolve(item, context, at)
+
+
+def _evaluate_file(call: Call, context: Context) -> None:
+    path = call.kwargs["param_file"]
+    found = str(path) if isinstance(path, PurePosixPath) else resolve(path, context, call.at)
+    if call.kwargs.get("allow_substs", False) is not False:
+        text = context.around.read(found) if isinstance(found, str) else None
+        if text is None or "$(" in text:
+            raise NotEvaluated("the substitutions in a file of parameters are not evaluated", call.at)
+
+
+def evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> None:
+    """Evaluate a dict of parameters. Raises LaunchSignal."""
+    for key, value in table.items():
+        name = resolve(list(key) if isinstance(key, tuple) else key, context, at)
+        shown = name if isinstance(name, str) else "?"
+        match value:
+            case dict():
+                evaluate_dict(value, context, at)
+            case Call() if value.name in TYPED:
+                _evaluate_typed(value, context)
+            case list() | tuple() | range():
+                _evaluate_list(shown, list(value), context, at)
+            case Call() | Unknown():
+                _read_as_yaml(shown, value, context, at)
+
+
+def _evaluate_list(name: str, items: list[Value], context: Context, at: Position) -> None:
+    kinds = {type(item) for item in items if isinstance(item, SCALARS)}
+    has_texts = any(isinstance(item, Call) for item in items)
+    if has_texts and kinds <= {str} and all(isinstance(item, str | Call | Unknown) for item in items):
+        _read_as_yaml(name, items, context, at)
+    elif not (items and len(kinds) == 1 and all(isinstance(item, SCALARS) for item in items)) and kinds != {int, float}:
+        values = [it if isinstance(it, SCALARS) else _yaml_of(name, it, context, at) for it in items]
+        if not _is_uniform(values):
+            raise LaunchFails(f"the parameter {name!r} is a list of values of different types, or empty", at)
+
+
+def _is_uniform(values: list[Any]) -> bool:
+    kind = type(values[0]) if values else None
+    return kind in SCALARS and all(isinstance(value, kind) for value in values if kind)
+
+
+def _yaml_of(name: str, value: Value, context: Context, at: Position) -> Any:
+    """Return the value of a text as YAML. Raises LaunchSignal."""
+    found = resolve(value, context, at)
+    if isinstance(found, Unknown):
+        raise NotEvaluated(f"the value of the parameter {name!r} is not evaluated: {found.reason}", at)
+    text = context.around.read(found.path) if isinstance(found, Contents) else found
+    if text is None:
+        return ""  # a file that is not there is reported for itself
+    try:
+        if len(text) > _MAX_YAML:
+            raise NotEvaluated(f"the parameter {name!r} is too long to be read as YAML", at)
+        return yaml.load(text or "''", Loader=_LOADER)  # noqa: S506  a safe loader
+    except (yaml.YAMLError, ValueError, RecursionError):
+        if isinstance(found, Contents) and found.by == "xacro":
+            raise NotEvaluated(
+                f"whether the output of xacro is YAML, as which {name!r} is read, is not evaluated", at
+            ) from None
+        hint = "write ParameterValue(..., value_type=str)"
+        raise LaunchFails(f"the parameter {name!r} is read as YAML, which fails: {hint}", at) from None
+
+
+def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> None:
+    found = _yaml_of(name, value, context, at)
+    if isinstance(found, list) and _is_uniform(found):
+        return
+    if not isinstance(found, (*SCALARS, bytes)):
+        hint = "write ParameterValue(..., value_type=str)"
+        raise LaunchFails(f"the parameter {name!r} is read as YAML, and is {kind_of(found)} then: {hint}", at)
+
+
+def _evaluate_typed(call: Call, context: Context) -> None:
+    value = call.kwargs["value"]
+    if isinstance(value, SCALARS) or (
+        isinstance(value, list | tuple) and not any(isinstance(it, Call) for it in value)
+    ):
+        return
+    try:
+        kind = type_of(call)
+    except Undetermined as error:
+        raise NotEvaluated(f"{error} is not evaluated", call.at) from None
+    if kind is None:
+        _read_as_yaml("value", value, context, call.at)
+        return
+    text = resolve(value, context, call.at)
+    if kind is str:
+        return
+    if not isinstance(text, str):
+        raise NotEvaluated("the value of a parameter is not evaluated", call.at)
+    try:
+        boolean(text, call.at) if kind is bool else kind(text)
+    except ValueError:
+        raise LaunchFails(f"the value {text[:40]!r} of a parameter is not {kind.__name__}", call.at) from None
+
+
+def tables_in(parameters: Value) -> Iterator[dict[Any, Value]]:
+    """Yield the dicts among the parameters of a node."""
+    yield from (table for table in parameters if isinstance(table, dict)) if isinstance(parameters, list) else ()

@@ -1,0 +1,174 @@
+"""Python's built-in functions and those of math, as an expression may call them."""
+
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping
+from types import FunctionType
+from typing import Any
+
+from grader.static_python import values as py
+from grader.static_python.budget import Budget
+
+_MAX_DIGITS = 400  # that round leaves
+_OF_SIGNATURE = re.compile(r"positional argument|keyword argument|required keyword")
+_MAX_SMALL = 200  # arguments of factorial and its like
+
+# Calls a function value with arguments, for the functions that call others: map, filter, sorted.
+Apply = Callable[[py.Value, list[py.Value]], py.Value]
+
+
+def call(
+    function: py.Value, args: list[py.Value], kwargs: dict[str, py.Value], budget: Budget, apply: Apply
+) -> py.Value:
+    """Return what a call of a function of the allow-list returns."""
+    if not isinstance(function, py.PlainFunction):
+        budget.measure([args, list(kwargs.values())], "holds")
+        return py.call_plain(function, *args, **kwargs) if not callable(function) else _refuse("this call")
+    budget.measure([args, list(kwargs.values())], "holds" if function.kind == "applies" else function.kind)
+    given = (apply, *args) if function.kind == "applies" else args
+    try:
+        return budget.checked(py.call_plain(function.run, *given, **kwargs), function.kind)
+    except py.ExpressionFails as error:
+        if (
+            function.kind != "plain" and isinstance(function.run, FunctionType) and _OF_SIGNATURE.search(str(error))
+        ):  # Python's own may have another
+            _refuse(f"this use of {function.name}")
+        raise
+
+
+def _refuse(what: str) -> py.Value:
+    raise py.Undetermined(f"{what} is not supported")
+
+
+def _refuse_function(name: str) -> Callable[..., py.Value]:
+    return lambda *_, **__: _refuse(f"the function {name}")
+
+
+def _of_items(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
+    """Return a function whose first argument is a loop's items, as list takes it: known or not."""
+    return lambda *args, **kwargs: function(*(list(py.iterate(value)) for value in args[:1]), *args[1:], **kwargs)
+
+
+def make_dict(*args: py.Value, **kwargs: py.Value) -> py.Value:
+    """Return dict() of values."""
+    if not args or isinstance(args[0], dict):
+        return dict(*args, **kwargs)
+    pairs = [[list(py.iterate(pair)) for pair in py.iterate(value)] for value in args]
+    for key, *_ in filter(None, pairs[0]):
+        py.checked_key(py.known(key))
+    return dict(*pairs, **kwargs)
+
+
+def _sum(values: py.Value, start: py.Value = 0) -> py.Value:
+    items = py.items_of(values)
+    if any(isinstance(item, list | tuple) for item in (start, *items)):
+        _refuse("the sum of lists")
+    return sum(items, start)
+
+
+def _round(number: py.Value, ndigits: py.Value = None) -> py.Value:
+    if isinstance(ndigits, int) and abs(ndigits) > _MAX_DIGITS:
+        _refuse("a number of digits of this size")
+    return round(number, ndigits)
+
+
+def _small(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
+    """Return a function of integers whose results grow fast, for small arguments only."""
+
+    def bounded(*args: py.Value, **kwargs: py.Value) -> py.Value:
+        parts = [part for value in args for part in (value if isinstance(value, list | tuple | range) else [value])]
+        if len(parts) > _MAX_SMALL or any(isinstance(part, int) and abs(part) > _MAX_SMALL for part in parts):
+            py.too_large("number")
+        return function(*args, **kwargs)
+
+    return bounded
+
+
+def _range(*bounds: int) -> range:
+    numbers = range(*bounds)
+    if numbers[py.MAX_PARTS :]:
+        py.too_large("range")
+    return numbers
+
+
+def _sized(value: py.Value) -> py.Value:
+    return value if isinstance(value, (*py.PLAIN, py.Items)) else py.known(value)
+
+
+def _next(value: py.Value, *default: py.Value) -> py.Value:
+    try:
+        return next(value.iterator if isinstance(value, py.Items) else py.known(value), *default)
+    except StopIteration:
+        return _refuse("the end of an iterator")
+
+
+def _map(apply: Apply, function: py.Value, first: py.Value, *lists: py.Value) -> py.Items:
+    return py.Items(apply(function, list(items)) for items in zip(*map(py.iterate, (first, *lists)), strict=False))
+
+
+def _filter(apply: Apply, function: py.Value, values: py.Value) -> py.Items:
+    return py.Items(_kept(apply, function, py.iterate(values)))
+
+
+def _kept(apply: Apply, function: py.Value, items: Iterator[py.Value]) -> Iterator[py.Value]:
+    for item in items:
+        if truth(item if function is None else apply(function, [item])):
+            yield item
+
+
+def truth(value: py.Value) -> bool:
+    """Return whether a value counts as true. Raises Undetermined."""
+    if isinstance(value, py.OPAQUE) and py.reason_of(value):
+        py.known(value)
+    return bool(py.call_plain(bool, value))
+
+
+def _keyed(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
+    """Return sorted, min or max: of the items of a value, or of several values, by a key."""
+
+    def by_key(apply: Apply, *args: py.Value, key: py.Value = None, **named: py.Value) -> py.Value:
+        items = py.items_of(args[0]) if len(args) == 1 else list(args)
+        py.known([*items, *named.values()])
+        arguments = [items] if len(args) == 1 else items
+        if key is None or (function is sorted and len(args) != 1):
+            return function(*arguments, **named)
+        keys = [py.known(apply(key, [item])) for item in items]
+        order = function(range(len(items)), key=keys.__getitem__, **named)
+        return [items[index] for index in order] if isinstance(order, list) else items[order]
+
+    return by_key
+
+
+_HOLDING: dict[str, Callable[..., Any]] = {
+    "list": _of_items(list), "tuple": _of_items(tuple), "dict": make_dict, "next": _next,
+    "len": lambda value: len(_sized(value)), "reversed": lambda value: py.Items(reversed(_sized(value))),
+    "bool": lambda *args: truth(*args) if args else False, "iter": lambda value: py.Items(py.iterate(value)),
+    "enumerate": lambda value, start=0: py.Items(enumerate(py.iterate(value), py.known(start))),
+    "zip": lambda *values: py.Items(zip(*map(py.iterate, values), strict=False)),
+    "any": lambda items: any(map(truth, py.iterate(items))), "all": lambda items: all(map(truth, py.iterate(items))),
+}  # fmt: skip
+_APPLYING: dict[str, Callable[..., Any]] = {
+    "map": _map, "filter": _filter, "sorted": _keyed(sorted), "min": _keyed(min), "max": _keyed(max),
+}  # fmt: skip
+_FUNCTIONS: dict[str, Callable[..., Any]] = {
+    "float": float, "int": int, "abs": abs, "ord": ord, "round": _round, "range": _range, "sum": _sum,
+    **{
+        name: _refuse_function(name)
+        for name in ("complex", "divmod", "frozenset", "hash", "isinstance", "issubclass", "repr", "set", "slice",
+                     "type", "vars")
+    },
+}  # fmt: skip
+BUILTINS: Mapping[str, py.PlainFunction] = {
+    **{name: py.PlainFunction(name, function) for name, function in _FUNCTIONS.items()},
+    **{name: py.PlainFunction(name, function, "holds") for name, function in _HOLDING.items()},
+    **{name: py.PlainFunction(name, function, "applies") for name, function in _APPLYING.items()},
+    "str": py.PlainFunction("str", lambda *args: py.str_of(*args) if args else "", "text"),
+}
+MATH: Mapping[str, py.Value] = {
+    **{name: getattr(math, name) for name in ("pi", "e", "tau", "inf", "nan")},
+    **{
+        name: py.PlainFunction(name, _small(value) if name in ("factorial", "comb", "perm", "prod", "lcm") else value)
+        for name, value in vars(math).items()
+        if callable(value) and not name.startswith("_")
+    },
+}

@@ -1,0 +1,114 @@
+"""The expressions of a file, besides those that xacro has as well."""
+
+import ast
+from collections.abc import Sequence
+from pathlib import PurePosixPath
+from typing import Any
+
+from grader.static_python import values as py
+from grader.static_python.calls import Calls
+from grader.static_python.evaluation import NOT_EVALUATED, EvaluationStopped
+from grader.static_python.expressions import kinds_of
+from grader.static_python.imports import CONSTANTS, attribute_error
+from grader.static_python.operators import has_attribute, operate
+from grader.static_python.parse import position_of
+
+_PARTS = ("name", "stem", "suffix", "parent", "parents", "parts")  # of a path
+
+
+class FileExpressions(Calls):
+    """Adds attributes, literals and comprehensions, as a file may have them."""
+
+    def _of_attribute(self, node: ast.Attribute, scope: py.Scope) -> py.Value:
+        owner, name = self.evaluate(node.value, scope), node.attr
+        match owner:
+            case py.QualifiedName(name="?glob"):  # used without an import: an attribute shows that the module is meant
+                return py.QualifiedName(f"glob.{name}")
+            case py.QualifiedName(name="glob.glob") if name in ("glob", "iglob"):
+                message = f"glob is a function here, so glob.{name} is not defined: write glob(...)"
+                self.error(message, position_of(node), AttributeError)
+                return owner
+            case py.QualifiedName(name=module):
+                full = f"{module}.{name}"
+                error = attribute_error(module, name) if full not in self.functions else None
+                if error is not None:
+                    raise py.ExpressionFails(error, AttributeError)
+                return CONSTANTS.get(full, py.QualifiedName(full))
+            case PurePosixPath() if name in _PARTS:
+                value = getattr(owner, name)
+                return self.budget.checked(list(value) if name == "parents" else value, "path")
+        if isinstance(owner, py.PLAIN) and not has_attribute(owner, name):
+            raise py.ExpressionFails(f"{type(owner).__name__!r} has no attribute {name!r}", AttributeError)
+        return py.BoundMethod(owner, name)
+
+    def item(self, owner: py.Value, key: py.Value, node: ast.expr) -> py.Value:
+        """Return the value of owner[key]; of something outside of the file, by the table."""
+        if not isinstance(owner, py.QualifiedName | py.Call):
+            return super().item(owner, key, node)
+        made = py.Call(f"{owner.name}.__getitem__", [key], {}, position_of(node))
+        function = self.functions.get(made.name)
+        if function is None or isinstance(function, py.PlainFunction):
+            raise py.Undetermined(f"{owner.name}[...] {NOT_EVALUATED}")
+        return function(self, made)
+
+    def elements(self, nodes: Sequence[ast.expr], scope: py.Scope) -> list[py.Value]:
+        """Return the values of the elements of a list, or of the arguments of a call."""
+        values: list[py.Value] = []
+        for node in nodes:
+            if not isinstance(node, ast.Starred):
+                values.append(self.evaluate(node, scope))
+                continue
+            try:
+                values += py.iterate(self.evaluate(node.value, scope))
+            except py.Undetermined as error:
+                raise EvaluationStopped(str(error), error.at or position_of(node)) from None
+        return values
+
+    def _of_binop(self, node: ast.BinOp, scope: py.Scope) -> py.Value:
+        left, right = self.evaluate(node.left, scope), self.evaluate(node.right, scope)
+        if isinstance(left, py.Call) and isinstance(node.op, ast.Div) and f"{left.name}.__truediv__" in self.functions:
+            made = py.Call(f"{left.name}.__truediv__", [left, right], {}, position_of(node))
+            return self.call_value(py.QualifiedName(made.name), made)
+        return operate(node.op, left, right, self.budget)
+
+    def _of_dict(self, node: ast.Dict, scope: py.Scope) -> py.Value:
+        table: dict[Any, py.Value] = {}
+        for key, value in zip(node.keys, node.values, strict=True):
+            found = self.evaluate(value, scope)
+            if key is not None:
+                py.call_plain(table.__setitem__, py.known(self.evaluate(key, scope)), found)
+            elif isinstance(found, dict):
+                table |= found
+            else:
+                py.refuse(found, "this dict is not supported")
+        return table
+
+    def _of_joinedstr(self, node: ast.JoinedStr, scope: py.Scope) -> py.Value:
+        pieces = [self.evaluate(piece, scope) for piece in node.values]
+        self.budget.measure(pieces, "text")
+        return self.budget.checked("".join(pieces), "text")
+
+    def _of_formattedvalue(self, node: ast.FormattedValue, scope: py.Scope) -> py.Value:
+        value = self.evaluate(node.value, scope)
+        self.budget.measure(value, "text")
+        if node.format_spec is not None or node.conversion not in (-1, ord("s")):
+            raise py.Undetermined("a format of this kind is not supported")
+        return py.str_of(value)
+
+    def _of_generatorexp(self, node: ast.GeneratorExp, scope: py.Scope) -> py.Value:
+        """Return a generator: the items of its first loop are evaluated now, the rest when it is iterated."""
+        first = py.iterate(self.evaluate(node.generators[0].iter, scope))
+        rounds = self.rounds(node.generators, py.Scope({}, scope), first)
+        return py.Items(self.evaluate(node.elt, inner) for inner in rounds)
+
+    def _of_dictcomp(self, node: ast.DictComp, scope: py.Scope) -> py.Value:
+        return {
+            py.known(self.evaluate(node.key, inner)): self.evaluate(node.value, inner)
+            for inner in self.rounds(node.generators, py.Scope({}, scope))
+        }
+
+    def _of_lambda(self, node: ast.Lambda, scope: py.Scope) -> py.Value:
+        return self.function(node.args, scope, position_of(node), lambda inner: self.evaluate(node.body, inner))
+
+
+FileExpressions.KINDS = kinds_of(FileExpressions)

@@ -1,0 +1,88 @@
+"""Functions of Python's standard library that are evaluated: of texts, lists and paths. None of them reads a file."""
+
+import posixpath
+from collections.abc import Callable
+from functools import cache
+from itertools import chain
+from pathlib import PurePosixPath
+
+from grader.static_python import values as py
+from grader.static_python.evaluation import Evaluation, EvaluationStopped, ExitFlow, FunctionTable
+
+MAX_PATH = 4_096  # characters
+PACKAGE_FOLDER = "<package>"  # stands for the name of the package's folder, which the submission does not determine
+_ENVIRONMENT = "the environment is known only at run time"
+_OWN = ("dirname", "basename", "normpath", "split", "splitext", "isabs")
+_EXITS = ("sys.exit", "os._exit", "builtins.exit", "builtins.quit")
+
+
+@cache
+def standard_functions(working_folder: str) -> FunctionTable:
+    """Return the functions by full name; `working_folder` is where Python runs, as an absolute path."""
+
+    def absolute(path: py.Value) -> str:
+        return posixpath.normpath(posixpath.join(working_folder, path))
+
+    def relative(path: py.Value, start: py.Value = ".") -> str:
+        return posixpath.relpath(absolute(path) if path else path, absolute(start))
+
+    own: dict[str, Callable[..., py.Value]] = {
+        "abspath": absolute, "realpath": absolute, "relpath": relative, "join": _join,
+        **{name: getattr(posixpath, name) for name in _OWN},
+    }  # fmt: skip
+    of_paths: dict[str, Callable[..., py.Value]] = {
+        **{f"os.path.{name}": function for name, function in own.items()},
+        **{f"pathlib.{name}": _path for name in ("Path", "PurePath", "PosixPath", "PurePosixPath")},
+        **{f"pathlib.Path.{name}": lambda path: PurePosixPath(absolute(path)) for name in ("resolve", "absolute")},
+        "os.getcwd": lambda: working_folder,
+        "pathlib.Path.cwd": lambda: PurePosixPath(working_folder),
+    }
+    return {**_FUNCTIONS, **{name: py.PlainFunction(name, run, "path") for name, run in of_paths.items()}}
+
+
+def _of_path(value: py.Value) -> py.Value:
+    if not isinstance(value, str | PurePosixPath):
+        raise py.ExpressionFails(f"a path is a string, and this is of the type {type(value).__name__}")
+    return value
+
+
+def _join(first: py.Value, *parts: py.Value) -> str:
+    if not all(isinstance(value, str | PurePosixPath) for value in (first, *parts)):
+        message = "os.path.join takes strings, and one argument is not a string: is a bracket misplaced?"
+        raise py.ExpressionFails(message)
+    return _bounded(posixpath.join(first, *parts))
+
+
+def _path(*parts: py.Value) -> PurePosixPath:
+    return PurePosixPath(_bounded(str(PurePosixPath(*map(_of_path, parts)))))
+
+
+def _bounded(path: str) -> str:
+    if len(path) > MAX_PATH:
+        raise py.Undetermined("a path grows too long")
+    return path
+
+
+def leave(evaluation: Evaluation, call: py.Call) -> py.Value:
+    """End the program, if nothing can catch it."""
+    if evaluation.handlers:
+        raise EvaluationStopped("the end of the program, which may be caught, is not evaluated", call.at)
+    if call.args and py.known(call.args[0]) not in (0, None):
+        evaluation.error("the file exits here with an error", call.at)
+    raise ExitFlow
+
+
+def _no_print(*_: py.Value, sep: str = "", end: str = "", file: py.Value = None, flush: bool = False) -> None:
+    """Print nothing."""
+    del sep, end, file, flush
+
+
+_FUNCTIONS: FunctionTable = {
+    **dict.fromkeys(_EXITS, leave),
+    **dict.fromkeys(("os.environ.get", "os.getenv"), lambda _, call: py.Unknown(_ENVIRONMENT, call.at)),
+    "builtins.print": py.PlainFunction("print", _no_print, "holds"),
+    "itertools.chain": py.PlainFunction("chain", lambda *lists: py.Items(chain(*map(py.iterate, lists))), "holds"),
+    "itertools.chain.from_iterable": py.PlainFunction(
+        "chain.from_iterable", lambda lists: py.Items(chain.from_iterable(map(py.iterate, py.iterate(lists)))), "holds"
+    ),
+}

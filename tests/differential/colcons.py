@@ -1,0 +1,66 @@
+"""Random packages: whether the grader states that `colcon build` succeeds, and what it states that a build installs.
+
+The kinds: colcon installs the files or ends with an error; `undetermined` is what the grader leaves to a person.
+"""
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from grader.files.folder import read_folder
+from grader.package.package import Package
+from grader.package.setup_py import Setup
+from grader.submission.packages import read_packages
+from grader.submission.submission import Lab
+from tests.differential.compared import Compared
+from tests.oracles.colcon_builds import IMPLIED, Build, build_all
+from tests.package.my_robot import write_package
+from tests.package.setup_grammar import other_files, setup_py
+
+
+def compare(numbers: range) -> Iterator[Compared]:
+    """Compare the packages of some seeds."""
+    with TemporaryDirectory() as name:
+        folders = [Path(name, str(number)) for number in numbers]
+        sources = [
+            write_package(folder / "src/my_robot", setup_py(seed), other_files(seed))
+            for seed, folder in zip(numbers, folders, strict=True)
+        ]
+        done = build_all(zip(folders, sources, strict=True), os.cpu_count() or 1)
+        for seed, folder, build in zip(numbers, folders, done, strict=True):
+            setup, ignored = evaluated(folder / "src/my_robot")
+            is_open = setup.doubt is not None or bool(setup.unknown)
+            kind = "undetermined" if is_open else "failed" if build.error else "installed"
+            yield Compared(seed, kind, difference(build, setup, ignored))
+
+
+def evaluated(folder: Path) -> tuple[Setup, str]:
+    """Return what the grader states of the package in a folder, and for which file colcon ignores it."""
+    package = package_in(folder)
+    assert package.setup is not None
+    return package.setup, package.ignored_by
+
+
+def package_in(folder: Path) -> Package:
+    """Return the package in a folder."""
+    return read_packages(read_folder(folder), Lab("urdf/my_robot.urdf", "my_robot"))[0]
+
+
+def difference(build: Build, reported: Setup, ignored: str = "") -> str | None:
+    """Return how what is stated differs from what colcon does; None if it does not."""
+    foretold = [*filter(None, [ignored, reported.fault]), *reported.faults, *reported.stops]
+    foretold += [] if reported.is_called else ["no call of setup()"]
+    if build.error:
+        last = build.error.strip()[-300:]
+        return None if foretold or reported.doubt else f"colcon fails, the grader does not say so: {last}"
+    if foretold:
+        return f"colcon succeeds, the grader says that it fails: {foretold[0]}"
+    if reported.doubt:
+        return None
+    stated = {target: it for target, it in reported.installed().items() if not target.startswith(("lib/", *IMPLIED))}
+    wrong = stated.items() - build.installed.items()
+    if wrong:
+        return f"the grader says that {min(wrong)} is installed; colcon installs {sorted(build.installed.items())[:4]}"
+    missing = build.installed.items() - stated.items()
+    return f"colcon installs {min(missing)}, the grader does not say so" if missing and not reported.unknown else None

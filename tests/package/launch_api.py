@@ -1,0 +1,177 @@
+"""Write the table of launch's classes from its sources: `python -m tests.package.launch_api LAUNCH LAUNCH_ROS`.
+
+The arguments are checkouts of github.com/ros2/launch and github.com/ros2/launch_ros (branch jazzy), which are parsed and
+not imported. The table is `grader/package/launch/api.json`.
+"""
+
+import ast
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+TABLE = Path("grader/package/launch/api.json")
+PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml")
+SOURCE = "github.com/ros2/launch and github.com/ros2/launch_ros, branch jazzy, by python -m tests.package.launch_api"
+# What later releases export, so that a newer patch of Jazzy may: whether the name is there is not known.
+LATER = {
+    "launch.actions": {"ForEach", "ForLoop"},
+    "launch.substitutions": {"PathSubstitution", "StringJoinSubstitution"},
+}
+# What the constructors require of arguments with these annotations: each stands for the check of this name.
+CHECKS = {
+    "SomeSubstitutionsType": "text",
+    "Iterable[SomeSubstitutionsType]": "texts",
+    "Dict[SomeSubstitutionsType, SomeSubstitutionsType]": "mapping",
+    "Union[bool, SomeSubstitutionsType]": "bool",
+    "Union[float, SomeSubstitutionsType]": "float",
+    "Iterable[Union[Text, Substitution]]": "text",
+    "SomeParameters": "parameters",
+    "SomeRemapRules": "remappings",
+    "SomeParameterValue": "parameter",
+    "Condition": "condition",
+    "Iterable[Action]": "actions",
+    "Iterable[LaunchDescriptionEntity]": "actions",
+}
+
+
+def modules_of(root: Path) -> "Iterator[Module]":
+    """Yield the modules of the packages below a folder."""
+    for package in PACKAGES:
+        for path in sorted((root / package / package).rglob("*.py")):
+            parts = path.relative_to(root / package).with_suffix("").parts
+            name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+            if parts[-1] == "__init__" or not any(part.startswith("_") or part == "conftest" for part in parts):
+                yield Module(name, ast.parse(path.read_text("utf-8")), is_package=parts[-1] == "__init__")
+
+
+class Module:
+    """A module: its name, its statements, and the full name that each of its imports stands for."""
+
+    def __init__(self, name: str, tree: ast.Module, *, is_package: bool) -> None:
+        self.name, self.tree = name, tree
+        self.imports: dict[str, str] = {}
+        parts = name.split(".")
+        for node in tree.body:
+            if isinstance(node, ast.ImportFrom):
+                package = parts[: len(parts) - node.level + is_package] if node.level else []
+                inner = [*package, *([node.module] if node.module else [])]
+                self.imports |= {it.asname or it.name: ".".join([*inner, it.name]) for it in node.names}
+            elif isinstance(node, ast.Assign) and isinstance(node.value, ast.Name):
+                known = self.imports.get(node.value.id)  # PushRosNamespace = PushROSNamespace
+                self.imports |= {it.id: known for it in node.targets if known and isinstance(it, ast.Name)}
+
+    @property
+    def names(self) -> set[str]:
+        """The names that it defines."""
+        found = {*self.imports}
+        for node in self.tree.body:
+            if isinstance(node, ast.ClassDef | ast.FunctionDef):
+                found.add(node.name)
+            elif isinstance(node, ast.Import):
+                found |= {it.asname or it.name.partition(".")[0] for it in node.names}
+            elif isinstance(node, ast.Assign):
+                found |= {it.id for it in node.targets if isinstance(it, ast.Name)}
+        return {name for name in found if not name.startswith("_")}
+
+
+def parameter(argument: ast.arg, default: ast.expr | None) -> str:
+    """Return a parameter of a constructor: its name, ! if it is required, : and the name of the check of its value."""
+    written = ast.unparse(argument.annotation) if argument.annotation else ""
+    is_optional = written.startswith("Optional[")
+    check = CHECKS.get(written.removeprefix("Optional[").removesuffix("]") if is_optional else written, "")
+    can_be_none = is_optional or (isinstance(default, ast.Constant) and default.value is None)
+    return argument.arg + "!" * (default is None) + (f":{check}" + "?" * can_be_none if check else "")
+
+
+def constructor(cls: ast.ClassDef) -> tuple[list[str], list[str]] | None:
+    """Return the parameters of a class's own constructor and those that it passes to its base; None without one."""
+    init = next((n for n in cls.body if isinstance(n, ast.FunctionDef) and n.name == "__init__"), None)
+    if init is None:
+        return None
+    args = init.args
+    positional = args.args[1:]
+    defaults = [None] * (len(positional) - len(args.defaults)) + list(args.defaults)
+    rows = [parameter(arg, default) for arg, default in zip(positional, defaults, strict=True)]
+    rows += [f"*{args.vararg.arg}:text"] if args.vararg else ["*"]
+    rows += [parameter(arg, default) for arg, default in zip(args.kwonlyargs, args.kw_defaults, strict=True)]
+    calls = (node for node in ast.walk(init) if isinstance(node, ast.Call))
+    passed = [call.keywords for call in calls if ast.unparse(call.func) == "super().__init__"]
+    names = [keyword.arg for keywords in passed for keyword in keywords if keyword.arg is not None]
+    return [*rows, *(["**"] if args.kwarg else [])], names
+
+
+def tags(cls: ast.ClassDef, kind: str) -> list[str]:
+    """Return the names that the XML and YAML front ends have for a class."""
+    calls = [node for node in cls.decorator_list if isinstance(node, ast.Call)]
+    return [ast.literal_eval(call.args[0]) for call in calls if ast.unparse(call.func) == f"expose_{kind}"]
+
+
+def table(*roots: Path) -> dict[str, Any]:
+    """Return the classes by full name, the names that each module exports, and those of the front ends."""
+    modules = {module.name: module for root in roots for module in modules_of(root)}
+    classes: dict[str, Any] = {}
+    found: dict[str, dict[str, str]] = {"action": {}, "substitution": {}}
+    for name, module in modules.items():
+        for cls in (node for node in module.tree.body if isinstance(node, ast.ClassDef)):
+            methods = {n.name for n in cls.body if isinstance(n, ast.FunctionDef) and not n.name.startswith("_")}
+            bases = [ast.unparse(base).rpartition(".")[2] for base in cls.bases]
+            classes[f"{name}.{cls.name}"] = (bases[0] if bases else "", constructor(cls), methods)
+            for kind, names in found.items():
+                names |= dict.fromkeys(tags(cls, kind), f"{name}.{cls.name}")
+    exports: dict[str, str] = {}
+    for name, module in modules.items():
+        inner = {other.rpartition(".")[2] for other in modules if other.rpartition(".")[0] == name}
+        full = {alias: target(module.imports.get(alias, ""), modules, classes) for alias in module.names}
+        words = [
+            alias + (f"={full[alias]}" if inner and full.get(alias) else "")
+            for alias in sorted(module.names | inner | LATER.get(name, set()))
+        ]
+        exports[name] = " ".join(words)
+    rows = {
+        name: [base_of(name, classes), effective(name, classes), " ".join(sorted(it[2]))]
+        for name, it in classes.items()
+    }
+    return {"source": SOURCE, "exports": exports, "classes": rows, **found}
+
+
+def effective(name: str, classes: dict[str, Any]) -> str:
+    """Return the parameters of a class's constructor, with those that it passes on."""
+    base, own = base_of(name, classes), classes[name][1]
+    inherited = effective(base, classes).split() if base else []
+    if own is None:
+        return " ".join(inherited)
+    rows, passed = own
+    if "**" not in rows:
+        return " ".join(rows)
+    known = {row.partition(":")[0].strip("!*") for row in rows} | {*passed}
+    more = [row for row in inherited if row.partition(":")[0].strip("!*") not in known]
+    return " ".join([*rows[:-1], *more])
+
+
+def target(full: str, modules: dict[str, Module], classes: dict[str, Any]) -> str:
+    """Return the full name of the class that a name stands for; empty for anything else."""
+    for __ in range(5):
+        if not full or full in classes:
+            return full
+        module, _, name = full.rpartition(".")
+        full = modules[module].imports.get(name, "") if module in modules else ""
+    return ""
+
+
+def base_of(name: str, classes: dict[str, Any]) -> str:
+    """Return the full name of a class's base: the class of this name in the nearest package."""
+    base = classes[name][0]
+    same = [other for other in classes if other.rpartition(".")[2] == base and other != name]
+    own = [other for package in (name.partition(".")[0], "launch") for other in same if other.startswith(f"{package}.")]
+    return next(iter(own), "")
+
+
+if __name__ == "__main__":
+    made = table(*map(Path, sys.argv[1:]))
+    lines = [f'"source": {json.dumps(made["source"])}']
+    for part in ("exports", "action", "substitution", "classes"):
+        rows = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in sorted(made[part].items()))
+        lines.append(f'"{part}": {{\n{rows}\n}}')
+    TABLE.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
