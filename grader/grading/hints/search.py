@@ -33,7 +33,6 @@ _RESERVE = 20  # gradings for proofs
 class _Tried(NamedTuple):
     proposal: Proposal
     passes: frozenset[str]
-    is_alone: bool  # not after the edits of earlier hints
 
 
 class HintSearch:
@@ -56,8 +55,7 @@ class HintSearch:
         self._difference = RobotDifference(self._draft, both) if self._draft is not None and both else None
         self.found: list[FoundHint] = []
         self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing, or two edits
-        # Edits that are refused after those of all hints so far, or were before; and those that cannot be told apart.
-        self._refused, self._failed, self._told = set[Edits](), set[Edits](), set[Edits]()
+        self._refused, self._told = set[Edits](), set[Edits]()  # after all hints so far; those that look equally good
         self.results: Results = trials.results  # with all edits
         self._after: Results = self.results
         self.is_complete = self._is_cut = False
@@ -104,7 +102,7 @@ class HintSearch:
                     break
                 results = self.trials.graded((*before, *proposal.edits), lost)
                 passes = frozenset(name for name, result in results.items() if result.outcome.status == "passed")
-                tried += [_Tried(proposal, passes, before == ())] * bool(passes)
+                tried += [_Tried(proposal, passes)] * bool(passes)
         while best := self._best(tried):
             if not self._prove(best, tried):
                 self._refused.add(best.proposal.edits)
@@ -122,12 +120,9 @@ class HintSearch:
         """Add an edit if it gains the points alone, or after the edits before it, and loses nothing of theirs."""
         lost = set(self._lost)
         wanted = best.passes & lost
-        if best.is_alone and best.proposal.edits not in self._failed:
-            alone = {name: it.points for name, it in self._criteria.items() if name in best.passes}
-        else:
-            alone = self._gains((), best.proposal.edits, self.trials.results)
+        alone = self._gains((), best.proposal.edits, self.trials.results) if self.found else {}
         together = self._gains(self.edits, best.proposal.edits, self.results)
-        is_late = not wanted & alone.keys()
+        is_late = bool(self.found) and not wanted & alone.keys()
         gains = alone if self.found and not is_late else together
         if not together or not set(gains) <= {*together, *(it for found in self.found for it in found.gains)}:
             return False
@@ -147,8 +142,7 @@ class HintSearch:
         is_tie = any(self._order(it, lost) <= self._order(best, lost) for it in others)
         self.found.append(FoundHint(best.proposal, gains, "one of several" if is_tie else "preferred", is_late))
         self.results = self._after
-        self._failed |= self._refused
-        self._refused = {edits for edits in self._refused if edits in self._told}
+        self._refused = {*self._told}
         return True
 
     def _is_half(self, best: _Tried) -> bool:
