@@ -77,7 +77,8 @@ def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool 
 def _undecided(launch: "Launch", missing: str, unknown: str) -> Outcome:
     """Return that whether nodes are started is not known, or whether a file that the launch file reads is there."""
     if not missing:
-        return pending(f"{unknown}, and the launch file reads it; needs manual grading", _UNKNOWN_FILES)
+        message = f"{unknown}, and the launch file reads it; needs manual grading"
+        return pending(message, "cannot determine statically whether the files that it reads are installed")
     reason = f": {launch.unknown[0].message}" if launch.unknown else ""
     message = f"cannot determine statically whether {missing} is started{reason}; needs manual grading"
     return pending(message, "cannot determine statically which nodes the launch file starts")

@@ -1,6 +1,7 @@
 """Reports with hints, and submissions with the edits of all hints."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -115,15 +116,13 @@ def _hint(found: FoundHint, text: str, shown_by: str, result: Result, *, keeps_e
 
 def _draft(reference: ReferenceSolution | None) -> Draft | None:
     """Return the robot of the reference solution."""
-    try:
+    with suppress(InputError):
         return Draft.of(reference.reading) if reference is not None else None
-    except InputError:
-        return None
+    return None
 
 
 def _package(reference: ReferenceSolution | None) -> "Package | None":
     """Return the package of the reference solution."""
-    try:
+    with suppress(InputError):
         return reference.submission.package if reference is not None else None
-    except InputError:
-        return None
+    return None

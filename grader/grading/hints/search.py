@@ -33,7 +33,6 @@ _RESERVE = 20  # gradings for proofs
 class _Tried(NamedTuple):
     proposal: Proposal
     passes: frozenset[str]
-    is_alone: bool  # not after the edits of earlier hints
 
 
 class HintSearch:
@@ -56,7 +55,7 @@ class HintSearch:
         self._difference = RobotDifference(self._draft, both) if self._draft is not None and both else None
         self.found: list[FoundHint] = []
         self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing, or two edits
-        self._refused: set[Edits] = set()
+        self._refused, self._told = set[Edits](), set[Edits]()  # after all hints so far; those that look equally good
         self.results: Results = trials.results  # with all edits
         self._after: Results = self.results
         self.is_complete = self._is_cut = False
@@ -103,7 +102,7 @@ class HintSearch:
                     break
                 results = self.trials.graded((*before, *proposal.edits), lost)
                 passes = frozenset(name for name, result in results.items() if result.outcome.status == "passed")
-                tried += [_Tried(proposal, passes, before == ())] * bool(passes)
+                tried += [_Tried(proposal, passes)] * bool(passes)
         while best := self._best(tried):
             if not self._prove(best, tried):
                 self._refused.add(best.proposal.edits)
@@ -121,12 +120,9 @@ class HintSearch:
         """Add an edit if it gains the points alone, or after the edits before it, and loses nothing of theirs."""
         lost = set(self._lost)
         wanted = best.passes & lost
-        if best.is_alone:
-            alone = {name: it.points for name, it in self._criteria.items() if name in best.passes}
-        else:
-            alone = self._gains((), best.proposal.edits, self.trials.results)
+        alone = self._gains((), best.proposal.edits, self.trials.results) if self.found else {}
         together = self._gains(self.edits, best.proposal.edits, self.results)
-        is_late = not wanted & alone.keys()
+        is_late = bool(self.found) and not wanted & alone.keys()
         gains = alone if self.found and not is_late else together
         if not together or not set(gains) <= {*together, *(it for found in self.found for it in found.gains)}:
             return False
@@ -136,18 +132,18 @@ class HintSearch:
         gains = {name: points for name, points in gains.items() if name not in known} or gains
         others = [it for it in tried if it.passes >= wanted and it.proposal.places.isdisjoint(best.proposal.places)]
         equal = [it for it in others if self._order(it, lost) == self._order(best, lost)]
-        if equal and self._is_robot(best) and self._is_robot(equal[0]):
+        paths = [edit.path for it in (best, *equal[:1]) for edit in it.proposal.edits]
+        if equal and all(path.endswith((".urdf", ".xacro")) for path in paths):
             name = max((it for it in self._criteria if it in wanted), key=lambda name: self._criteria[name].points)
             self.missing[name] = FoundHint(best.proposal, {}, "one of several", alternative=equal[0].proposal)
-            self._refused |= {it.proposal.edits for it in equal}
+            self._told |= {best.proposal.edits, *(it.proposal.edits for it in equal)}
+            self._refused |= self._told
             return False
         is_tie = any(self._order(it, lost) <= self._order(best, lost) for it in others)
         self.found.append(FoundHint(best.proposal, gains, "one of several" if is_tie else "preferred", is_late))
         self.results = self._after
+        self._refused = {*self._told}
         return True
-
-    def _is_robot(self, one: _Tried) -> bool:
-        return all(edit.path.endswith((".urdf", ".xacro")) for edit in one.proposal.edits)
 
     def _is_half(self, best: _Tried) -> bool:
         """Return whether an edit leaves what it should correct as well: in another call of a macro, or of its link."""

@@ -29,7 +29,7 @@ def whole_links(difference: RobotDifference) -> Iterator[Piece]:
 
 
 def _group(difference: RobotDifference, link: str, sets: list[Set], what: str) -> Iterator[Piece]:
-    changed = {(one.owner, one.tag): one for one in sets if one.owner.tag not in ("collision", "inertial")}
+    changed = {(one.owner, one.tag): one for one in sets}
     if len(changed) < 2:
         return
     if len(changed) == len(sets) <= _MAX_NAMED:

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 from math import inf
 
 from grader.robot.edits.difference import RobotDifference
+from grader.robot.edits.draft import Draft
 from grader.robot.edits.elements import Set
 from grader.robot.edits.numbers import LARGE, Values, format_number, format_numbers, plausible, values_of
 from grader.robot.edits.pieces import OWN, SIBLING, Piece, normal
@@ -16,9 +17,8 @@ _WORD = re.compile(r"[^\W\d_]+")
 _PLACES = ("origin", "axis", "limit", "mimic", "dynamics", "color", "box", "cylinder", "sphere", "mass")
 
 
-def _parts(difference: RobotDifference, link: str) -> Iterator[tuple[str, Element]]:
+def _parts(draft: Draft, link: str) -> Iterator[tuple[str, Element]]:
     """Yield the elements with numbers of a link and its joint, each with its path."""
-    draft = difference.draft
     for owner in (draft.joint_of(link), draft.link(link)):
         for element in owner.iter(*_PLACES) if owner is not None else ():
             above = element.getparent()
@@ -33,9 +33,9 @@ def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[P
     """Yield the numbers of the link at the other side, mirrored, where the student builds it unlike the reference."""
     for link in links:
         other = _WORD.sub(lambda word: _SIDES.get(word[0], word[0]), link)
-        theirs = dict(reversed([*_parts(difference, other)])) if other != link else {}
-        like = dict(reversed([*_parts_of_reference(difference, other)])) if theirs else {}
-        for path, element in _parts(difference, link):
+        theirs = dict(reversed([*_parts(difference.draft, other)])) if other != link else {}
+        like = dict(reversed([*_parts(difference.reference, other)])) if theirs else {}
+        for path, element in _parts(difference.draft, link):
             for name, known in TAGS[str(element.tag)].attributes.items() if path in theirs else ():
                 text, tag = theirs[path].get(name), str(element.tag)
                 given = like[path].get(name) if path in like else None
@@ -45,10 +45,6 @@ def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[P
                     for mirrored in _mirrored(values):
                         if normal(tag, name, format_numbers(mirrored)) != own:
                             yield difference.of_sets([Set(element, "", name, format_numbers(mirrored))], SIBLING)
-
-
-def _parts_of_reference(difference: RobotDifference, link: str) -> Iterator[tuple[str, Element]]:
-    return _parts(RobotDifference(difference.reference, difference.reference), link)
 
 
 def _mirrored(values: Values) -> Iterator[Values]:
@@ -65,8 +61,8 @@ def of_own(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]
     seen: set[object] = set()
     is_alone = difference.draft is difference.reference
     for link in links:
-        like = dict(reversed([*_parts_of_reference(difference, link)]))
-        for path, element in _parts(difference, link):
+        like = dict(reversed([*_parts(difference.reference, link)]))
+        for path, element in _parts(difference.draft, link):
             tag = str(element.tag)
             numbers = TAGS[tag].attributes
             single = [name for name, known in numbers.items() if len(known.parts) == 1 and element.get(name)]
