@@ -74,13 +74,6 @@ def with_child(source: Source, start: int, xml: str) -> Edit:
     return source.edit(start, end, f"{text[start:slash].rstrip()}>{child}{closing}")
 
 
-def with_sibling(source: Source, start: int, xml: str) -> Edit:
-    """Return the edit that inserts an element after the one at an offset."""
-    newline, indent = "\r\n" if "\r\n" in source.text else "\n", markup.indentation(source.text, start)
-    end = markup.element_end(source.text, start)
-    return source.edit(end, end, f"{newline}{indent}{markup.indented(xml, indent, newline)}")
-
-
 def without_element(source: Source, start: int) -> Edit:
     """Return the edit that removes the element at an offset, with its line where nothing else is on it."""
     end = markup.element_end(source.text, start)

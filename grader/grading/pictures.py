@@ -117,8 +117,8 @@ def _page(file: File, result: Result, documents: DocumentCollection | None) -> i
     outcome, start = result.outcome, 0
     if isinstance(outcome.measured, str) and outcome.location is not None:
         start = outcome.location.line - 1
-    elif _is_evidence(result):
-        heads = headed(documents, result.criterion.arguments["names"])
+    else:
+        heads = headed(documents, result.criterion.arguments.get("names", ()))
         start = next((head.start for other, head in heads if other is document), 0)
     return document.page(start) or 1
 

@@ -199,12 +199,13 @@ def test_fix_of_a_folder_writes_one_file_under_its_path(tmp_path: Path) -> None:
     ]
 
 
-@pytest.mark.parametrize(("steps", "written"), [(0, False), (26, True)])
+@pytest.mark.parametrize(("steps", "reserve", "written"), [(0, 20, False), (26, 20, True), (4, 0, False)])
 def test_a_search_that_is_cut_off_is_reported(
-    steps: int, written: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    steps: int, reserve: int, written: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A note of every report, and the words of `--fix`, say that the budget ended the search."""
     monkeypatch.setattr("grader.grading.hints.trials._MAX_GRADINGS", steps)
+    monkeypatch.setattr("grader.grading.hints.search._RESERVE", reserve)
     note = "the search for hints ended at its limit: there may be more"
     assert note in graded(MISTAKES)["notes"]
     assert f"Note: {note}" in run(("grade", MISTAKES)).stdout.decode()
@@ -221,10 +222,15 @@ def test_a_submission_that_is_too_large_has_its_own_sentence(tmp_path: Path) -> 
     assert done.stderr == b"grader: --fix: nothing was written: the submission is too large to search for edits\n"
 
 
-@pytest.mark.parametrize("step", ["run", "_take"])
-def test_a_search_that_failed_has_its_own_sentence(step: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    "steps", [["run"], ["_take"], ["_of_reference", "_of_package", "_of_own", "_of_links"]], ids="-".join
+)
+def test_a_search_that_failed_has_its_own_sentence(
+    steps: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """`--fix` does not say that there is nothing to fix."""
-    monkeypatch.setattr(HintSearch, step, lambda self, *_: self.nothing)
+    for step in steps:
+        monkeypatch.setattr(HintSearch, step, lambda self, *_: self.nothing)
     done = run(("grade", MISTAKES, "--fix", tmp_path / "fixed.urdf"))
     assert done.stderr.decode().splitlines()[-1] == "grader: --fix: nothing was written: the search for edits failed"
 

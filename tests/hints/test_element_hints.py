@@ -89,6 +89,11 @@ def test_a_mistake_is_undone(tmp_path: Path, old: str, new: str, edit: tuple[str
     assert "".join(edit[1].split()) in "".join(found["new"].split())  # however it is indented
 
 
+def test_no_text_is_written_into_an_empty_element(tmp_path: Path) -> None:
+    """There is none to replace."""
+    assert hints_of(tmp_path, ROBOT.replace("<rate>30</rate>", "<rate/>")) == []
+
+
 def test_several_values_are_corrected_together(tmp_path: Path) -> None:
     """One hint corrects all values that a criterion needs."""
     (hint,) = hints_of(tmp_path, ROBOT.replace("<rate>30<", "<rate>5<").replace("640", "320"))

@@ -7,6 +7,7 @@ import pytest
 
 from grader.grading.grade import grade
 from grader.grading.hints.hinting import hinted
+from grader.grading.hints.trials import Trials
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from tests.hints.trials import BASES, Hints, hints_for
@@ -82,6 +83,18 @@ def test_a_property_without_prefix_gets_it() -> None:
     assert edits_of(hints)[0] == [("<property", "<xacro:property")]
 
 
+def test_an_attribute_that_xacro_adds_is_not_renamed() -> None:
+    """Its name is not in the tag: the attribute with the right name is added there."""
+    added = '<xacro:attribute name="xzy" value="0.15 0 0.225"/>'
+    text = re.sub(
+        r'<origin xyz="0.15 0 0.225".*?/>', f'<xacro:element xacro:name="origin">{added}</xacro:element>', REFERENCE
+    )
+    text = text.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
+    hints = hints_for(read_submission(text.encode(), identity="robot", path="my_robot.urdf.xacro"))
+    assert hints.is_full
+    assert edits_of(hints) == [[("<xacro:element", '<xacro:element xyz="0.15 0 0.225"')]]
+
+
 def test_exchanged_expressions_are_exchanged() -> None:
     """They are not replaced by numbers."""
     base, right, wrong = (
@@ -93,6 +106,16 @@ def test_exchanged_expressions_are_exchanged() -> None:
     hints = hints_for(base.changed(base.text.replace(right, wrong)))
     assert hints.is_full
     assert edits_of(hints) == [[(f'xyz="{wrong}"', f'xyz="{right}"')]]
+
+
+def test_hints_that_do_not_hold_from_scratch_are_taken_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All edits together are graded once more, with the submission read as a new one."""
+    submission = changed(('xyz="0.15 0 0.225"', 'xyz="0.15 0 0.025"'))
+    assert hints_for(submission).found
+    of_trial = Trials.graded
+    fails_whole = lambda self, edits, wanted, *, whole=False: {} if whole else of_trial(self, edits, wanted)
+    monkeypatch.setattr(Trials, "graded", fails_whole)
+    assert not hints_for(submission).found
 
 
 def test_a_missing_joint_is_only_said() -> None:

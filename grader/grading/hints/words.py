@@ -55,14 +55,13 @@ def _places(edits: Sequence[Edit], submission: Submission) -> str:
     """Return the lines to look at: lines 65 and 73; of another file with its name."""
     files: dict[str, list[int]] = {}
     for edit in edits:
-        if edit.path == submission.path or edit.path in submission.whole_tree.files:
-            files.setdefault(edit.path, []).append(edit.line)
+        files.setdefault(edit.path, []).append(edit.line)
     texts = []
     for path, lines in files.items():
         numbers = sorted(set(lines))
         named = f"line{'s' if len(numbers) > 1 else ''} {enumerated([str(line) for line in numbers], _MAX_LINES)}"
         texts.append(named if path == submission.path else f"{path}, {named}")
-    return "; ".join(texts) or "which files are missing"
+    return "; ".join(texts)
 
 
 def _calls(edits: Sequence[Edit], source: "ExpandedSource", main: str | None) -> str:

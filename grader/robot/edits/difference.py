@@ -178,8 +178,6 @@ class RobotDifference(PieceMaker):
             off = [name for name, value in values.items() if normal(tag, name, mine[name]) != normal(tag, name, value)]
             yield from self.each([Set(parent, tag, name, values[name]) for name in off])
             return
-        if parent.tag == "robot" or tag in ("link", "joint"):
-            return
         shape = next((it for it in parent if parent.tag == "geometry" and it.tag in CHILDREN["geometry"]), None)
         if shape is None:
             yield self.piece(parent, f"the <{tag}> of {{}} is missing", self.draft.insert(parent, self._text(element)))

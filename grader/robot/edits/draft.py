@@ -10,7 +10,6 @@ from grader.edits import (
     with_attribute,
     with_child,
     with_element,
-    with_sibling,
     without_element,
 )
 from grader.robot.edits.elements import RobotElements, Set
@@ -103,9 +102,9 @@ class Draft(RobotElements):
         if ways:
             return ways[0]
         source, start = self.source.element(tag)
-        head, is_empty = markup.head_end(source.text, start)
+        head, _ = markup.head_end(source.text, start)
         end = source.text.rfind("</", head, markup.element_end(source.text, start))
-        if is_empty or end < 0 or not {"$", "<"}.isdisjoint(source.text[head:end]):
+        if end < 0 or not {"$", "<"}.isdisjoint(source.text[head:end]):
             return ()
         return (source.edit(head, end, escaped(text)),)
 
@@ -151,14 +150,6 @@ class Draft(RobotElements):
     def insert(self, parent: Element, xml: str) -> Edits:
         """Return the edit that inserts an element as the first child of another one."""
         return (with_child(*self.source.element(self._tags[parent]), xml),)
-
-    def append(self, xml: str) -> Edits:
-        """Return the edit that inserts an element after the last one of the robot."""
-        for last in self.root.iterchildren(reversed=True):
-            place = self.source.tag(self._tags[last])
-            if place.path == self.source.path and not place.calls:  # not in a macro of xacro, nor in another file
-                return (with_sibling(*self.source.element(self._tags[last]), xml),)
-        return self.insert(self.root, xml)
 
     def remove(self, element: Element) -> Edits:
         """Return the edit that removes an element."""

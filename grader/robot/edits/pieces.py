@@ -69,10 +69,11 @@ class PieceMaker:
     def moved(self, element: Element, parent: Element) -> Piece:
         """Return the piece that moves an element into another one."""
         text = self.draft.text(element)
-        there = self.draft.append(text) if parent is self.draft.root else self.draft.insert(parent, text)
         was = element.getparent()
         cause = f"<{element.tag}> is inside <{was.tag if was is not None else ''}>; it belongs in <{parent.tag}>"
-        return self.piece(element, cause, (*self.draft.remove(element), *there))._replace(around=parent)
+        return self.piece(element, cause, (*self.draft.remove(element), *self.draft.insert(parent, text)))._replace(
+            around=parent
+        )
 
 
 def _cause(sets: Sequence[Set]) -> str:

@@ -1,4 +1,4 @@
-"""The edits that write a rejected file as it is read: tags closed, words that surely stand for others."""
+"""The edits that write a rejected file as it is read: tags closed, or words that surely stand for others."""
 
 from collections.abc import Iterator
 
@@ -11,23 +11,18 @@ from grader.source import Edits
 
 
 def undone_proposals(reading: Reading) -> Iterator[Proposal]:
-    """Yield the edits of the tags and of the words for which ROS 2 or xacro rejects a file, then of both together."""
-    found: list[Proposal] = []
+    """Yield the edits of the tags and of the words for which ROS 2 or xacro rejects a file."""
     if reading.verdict == "rejected" and not reading.undone:
         from grader.xml.tinyxml2.recovery import Recovery  # late: its patterns take long
 
         recovery = Recovery(reading.source.text)
         recovery.run()
         edits = tuple(reading.source.edit(*change) for change in recovery.changes if not recovery.is_lossy)
-        found.append(Proposal(edits, "the syntax of tags"))
+        yield Proposal(edits, "the syntax of tags")
     draft = Draft.of(reading)
     if draft is not None and reading.undone:
         edits = tuple(edit for word in reading.undone for edit in _of_word(draft, word))
-        found.append(Proposal(edits, "the spelling of a word" if len(reading.undone) == 1 else "the spelling of words"))
-    yield from (it for it in found if it.edits)
-    if len(found) > 1:
-        edits = tuple(edit for it in found for edit in it.edits)
-        yield Proposal(edits, " and ".join(it.cause for it in found))
+        yield Proposal(edits, "the spelling of a word" if len(reading.undone) == 1 else "the spelling of words")
 
 
 def _of_word(draft: Draft, word: Word) -> Edits:
