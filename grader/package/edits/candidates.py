@@ -7,7 +7,7 @@ from itertools import islice
 from typing import Any
 
 from grader.edits import Proposal
-from grader.package.edits.entries import missing_entries
+from grader.package.edits.entries import as_lists, missing_entries
 from grader.package.edits.paths import launch_paths, setup_paths
 from grader.package.edits.python_file import PythonFile
 from grader.package.edits.task import WHAT, PackageTask, file_proposals, package_names
@@ -72,6 +72,7 @@ def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str 
         yield from reword(source, wanted, what)
     if is_python:
         yield from missing_entries(own, PythonFile(Source(source.path, wanted)), what)
+        yield from as_lists(own, what)
         yield from undefined_names(own, what)
     elif ending == other:
         yield from other_values(source, wanted, what)

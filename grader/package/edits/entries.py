@@ -31,6 +31,14 @@ def missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[Pr
         yield from _adding(own, several, what)
 
 
+def as_lists(own: PythonFile, what: str) -> Iterator[Proposal]:
+    """Yield edits that put the one file of an entry of data_files into a list."""
+    for item in _items(own):
+        files = item.elts[-1] if isinstance(item, ast.Tuple) and item.elts else None
+        if isinstance(files, ast.Constant) and isinstance(files.value, str):
+            yield change([own.replaced(files, f"[{own.segment(files)}]")], "a list of files", what)
+
+
 def _adding(own: PythonFile, codes: Sequence[str], what: str) -> Iterator[Proposal]:
     edit = _add(own, codes)
     if edit is not None:
