@@ -201,6 +201,8 @@ class Recovery:
         self._change(at, at, f"{before}</{opened.name}>")
 
     def _change(self, start: int, end: int, new: str) -> None:
+        if self.changes and self.changes[-1][:2] == (start, end) and start < end:
+            self.changes.pop()  # a tag that was respelt is replaced after all
         if self.changes and self.changes[-1][1] == start == end:
             start, end, new = *self.changes[-1][:2], self.changes.pop()[2] + new
         self.changes.append((start, end, new))
