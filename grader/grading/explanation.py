@@ -68,6 +68,8 @@ def _extent(place: Location | None, source: Source | None) -> range:
         return range(0)
     text, at = source.text, source.offset(place.line, place.column)
     start = text.rfind("<", 0, at + 1)
+    if text.startswith("<robot", start):  # everything is inside
+        return range(0)
     return range(start, markup.element_end(text, start) if start == at else markup.head_end(text, start)[0])
 
 
