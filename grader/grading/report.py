@@ -41,7 +41,7 @@ class Hint(NamedTuple):
     `message` says it in a sentence, and `at` is where it is. `edits` and `cause` are empty where the rubric does not
     want to show them. `cause` is what is wrong: "the sign of the roll of the joint origin of 'right_wheel'".
     `shown_by` is the criterion that shows the hint; the others that it fixes name that one. `certainty` says whether
-    other edits were proven.
+    other edits were proven. `after` are the criteria whose hints have to be followed first.
     """
 
     message: str
@@ -51,6 +51,7 @@ class Hint(NamedTuple):
     cause: str = ""
     shown_by: str = ""
     certainty: Certainty = "preferred"
+    after: tuple[str, ...] = ()
 
 
 class Result(NamedTuple):

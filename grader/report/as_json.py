@@ -50,7 +50,9 @@ _HINT = Record(
         "gains": mapping(POINTS),
         "verified": (FLAG, lambda _: True),
         "certainty": _CERTAINTY,
-    }
+        "after": array(TEXT),
+    },
+    ("after",),
 )
 KINDS: dict[str, KeyType] = {"bonus": {"const": True}, "adjustment": ADJUSTMENT}  # absent of most criteria
 ADDITIONS = Record(  # the keys that few criteria have: those of the rubric, a manual mark, a comment without points

@@ -9,10 +9,10 @@ from unittest.mock import patch
 from grader.files.tree import make_tree
 from grader.grading.grade import grade
 from grader.grading.hints.trials import gains_of
-from grader.grading.report import Hint, Report
+from grader.grading.report import Hint, Report, Result
 from grader.grading.rubric import Rubric
 from grader.report.formats import Format, render
-from grader.source import Base
+from grader.source import Base, Edit
 from grader.submission.opening import read_submission, submission_of
 from grader.submission.submission import Submission
 from grader.usecases.hints import add_hints, files_to_fix, write_fix
@@ -48,10 +48,10 @@ def check_graded(rubric: Rubric, submission: Submission, path: str) -> None:
     assert [(it.criterion, it.outcome.status, it.points) for it in hinted.results] == [
         (it.criterion, it.outcome.status, it.points) for it in report.results
     ]
-    hints = {result.hint.edits: result.hint for result in hinted.results if result.hint is not None}
-    for hint in hints.values():
+    by_criterion = {result.criterion.id: result.hint for result in hinted.results if result.hint is not None}
+    for hint in {hint.edits: hint for hint in by_criterion.values()}.values():
         check_message(hint.message)
-        _check_hint(report, submission, hint)
+        _check_hint(report, submission, [by_criterion[name] for name in hint.after], hint)
     assert fix.report.score >= report.score
     with GUARD.watching(is_active=False), TemporaryDirectory() as folder, GUARD.watching():
         target = Path(folder, "fix.urdf" if submission.is_single else "fix")
@@ -79,10 +79,19 @@ def _check_report(report: Report, submission: Submission) -> None:
         check_location(problem.location, texts)
 
 
-def _check_hint(report: Report, submission: Submission, hint: Hint) -> None:
-    """Assert that edits, applied by other code, make exactly the promised criteria pass, and cost none its points."""
-    results = {
-        result.criterion.id: result for result in grade(report.rubric, with_edits(submission, hint.edits)).results
-    }
+def _check_hint(report: Report, submission: Submission, earlier: list[Hint], hint: Hint) -> None:
+    """Assert that edits, applied by other code, make exactly the promised criteria pass, and cost none its points.
+
+    A hint that names `earlier` ones promises what it gains after their edits; what needs both is promised by neither.
+    """
+    edits = [edit for it in earlier for edit in it.edits]
+    results = _graded(report, submission, [*edits, *hint.edits])
     assert all(results[before.criterion.id].points >= before.points for before in report.results)
-    assert hint.gains == gains_of({result.criterion.id: result for result in report.results}, results)
+    if earlier:
+        assert hint.gains.items() <= gains_of(_graded(report, submission, edits), results).items()
+    else:
+        assert hint.gains == gains_of({result.criterion.id: result for result in report.results}, results)
+
+
+def _graded(report: Report, submission: Submission, edits: list[Edit]) -> dict[str, Result]:
+    return {it.criterion.id: it for it in grade(report.rubric, with_edits(submission, edits)).results}

@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
+from itertools import count
 from typing import NamedTuple
 
 from grader.grading.grade import grade
@@ -88,7 +89,7 @@ def with_edits(submission: Submission, edits: Iterable[Edit]) -> Submission:
 
 
 def applied(data: bytes, edits: Iterable[Edit]) -> bytes:
-    """Return bytes after edits, each of which must find the old text where it says."""
+    """Return bytes after edits, each of which must find the old text where it says; at one place in their order."""
     lines = data.decode("utf-8", "surrogateescape").split("\n")
     if lines[0].startswith("\ufeff"):
         mark, lines[0] = "\ufeff", lines[0][1:]
@@ -96,7 +97,7 @@ def applied(data: bytes, edits: Iterable[Edit]) -> bytes:
         mark = ""
     text = "\n".join(lines)
     starts = [sum(len(line) + 1 for line in lines[: edit.line - 1]) + edit.column - 1 for edit in edits]
-    for start, edit in sorted(zip(starts, edits, strict=True), key=lambda pair: -pair[0]):
+    for start, _, edit in sorted(zip(starts, count(), edits, strict=False), reverse=True):
         assert text[start : start + len(edit.old)] == edit.old, edit
         text = text[:start] + edit.new + text[start + len(edit.old) :]
     return (mark + text).encode("utf-8", "surrogateescape")

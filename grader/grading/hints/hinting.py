@@ -60,9 +60,10 @@ def hinted(report: Report, submission: Submission, level: HintLevel, *, keep_edi
             entry = entries.get(id(one), name)
             before = search.found[: search.found.index(one)] if one.is_late else []
             found = _first_at(one, results[entry].outcome.location)
-            earlier = [entries[id(it)] for it in before]
+            earlier = tuple(dict.fromkeys(entries[id(it)] for it in before))
             text = message(found, level, submission, earlier)
-            hints[name] = _hint(found, text, entry, results[name], keeps_edits=keep_edits or level == "edit")
+            hint = _hint(found, text, entry, results[name], keeps_edits=keep_edits or level == "edit")
+            hints[name] = hint._replace(after=earlier)
     left = [name for name in costs if name not in hints and name in search.results and not search.results[name].is_lost]
     for name in left if level == "edit" else ():
         others = enumerated(list(dict.fromkeys(entries.values())), _MAX_NAMED)

@@ -90,7 +90,8 @@ class Trials:
         if files is None:
             return None
         is_robot = isinstance(self.submission.urdf, Read) and None not in files.values()
-        if is_robot and not whole and all(_is_of_robot(path, self.submission) for path in files):
+        is_decoded = all(edit.old.isascii() for edit in edits)  # else a launch file that could not read it now may
+        if is_robot and is_decoded and not whole and all(_is_of_robot(path, self.submission) for path in files):
             return with_urdf(self.submission, files)
         try:
             return with_files(self.submission, files)

@@ -40,8 +40,8 @@ def message(found: FoundHint, level: HintLevel, submission: Submission, earlier:
     else:
         text = f"check {_texts_to_check(found.edits, submission)}"
     if earlier:
-        several = "s" * (len(set(earlier)) > 1)
-        return f"After the edit{several} for {enumerated(list(dict.fromkeys(earlier)), _MAX_NAMED)}, {text}."
+        several = "s" * (len(earlier) > 1)
+        return f"After the edit{several} for {enumerated(earlier, _MAX_NAMED)}, {text}."
     return f"{text[0].upper()}{text[1:]}."
 
 

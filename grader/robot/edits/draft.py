@@ -121,9 +121,9 @@ class Draft(RobotElements):
         source, start = self.source.element(self._tags[element])
         text, end = source.text, markup.name_end(source.text, start)
         edits: Edits = (source.edit(start, end, f"<{new}"),)
-        closing = text.rfind("</", start, markup.element_end(text, start))
+        tail = markup.element_end(text, start)
+        closing = text.rfind("</", start, tail)
         if not markup.head_end(text, start)[1] and closing >= 0:
-            tail = text.index(">", closing) + 1
             edits += (source.edit(closing, tail, f"</{new}>"),)
         return edits
 

@@ -37,7 +37,7 @@ _MISTAKES = (
 
 def mistake_in(parts: Sequence[str], unit: str, old: Values, new: Values) -> str:
     """Return what is wrong with numbers; {} stands for what has them."""
-    if len(old) != len(new):
+    if not len(parts) == len(old) == len(new):
         return "the numbers of {}"
     off = [index for index, pair in enumerate(zip(old, new, strict=True)) if not _is_same(*pair)]
     wrong = f"{enumerated([_with_article(parts[index]) for index in off]) if len(off) < 4 else 'the numbers'} of {{}}"
