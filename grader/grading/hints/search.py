@@ -118,6 +118,8 @@ class HintSearch:
 
     def _prove(self, best: _Tried, tried: Iterable[_Tried]) -> bool:
         """Add an edit if it gains the points alone, or after the edits before it, and loses nothing of theirs."""
+        edits = tuple(edit for edit in best.proposal.edits if edit not in self.edits)
+        best = best._replace(proposal=best.proposal._replace(edits=edits))
         lost = set(self._lost)
         wanted = best.passes & lost
         alone = self._gains((), best.proposal.edits, self.trials.results) if self.found else {}
