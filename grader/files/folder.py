@@ -134,14 +134,6 @@ def _size(entry: "os.DirEntry[str]", shown: str) -> int:
         return 0
 
 
-def is_looked_at(folder: Path, path: str) -> bool:
-    """Return whether `read_folder` reads the path, relative to the folder, if it exists."""
-    steps = path.split("/")
-    if not IGNORED_FOLDERS.isdisjoint(steps) or ignored_part(printable_path(path)):
-        return False
-    return not any(os.path.lexists(folder / above / "pyvenv.cfg") for above in parents(path))
-
-
 def file_at(path: Path, name: str, top: str) -> File:
     """Return a single file under its name in a submission; raises InputError if it is a symlink or missing.
 

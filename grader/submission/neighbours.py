@@ -5,7 +5,7 @@ from functools import partial
 from pathlib import Path
 
 from grader.errors import InputError, MachineError
-from grader.files.folder import is_looked_at, read_folder
+from grader.files.folder import read_folder
 from grader.files.tree import File, Tree
 from grader.package.package import MANIFEST
 from grader.static_python.budget import Budget
@@ -35,7 +35,8 @@ def read_with_neighbours(place: Path, data: bytes, identity: str, opening: Openi
         folder = place.parent.resolve()
         root = next((above for above in (folder, *folder.parents) if (above / MANIFEST).is_file()), folder)
         path = printable((folder / place.name).relative_to(root).as_posix())
-        tree = overlaid(read_folder(root), {path: data}) if is_looked_at(root, path) else None
+        found = read_folder(root)
+        tree = overlaid(found, {path: data}) if path in found.files or place.is_symlink() else None
     except (OSError, InputError) as error:
         MachineError.check(error, printable_path(place.name))
         tree = None

@@ -3,16 +3,15 @@
 import gc
 import os
 import time
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import NamedTuple
 
 from rich.console import Console
 from rich.text import Text
 
 from grader.errors import GraderError, InputError, MachineError, RubricError
-from grader.files.folder import is_looked_at
+from grader.files.folder import read_folder
 from grader.grading.report import Report
 from grader.grading.rubric import find_rubric, shipped_rubrics
 from grader.report.comparison import comparison_lines, unchanged_line
@@ -27,7 +26,7 @@ from grader.usecases.terminal import Terminal, Warn
 
 _POLL = 0.1  # seconds between two looks
 _SHARE = 10  # a look at many files is followed by a pause of this many times its own time
-_Stamp = tuple[int, ...] | None
+Stamps = dict[str, tuple[int, ...] | None]
 # The report that was shown last, and all of its text, whatever the terminal's width.
 _Shown = tuple[Report, str]
 
@@ -41,41 +40,32 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
         GraderError: What no change of a file corrects: wrong usage, an unknown rubric, standard output that is closed,
             a report that cannot be saved.
     """
-    besides: set[Path] = set()
-    changes = _changes(request, besides)
+    watched = _watched(request)
     modes = remove_reports(request.saves, files_of(request.rubric, request.answers), request.path)
     _ = request.threshold  # refuse a wrong one at once
     gc.enable()  # unlike other commands, this one may run for hours
     code: ExitCode | None = None
     last: _Shown | None = None
-    last_error = ""
     terminal.warn(f"watching {printable_path(request.path)}; stop with Ctrl-C")
     try:
-        for has_changed in changes:
+        for besides in changes(watched, frozenset(os.path.realpath(file) for _, file in request.saves)):
             try:
                 result = grade_submission(request, terminal.warn, terminal.show_file)
             except (InputError, MachineError, RubricError) as error:
                 code = ExitCode.NOT_GRADED
-                if has_changed or str(error) != last_error:
-                    _show_error(request.path, error, terminal.warn)
-                last_error = str(error)
+                _show_error(request.path, error, terminal.warn)
                 continue
-            code, last_error = result.exit_code, ""
-            besides.clear()
-            besides.update(result.besides)
+            code, besides[:] = result.exit_code, result.besides
             save_reports(request, result, modes)
-            last = _show(result.report, last, terminal, verbose=request.verbose, has_changed=has_changed)
+            last = _show(result.report, last, terminal, verbose=request.verbose)
     except KeyboardInterrupt:
         if code is None:  # during the first grading
             raise
     return ExitCode.NOT_GRADED if code is None else code
 
 
-def _changes(request: GradeRequest, besides: set[Path]) -> Iterator[bool]:
-    """Return an iterator that yields before each grading, whether a file has changed. Raises GraderError.
-
-    `besides` has the files that the last grading read besides a single one.
-    """
+def _watched(request: GradeRequest) -> list[Path]:
+    """Return what is watched: the submission, and a rubric that is no shipped one. Raises GraderError."""
     if request.path in ("", "-"):
         raise GraderError("--watch takes a file or folder: standard input is read only once")
     if request.format is not Format.TERMINAL:
@@ -84,18 +74,11 @@ def _changes(request: GradeRequest, besides: set[Path]) -> Iterator[bool]:
         )
     if request.fix is not None:
         raise GraderError("--watch writes no fix: use --fix without it")
-    rubric = _rubric_file(request)
-    own = frozenset(os.path.realpath(file) for _, file in request.saves)
-    return file_changes(Watched(Path(request.path), rubric, own, besides))
-
-
-def _rubric_file(request: GradeRequest) -> Path | None:
-    """Return the rubric's file, None for a shipped rubric. Raises GraderError for an unknown rubric or part."""
     file = find_rubric(request.rubric)
     if file not in shipped_rubrics().values():
-        return file
-    requested_rubric(request)
-    return None
+        return [Path(request.path), file]
+    requested_rubric(request)  # an unknown part
+    return [Path(request.path)]
 
 
 def _show_error(path: str, error: GraderError, warn: Warn) -> None:
@@ -106,12 +89,11 @@ def _show_error(path: str, error: GraderError, warn: Warn) -> None:
         warn(line)
 
 
-def _show(report: Report, last: _Shown | None, terminal: Terminal, *, verbose: bool, has_changed: bool) -> _Shown:
-    """Show the whole report, then what changed; of a report that is the same, one line at most."""
+def _show(report: Report, last: _Shown | None, terminal: Terminal, *, verbose: bool) -> _Shown:
+    """Show the whole report, then what changed; of a report that is the same, one line."""
     shown = report, render(report, Format.TERMINAL, verbose=True)
     if last is not None and shown[1] == last[1]:
-        if has_changed:
-            terminal.print(f"{unchanged_line(report)}\n")
+        terminal.print(f"{unchanged_line(report)}\n")
         return shown
     screen = terminal.screen()
     lines = comparison_lines(last[0], report) if last is not None else []
@@ -126,57 +108,42 @@ def _print_lines(lines: list[str], console: Console) -> None:
         wrapped(console, Text(line, style="bold"), 0)
 
 
-class Watched(NamedTuple):
-    """A submission, its rubric if that is a file, the real paths of the reports written, and files read besides."""
+def changes(watched: Sequence[Path], own: Collection[str] = ()) -> Iterator[list[Path]]:
+    """Yield at once and after every change of the watched files and folders, without end.
 
-    path: Path
-    rubric: Path | None = None
-    own: frozenset[str] = frozenset()
-    besides: Collection[Path] = ()
-
-
-def file_changes(watched: Watched) -> Iterator[bool]:
-    """Yield at once and after every change, without end: True if a file changed for certain."""
-    seen: dict[str, _Stamp] | None = None
-    before: dict[str, _Stamp] = {}
+    What is yielded is a list for the files that were read besides, which are watched from then on. `own` are the real
+    paths of files that do not count: the reports that are written.
+    """
+    besides: list[Path] = []
+    seen: Stamps | None = None
+    before: Stamps = {}
     while True:
         start = time.monotonic()
-        now = _stamps(watched)
+        now = stamps([*watched, *besides], own)
         if seen is None or before == now != seen:  # what changed since the last look may be half written
-            # A file that was read for the first time may have changed since: grade again, but do not report a change.
-            new = now.keys() - (seen or {}).keys()
-            yield seen is None or not (seen.items() < now.items() and new <= set(map(str, watched.besides)))
-            seen = now
+            yield besides
+            seen = {**stamps(besides, own), **now}
         before = now
         time.sleep(max(_POLL, _SHARE * (time.monotonic() - start)))
 
 
-def _stamps(watched: Watched) -> dict[str, _Stamp]:
-    """Return the stamps of folders and files that exist: a folder's identifies it, a file's changes when written."""
-    root = Path(os.path.realpath(watched.path))
-    files: Iterable[Path] = _files(root) if root.is_dir() else (watched.path, *watched.besides)
-    rubric = () if watched.rubric is None else (watched.rubric,)
-    found = {str(file): _stamp(file) for file in (*files, *rubric) if os.path.realpath(file) not in watched.own}
-    return {file: stamp for file, stamp in found.items() if stamp is not None}
+def stamps(paths: Iterable[Path], own: Collection[str] = ()) -> Stamps:
+    """Return what identifies each file and its content; of a folder, each file and folder that a grading looks at."""
+    found: Stamps = {}
+    for path in paths:
+        names: Iterable[str] = ()
+        try:
+            tree = read_folder(path) if path.is_dir() else None
+            names = (*tree.files, *tree.folders) if tree is not None else ()
+        except (InputError, MachineError) as error:
+            found[str(error)] = None
+        files = (path, *(path / name for name in names))
+        found |= {str(file): _stamp(file) for file in files if os.path.realpath(file) not in own}
+    return found
 
 
-def _files(root: Path) -> Iterator[Path]:
-    """Yield the folders and files in a folder that a grading looks at."""
-    yield root
-    with suppress(RecursionError):  # os.walk raises it for folders nested a thousand deep
-        for where, folders, files in os.walk(root):
-            inside = os.path.relpath(where, root)
-            folders[:] = [name for name in folders if _is_looked_at(root, f"{inside}/{name}/file")]
-            names = (*folders, *(name for name in files if _is_looked_at(root, f"{inside}/{name}")))
-            yield from (Path(where, name) for name in names)
-
-
-def _is_looked_at(root: Path, path: str) -> bool:
-    return is_looked_at(root, path.removeprefix("./"))
-
-
-def _stamp(path: Path) -> _Stamp:
-    with suppress(OSError):
+def _stamp(path: Path) -> tuple[int, ...] | None:
+    with suppress(OSError, ValueError):
         status = path.stat()
         known = status.st_dev, status.st_ino, status.st_mode
         # A folder changes with each report that is written into it.
