@@ -7,7 +7,8 @@ from grader.names import did_you_mean
 from grader.package.launch.api import class_named, front_end
 from grader.package.launch.arguments import bind, check
 from grader.package.launch.frontend import Entity
-from grader.package.launch.frontend_values import command_line, is_typed, parse_if_text, parse_value, typed_text
+from grader.package.launch.frontend_attributes import TYPES, attributes_of
+from grader.package.launch.frontend_values import command_line, parse_if_text, parse_value, typed_text
 from grader.package.launch.model import Findings, LaunchFails
 from grader.package.launch.value_types import FILE, TYPED
 from grader.static_python.values import Call, ExpressionFails, Value
@@ -33,7 +34,6 @@ _NESTED: Mapping[str, str] = {
     "param": "name from value:any type:any allow_substs:bool param[]",
     "composable_node": "pkg! plugin! name! if unless namespace param[] remap[] extra_arg[]",
 }  # fmt: skip
-_TYPES: Mapping[str, type | None] = {"int": int, "float": float, "bool": bool, "any": None}
 _VALUE_TYPES = ("str", "bool", "float", "int", "list_of_str", "list_of_bool", "list_of_float", "list_of_int", "yaml")
 # The argument of the constructor, where it has another name than the attribute.
 _ARGUMENTS = {
@@ -47,11 +47,6 @@ _RAW = ("shell", "emulate_tty", "scoped", "forwarding", "respawn_max_retries")
 _ROS1_TAGS = {
     "param": "a <param> belongs in its <node>", "rosparam": "write <param from=.../> in the <node>",
     "remap": "a <remap> belongs in its <node>", "machine": "", "test": "", "env": "write <set_env>",
-}  # fmt: skip
-_ROS1_ATTRIBUTES: dict[str, dict[str, str]] = {
-    "node": {"type": "exec", "package": "pkg", "executable": "exec", "ns": "namespace", "required": ""},
-    "arg": {"value": "default", "default_value": "default", "doc": "description"},
-    "param": {"command": "value", "textfile": "value"}, "group": {"ns": ""}, "include": {"ns": "", "pass_all_args": ""},
 }  # fmt: skip
 
 
@@ -74,7 +69,7 @@ def _action(entity: Entity, findings: Findings) -> Call:
             hint = f": {_ROS1_TAGS[kind]}".removesuffix(": ")
             raise LaunchFails(f"<{kind}> in this place is from ROS 1 and not accepted by ROS 2{hint}", entity.at)
         raise LaunchFails(f"there is no action {kind!r}{did_you_mean(kind, _ACTIONS)}", entity.at)
-    given = _attributes(entity, f"if unless {_ACTIONS[kind]}")
+    given = attributes_of(entity, f"if unless {_ACTIONS[kind]}")
     condition = _condition(given, entity)
     if kind == "set_remap":
         given = {"src": given["from"], "dst": given["to"]}
@@ -95,51 +90,6 @@ def _checked(call: Call) -> Call:
     except ExpressionFails as error:
         raise LaunchFails(str(error), call.at) from None
     return call
-
-
-def _attributes(entity: Entity, known: str) -> dict[str, Any]:
-    """Return the attributes of an entity, of their types. Raises LaunchFails for unknown and missing ones."""
-    if entity.error:
-        raise LaunchFails(entity.error, entity.at)
-    if entity.is_yaml and entity.has_actions != ("children" in known):
-        what = "needs the key children" if "children" in known else "has no list of actions"
-        raise LaunchFails(f"{entity.kind} {what}", entity.at)
-    names = {word.partition(":")[0].rstrip("![]"): word for word in known.split()}
-    lists = {name for name, word in names.items() if word.endswith("[]")}
-    for name in () if "children" in names else [*entity.nested, *(it.kind for it in entity.actions)]:
-        if name not in lists:
-            raise LaunchFails(f"<{entity.kind}> contains no <{name}>{did_you_mean(name, lists)}", entity.at)
-    found: dict[str, Any] = {}
-    for name, value in entity.attributes.items():
-        plain = name.removesuffix("-sep") if not entity.is_yaml else name
-        if plain not in names or plain in lists or plain == "children":
-            right = _ROS1_ATTRIBUTES.get(entity.kind, {}).get(name)
-            hint = (
-                (f" in ROS 2; write {right!r}" if right else " in ROS 2")
-                if right is not None
-                else did_you_mean(name, names)
-            )
-            raise LaunchFails(f"<{entity.kind}> has no attribute {name!r}{hint}", entity.at)
-        if plain == name:
-            found[name] = _typed(entity, name, value, names[name])
-    missing = [name for name, word in names.items() if "!" in word and name not in {*found, *entity.nested}]
-    if missing:
-        raise LaunchFails(f"<{entity.kind}> needs the attribute {missing[0]!r}", entity.at)
-    return found
-
-
-def _typed(entity: Entity, name: str, value: Any, word: str) -> Any:
-    _, _, kind = word.partition(":")
-    wanted = _TYPES[kind] if kind else str
-    if entity.is_yaml:
-        if not is_typed(value, wanted):
-            what = f"{name} of {entity.kind} is {value!r}, which YAML reads as {type(value).__name__}"
-            raise LaunchFails(f"{what}: {'put quotes around it' if wanted is str else f'write a {kind}'}", entity.at)
-        return value
-    separator = entity.attributes.get(f"{name}-sep")
-    if separator:
-        return [typed_text(part, wanted, entity.at) for part in value.split(separator)]
-    return value if wanted is str else typed_text(value, wanted, entity.at)
 
 
 def _condition(given: dict[str, Any], entity: Entity) -> Call | None:
@@ -217,12 +167,12 @@ def _choice(entity: Entity) -> str:
 
 
 def _pairs(entity: Entity) -> dict[str, list[Value]]:
-    given = _attributes(entity, _NESTED[entity.kind])
+    given = attributes_of(entity, _NESTED[entity.kind])
     return {name: parse_value(value, entity.at) for name, value in given.items()}
 
 
 def _composable(entity: Entity) -> Call:
-    given = _attributes(entity, _NESTED[entity.kind])
+    given = attributes_of(entity, _NESTED[entity.kind])
     condition = _condition(given, entity)
     kwargs: dict[str, Value] = {
         _ARGUMENTS.get(name, name): parse_value(value, entity.at) for name, value in given.items()
@@ -235,7 +185,7 @@ def _composable(entity: Entity) -> Call:
 
 def _parameter(entity: Entity) -> Value:
     """Return an item of the parameters of a node. Raises LaunchFails."""
-    given = _attributes(entity, _NESTED["param"])
+    given = attributes_of(entity, _NESTED["param"])
     if "from" in given and "name" in given:
         raise LaunchFails("a <param> has either name or from", entity.at)
     if "from" in given:
@@ -261,5 +211,5 @@ def _parameter(entity: Entity) -> Value:
     if kind is not None and kind != "yaml":
         kwargs["value_type"] = Call(f"builtins.{kind}", [], {}, entity.at)
         if kind in ("int", "float", "bool") and not entity.is_yaml:
-            kwargs["value"] = parse_if_text(typed_text(entity.attributes["value"], _TYPES[kind], entity.at), entity.at)
+            kwargs["value"] = parse_if_text(typed_text(entity.attributes["value"], TYPES[kind], entity.at), entity.at)
     return {name: _checked(Call(TYPED[0], [], kwargs, entity.at))}

@@ -1,23 +1,26 @@
 """Launch files in Python, evaluated without running them: what they create, and what the functions they call give."""
 
 import posixpath
-import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from io import StringIO
 from pathlib import PurePosixPath
-from typing import Any
 
-import yaml
-
-from grader.package.launch.api import CONDITION, DESCRIPTION, SUBSTITUTION, LaunchClass, class_named, exports, is_a
-from grader.package.launch.arguments import bind, check
-from grader.package.launch.model import Contents, Context, LaunchFails, LaunchSignal, not_evaluated
+from grader.package.launch.api import CONDITION, DESCRIPTION, SUBSTITUTION, class_named, exports, is_a
+from grader.package.launch.model import Contents, Context, LaunchFails, LaunchSignal
 from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
-from grader.package.launch.substitutions import condition, resolve
-from grader.package.launch.value_types import UnknownText, gives_text
-from grader.static_python.calls import Calls
+from grader.package.launch.python_functions import (
+    LaunchFunctions,
+    add_action,
+    expand_user,
+    expand_variables,
+    join_paths,
+    known_call,
+    safe_load,
+    variable,
+)
+from grader.package.launch.substitutions import resolve
+from grader.package.launch.truth import condition
 from grader.static_python.evaluation import Evaluation, FunctionTable, record
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.library import standard_functions
@@ -35,53 +38,12 @@ from grader.static_python.values import (
 
 _MODULE = "python_launch_file"  # the __name__ of a launch file
 _AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
-_MAX_YAML = 20_000  # characters
 _RECORDED = (
     "builtins.open.read", "builtins.open.close", "builtins.open.__enter__", "xacro.process_file.toxml",
     "xacro.process_file.toprettyxml", "xacro.process_doc", "xacro.parse.toxml", "xacro.parse.toprettyxml",
     "typing.List.__getitem__", "launch.logging.get_logger",
     *(f"launch.logging.get_logger.{name}" for name in ("debug", "info", "warning", "error")),
 )  # fmt: skip
-_Run = Callable[[Evaluation, Call], Value]
-
-
-class _Functions(dict[str, Any]):
-    """The functions by full name, with every class of launch and its methods."""
-
-    def get(self, name: str, default: Any = None) -> Any:
-        """Return a function; None for one that is not evaluated."""
-        found = super().get(name)
-        return found if found is not None else _function_of(name) or default
-
-    def __contains__(self, name: object) -> bool:
-        return self.get(str(name)) is not None
-
-
-def _function_of(name: str) -> _Run | None:
-    """Return the constructor of a class of launch, or one that fails: of a name that is not there."""
-    owner, _, own = name.rpartition(".")
-    if gives_text(owner) and gives_text(name):
-        return record
-    names, cls = exports().get(owner), class_named(owner)
-    if names is not None and own in names:
-        made = class_named(names[own])
-        return partial(_construct, made) if made is not None else None
-    if names is not None or (cls is not None and own not in cls.methods and not own.startswith("_")):
-        return partial(_fail, f"{cls.short if cls is not None else owner} has no {own!r}")
-    return None
-
-
-def _construct(cls: LaunchClass, evaluation: Evaluation, call: Call) -> Value:
-    call.name = cls.name
-    bind(cls, call)
-    doubt = check(cls, call)
-    if doubt is not None:
-        evaluation.doubted(Unknown(not_evaluated(doubt.reason), doubt.at))
-    return record(evaluation, call)
-
-
-def _fail(message: str, *_: object) -> Value:
-    raise ExpressionFails(message, AttributeError)
 
 
 @dataclass(slots=True)
@@ -114,11 +76,11 @@ class PythonLaunchFile:
             for name in ("FindPackageShare.find", "FindPackagePrefix.find")
         ]
         adds = [f"{DESCRIPTION}.{name}" for name in ("add_action", "add_entity")]
-        return _Functions(
+        return LaunchFunctions(
             {
                 **standard_functions(WORKING_FOLDER),
                 **dict.fromkeys(_RECORDED, record),
-                **dict.fromkeys(adds, _add),
+                **dict.fromkeys(adds, add_action),
                 **dict.fromkeys(_methods("perform", SUBSTITUTION), self._perform),
                 **dict.fromkeys(_methods("evaluate", CONDITION), self._evaluate),
                 "launch.launch_context.LaunchContext.perform_substitution": self._perform_argument,
@@ -130,11 +92,11 @@ class PythonLaunchFile:
                 **dict.fromkeys(("pathlib.Path.read_text", "pathlib.Path.open"), self._open_path),
                 **dict.fromkeys(("os.path.exists", "os.path.isfile", "pathlib.Path.exists"), self._exists),
                 **dict.fromkeys(("xacro.process_file", "xacro.process", "xacro.parse"), self._xacro),
-                **dict.fromkeys(("yaml.safe_load", "yaml.load"), _safe_load),
-                **dict.fromkeys(("os.environ.__getitem__", "os.environ.get", "os.getenv"), _variable),
-                "os.path.join": _join,
-                "os.path.expanduser": _expanduser,
-                "os.path.expandvars": _expandvars,
+                **dict.fromkeys(("yaml.safe_load", "yaml.load"), safe_load),
+                **dict.fromkeys(("os.environ.__getitem__", "os.environ.get", "os.getenv"), variable),
+                "os.path.join": join_paths,
+                "os.path.expanduser": expand_user,
+                "os.path.expandvars": expand_variables,
                 "pathlib.Path.home": lambda *_: PurePosixPath(HOME),
             }
         )
@@ -238,54 +200,3 @@ def _methods(name: str, base: str) -> list[str]:
     """Return the full names of a method of each class with a base."""
     classes = {full for names in exports().values() for full in names.values() if full}
     return [f"{full}.{name}" for full in sorted(classes) if is_a(full, base)]
-
-
-def known_call(value: Value) -> Value:
-    """Return a value that is known at its surface. Raises Undetermined."""
-    if isinstance(value, Unknown):
-        raise Undetermined(value.reason, value.at)
-    return value
-
-
-def _add(evaluation: Evaluation, call: Call) -> Value:
-    if len(call.args) + len(call.kwargs) != 1:
-        raise ExpressionFails(f"{call.name.rpartition('.')[2]} takes one action")
-    record(evaluation, call)
-
-
-def _safe_load(evaluation: Evaluation, call: Call) -> Value:
-    given = call.argument(0, "stream")
-    text = given.read() if isinstance(given, StringIO) else given
-    if not isinstance(text, str) or len(text) > _MAX_YAML or re.search(r"(^|\s)[&*!]", text):
-        raise Undetermined("this YAML is not evaluated")
-    try:
-        return evaluation.budget.checked(yaml.safe_load(text))
-    except (yaml.YAMLError, ValueError, RecursionError):
-        raise ExpressionFails("this text is not YAML", ValueError) from None
-
-
-def _variable(_: Evaluation, call: Call) -> Value:
-    """Return a variable of the environment: whether it is set is not known."""
-    name, default = known(call.argument(0, "key")), known(call.argument(1, "default"))
-    if name == "HOME":
-        return HOME
-    reason = "the environment is not evaluated"
-    if call.name.endswith("__getitem__"):
-        raise Undetermined(reason)
-    return (UnknownText if isinstance(default, str) else Unknown)(reason, call.at)
-
-
-def _join(evaluation: Calls, call: Call) -> Value:
-    if any(isinstance(value, Call) and class_named(value.name) is not None for value in call.args):
-        raise ExpressionFails("os.path.join takes strings, not substitutions: use PathJoinSubstitution([...])")
-    return evaluation.call_value(standard_functions(WORKING_FOLDER)["os.path.join"], call)
-
-
-def _expanduser(_: Evaluation, call: Call) -> Value:
-    text = path_text(known(call.args[0])) if call.args else None
-    return re.sub("^~", HOME, text) if text is not None else Unknown("a path is not evaluated", call.at)
-
-
-def _expandvars(_: Evaluation, call: Call) -> Value:
-    text = path_text(known(call.args[0])) if call.args else None
-    return text if text is not None and "$" not in text else Unknown("the environment is not evaluated", call.at)

@@ -8,7 +8,7 @@ from operator import attrgetter
 from pathlib import PurePosixPath
 from typing import Any
 
-from grader.package.launch.actions import CIRCULAR_INCLUDE, ActionVisitor, Include
+from grader.package.launch.actions import CIRCULAR_INCLUDE, KINDS
 from grader.package.launch.api import DESCRIPTION, is_a
 from grader.package.launch.frontend import read_frontend
 from grader.package.launch.frontend_actions import actions_of
@@ -16,6 +16,7 @@ from grader.package.launch.model import Context, Findings, Launch, LaunchFault, 
 from grader.package.launch.places import PREFIX
 from grader.package.launch.python_file import PythonLaunchFile
 from grader.package.launch.value_types import kind_of
+from grader.package.launch.visitor import ActionVisitor, Include
 from grader.package.setup_py import location_in
 from grader.source import Location, Source
 from grader.static_python.parse import START, SyntaxFault, parse
@@ -24,13 +25,8 @@ from grader.static_python.values import Call, Function, Unknown, Value
 _ENTRY = "generate_launch_description"
 _NODE = "launch_ros.actions.node.Node"
 _MAX_INCLUDES = 10
-_JOINED = (
-    "nodes",
-    "references",
-    "faults",
-    "unknown",
-    "doubts",
-)  # what a launch file shares with those that it includes
+# What a launch file shares with those that it includes.
+_JOINED = ("nodes", "references", "faults", "unknown", "doubts")
 
 _MAX_KEPT = 4  # launch files
 # The results of launch files that are read again: those of a handout, or while hints are searched. Each with what it
@@ -142,7 +138,9 @@ def _frontend(data: bytes, path: str, context: Context, include: Include, *, is_
     if root.error:
         findings.add_fault(root.error, root.at)
     actions = actions_of(root, findings)
-    visitor = ActionVisitor(findings, include, lambda _, at, *__: Unknown("a function is not evaluated here", at))
+    visitor = ActionVisitor(
+        findings, include, lambda _, at, *__: Unknown("a function is not evaluated here", at), KINDS
+    )
     visitor.launch(Call(DESCRIPTION, [], {"initial_entities": actions}, root.at), context, root.at)
     return _launch(source, findings, ())
 
@@ -155,7 +153,7 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
     findings = Findings(lambda position: location_in(code.source, position))
     file = PythonLaunchFile(context)
     entry = file.run(code, installed).get(_ENTRY)
-    visitor = ActionVisitor(findings, include, file.call)
+    visitor = ActionVisitor(findings, include, file.call, KINDS)
     interpreter = file.interpreter
     if isinstance(entry, Function):
         description = file.call(entry, entry.at, (), context)

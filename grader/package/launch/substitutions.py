@@ -1,37 +1,26 @@
 """The texts of launch's substitutions, with the launch configurations so far."""
 
-import builtins
 import posixpath
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import isclose
 
-import yaml
-
-from grader.package.launch.commands import command_output
+from grader.package.launch.commands import command_output, contents_of
+from grader.package.launch.expression import expression_text
 from grader.package.launch.model import Contents, Context, LaunchFails, NotEvaluated, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
+from grader.package.launch.truth import are_equal, boolean, operand
 from grader.package.launch.value_types import gives_text
-from grader.static_python.budget import Budget, OutOfBudget
-from grader.static_python.builtins import BUILTINS, MATH
-from grader.static_python.expressions import evaluate
 from grader.static_python.parse import Position
 from grader.static_python.values import (
     MAX_TEXT,
     UNKNOWN_KEYS,
     Call,
-    ExpressionFails,
-    Namespace,
-    Undetermined,
     Unknown,
     Value,
-    str_of,
 )
 
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
 _PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", "env", "rviz2"})
-_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
 def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Resolved:
@@ -48,7 +37,7 @@ def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Res
         case Call() if value.name.endswith(".perform"):
             return resolve(value.owner if value.owner is not None else value.args[-1], context, at, depth + 1)
         case Call() if gives_text(value.name) or value.name.startswith("xacro."):
-            return _python_text(value, context)
+            return contents_of(value, context)
         case Call():
             return _Substitution(value, context, depth).value()
         case list() | tuple() | dict() | set():
@@ -74,46 +63,6 @@ def known_text(value: Value, context: Context, at: Position) -> str:
     if isinstance(found, str):
         return found
     raise NotEvaluated(found.reason if isinstance(found, Unknown) else "the content of a file is used as a text", at)
-
-
-def boolean(text: str, at: Position) -> bool:
-    """Return the value of a text as launch reads it where it wants a boolean, by the rules of YAML."""
-    found = _BOOLEANS.get(text) if text in ("0", "1") else _yaml_boolean(text)
-    if found is None:
-        raise LaunchFails(f"{text[:40]!r} is neither true nor false", at)
-    return found
-
-
-def _yaml_boolean(text: str) -> bool | None:
-    try:
-        found = yaml.safe_load(text) if len(text) < 20 else None
-    except yaml.YAMLError:
-        return None
-    return found if isinstance(found, bool) else None
-
-
-def condition(text: str, at: Position) -> bool:
-    """Return the value of a text as a condition."""
-    found = _BOOLEANS.get(text.strip().lower())
-    if found is None:
-        raise LaunchFails(f"a condition is {text[:40]!r}, expected true or false", at)
-    return found
-
-
-def _python_text(call: Call, context: Context) -> Resolved:
-    """Return what a Python function reads, that is not evaluated further."""
-    while call.owner is not None:
-        call = call.owner
-    path = call.argument(0, "file", "input_file_name")
-    if not isinstance(path, str):
-        return path if isinstance(path, Unknown) else Unknown(f"the result of {call.name} is not evaluated", call.at)
-    given = call.kwargs.get("mappings")
-    pairs = given.items() if isinstance(given, dict) else ()
-    arguments = tuple((str(name), value if isinstance(value, str) else None) for name, value in pairs)
-    by = "xacro" if call.name.startswith("xacro.") else call.kwargs.get("by", "decode")
-    found = Contents(path, by, arguments)
-    context.reads.append((found, call.at))
-    return found
 
 
 @dataclass(slots=True)
@@ -153,8 +102,8 @@ class _Substitution:
         return str(function(self.booleans(*operands))).lower()
 
     def compared(self, *, equal: bool) -> Resolved:
-        texts = self.texts(*(_plain(self.call.kwargs[name]) for name in ("left", "right")))
-        return texts if isinstance(texts, Unknown) else str(_are_equal(*texts) == equal).lower()
+        texts = self.texts(*(operand(self.call.kwargs[name]) for name in ("left", "right")))
+        return texts if isinstance(texts, Unknown) else str(are_equal(*texts) == equal).lower()
 
     def if_else(self) -> Resolved:
         is_chosen = self.booleans(self.call.kwargs["condition"])[0]
@@ -237,58 +186,10 @@ class _Substitution:
         return self.read(Contents(path, "open")) if isinstance(path, str) else path
 
     def expression(self) -> Resolved:
-        """Return the value of a Python expression that contains plain values only."""
         texts = self.texts(self.call.kwargs["expression"])
         if isinstance(texts, Unknown):
             raise NotEvaluated(f"this expression is not evaluated: {texts.reason}", self.call.at)
-        modules = self.call.kwargs.get("python_modules", ["math"])
-        names = [modules] if isinstance(modules, str) else modules if isinstance(modules, list | tuple) else [None]
-        if not all(isinstance(name, str) and name in sys.stdlib_module_names for name in names):
-            raise NotEvaluated("the modules of this expression are not evaluated", self.call.at)
-        budget = Budget(_WORK)
-        try:
-            return str_of(evaluate(texts[0], _find if list(names) == ["math"] else _unknown, budget))
-        except ExpressionFails as error:
-            raise LaunchFails(f"the expression {texts[0][:60]!r} fails: {error}", self.call.at) from None
-        except (Undetermined, OutOfBudget) as error:
-            raise NotEvaluated(f"this expression is not evaluated: {error}", self.call.at) from None
-        finally:
-            self.context.around.steps_left -= budget.used
-
-
-def _find(name: str) -> Value:
-    if name in BUILTINS or name in MATH:
-        return MATH.get(name, BUILTINS.get(name))
-    if name == "math":
-        return Namespace("math", MATH.__getitem__)
-    if hasattr(builtins, name) or name.startswith("__"):
-        return _unknown(name)
-    raise ExpressionFails(f"the name {name!r} is not defined", NameError)
-
-
-def _unknown(name: str) -> Value:
-    raise Undetermined(f"the name {name!r} is not evaluated")
-
-
-def _plain(value: Value) -> Value:
-    """Return an operand of EqualsSubstitution, which takes any value, as the text that it is compared as."""
-    if isinstance(value, bool | None):
-        return str(value).lower() if value is not None else ""
-    is_text = isinstance(value, str | Call | Unknown) or (
-        isinstance(value, list | tuple) and any(isinstance(it, Call) for it in value)
-    )
-    return value if is_text else str(value)
-
-
-def _are_equal(left: str, right: str) -> bool:
-    """Return whether two texts are equal to launch: true equals True, and 1 equals 1.0."""
-    values = [_BOOLEANS.get(text.lower()) for text in (left, right)]
-    if None not in values:
-        return values[0] == values[1]
-    try:
-        return isclose(float(left), float(right))
-    except ValueError:
-        return left == right
+        return expression_text(texts[0], self.call.kwargs.get("python_modules", ["math"]), self.call.at, self.context)
 
 
 _PERFORMS: dict[str, Callable[[_Substitution], Resolved]] = {
