@@ -55,7 +55,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel, *, keep_edi
     shown = {name: found for found in reversed(search.found) for name in found.gains}
     entries = {id(found): _entry(found, shown, results, costs) for found in search.found}
     hints: dict[str, Hint] = {}
-    for name, one in {**shown, **search.missing}.items():
+    for name, one in {**search.missing, **shown}.items():
         with trials.isolated():
             entry = entries.get(id(one), name)
             before = search.found[: search.found.index(one)] if one.is_late else []

@@ -126,7 +126,7 @@ class HintSearch:
         together = self._gains(self.edits, best.proposal.edits, self.results)
         is_late = bool(self.found) and not wanted & alone.keys()
         gains = alone if self.found and not is_late else together
-        if not together or not set(gains) <= {*together, *(it for found in self.found for it in found.gains)}:
+        if not together or any(self._after[name].outcome.status != "passed" for name in gains):
             return False
         if not wanted & gains.keys() or (self._draft is not None and self._is_half(best)):
             return False
