@@ -4,6 +4,7 @@ from collections.abc import Collection
 from pathlib import PurePosixPath
 
 from grader.static_python import values as py
+from grader.static_python.knowledge import parts_of, refuse, too_large
 
 READING = 500_000  # parts that reading one submission may produce or look at: some 0.5 s
 CHARACTERS, _BITS = 16, 256  # that count as one part
@@ -49,9 +50,9 @@ class Budget:
         while pending:
             part = pending.pop()
             size += 1 + self._size_alone(part, kind)
-            inside = py.parts_of(part)
+            inside = parts_of(part)
             if size + len(pending) + len(inside) > py.MAX_PARTS:
-                py.too_large("value")
+                too_large("value")
             self.charge(len(inside))
             pending += inside
         self.charge(size)
@@ -78,13 +79,13 @@ class Budget:
         """Return the size of a part beyond one. Raises Undetermined for one that is too large, or not known."""
         if isinstance(part, str):
             if len(part) > py.MAX_TEXT:
-                py.too_large("text")
+                too_large("text")
             if self.stand_ins and kind == "plain" and any(stand_in in part for stand_in in self.stand_ins):
                 raise py.Undetermined(FOLDER)
             return len(part) // CHARACTERS
         if isinstance(part, int):
             if part.bit_length() > py.MAX_BITS:
-                py.too_large("number")
+                too_large("number")
             return part.bit_length() // _BITS
         if isinstance(part, PurePosixPath):
             return self._size_alone(str(part), kind)
@@ -92,4 +93,4 @@ class Budget:
             return 0
         if isinstance(part, py.Items | py.Namespace | py.PlainFunction):  # a plain function itself refuses these
             return 0
-        return py.refuse(part, f"values of the type {type(part).__name__} are not supported")
+        return refuse(part, f"values of the type {type(part).__name__} are not supported")

@@ -1,13 +1,24 @@
 """Python's built-in functions and those of math, as an expression may call them."""
 
+import builtins
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping
-from types import FunctionType
+from contextlib import suppress
 from typing import Any
 
 from grader.static_python import values as py
 from grader.static_python.budget import Budget
+from grader.static_python.knowledge import (
+    call_plain,
+    checked_key,
+    items_of,
+    iterate,
+    known,
+    reason_of,
+    str_of,
+    too_large,
+)
 
 _MAX_DIGITS = 400  # that round leaves
 _OF_SIGNATURE = re.compile(r"positional argument|keyword argument|required keyword")
@@ -23,17 +34,28 @@ def call(
     """Return what a call of a function of the allow-list returns."""
     if not isinstance(function, py.PlainFunction):
         budget.measure([args, list(kwargs.values())], "holds")
-        return py.call_plain(function, *args, **kwargs) if not callable(function) else _refuse("this call")
+        return call_plain(function, *args, **kwargs) if not callable(function) else _refuse("this call")
     budget.measure([args, list(kwargs.values())], "holds" if function.kind == "applies" else function.kind)
     given = (apply, *args) if function.kind == "applies" else args
     try:
-        return budget.checked(py.call_plain(function.run, *given, **kwargs), function.kind)
+        return budget.checked(call_plain(function.run, *given, **kwargs), function.kind)
     except py.ExpressionFails as error:
-        if (
-            function.kind != "plain" and isinstance(function.run, FunctionType) and _OF_SIGNATURE.search(str(error))
-        ):  # Python's own may have another
-            _refuse(f"this use of {function.name}")
+        if function.kind != "plain" and _OF_SIGNATURE.search(str(error)):  # Python's own may take other arguments
+            wrong = _wrong_arguments(function, args, kwargs)
+            raise py.ExpressionFails(f"TypeError: {function.name}() {wrong}", TypeError) from None
         raise
+
+
+def _wrong_arguments(function: py.PlainFunction, args: list[py.Value], kwargs: dict[str, py.Value]) -> str:
+    """Return what is wrong with the arguments of Python's own function. Raises Undetermined if that is not certain."""
+    from inspect import signature  # late: it takes long to import
+
+    with suppress(ValueError):  # of a function whose signature is not known
+        try:
+            signature(function.own).bind(*args, **kwargs) if function.own is not None else None
+        except TypeError as error:
+            return str(error)
+    return str(_refuse(f"this use of {function.name}"))
 
 
 def _refuse(what: str) -> py.Value:
@@ -46,21 +68,21 @@ def _refuse_function(name: str) -> Callable[..., py.Value]:
 
 def _of_items(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
     """Return a function whose first argument is a loop's items, as list takes it: known or not."""
-    return lambda *args, **kwargs: function(*(list(py.iterate(value)) for value in args[:1]), *args[1:], **kwargs)
+    return lambda *args, **kwargs: function(*(list(iterate(value)) for value in args[:1]), *args[1:], **kwargs)
 
 
 def make_dict(*args: py.Value, **kwargs: py.Value) -> py.Value:
     """Return dict() of values."""
     if not args or isinstance(args[0], dict):
         return dict(*args, **kwargs)
-    pairs = [[list(py.iterate(pair)) for pair in py.iterate(value)] for value in args]
+    pairs = [[list(iterate(pair)) for pair in iterate(value)] for value in args]
     for key, *_ in filter(None, pairs[0]):
-        py.checked_key(py.known(key))
+        checked_key(known(key))
     return dict(*pairs, **kwargs)
 
 
 def _sum(values: py.Value, start: py.Value = 0) -> py.Value:
-    items = py.items_of(values)
+    items = items_of(values)
     if any(isinstance(item, list | tuple) for item in (start, *items)):
         _refuse("the sum of lists")
     return sum(items, start)
@@ -78,7 +100,7 @@ def _small(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
     def bounded(*args: py.Value, **kwargs: py.Value) -> py.Value:
         parts = [part for value in args for part in (value if isinstance(value, list | tuple | range) else [value])]
         if len(parts) > _MAX_SMALL or any(isinstance(part, int) and abs(part) > _MAX_SMALL for part in parts):
-            py.too_large("number")
+            too_large("number")
         return function(*args, **kwargs)
 
     return bounded
@@ -87,27 +109,27 @@ def _small(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
 def _range(*bounds: int) -> range:
     numbers = range(*bounds)
     if numbers[py.MAX_PARTS :]:
-        py.too_large("range")
+        too_large("range")
     return numbers
 
 
 def _sized(value: py.Value) -> py.Value:
-    return value if isinstance(value, (*py.PLAIN, py.Items)) else py.known(value)
+    return value if isinstance(value, (*py.PLAIN, py.Items)) else known(value)
 
 
 def _next(value: py.Value, *default: py.Value) -> py.Value:
     try:
-        return next(value.iterator if isinstance(value, py.Items) else py.known(value), *default)
+        return next(value.iterator if isinstance(value, py.Items) else known(value), *default)
     except StopIteration:
         return _refuse("the end of an iterator")
 
 
 def _map(apply: Apply, function: py.Value, first: py.Value, *lists: py.Value) -> py.Items:
-    return py.Items(apply(function, list(items)) for items in zip(*map(py.iterate, (first, *lists)), strict=False))
+    return py.Items(apply(function, list(items)) for items in zip(*map(iterate, (first, *lists)), strict=False))
 
 
 def _filter(apply: Apply, function: py.Value, values: py.Value) -> py.Items:
-    return py.Items(_kept(apply, function, py.iterate(values)))
+    return py.Items(_kept(apply, function, iterate(values)))
 
 
 def _kept(apply: Apply, function: py.Value, items: Iterator[py.Value]) -> Iterator[py.Value]:
@@ -118,21 +140,21 @@ def _kept(apply: Apply, function: py.Value, items: Iterator[py.Value]) -> Iterat
 
 def truth(value: py.Value) -> bool:
     """Return whether a value counts as true. Raises Undetermined."""
-    if isinstance(value, py.OPAQUE) and py.reason_of(value):
-        py.known(value)
-    return bool(py.call_plain(bool, value))
+    if isinstance(value, py.OPAQUE) and reason_of(value):
+        known(value)
+    return bool(call_plain(bool, value))
 
 
 def _keyed(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
     """Return sorted, min or max: of the items of a value, or of several values, by a key."""
 
     def by_key(apply: Apply, *args: py.Value, key: py.Value = None, **named: py.Value) -> py.Value:
-        items = py.items_of(args[0]) if len(args) == 1 else list(args)
-        py.known([*items, *named.values()])
+        items = items_of(args[0]) if len(args) == 1 else list(args)
+        known([*items, *named.values()])
         arguments = [items] if len(args) == 1 else items
         if key is None or (function is sorted and len(args) != 1):
             return function(*arguments, **named)
-        keys = [py.known(apply(key, [item])) for item in items]
+        keys = [known(apply(key, [item])) for item in items]
         order = function(range(len(items)), key=keys.__getitem__, **named)
         return [items[index] for index in order] if isinstance(order, list) else items[order]
 
@@ -142,10 +164,10 @@ def _keyed(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
 _HOLDING: dict[str, Callable[..., Any]] = {
     "list": _of_items(list), "tuple": _of_items(tuple), "dict": make_dict, "next": _next,
     "len": lambda value: len(_sized(value)), "reversed": lambda value: py.Items(reversed(_sized(value))),
-    "bool": lambda *args: truth(*args) if args else False, "iter": lambda value: py.Items(py.iterate(value)),
-    "enumerate": lambda value, start=0: py.Items(enumerate(py.iterate(value), py.known(start))),
-    "zip": lambda *values: py.Items(zip(*map(py.iterate, values), strict=False)),
-    "any": lambda items: any(map(truth, py.iterate(items))), "all": lambda items: all(map(truth, py.iterate(items))),
+    "bool": lambda *args: truth(*args) if args else False, "iter": lambda value: py.Items(iterate(value)),
+    "enumerate": lambda value, start=0: py.Items(enumerate(iterate(value), known(start))),
+    "zip": lambda *values: py.Items(zip(*map(iterate, values), strict=False)),
+    "any": lambda items: any(map(truth, iterate(items))), "all": lambda items: all(map(truth, iterate(items))),
 }  # fmt: skip
 _APPLYING: dict[str, Callable[..., Any]] = {
     "map": _map, "filter": _filter, "sorted": _keyed(sorted), "min": _keyed(min), "max": _keyed(max),
@@ -159,10 +181,12 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
     },
 }  # fmt: skip
 BUILTINS: Mapping[str, py.PlainFunction] = {
-    **{name: py.PlainFunction(name, function) for name, function in _FUNCTIONS.items()},
-    **{name: py.PlainFunction(name, function, "holds") for name, function in _HOLDING.items()},
-    **{name: py.PlainFunction(name, function, "applies") for name, function in _APPLYING.items()},
-    "str": py.PlainFunction("str", lambda *args: py.str_of(*args) if args else "", "text"),
+    **{
+        name: py.PlainFunction(name, function, kind, getattr(builtins, name))
+        for kind, table in (("plain", _FUNCTIONS), ("holds", _HOLDING), ("applies", _APPLYING))
+        for name, function in table.items()
+    },
+    "str": py.PlainFunction("str", lambda *args: str_of(*args) if args else "", "text"),
 }
 MATH: Mapping[str, py.Value] = {
     **{name: getattr(math, name) for name in ("pi", "e", "tau", "inf", "nan")},

@@ -8,6 +8,7 @@ from pathlib import PurePosixPath
 from grader.static_python import values as py
 from grader.static_python.builtins import BUILTINS, call
 from grader.static_python.evaluation import FAILED, NOT_EVALUATED, Evaluation, EvaluationStopped
+from grader.static_python.knowledge import call_plain, iterate, known, reason_of
 from grader.static_python.operators import method
 from grader.static_python.parse import Position, position_of
 
@@ -44,7 +45,7 @@ class Calls(Evaluation):
         """Add the arguments that ** unpacks; of an unknown dict, that any argument may be given."""
         if not isinstance(value, dict):
             kwargs[py.UNKNOWN_KEYS] = py.Unknown(
-                py.reason_of(value) or f"this use of ** {NOT_EVALUATED}", position_of(node)
+                reason_of(value) or f"this use of ** {NOT_EVALUATED}", position_of(node)
             )
             return
         for key, item in value.items():
@@ -81,13 +82,13 @@ class Calls(Evaluation):
                 kind = type(function).__name__
                 raise py.ExpressionFails(f"a {kind} cannot be called: is there a comma missing before it?")
             case _:
-                raise EvaluationStopped(f"this call {NOT_EVALUATED}: {py.reason_of(function)}".rstrip(": "), made.at)
+                raise EvaluationStopped(f"this call {NOT_EVALUATED}: {reason_of(function)}".rstrip(": "), made.at)
         return found
 
     def _plain(self, function: py.PlainFunction, made: py.Call) -> py.Value:
         """Return the value of Python's own function; stop where it would call others, or use up an iterator."""
         try:
-            py.known(made.kwargs.get(py.UNKNOWN_KEYS))
+            known(made.kwargs.get(py.UNKNOWN_KEYS))
             return call(function, made.args, made.kwargs, self.budget, partial(self._apply, made.at))
         except py.Undetermined as error:
             given = (*made.args, *made.kwargs.values())
@@ -132,13 +133,13 @@ class Calls(Evaluation):
                 owner[:] = call(BUILTINS["sorted"], arguments, kwargs, self.budget, partial(self._apply, made.at))
                 return None
             if name in ("extend", "update"):
-                args = [value if isinstance(value, dict) else list(py.iterate(value)) for value in args]
+                args = [value if isinstance(value, dict) else list(iterate(value)) for value in args]
             elif name != "append":
-                py.known(args if name not in ("insert", "setdefault") else args[:1])
+                known(args if name not in ("insert", "setdefault") else args[:1])
             if name in ("remove", "index", "count"):
                 self.budget.measure(owner, "holds")
-                py.known(owner)
-            return self.budget.checked(py.call_plain(getattr(owner, name), *args, **kwargs))
+                known(owner)
+            return self.budget.checked(call_plain(getattr(owner, name), *args, **kwargs))
         except py.Undetermined as error:
             raise EvaluationStopped(f"the method {name} {NOT_EVALUATED} here: {error}", made.at) from None
 

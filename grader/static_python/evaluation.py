@@ -10,6 +10,7 @@ from grader.static_python.budget import Budget
 from grader.static_python.builtins import BUILTINS, truth
 from grader.static_python.expressions import Expressions
 from grader.static_python.imports import PYTHON_3_12, USUAL_NAMES
+from grader.static_python.knowledge import reason_of
 from grader.static_python.parse import START, Position, position_of
 
 
@@ -127,7 +128,7 @@ class Evaluation(Expressions):
             nodes = (node for branch in branches for node in ast.walk(branch))
             if any(isinstance(node, _CHANGING) for node in nodes):
                 raise EvaluationStopped(
-                    f"a condition {NOT_EVALUATED}: {py.reason_of(value)}", getattr(value, "at", self.at)
+                    f"a condition {NOT_EVALUATED}: {reason_of(value)}", getattr(value, "at", self.at)
                 )
         return truth(value)
 

@@ -11,9 +11,10 @@ from typing import Any
 
 from grader.static_python.budget import Budget
 from grader.static_python.builtins import call, truth
+from grader.static_python.knowledge import call_plain, iterate
 from grader.static_python.operators import attribute, compare, operate, subscript
 from grader.static_python.parse import parse_expression
-from grader.static_python.values import ExpressionFails, Scope, Undetermined, Value, call_plain, iterate
+from grader.static_python.values import ExpressionFails, Scope, Undetermined, Value
 
 _MAX_LENGTH = 4_000  # characters of an expression
 _MAX_KEPT = 200  # characters of an expression that is kept once it is parsed

@@ -10,6 +10,7 @@ from grader.static_python.calls import Calls
 from grader.static_python.evaluation import NOT_EVALUATED, EvaluationStopped
 from grader.static_python.expressions import kinds_of
 from grader.static_python.imports import CONSTANTS, attribute_error
+from grader.static_python.knowledge import call_plain, iterate, known, refuse, str_of
 from grader.static_python.operators import has_attribute, operate
 from grader.static_python.parse import position_of
 
@@ -59,7 +60,7 @@ class FileExpressions(Calls):
                 values.append(self.evaluate(node, scope))
                 continue
             try:
-                values += py.iterate(self.evaluate(node.value, scope))
+                values += iterate(self.evaluate(node.value, scope))
             except py.Undetermined as error:
                 raise EvaluationStopped(str(error), error.at or position_of(node)) from None
         return values
@@ -76,11 +77,11 @@ class FileExpressions(Calls):
         for key, value in zip(node.keys, node.values, strict=True):
             found = self.evaluate(value, scope)
             if key is not None:
-                py.call_plain(table.__setitem__, py.known(self.evaluate(key, scope)), found)
+                call_plain(table.__setitem__, known(self.evaluate(key, scope)), found)
             elif isinstance(found, dict):
                 table |= found
             else:
-                py.refuse(found, "this dict is not supported")
+                refuse(found, "this dict is not supported")
         return table
 
     def _of_joinedstr(self, node: ast.JoinedStr, scope: py.Scope) -> py.Value:
@@ -93,17 +94,17 @@ class FileExpressions(Calls):
         self.budget.measure(value, "text")
         if node.format_spec is not None or node.conversion not in (-1, ord("s")):
             raise py.Undetermined("a format of this kind is not supported")
-        return py.str_of(value)
+        return str_of(value)
 
     def _of_generatorexp(self, node: ast.GeneratorExp, scope: py.Scope) -> py.Value:
         """Return a generator: the items of its first loop are evaluated now, the rest when it is iterated."""
-        first = py.iterate(self.evaluate(node.generators[0].iter, scope))
+        first = iterate(self.evaluate(node.generators[0].iter, scope))
         rounds = self.rounds(node.generators, py.Scope({}, scope), first)
         return py.Items(self.evaluate(node.elt, inner) for inner in rounds)
 
     def _of_dictcomp(self, node: ast.DictComp, scope: py.Scope) -> py.Value:
         return {
-            py.known(self.evaluate(node.key, inner)): self.evaluate(node.value, inner)
+            known(self.evaluate(node.key, inner)): self.evaluate(node.value, inner)
             for inner in self.rounds(node.generators, py.Scope({}, scope))
         }
 

@@ -10,6 +10,7 @@ from grader.static_python import values as py
 from grader.static_python.budget import Budget, OutOfBudget
 from grader.static_python.builtins import truth
 from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable, RaisedFlow
+from grader.static_python.knowledge import iterate
 from grader.static_python.parse import Code, Position, bound_in, own_nodes, position_of
 from grader.static_python.statements import LoopFlow, ReturnFlow, Statements
 
@@ -110,7 +111,7 @@ class Interpreter(Statements):
         self._block(node.orelse, scope)
 
     def _on_for(self, node: ast.For, scope: py.Scope) -> None:
-        items = py.iterate(self.evaluate(node.iter, scope))
+        items = iterate(self.evaluate(node.iter, scope))
         for item in items:
             self.bind(node.target, item, scope)
             if not self._round(node.body, scope):

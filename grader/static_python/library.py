@@ -8,6 +8,7 @@ from pathlib import PurePosixPath
 
 from grader.static_python import values as py
 from grader.static_python.evaluation import Evaluation, EvaluationStopped, ExitFlow, FunctionTable
+from grader.static_python.knowledge import iterate, known
 
 MAX_PATH = 4_096  # characters
 PACKAGE_FOLDER = "<package>"  # stands for the name of the package's folder, which the submission does not determine
@@ -67,7 +68,7 @@ def leave(evaluation: Evaluation, call: py.Call) -> py.Value:
     """End the program, if nothing can catch it."""
     if evaluation.handlers:
         raise EvaluationStopped("the end of the program, which may be caught, is not evaluated", call.at)
-    if call.args and py.known(call.args[0]) not in (0, None):
+    if call.args and known(call.args[0]) not in (0, None):
         evaluation.error("the file exits here with an error", call.at)
     raise ExitFlow
 
@@ -81,8 +82,8 @@ _FUNCTIONS: FunctionTable = {
     **dict.fromkeys(_EXITS, leave),
     **dict.fromkeys(("os.environ.get", "os.getenv"), lambda _, call: py.Unknown(_ENVIRONMENT, call.at)),
     "builtins.print": py.PlainFunction("print", _no_print, "holds"),
-    "itertools.chain": py.PlainFunction("chain", lambda *lists: py.Items(chain(*map(py.iterate, lists))), "holds"),
+    "itertools.chain": py.PlainFunction("chain", lambda *lists: py.Items(chain(*map(iterate, lists))), "holds"),
     "itertools.chain.from_iterable": py.PlainFunction(
-        "chain.from_iterable", lambda lists: py.Items(chain.from_iterable(map(py.iterate, py.iterate(lists)))), "holds"
+        "chain.from_iterable", lambda lists: py.Items(chain.from_iterable(map(iterate, iterate(lists)))), "holds"
     ),
 }

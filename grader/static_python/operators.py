@@ -9,6 +9,7 @@ from pathlib import PosixPath, PurePosixPath
 
 from grader.static_python import values as py
 from grader.static_python.budget import CHARACTERS, Budget
+from grader.static_python.knowledge import call_plain, items_of, known, refuse, str_of, too_large
 
 _WIDE = re.compile(r"\*|\d{3}")
 _FIELD = re.compile(r"\{(?:\w*)\}")
@@ -53,9 +54,9 @@ def method(owner: py.Value, name: str, budget: Budget) -> py.PlainFunction | Non
     def charged(*args: py.Value, **kwargs: py.Value) -> py.Value:
         if run is not _get:
             budget.charge(budget.measure(owner, kind), sum(search_cost(owner, value) for value in args))
-        return py.call_plain(run, owner, *args, **kwargs)
+        return call_plain(run, owner, *args, **kwargs)
 
-    return py.PlainFunction(name, charged, kind)
+    return py.PlainFunction(name, charged, kind, getattr(owner, name))
 
 
 def search_cost(text: py.Value, part: py.Value) -> int:
@@ -67,7 +68,7 @@ def percent_format(template: str, value: py.Value) -> str:
     """Return template % value."""
     if _WIDE.search(template):
         raise py.Undetermined("this format is not supported")
-    py.str_of(value)
+    str_of(value)
     return str(template % value)
 
 
@@ -75,27 +76,27 @@ def _format(text: str, *args: py.Value, **kwargs: py.Value) -> str:
     """Return text.format(...), for fields that are names or numbers."""
     if re.search(r"[{}]", _FIELD.sub("", text)):
         raise py.Undetermined("a format of this kind is not supported")
-    size = sum(len(py.str_of(value)) for value in (*args, *kwargs.values()))
+    size = sum(len(str_of(value)) for value in (*args, *kwargs.values()))
     if len(text) + size * text.count("{") > py.MAX_TEXT:
-        py.too_large("text")
+        too_large("text")
     return text.format(*args, **kwargs)
 
 
 def _replace(text: str, old: str, new: str, *count: int) -> str:
     if len(text) + (text.count(old) if old else len(text) + 1) * len(new) > py.MAX_TEXT:
-        py.too_large("text")
+        too_large("text")
     return text.replace(old, new, *count)
 
 
 def _join(separator: str, items: py.Value) -> str:
-    parts = py.items_of(items)
+    parts = items_of(items)
     if sum(len(part) + len(separator) for part in parts if isinstance(part, str)) > py.MAX_TEXT:
-        py.too_large("text")
+        too_large("text")
     return separator.join(parts)
 
 
 def _get(table: dict[py.Value, py.Value], key: py.Value, default: py.Value = None) -> py.Value:
-    return table.get(py.known(key), default)
+    return table.get(known(key), default)
 
 
 def _named(kind: type, *names: str) -> dict[str, Callable[..., py.Value]]:
@@ -123,13 +124,13 @@ def operate(op: ast.operator, left: py.Value, right: py.Value, budget: Budget) -
     operation = _OPERATORS.get(type(op))
     if type(left) in _NUMBERS and type(right) in _NUMBERS:
         if isinstance(op, ast.Pow) and type(left) is type(right) is int and left.bit_length() * right > py.MAX_BITS:
-            py.too_large("number")
+            too_large("number")
         kind = "plain"
     else:
         kind = _kind(op, left, right)
         for value in (left, right):
             if not isinstance(value, (*py.PLAIN, py.Items)):  # an iterator has no operators, as Python says itself
-                py.refuse(value, "this operation is not supported")
+                refuse(value, "this operation is not supported")
         size = budget.measure(left, kind) + budget.measure(right, kind)
         made = 0
         match op, left, right:
@@ -140,7 +141,7 @@ def operate(op: ast.operator, left: py.Value, right: py.Value, budget: Budget) -
             case (ast.Mult(), list() | tuple(), int() as times) | (ast.Mult(), int() as times, list() | tuple()):
                 made = size * times
         if made > py.MAX_PARTS:
-            py.too_large("value")
+            too_large("value")
         budget.charge(max(made, 0))
     if operation is None:
         raise py.Undetermined("this operation is not supported")
@@ -156,7 +157,7 @@ def _kind(op: ast.operator, left: py.Value, right: py.Value) -> str:
 
 def _run(operation: Callable[[py.Value, py.Value], py.Value], left: py.Value, right: py.Value) -> py.Value:
     try:
-        return py.call_plain(operation, left, right)
+        return call_plain(operation, left, right)
     except py.Undetermined:
         if isinstance(left, py.PLAIN) and isinstance(right, py.PLAIN) and type(left) is not type(right):
             kinds = f"{type(left).__name__} and {type(right).__name__}"
@@ -172,10 +173,10 @@ def compare(op: ast.cmpop, left: py.Value, right: py.Value, budget: Budget) -> b
         raise py.Undetermined("which values are one object is not defined")
     for value in (left, right):
         if not isinstance(value, py.PLAIN) and not (isinstance(value, py.Items) and isinstance(op, ast.Eq | ast.NotEq)):
-            py.refuse(value, "this comparison is not supported")
+            refuse(value, "this comparison is not supported")
     if type(left) not in _NUMBERS or type(right) not in _NUMBERS:
         budget.charge(budget.measure(left) + budget.measure(right), search_cost(right, left))
-    return bool(py.call_plain(_COMPARISONS[type(op)], left, right))
+    return bool(call_plain(_COMPARISONS[type(op)], left, right))
 
 
 def subscript(owner: py.Value, key: py.Value, budget: Budget) -> py.Value:
@@ -183,14 +184,14 @@ def subscript(owner: py.Value, key: py.Value, budget: Budget) -> py.Value:
     if isinstance(owner, py.Namespace) and isinstance(key, str):
         return owner.find(key)
     if not isinstance(owner, (*py.PLAIN, py.Items)):
-        py.refuse(owner, "this index is not supported")
+        refuse(owner, "this index is not supported")
     if isinstance(owner, str):
         budget.measure(owner)
     if not isinstance(key, slice):
         budget.measure(key)  # it is hashed, and shown where it is missing
     elif isinstance(owner, str | list | tuple):
         budget.charge(len(owner))
-    return budget.checked(py.call_plain(operator.getitem, owner, key))
+    return budget.checked(call_plain(operator.getitem, owner, key))
 
 
 _CONTAINERS = (list, tuple, dict)

@@ -10,6 +10,7 @@ from grader.static_python.builtins import truth
 from grader.static_python.evaluation import EvaluationStopped, ExitFlow
 from grader.static_python.file_expressions import FileExpressions
 from grader.static_python.imports import UNCERTAIN, USUAL_NAMES, import_error, imported_names
+from grader.static_python.knowledge import call_plain, iterate, known, reason_of, refuse
 from grader.static_python.operators import operate
 from grader.static_python.parse import Position, position_of
 
@@ -69,10 +70,10 @@ class Statements(FileExpressions):
             self.call_value(py.QualifiedName(made.name), made)
             return
         if not isinstance(owner, py.PLAIN):
-            py.refuse(owner, "this assignment to an item is not supported")
+            refuse(owner, "this assignment to an item is not supported")
         if isinstance(key, slice):
-            value = list(py.iterate(value))
-        py.call_plain(operator.setitem, owner, py.known(key) if not isinstance(key, slice) else key, value)
+            value = list(iterate(value))
+        call_plain(operator.setitem, owner, known(key) if not isinstance(key, slice) else key, value)
         self.budget.charge(len(owner))
 
     def _on_assign(self, node: ast.Assign, scope: py.Scope) -> None:
@@ -104,9 +105,9 @@ class Statements(FileExpressions):
         load.ctx = ast.Load()
         before, value = self.evaluate(load, scope), self.evaluate(node.value, scope)
         if not isinstance(before, py.PLAIN):
-            py.refuse(before, "this value is not supported")
+            refuse(before, "this value is not supported")
         if isinstance(before, list) and isinstance(node.op, ast.Add):
-            before.extend(list(py.iterate(value)))
+            before.extend(list(iterate(value)))
             self.budget.measure(before, "holds")
         elif isinstance(before, list | dict):
             raise py.Undetermined("this operator is not supported")
@@ -138,8 +139,8 @@ class Statements(FileExpressions):
                 case ast.Subscript(value=owner, slice=key):
                     container, item = self.evaluate(owner, scope), self.key(key, scope)
                     if not isinstance(container, py.PLAIN):
-                        raise py.Undetermined(py.reason_of(container) or "this deletion is not supported")
-                    py.call_plain(operator.delitem, container, item if isinstance(item, slice) else py.known(item))
+                        raise py.Undetermined(reason_of(container) or "this deletion is not supported")
+                    call_plain(operator.delitem, container, item if isinstance(item, slice) else known(item))
                 case ast.Name(id=name):
                     self._of_name(ast.copy_location(ast.Name(name, ast.Load()), target), scope)
                     scope.names.pop(name, None)

@@ -17,6 +17,7 @@ from grader.package.launch.value_types import (
     wrong_text,
     wrong_typed,
 )
+from grader.static_python.knowledge import iterate
 from grader.static_python.values import (
     UNKNOWN_KEYS,
     Call,
@@ -27,7 +28,6 @@ from grader.static_python.values import (
     Undetermined,
     Unknown,
     Value,
-    iterate,
 )
 
 _OF_ONE_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")

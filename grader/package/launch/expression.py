@@ -7,8 +7,9 @@ from grader.package.launch.model import Context, LaunchFails, NotEvaluated
 from grader.static_python.budget import Budget, OutOfBudget
 from grader.static_python.builtins import BUILTINS, MATH
 from grader.static_python.expressions import evaluate
+from grader.static_python.knowledge import str_of
 from grader.static_python.parse import Position
-from grader.static_python.values import ExpressionFails, Namespace, Undetermined, Value, str_of
+from grader.static_python.values import ExpressionFails, Namespace, Undetermined, Value
 
 _WORK = 10_000  # of an expression
 

@@ -15,16 +15,9 @@ from grader.package.launch.places import HOME, WORKING_FOLDER
 from grader.package.launch.value_types import UnknownText, gives_text
 from grader.static_python.calls import Calls
 from grader.static_python.evaluation import Evaluation, record
+from grader.static_python.knowledge import known, path_text
 from grader.static_python.library import standard_functions
-from grader.static_python.values import (
-    Call,
-    ExpressionFails,
-    Undetermined,
-    Unknown,
-    Value,
-    known,
-    path_text,
-)
+from grader.static_python.values import Call, ExpressionFails, Undetermined, Unknown, Value
 
 _MAX_YAML = 20_000  # characters
 

@@ -6,7 +6,8 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.package.launch.api import ENTITY, SUBSTITUTION, class_named, is_a
-from grader.static_python.values import Call, Function, Items, QualifiedName, Undetermined, Unknown, Value, iterate
+from grader.static_python.knowledge import iterate
+from grader.static_python.values import Call, Function, Items, QualifiedName, Undetermined, Unknown, Value
 
 # Calls of Python functions that are not evaluated, but certainly give a text.
 TEXT_CALLS = frozenset(
