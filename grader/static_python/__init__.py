@@ -1,1 +1,5 @@
-"""Static evaluation of Python files and expressions of a submission: none of them is run or imported."""
+"""What Python expressions and files of a submission evaluate to, without running or importing any of them.
+
+It imports only the modules at the top of the package. Begin with `values.py` and `expressions.py`, which xacro uses;
+`interpreter.py` adds the statements of a file.
+"""

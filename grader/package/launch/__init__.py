@@ -1,1 +1,5 @@
-"""Launch files of ROS 2 in Python, XML and YAML, evaluated without running them: the nodes they start, their files."""
+"""Launch files in Python, XML and YAML, executed as launch does without starting anything.
+
+It imports `static_python` and `xml`. Begin with `reader.py`, then `visitor.py` and `actions.py`; `api.json` lists what
+launch and launch_ros have.
+"""
