@@ -9,7 +9,7 @@ from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose, visuals
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Geometry, Mesh
-from grader.robot.separation import penetration
+from grader.robot.overlap import penetration
 from grader.robot.shapes import UnknownShape, extent
 from grader.robot.transforms import X_AXIS, Z_AXIS, Transform, Vector
 

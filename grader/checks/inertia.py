@@ -21,7 +21,7 @@ from grader.robot.inertia import (
 )
 from grader.robot.kinematics import Configuration
 from grader.robot.model import INERTIA, Geometry, Inertial, Mesh
-from grader.robot.separation import penetration
+from grader.robot.overlap import penetration
 from grader.robot.shapes import Shape, UnknownShape, bounding_radius
 from grader.robot.transforms import IDENTITY, Transform, minus
 

@@ -15,6 +15,7 @@ from grader.report.formats import Format, render
 from grader.source import Base, Edit
 from grader.submission.opening import read_submission, submission_of
 from grader.submission.submission import Submission
+from grader.text import printable
 from grader.usecases.hints import add_hints, files_to_fix, write_fix
 from tests.checks.submissions import file_of
 from tests.fuzz.harness import GUARD, check_location, check_message, decoded, files_of, user_errors
@@ -32,7 +33,7 @@ def urdf(data: bytes, rubric: str) -> None:
 def package(data: bytes, rubric: str) -> None:
     """A folder of files is graded, its hints hold, and `--fix` writes what they make of it."""
     files = files_of(data)
-    tree = make_tree("student", [file_of(path, content) for path, content in files.items()], ())
+    tree = make_tree("student", [file_of(printable(path), content) for path, content in files.items()], ())
     with user_errors():
         check_graded(RUBRICS[rubric], submission_of(tree, "student", RUBRICS[rubric].lab), "student")
 

@@ -1,9 +1,9 @@
-"""Distances and depths between shapes: closed forms, laws, sampled directions and an oracle."""
+"""The depth to which shapes overlap: closed forms, laws, sampled directions and an oracle."""
 
 import random
 import subprocess
 import sys
-from math import hypot, inf, pi, sqrt
+from math import hypot, pi, sqrt
 from typing import Any
 
 import pytest
@@ -11,9 +11,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from grader.robot.model import Box, Cylinder, Mesh, Sphere
-from grader.robot.separation import penetration, separation
+from grader.robot.overlap import least_overlap, penetration
 from grader.robot.shapes import Shape, UnknownShape, extent
-from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_from_rpy, unit
+from grader.robot.transforms import IDENTITY, Transform, Vector, dot, minus, rotation_from_rpy
 from tests.examples import examples
 
 slow = settings(deadline=None)  # the first depth of two tilted cylinders imports numpy
@@ -135,46 +135,24 @@ def distance_along(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direc
     ],
 )
 def test_closed_forms(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, expected: float) -> None:
-    """A distance with a closed form is found, in both orders of the shapes."""
-    assert separation(a, T_w_a, b, T_w_b).distance == pytest.approx(expected, abs=FINE)
-    assert separation(b, T_w_b, a, T_w_a).distance == pytest.approx(expected, abs=FINE)
-
-
-def test_the_direction_points_from_the_first_shape_to_the_second() -> None:
-    """The direction is in world coordinates, for a distance and for a depth."""
-    turned = (0.0, 0.0, pi / 2)
-    apart = separation(CHASSIS, at(5, 5, 5, turned), Sphere(0.1), at(5, 6, 5))
-    cutting = separation(CHASSIS, at(5, 5, 5, turned), Sphere(0.1), at(5, 5, 5.06))
-    assert (apart.distance, *apart.direction) == pytest.approx((0.6, 0.0, 1.0, 0.0))
-    assert (cutting.distance, *cutting.direction) == pytest.approx((-0.14, 0.0, 0.0, 1.0))
-
-
-@slow
-@given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses)
-def test_the_distance_is_that_along_the_direction(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
-    """The extents of the shapes along the unit direction are that far apart."""
-    found = separation(a, T_w_a, b, T_w_b)
-    assert hypot(*found.direction) == pytest.approx(1.0)
-    assert distance_along(a, T_w_a, b, T_w_b, found.direction) == pytest.approx(found.distance, abs=1e-9)
+    """A depth with a closed form is found, in both orders of the shapes; what is `expected` metres apart has none."""
+    assert penetration(a, T_w_a, b, T_w_b) == pytest.approx(max(0.0, -expected), abs=FINE)
+    assert penetration(b, T_w_b, a, T_w_a) == pytest.approx(max(0.0, -expected), abs=FINE)
 
 
 @examples(30)
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses)
-def test_no_other_direction_has_a_larger_distance(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
-    """Along none of 400 directions, nor along those close to the answer, are the shapes farther apart."""
-    found = separation(a, T_w_a, b, T_w_b)
-    near = [[0.05 * along + found.direction[i] for i, along in enumerate(way)] for way in DIRECTIONS[::8]]
-    nearby = [unit((x, y, z)) or found.direction for x, y, z in near]
-    widest = max(distance_along(a, T_w_a, b, T_w_b, direction) for direction in [*DIRECTIONS, *nearby])
-    assert widest <= found.distance + NEAR
+def test_no_direction_has_a_smaller_overlap(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
+    """Along each of 400 directions the shapes overlap at least as much."""
+    least = -max(distance_along(a, T_w_a, b, T_w_b, direction) for direction in DIRECTIONS)
+    assert penetration(a, T_w_a, b, T_w_b) <= max(0.0, least) + NEAR
 
 
 @slow
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses)
 def test_both_orders_agree(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
-    """The distance from b to a is the distance from a to b."""
-    other, back = separation(a, T_w_a, b, T_w_b), separation(b, T_w_b, a, T_w_a)
-    assert other.distance == pytest.approx(back.distance, abs=NEAR)
+    """The depth of b in a is that of a in b."""
+    assert penetration(b, T_w_b, a, T_w_a) == pytest.approx(penetration(a, T_w_a, b, T_w_b), abs=NEAR)
 
 
 @slow
@@ -182,34 +160,38 @@ def test_both_orders_agree(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transfor
 def test_a_common_motion_changes_nothing(
     a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, T_v_w: Transform
 ) -> None:
-    """In another frame the distance is the same."""
-    current, other = separation(a, T_w_a, b, T_w_b), separation(a, T_v_w @ T_w_a, b, T_v_w @ T_w_b)
-    assert other.distance == pytest.approx(current.distance, abs=NEAR)
+    """In another frame the depth is the same."""
+    other = penetration(a, T_v_w @ T_w_a, b, T_v_w @ T_w_b)
+    assert other == pytest.approx(penetration(a, T_w_a, b, T_w_b), abs=NEAR)
+
+
+def away(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> Vector:
+    """Return the direction of least overlap in the world, from a to b."""
+    x, y, z = T_w_a.rotate(least_overlap(a, b, T_w_a.inverse() @ T_w_b))
+    return (x, y, z) if dot((x, y, z), minus(T_w_b.translation, T_w_a.translation)) >= 0.0 else (-x, -y, -z)
 
 
 @slow
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses)
 def test_the_depth_is_the_smallest_separating_motion(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
-    """Moved along the direction by minus the distance the shapes touch; a little less and they still overlap."""
-    found = separation(a, T_w_a, b, T_w_b)
-    touching = separation(a, T_w_a, b, moved(T_w_b, -found.distance, found.direction))
-    assert touching.distance == pytest.approx(0.0, abs=NEAR)
-    if found.distance < -0.001:
-        for less in (0.0005, 0.5 * abs(found.distance)):
-            cutting = separation(a, T_w_a, b, moved(T_w_b, -found.distance - less, found.direction))
-            assert -less - NEAR <= cutting.distance < 0.0
+    """Moved by the depth the shapes touch; moved by less they still overlap."""
+    depth, direction = penetration(a, T_w_a, b, T_w_b), away(a, T_w_a, b, T_w_b)
+    assert penetration(a, T_w_a, b, moved(T_w_b, depth, direction), NEAR) == 0.0
+    if depth > 0.001:
+        for less in (0.0005, 0.5 * depth):
+            assert 0.0 < penetration(a, T_w_a, b, moved(T_w_b, depth - less, direction)) <= less + NEAR
 
 
 @slow
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses, allowed=st.sampled_from((0.0, 1e-3, 0.1)))
-def test_penetration_is_the_depth_beyond_the_allowed_one(
+def test_a_depth_counts_only_beyond_the_allowed_one(
     a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, allowed: float
 ) -> None:
-    """It is 0 up to the allowed depth, and the depth of the separation beyond it."""
-    depth, found = penetration(a, T_w_a, b, T_w_b, allowed), separation(a, T_w_a, b, T_w_b)
+    """It is 0 up to the allowed depth, and the depth beyond it."""
+    depth, whole = penetration(a, T_w_a, b, T_w_b, allowed), penetration(a, T_w_a, b, T_w_b)
     assert depth == 0.0 or depth > allowed
-    assert depth == (pytest.approx(-found.distance) if depth else 0.0)
-    if found.distance < -allowed - NEAR:
+    assert depth == (pytest.approx(whole) if depth else 0.0)
+    if whole > allowed + NEAR:
         assert depth > 0.0
 
 
@@ -235,7 +217,7 @@ def test_wheels_and_chassis_do_not_load_numpy() -> None:
     program = """
 import sys
 from grader.robot.model import Box, Cylinder
-from grader.robot.separation import penetration
+from grader.robot.overlap import penetration
 from grader.robot.transforms import IDENTITY, Transform, rotation_from_rpy
 sideways = rotation_from_rpy((1.5708, 0.0, 0.0))
 for y in (0.5, 0.225, 0.2025, 0.0):
@@ -245,14 +227,12 @@ assert "numpy" not in sys.modules
     subprocess.run([sys.executable, "-c", program], check=True)
 
 
-def test_a_mesh_has_no_separation() -> None:
-    """A mesh has an unknown size, so both functions refuse it."""
+def test_a_mesh_is_refused() -> None:
+    """A mesh has an unknown size."""
     mesh: Any = Mesh("wheel.stl")
-    for ask in (separation, penetration):
+    for pair in ((CHASSIS, mesh), (mesh, CHASSIS)):
         with pytest.raises(UnknownShape):
-            ask(CHASSIS, IDENTITY, mesh, IDENTITY)
-        with pytest.raises(UnknownShape):
-            ask(mesh, IDENTITY, CHASSIS, IDENTITY)
+            penetration(pair[0], IDENTITY, pair[1], IDENTITY)
 
 
 _extreme = st.floats(allow_nan=False, allow_infinity=False)
@@ -267,10 +247,7 @@ _extreme_shapes = (
 @given(a=_extreme_shapes, b=_extreme_shapes, x=_extreme, y=_extreme, z=_extreme, pose=poses)
 @example(a=Sphere(1.7e308), b=Cylinder(1.7e308, 1.7e308), x=-1.7e308, y=1.7e308, z=1.7e308, pose=at(0, 0, 0))
 def test_any_finite_input_has_a_result(a: Shape, b: Shape, x: float, y: float, z: float, pose: Transform) -> None:
-    """Sizes and positions anywhere in the range of floats give a number and a unit direction."""
-    found = separation(a, pose, b, Transform(pose.rotation, (x, y, z)))
-    assert -inf <= found.distance <= inf
-    assert hypot(*found.direction) == pytest.approx(1.0)
+    """Sizes and positions anywhere in the range of floats give a number."""
     assert penetration(a, pose, b, Transform(pose.rotation, (x, y, z))) >= 0.0
 
 
@@ -325,7 +302,7 @@ def random_pose(rng: random.Random, size: float) -> Transform:
 @pytest.mark.parametrize("second", [Box, Cylinder, Sphere])
 @pytest.mark.parametrize("first", [Box, Cylinder, Sphere])
 def test_coal_agrees(oracle: Oracle, first: type[Shape], second: type[Shape]) -> None:
-    """No distance differs from coal's, except depths of coal that coal itself refutes.
+    """No depth differs from coal's, except depths of coal that coal itself refutes.
 
     Its expanding polytope may stop early and return a depth that is too large: if b is moved by our smaller depth,
     coal finds no overlap.
@@ -335,16 +312,8 @@ def test_coal_agrees(oracle: Oracle, first: type[Shape], second: type[Shape]) ->
         a, b = random_shape(rng, first), random_shape(rng, second)
         size = hypot(*(high - low for shape in (a, b) for low, high in [extent(shape, IDENTITY, DIRECTIONS[0])]))
         pair = (a, random_pose(rng, 0.1), b, random_pose(rng, size))
-        own, theirs = separation(*pair), oracle.distance(*pair)
-        if own.distance != pytest.approx(theirs, abs=NEAR):
-            assert theirs < own.distance < 0.0, pair
-            parted = moved(pair[3], NEAR - own.distance, own.direction)
+        own, theirs = penetration(*pair), -oracle.distance(*pair)
+        if own != pytest.approx(max(0.0, theirs), abs=NEAR):
+            assert 0.0 < own < theirs, pair
+            parted = moved(pair[3], NEAR + own, away(*pair))
             assert oracle.distance(a, pair[1], b, parted) >= 0.0, pair
-
-
-def test_a_search_that_ends_early_bounds_the_distance(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Rounding errors may keep it from an end: the direction that was found by then separates the shapes, too."""
-    poses = at(0.0, 0.0, 0.0, (0.3, 0.2, 0.1)), at(0.9, 0.8, 0.7, (1.0, 0.5, 0.2))
-    exact = separation(CHASSIS, poses[0], WHEEL, poses[1]).distance
-    monkeypatch.setattr("grader.robot.separation._MAX_STEPS", 1)
-    assert 0.0 < separation(CHASSIS, poses[0], WHEEL, poses[1]).distance < exact
