@@ -86,12 +86,6 @@ class Submitted:
         assert moved, f"{old} is not among {sorted(self.files)}"
         return Submitted({moved.get(path, path): content for path, content in self.files.items()})
 
-    def replacing(self, path: str, old: str, new: str) -> "Submitted":
-        """Return a copy in which a text of a file, which must occur, is replaced everywhere."""
-        text = self.data(path).decode()
-        assert old in text, f"{old!r} does not stand in {path}:\n{text}"
-        return self.with_files({path: text.replace(old, new)})
-
 
 def png(width: int = 640, height: int = 480) -> bytes:
     """Return an empty PNG."""

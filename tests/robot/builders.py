@@ -40,8 +40,3 @@ def visual(body: str) -> str:
 def geometry(shape: str) -> str:
     """Return a robot whose link shows this shape."""
     return one_link(f"<visual><geometry>{shape}</geometry></visual>")
-
-
-def with_bytes(text: str, raw: bytes) -> bytes:
-    """Return this text with raw bytes for each @, for bytes that no text can contain."""
-    return text.encode().replace(b"@", raw)
