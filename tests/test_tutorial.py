@@ -78,4 +78,4 @@ def test_every_key_is_on_the_reference() -> None:
     """The page is generated from the tables; its sections name the keys that need more than a line."""
     for table in (RUBRIC, PART, CRITERION, DEFAULTS):
         for key in table.keys:
-            assert f"| `{key}` |" in REFERENCE
+            assert f"\n- `{key}` (" in REFERENCE
