@@ -79,12 +79,12 @@ def checks() -> Iterator[str]:
 
 
 def keys() -> Iterator[str]:
-    """Yield the tables of the keys of a rubric."""
+    """Yield a section for each table of a rubric, with a line for each key."""
     for title, table in KEYS.items():
-        yield from (f"### {title}", "", "| key | meaning | type |", "|---|---|---|")
+        yield from (f"### {title}", "")
         for name, kind in table.keys.items():
             needed = ", required" if name in table.required else ""
-            yield f"| `{name}` | {escaped(kind.schema['description'])} | {kind.name}{needed} |"
+            yield f"- `{name}` ({kind.name.removeprefix('a ')}{needed}): {escaped(kind.schema['description'])}"
         yield ""
 
 

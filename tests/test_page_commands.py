@@ -27,7 +27,6 @@ ELSEWHERE = {  # beginnings of command lines that are run by another test, or no
     'grader mark "Anik Tagrigri"': "classroom/test_walkthrough.py",
     "grader mark 100099": "classroom/test_walkthrough.py",
     "grader review --gradebook lab6-grades --by": "a browser: browser/test_review.py",
-    "grader review --gradebook lab6-grades  ": "a browser: browser/test_review.py",
     "grader explain distance_between": "a plug-in: cli/test_plugin_template.py",
     "grader rubric check arm_lab.toml": "a plug-in: cli/test_plugin_template.py",
 }

@@ -83,7 +83,7 @@ def test_every_page_is_built(builder: ModuleType, site: Path) -> None:
     [
         ("urdf.md", "(problems.md)", "(nowhere.md)"),
         ("urdf.md", "(problems.md)", "(problems.md#nowhere)"),
-        ("hints.md", "(xacro.md#edits)", "(#nowhere)"),
+        ("grade-one-submission.md", "(xacro.md#edits)", "(#nowhere)"),
         ("index.md", "\nurdf\n", "\n"),
     ],
 )
