@@ -5,9 +5,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from grader.checks.check import MEASURES, About
+from grader.checks.launch_file import fault_that_stops, launch_of, path_of
 from grader.checks.launch_places import ENDINGS, WORDS, FilePlace, place_of
 from grader.checks.outcome import Outcome, failed, judged, passed, pending
-from grader.errors import MissingElement, NotDecided
+from grader.errors import MissingElement
 from grader.package.launch.places import is_launch_named, is_of_one_machine, one_machine_only
 from grader.package.package import Package
 from grader.source import Location
@@ -34,7 +35,7 @@ def launch_found(package: Package, *, name: str) -> Outcome:
     Args:
         name: The file's name, such as view.launch.py.
     """
-    path = _path(package, name)
+    path = path_of(package, name)
     if is_launch_named(path, name):
         return passed(f"the launch file is {path}")
     detail = f"; the package has {path}{package.built('launch', name)}"
@@ -52,9 +53,9 @@ def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool 
         nodes: The nodes, each as "package/executable", or as one name if both are the same; "a or b" leaves a choice.
         built: Whether a build must install the files that it reads; if not, files of the package count as found.
     """
-    launch = _launch(package, name)
+    launch = launch_of(package, name)
     if launch.faults:
-        raise _fault_that_stops(package, name, launch)
+        raise fault_that_stops(package, name, launch)
     places = _places(package, launch, "read", "urdf", "include", built=built)
     if wrong := [it for it in places if it.state == "wrong" and _stops(it.file)]:
         return _wrong(package, wrong)
@@ -136,7 +137,7 @@ def launch_finds_files(package: Package, *, name: str, built: bool = True, start
         built: Whether a build must install the files; if not, files of the package count as found.
         started: Whether ros2 launch starts the file; if not, what stops it, and what is unknown then, does not count.
     """
-    launch = _launch(package, name)
+    launch = launch_of(package, name)
     places = _places(package, launch, "urdf", "rviz", "include", built=built)
     if not started:
         places = _others(places)
@@ -147,7 +148,7 @@ def launch_finds_files(package: Package, *, name: str, built: bool = True, start
         return passed("the launch file looks for no file in a wrong place")
     unknown = next((it for it in places if it.state == "unknown"), None)
     if launch.faults and (unknown or all(it.file.purpose == "include" for it in places)):
-        raise _fault_that_stops(package, name, launch)
+        raise fault_that_stops(package, name, launch)
     if all(it.file.purpose == "include" for it in places):
         return _no_files(launch)
     if unknown is not None:
@@ -204,31 +205,3 @@ def _missing(package: Package, place: FilePlace) -> MissingElement:
     elif not any(path.lower().endswith(ENDINGS[purpose]) for path in package.tree.files):
         kind, name = f"{WORDS[purpose]} in the package", ""
     return MissingElement(kind, name, message=place.text, location=place.file.location)
-
-
-def _path(package: Package, name: str) -> str:
-    path = package.launch_file(name)
-    if path is None:
-        raise package.missing("launch")
-    return path
-
-
-def _launch(package: Package, name: str) -> "Launch":
-    path = _path(package, name)
-    launch = package.launch(path)
-    if launch.unread:
-        raise NotDecided(launch.unread, "the launch file cannot be read")
-    if launch.syntax is not None:
-        raise MissingElement("launch file", path, message=launch.syntax.message, location=launch.syntax.location)
-    return launch
-
-
-def _fault_that_stops(package: Package, name: str, launch: "Launch") -> MissingElement:
-    """Return the fault of a launch file that starts nothing because of it."""
-    path, first = _path(package, name), launch.faults[0]
-    return MissingElement("launch file", path, message=_faults(launch), location=first.location, problem=first.message)
-
-
-def _faults(launch: "Launch") -> str:
-    messages = list(dict.fromkeys(fault.message for fault in launch.faults))
-    return f"{messages[0]} (and {len(messages) - 1} more)" if len(messages) > 1 else messages[0]

@@ -4,7 +4,6 @@ import posixpath
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from functools import partial
 from io import StringIO
 from pathlib import PurePosixPath
@@ -12,6 +11,7 @@ from pathlib import PurePosixPath
 from grader.errors import InputError
 from grader.files.names import ignored_part
 from grader.package.globbing import PackageListing, SearchError
+from grader.package.python_packages import below, find_packages
 from grader.static_python.evaluation import Evaluation, EvaluationStopped, FunctionTable
 from grader.static_python.knowledge import known, path_text
 from grader.static_python.values import Call, ExpressionFails, Items, PlainFunction, Undetermined, Unknown, Value
@@ -37,8 +37,8 @@ def file_functions(listing: PackageListing, root: str) -> FunctionTable:
         "pathlib.Path.iterdir": folder.iterdir,
         "pathlib.Path.glob": folder.path_glob,
         "pathlib.Path.rglob": partial(folder.path_glob, prefix="**/"),
-        "setuptools.find_packages": folder.find_packages,
-        "setuptools.find_namespace_packages": folder.find_packages,
+        "setuptools.find_packages": partial(find_packages, listing),
+        "setuptools.find_namespace_packages": partial(find_packages, listing),
     }
     tests: dict[str, Callable[[str | None], bool]] = {
         "exists": lambda path: path is not None,
@@ -154,11 +154,11 @@ class _PackageFolder:
         except SearchError as error:
             raise Undetermined(str(error)) from None
         self.listing.order_matters |= len(names) > 1
-        paths = {name: _below(real, name) for name in names}
+        paths = {name: below(real, name) for name in names}
         folders = [name for name, path in paths.items() if path in self.listing.folders]
         yield (spelled, folders, [name for name in paths if name not in folders])
         for name in folders:
-            yield from self._steps(evaluation, self.real(_below(real, name)), posixpath.join(spelled, name))
+            yield from self._steps(evaluation, self.real(below(real, name)), posixpath.join(spelled, name))
 
     def chdir(self, _: Evaluation, call: Call) -> Value:
         if len(call.args) != 1 or self.real(call.args[0]) != "":
@@ -191,27 +191,6 @@ class _PackageFolder:
             raise Undetermined("this use of read_text is not supported")
         return self.open(evaluation, call).read()
 
-    def find_packages(self, _: Evaluation, call: Call) -> Value:
-        """Return the folders with an __init__.py; those without need other rules."""
-        where, exclude, include = (
-            call.argument(place, name) for place, name in enumerate(("where", "exclude", "include"))
-        )
-        lists = [(), ["*"]]
-        for given, index in ((exclude, 0), (include, 1)):
-            if given is not None:
-                lists[index] = given
-        is_known = where in (None, ".", "./") and call.kwargs.keys() <= {"where", "exclude", "include"}
-        if not is_known or "namespace" in call.name or not all(isinstance(it, list | tuple) for it in lists):
-            return Unknown("which packages there are is not evaluated", call.at)
-        return [name for name in self._packages("") if _fits(name, lists[1]) and not _fits(name, lists[0])]
-
-    def _packages(self, folder: str) -> Iterator[str]:
-        for name in self.listing.names(folder):
-            path = _below(folder, name)
-            if "." not in name and f"{path}/__init__.py" in self.listing.files:
-                yield path.replace("/", ".")
-                yield from self._packages(path)
-
     def _names(self, path: Value) -> list[Value]:
         """Return the names in a folder; it is an error if there is none."""
         real = self.real(path)
@@ -220,11 +199,3 @@ class _PackageFolder:
         if real is None:
             raise ExpressionFails(f"there is no folder {str(path)!r}", FileNotFoundError)
         raise ExpressionFails(f"{str(path)!r} is a file, not a folder", NotADirectoryError)
-
-
-def _below(folder: str, name: str) -> str:
-    return f"{folder}/{name}" if folder else name
-
-
-def _fits(name: str, patterns: Value) -> bool:
-    return any(isinstance(pattern, str) and fnmatchcase(name, pattern) for pattern in patterns)

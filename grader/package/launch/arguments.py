@@ -6,14 +6,12 @@ from pathlib import PurePosixPath
 from grader.names import did_you_mean
 from grader.package.launch.api import ACTION, PROCESS, SOURCE, LaunchClass, is_a
 from grader.package.launch.value_types import (
+    CHECKS,
     gives_text,
     is_entity,
     is_text,
     items_in,
     kind_of,
-    typed,
-    wrong_parameter,
-    wrong_parameters,
     wrong_text,
     wrong_typed,
 )
@@ -27,7 +25,6 @@ from grader.static_python.values import (
     QualifiedName,
     Undetermined,
     Unknown,
-    Value,
 )
 
 _OF_ONE_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
@@ -62,7 +59,7 @@ def check(cls: LaunchClass, call: Call) -> Unknown | None:
     is_late = cls.short == "ResetLaunchConfigurations"  # which takes anything until it is executed
     pairs = [(name, cls.parameters[name].check, value) for name, value in call.kwargs.items() if not is_late]
     for name, test, value in [*pairs, *((cls.rest, "text", value) for value in call.args)]:
-        optional, own = test.endswith("?"), _CHECKS.get(test.removesuffix("?"))
+        optional, own = test.endswith("?"), CHECKS.get(test.removesuffix("?"))
         try:
             if own is not None and not (value is None and optional) and (wanted := own(value)):
                 tail = "" if wanted.startswith("has a value") else f", not {kind_of(value)}"
@@ -76,42 +73,6 @@ def check(cls: LaunchClass, call: Call) -> Unknown | None:
     except Undetermined as error:
         doubt = doubt or Unknown(str(error), call.at)
     return doubt
-
-
-def _texts(value: Value) -> str:
-    items = items_in(value)
-    return "has to be a list: put [ ] around it" if items is None else next(filter(None, map(wrong_text, items)), "")
-
-
-def _mapping(value: Value) -> str:
-    if not isinstance(value, dict):
-        return "" if items_in(value) is None and isinstance(value, Unknown) else "has to be a dict"
-    return next(filter(None, (wrong_text(item) for pair in value.items() for item in pair)), "")
-
-
-def _period(value: Value) -> str:
-    return "" if isinstance(value, str) else typed(float)(value)  # a string is read as a number
-
-
-def _actions(value: Value) -> str:
-    return "takes a list of actions: put [ ] around them" if items_in(value) is None else ""
-
-
-def _remappings(value: Value) -> str:
-    for rule in items_in(value) or []:
-        if isinstance(rule, Unknown):
-            raise Undetermined(rule.reason)
-        if not isinstance(rule, tuple) or len(rule) != 2:
-            return "takes pairs: ('from', 'to')"
-        if wrong := wrong_text(rule[0]) or wrong_text(rule[1]):
-            return wrong
-    return "has to be a list: put [ ] around it" if items_in(value) is None else ""
-
-
-_CHECKS: Mapping[str, Callable[[Value], str]] = {
-    "text": wrong_text, "texts": _texts, "mapping": _mapping, "bool": typed(bool), "float": _period,
-    "remappings": _remappings, "actions": _actions, "parameters": wrong_parameters, "parameter": wrong_parameter,
-}  # fmt: skip
 
 
 def _declaration(call: Call) -> str:

@@ -1,6 +1,6 @@
 """The values that launch and launch_ros take as texts and as parameters of nodes, and what is wrong with others."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from io import StringIO
 from pathlib import PurePosixPath
 from typing import Any
@@ -172,3 +172,39 @@ def type_of(call: Call) -> "type | None":
     if found is None:
         raise Undetermined(f"the type {name}")
     return found
+
+
+def _texts(value: Value) -> str:
+    items = items_in(value)
+    return "has to be a list: put [ ] around it" if items is None else next(filter(None, map(wrong_text, items)), "")
+
+
+def _mapping(value: Value) -> str:
+    if not isinstance(value, dict):
+        return "" if items_in(value) is None and isinstance(value, Unknown) else "has to be a dict"
+    return next(filter(None, (wrong_text(item) for pair in value.items() for item in pair)), "")
+
+
+def _period(value: Value) -> str:
+    return "" if isinstance(value, str) else typed(float)(value)  # a string is read as a number
+
+
+def _actions(value: Value) -> str:
+    return "takes a list of actions: put [ ] around them" if items_in(value) is None else ""
+
+
+def _remappings(value: Value) -> str:
+    for rule in items_in(value) or []:
+        if isinstance(rule, Unknown):
+            raise Undetermined(rule.reason)
+        if not isinstance(rule, tuple) or len(rule) != 2:
+            return "takes pairs: ('from', 'to')"
+        if wrong := wrong_text(rule[0]) or wrong_text(rule[1]):
+            return wrong
+    return "has to be a list: put [ ] around it" if items_in(value) is None else ""
+
+
+CHECKS: Mapping[str, Callable[[Value], str]] = {
+    "text": wrong_text, "texts": _texts, "mapping": _mapping, "bool": typed(bool), "float": _period,
+    "remappings": _remappings, "actions": _actions, "parameters": wrong_parameters, "parameter": wrong_parameter,
+}  # fmt: skip
