@@ -57,9 +57,10 @@ def snapshot(folder: Path, number: int | None) -> Snapshot:
 
 def changes(before: Snapshot, after: Snapshot) -> Iterator[Change]:
     """Yield the students for whom something changed, in the order of their keys."""
-    keys = sorted({*before.results.students, *after.results.students, *before.run.totals, *after.run.totals})
+    runs = (before.run, after.run)
+    keys = sorted({*before.results.students, *after.results.students, *(key for run in runs for key in run.students)})
     for key, old, new in zip(keys, before.results.each(keys), after.results.each(keys), strict=True):
-        first, last = (_points(one.run.totals.get(key)) for one in (before, after))
+        first, last = (_points(one.run.total(key)) for one in (before, after))
         criteria = [*_steps(old, new)] if old is not None and new is not None else []
         if criteria or first != last or (old is None) != (new is None):
             why = tuple(_reasons(old, new, before.run, after.run))

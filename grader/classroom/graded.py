@@ -1,7 +1,8 @@
 """The result of one submission, and a finished run: lines of `results.jsonl`."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
 from typing import Any, Literal, NamedTuple
 
 from grader.checks.outcome import Status
@@ -56,7 +57,7 @@ class Run(NamedTuple):
     open.
 
     `rubric` is its hash, `context` that of all that results depend on besides the submissions. `unclear` are the
-    students with possible submissions of which none was graded.
+    students with possible submissions of which none was graded, `others` the totals of those without a submission.
     """
 
     run: int
@@ -66,11 +67,21 @@ class Run(NamedTuple):
     context: str
     totals: Mapping[str, str | None]
     unclear: Sequence[str] = ()
+    others: Mapping[str, str] = {}
 
     @property
     def line(self) -> bytes:
         """The line of the file."""
         return _line_of(self._asdict())
+
+    @property
+    def students(self) -> Iterable[str]:
+        """The students who submitted, and those who have a total without a submission."""
+        return chain(self.totals, self.others)
+
+    def total(self, student: str) -> str | None:
+        """Return the total of a student; None if there was none, or it was open."""
+        return self.totals.get(student, self.others.get(student))
 
 
 def _line_of(values: Mapping[str, Any]) -> bytes:

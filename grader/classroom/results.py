@@ -40,7 +40,8 @@ class Results:
                     places[scanstring(line.decode(), len(start) + 1, True)[0]] = self.end
             self.end += len(line)
             if line.startswith(_RUN):
-                self.runs[-1:] = [run._replace(totals={}) for run in self.runs[-1:]]  # only the newest are compared
+                # Only the newest are compared.
+                self.runs[-1:] = [run._replace(totals={}, others={}) for run in self.runs[-1:]]
                 self.runs.append(Run(**values_in(line)))
                 if self.runs[-1].run == until:
                     break

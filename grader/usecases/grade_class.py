@@ -111,17 +111,20 @@ def _grade(
         run = Run(results.next_run, time, __version__, rubric.sha256, context, present, sorted(intake.unclear))
         book, table = Class(folder, run=run), ClassTable(rubric, verbose=request.verbose)
         totals: dict[str, str | None] = {}
+        others: dict[str, str] = {}
 
         def passing() -> Iterator[StudentGrade]:
             for grade in book:
                 table.add(grade)
+                total = format_points(grade.published) if grade.published is not None else None
                 if grade.student.key in present:
-                    published = grade.published
-                    totals[grade.student.key] = format_points(published) if published is not None else None
+                    totals[grade.student.key] = total
+                elif total is not None:
+                    others[grade.student.key] = total
                 yield grade
 
         write_grades(book, passing())
-        writer.append(run._replace(totals=totals).line)
+        writer.append(run._replace(totals=totals, others=others).line)
         writer.sync()
     warn_of_ignored(book, terminal.warn)
     return table, done
