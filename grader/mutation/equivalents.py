@@ -12,8 +12,8 @@ from grader.grading.rubric import Rubric
 from grader.mutation import rewritings
 from grader.mutation.elements import Element as TextElement
 from grader.mutation.elements import elements
-from grader.mutation.rewritings import Rewriting, RewritingRules, words_of_foreign
-from grader.mutation.trees import Style, copied
+from grader.mutation.rewritings import Rewriting, RewritingRules
+from grader.mutation.trees import Style, copied, words_of_foreign
 from grader.mutation.trial import names_in
 from grader.robot.model import Robot
 from grader.xml.parsing import Element

@@ -5,7 +5,6 @@ from math import pi
 from random import Random
 from typing import NamedTuple
 
-from grader.mutation.elements import FOREIGN
 from grader.mutation.trees import (
     add_joint,
     add_link,
@@ -185,10 +184,3 @@ def _rename(tree: Element, tag: str, name: str, new: str) -> None:
 def _any_pose(random: Random) -> Transform:
     xyz = [round(random.uniform(-1, 1), 6) for _ in range(3)]
     return origin(xyz, [round(random.uniform(-3, 3), 6) for _ in range(3)])
-
-
-def words_of_foreign(tree: Element) -> set[str]:
-    """Return the words in the elements for simulators and controllers."""
-    found = [element for tag in FOREIGN for child in tree.iterchildren(tag) for element in child.iter("*")]
-    values = [value for element in found for value in (element.text or "", *map(str, element.attrib.values()))]
-    return {word for value in values for word in value.split()}

@@ -131,6 +131,13 @@ def own_elements(tree: Element, *tags: str) -> Iterator[Element]:
             yield from child.iter(*tags)
 
 
+def words_of_foreign(tree: Element) -> set[str]:
+    """Return the words in the elements for simulators and controllers."""
+    found = [element for tag in FOREIGN for child in tree.iterchildren(tag) for element in child.iter("*")]
+    values = [value for element in found for value in (element.text or "", *map(str, element.attrib.values()))]
+    return {word for value in values for word in value.split()}
+
+
 def some(random: Random, items: Iterable[_Item]) -> Sequence[_Item]:
     """Return one to three items, or none where there are none."""
     found = list(items)
