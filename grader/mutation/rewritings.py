@@ -50,11 +50,9 @@ def shuffle(random: Random, tree: Element, _: RewritingRules) -> bool:
     """Change the order of elements: links, joints and materials, and those inside of each."""
     free = ("joint", "material", "collision") if _has_shared_material(tree) else _SORTED
     for owner in [tree, *own_elements(tree, "link", "joint", "visual", "collision", "inertial")]:
-        children = list(owner)
-        shuffled = random.sample(children, len(children))
-        for child in children:
-            owner.remove(child)
-        owner.extend(_stable(children, shuffled, free))
+        ranks = {child.tag: random.random() for child in owner}  # of several origins the first counts
+        order = {child: random.random() if child.tag in free else ranks[child.tag] for child in owner}
+        owner[:] = sorted(owner, key=order.__getitem__)
     return True
 
 
@@ -63,15 +61,6 @@ def _has_shared_material(tree: Element) -> bool:
     known = {material.get("name") for material in tree.iterchildren("material")}
     names = [found.get("name") for found in own_elements(tree, "material") if found.getparent() is not tree]
     return any(names.count(name) > 1 and name not in known for name in set(names))
-
-
-def _stable(before: list[Element], after: list[Element], free: tuple[str, ...]) -> list[Element]:
-    """Return the shuffled elements with those whose order matters in it: the first of several origins counts."""
-    queues: dict[str, list[Element]] = {}
-    for element in before:
-        if element.tag not in free:
-            queues.setdefault(str(element.tag), []).append(element)
-    return [queues[str(element.tag)].pop(0) if str(element.tag) in queues else element for element in after]
 
 
 def split_joints(random: Random, tree: Element, _: RewritingRules) -> bool:
