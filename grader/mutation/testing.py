@@ -12,7 +12,7 @@ from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, read_rubric
 from grader.mutation.equivalents import FAMILIES, Equivalent, Equivalents, breaking
 from grader.mutation.mutants import Mutant
-from grader.mutation.mutation_test import GradeAll, MutantOutcome, mutants_of, outcome_of, mutant_results
+from grader.mutation.mutation_test import GradeAll, MutantOutcome, mutant_results, mutants_of, outcome_of
 from grader.mutation.result import EquivalentResults, Loss, RubricTest, diff
 from grader.mutation.samples import Sample, tested_samples
 from grader.mutation.trial import Trial

@@ -16,7 +16,7 @@ from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric, load_rubric
 from grader.mutation import testing
-from grader.mutation.mutation_test import mutants_of, one_by_one, mutant_results
+from grader.mutation.mutation_test import mutant_results, mutants_of, one_by_one
 from grader.mutation.trial import Trial
 from grader.submission.opening import open_submission
 from tests.command_line import run
