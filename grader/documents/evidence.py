@@ -1,7 +1,7 @@
 """Pictures and other evidence in a submission: found by name or headings in documents, and described, never graded."""
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from grader.documents.collection import DocumentCollection
@@ -64,8 +64,7 @@ def find_all_evidence(
     """Return the evidence for each of several lists of names.
 
     A file is perhaps meant for one of them, the first without a file, unless its headings name several, it could not
-    be read, or it has pictures without headings. A file that names another step, or only the task if that has one step,
-    is perhaps meant for the nearest step of its task without a file.
+    be read, or it has pictures without headings.
     """
     found = [find_evidence(files, one, documents) for one in names]
     claimed = {file.path for one in found for file in one.files}
@@ -75,27 +74,7 @@ def find_all_evidence(
         perhaps = tuple(file for file in one.possible if file.heading or file.path not in claimed - several)
         claimed |= {file.path for file in perhaps}
         found[index] = FoundEvidence(one.files, perhaps)
-    steps = [(label, index) for index, one in enumerate(names) for label in map(read_label, one) if label.is_complete]
-    without = {index for index, one in enumerate(found) if not one.files}
-    for labelled in files:
-        near = _nearest(labelled.loose, steps, without) if labelled.file.path not in claimed else None
-        if near is not None:
-            found[near] = FoundEvidence((), (*found[near].possible, *as_evidence([labelled])))
     return found
-
-
-def _nearest(wanted: Label, steps: Sequence[tuple[Label, int]], without: Collection[int]) -> int | None:
-    """Return which of those without a file belongs to the nearest step of the same task; None if there is none of it.
-
-    A label without a step means the only step of its task.
-    """
-    of_task = [(it, index) for it, index in steps if it.task == wanted.task]
-    if not wanted.steps and len(of_task) > 1:
-        return None
-    distances = [
-        (abs(min(it.steps) - min(wanted.steps or it.steps)), index) for it, index in of_task if index in without
-    ]
-    return min(distances)[1] if distances else None
 
 
 def _may_match(wanted: Label, labelled: LabelledFile) -> bool:
