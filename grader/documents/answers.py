@@ -7,7 +7,7 @@ from typing import NamedTuple
 from grader.documents.collection import DocumentCollection
 from grader.documents.converter import PICTURE
 from grader.documents.document import Document
-from grader.documents.headings import Heading, Pattern, has_words, question_of
+from grader.documents.headings import Heading, Pattern, has_words, is_about, question_of
 from grader.documents.labels import KEYWORDS, WORDS, Label, matches, read_label, stem
 from grader.documents.questions import Answer, AnswerMatch, Ordinal, match_answer, read_ordinal
 from grader.source import Location
@@ -91,7 +91,7 @@ class _AnswerSearch:
             if matches(wanted, read_label(stem(document.file.name))):  # the file is named for the place
                 spans = [Heading(0, len(document.lines), "", wanted)]
             else:
-                spans = [head for head in self._headings(document) if _is_about(wanted, head)][:_MAX_MATCHES]
+                spans = [head for head in self._headings(document) if is_about(wanted, head)][:_MAX_MATCHES]
             for head in spans:
                 passage = self._cut(document, head)
                 if passage is None:
@@ -162,12 +162,6 @@ def _own_words(text: str) -> list[str]:
     words = WORDS.findall(text)
     pairs = pairwise([*words, ""])
     return [word for word, after in pairs if not word.isdecimal() and not (word in KEYWORDS and after.isdecimal())]
-
-
-def _is_about(wanted: Label, head: Heading) -> bool:
-    if not wanted.steps and wanted.task is None:  # plain words, which begin the heading or are in one that is marked
-        return head.pattern == wanted.words or (bool(head.level) and matches(wanted, read_label(head.text)))
-    return matches(wanted, head.label, head.task)
 
 
 def _of_file(document: Document, pattern: Pattern) -> Heading:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable
 from itertools import islice
 from typing import NamedTuple
 
-from grader.documents.labels import QUESTION_WORDS, STEPS, TASKS, WORDS, Label, read_label
+from grader.documents.labels import QUESTION_WORDS, STEPS, TASKS, WORDS, Label, matches, read_label
 
 Pattern = tuple[str, ...]  # the words of a heading, such as ("required", "question")
 
@@ -90,6 +90,14 @@ def find_headings(lines: list[str], name: str, patterns: Collection[Pattern] = (
         heading._replace(end=_end(heading, islice(ending, bisect_right(starts, heading.start), None), lines))
         for heading in found
     )
+
+
+def is_about(wanted: Label, head: Heading) -> bool:
+    """Return whether a heading has a label: plain words begin it, or are in one that is marked as a heading."""
+    if not wanted.steps and wanted.task is None:
+        is_pattern = bool(head.pattern) and head.pattern == wanted.words
+        return is_pattern or (head.level > 0 and matches(wanted, read_label(head.text)))
+    return matches(wanted, head.label, head.task)
 
 
 def has_words(line: str) -> bool:
