@@ -36,43 +36,39 @@ def breaking(criterion: Criterion, families: Iterable[str]) -> bool:
     return not set(criterion.check.about.breaks_under(criterion.arguments)).isdisjoint(families)
 
 
-class Equivalents:
-    """The rewritings of a robot; what `kept` names is renamed nowhere."""
+def equivalents(rubric: Rubric, root: Element, robot: Robot, kept: set[str], seed: int) -> Iterator[Equivalent]:
+    """Yield rewritings of a robot, of each family some; what `kept` names is renamed nowhere."""
+    named = kept | words_of_foreign(root)
+    has_places = any(name.startswith("@") for name in names_in(rubric))
 
-    def __init__(self, rubric: Rubric, root: Element, robot: Robot, kept: set[str], seed: int) -> None:
-        self._root, self._robot, self._seed = root, robot, seed
-        self._named = kept | words_of_foreign(root)
-        self._is_structural = any(name.startswith("@") for name in names_in(rubric))
-
-    def all(self) -> Iterator[Equivalent]:
-        """Yield the rewritings, of each family some."""
-        for family in FAMILIES:
-            for number in range(_OF_SEVERAL if family == SEVERAL else _OF_EACH):
-                found = self._make(family, number)
-                if found is not None:
-                    yield found
-
-    def _make(self, family: str, number: int) -> Equivalent | None:
-        random = Random(f"{self._seed} {family} {number}")
-        tree = copied(self._root)
-        before = text_of(copied(self._root))
-        rules = RewritingRules(self._named, self._may_move)
-        names = [family] if family != SEVERAL else self._several(random)
-        done = tuple(name for name in names if STEPS[name](random, tree, rules))
-        if not done:
-            return None
-        text = text_of(tree, random.choice(_INDENTS)) if LAYOUT in done else text_of(tree)
-        name = f"{family} {number + 1}" + (f": {', '.join(done)}" if family == SEVERAL else "")
-        return Equivalent(family, done, name, text, before, not set(done).isdisjoint(AS_XACRO))
-
-    def _several(self, random: Random) -> list[str]:
-        chosen = random.sample([name for name in STEPS if name not in AS_XACRO], random.randint(2, _MOST_STEPS))
-        return chosen + ([random.choice(AS_XACRO)] if random.random() < 0.3 else [])
-
-    def _may_move(self, link: str) -> bool:
+    def may_move(link: str) -> bool:
         """Return whether nothing refers to the frame of a link; @root, @tip and @moved:2 name links by structure."""
-        parents = [joint for joint in self._robot.joints if joint.child == link]
-        if link in self._named or len(parents) != 1:
+        parents = [joint for joint in robot.joints if joint.child == link]
+        if link in named or len(parents) != 1:
             return False
-        is_tip = all(joint.parent != link for joint in self._robot.joints)
-        return not self._is_structural or (parents[0].type == "fixed" and not is_tip)
+        is_tip = all(joint.parent != link for joint in robot.joints)
+        return not has_places or (parents[0].type == "fixed" and not is_tip)
+
+    rules = RewritingRules(named, may_move)
+    for family in FAMILIES:
+        for number in range(1, (_OF_SEVERAL if family == SEVERAL else _OF_EACH) + 1):
+            random = Random(f"{seed} {family} {number}")
+            found = _rewritten(random, root, rules, family)
+            if found is not None:
+                steps = f": {', '.join(found.families)}" if family == SEVERAL else ""
+                yield found._replace(name=f"{family} {number}{steps}")
+
+
+def _rewritten(random: Random, root: Element, rules: RewritingRules, family: str) -> Equivalent | None:
+    tree = copied(root)
+    names = [family] if family != SEVERAL else _several(random)
+    done = tuple(name for name in names if STEPS[name](random, tree, rules))
+    if not done:
+        return None
+    text = text_of(tree, random.choice(_INDENTS)) if LAYOUT in done else text_of(tree)
+    return Equivalent(family, done, family, text, text_of(copied(root)), not set(done).isdisjoint(AS_XACRO))
+
+
+def _several(random: Random) -> list[str]:
+    chosen = random.sample([name for name in STEPS if name not in AS_XACRO], random.randint(2, _MOST_STEPS))
+    return chosen + ([random.choice(AS_XACRO)] if random.random() < 0.3 else [])

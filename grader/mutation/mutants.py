@@ -53,24 +53,9 @@ class MutantEdit(NamedTuple):
     tags: tuple[str, ...] = ()
 
 
-def mutants(text: str, path: str = "") -> Iterator[Mutant]:
-    """Yield every mutant of a URDF or xacro once."""
-    return as_mutants(text, path, _changes(text))
-
-
-def with_visuals(text: str, path: str, links: Collection[str]) -> Iterator[Mutant]:
-    """Yield the mutants in which one of these links, which must show nothing, shows a box."""
-    own = [
-        found for found in elements(text) if found.tag == "link" and found.label in {f"link {name}" for name in links}
-    ]
-    return as_mutants(text, path, (_with_visual(text, link) for link in own))
-
-
-def _with_visual(text: str, link: Element) -> MutantEdit:
-    is_empty = text[link.head_end - 2] == "/"
-    start = link.head_end - (2 if is_empty else 0)
-    new = f">{_BOX}</link>" if is_empty else _BOX
-    return MutantEdit("visual added", link.label, start, link.head_end, new, (*link.tags, "visual"))
+def mutants(text: str, path: str = "", hidden: Collection[str] = ()) -> Iterator[Mutant]:
+    """Yield every mutant of a URDF or xacro once; `hidden` are links that must show nothing, which show a box."""
+    return as_mutants(text, path, _changes(text, {f"link {name}" for name in hidden}))
 
 
 def as_mutants(text: str, path: str, changes: Iterable[MutantEdit], tags: tuple[str, ...] = ()) -> Iterator[Mutant]:
@@ -89,7 +74,7 @@ def as_mutants(text: str, path: str, changes: Iterable[MutantEdit], tags: tuple[
         yield Mutant(name, change.family, path, line, *key, tags=change.tags or tags)
 
 
-def _changes(text: str) -> Iterator[MutantEdit]:
+def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
     found = elements(text)
     known = {tag: names_of_tag(text, found, tag) for tag in ("link", "joint", "material")}
     for element in found:
@@ -100,6 +85,11 @@ def _changes(text: str) -> Iterator[MutantEdit]:
             yield from of_value(text, element.label, span, "", (*element.tags, "@"))
         if element.parent >= 0:
             yield from _of_element(text, element, found[element.parent])
+        if element.label in hidden:
+            is_empty = text[element.head_end - 2] == "/"
+            span = element.head_end - (2 if is_empty else 0), element.head_end
+            new = f">{_BOX}</link>" if is_empty else _BOX
+            yield MutantEdit("visual added", element.label, *span, new, (*element.tags, "visual"))
 
 
 def _of_attribute(

@@ -7,7 +7,7 @@ from random import Random
 from typing import NamedTuple
 
 from grader.grading.criterion import Criterion
-from grader.mutation.mutants import Mutant, mutants, with_visuals
+from grader.mutation.mutants import Mutant, mutants
 from grader.mutation.package_mutants import package_mutants
 from grader.mutation.result import Loss, MutantResults, Survivor, diff
 from grader.mutation.trial import Trial
@@ -22,8 +22,7 @@ def mutants_of(trial: Trial) -> Iterator[Mutant]:
     criteria = [trial.expected[name].criterion for name in trial.tested]
     hidden = [found.arguments.get("link", "") for found in criteria if found.check.name == "shows_nothing"]
     for path in trial.robot_files:
-        yield from mutants(trial.text(path), path)
-        yield from with_visuals(trial.text(path), path, hidden)
+        yield from mutants(trial.text(path), path, hidden)
     package, urdf = trial.reference.package, trial.reference.urdf
     if package is not None:
         robot = urdf.reading.robot if isinstance(urdf, Read) else None

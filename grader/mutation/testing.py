@@ -10,7 +10,7 @@ from grader.errors import InputError
 from grader.grading.deciding import decide
 from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, read_rubric
-from grader.mutation.equivalents import FAMILIES, Equivalent, Equivalents, breaking
+from grader.mutation.equivalents import FAMILIES, Equivalent, breaking, equivalents
 from grader.mutation.mutants import Mutant
 from grader.mutation.mutation_test import GradeAll, MutantOutcome, mutant_results, mutants_of, outcome_of
 from grader.mutation.result import EquivalentResults, Loss, RubricTest, diff
@@ -30,7 +30,7 @@ def tested_equivalents(trial: Trial, seed: int) -> EquivalentResults:
     assert urdf.reading.robot is not None
     tried: Counter[str] = Counter()
     losses: list[Loss] = []
-    for equivalent in Equivalents(trial.rubric, urdf.reading.root, urdf.reading.robot, trial.kept, seed).all():
+    for equivalent in equivalents(trial.rubric, urdf.reading.root, urdf.reading.robot, trial.kept, seed):
         tried[equivalent.family] += 1
         submission = _submission(trial.reference, urdf, equivalent)
         results = decide(trial.rubric, submission, _criteria_to_pass(trial, submission, equivalent))

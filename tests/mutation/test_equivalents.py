@@ -11,7 +11,7 @@ from grader.checks.check import EQUIVALENTS
 from grader.checks.registry import find_check
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
-from grader.mutation.equivalents import FAMILIES, Equivalent, Equivalents, breaking
+from grader.mutation.equivalents import FAMILIES, Equivalent, breaking, equivalents
 from grader.mutation.trees import copied
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
@@ -29,7 +29,7 @@ def made(rubric: Rubric, kept: set[str] | None = None, text: str = ARM) -> list[
     assert isinstance(urdf, Read)
     assert urdf.reading.root is not None
     assert urdf.reading.robot is not None
-    return list(Equivalents(rubric, urdf.reading.root, urdf.reading.robot, kept or set(), 0).all())
+    return list(equivalents(rubric, urdf.reading.root, urdf.reading.robot, kept or set(), 0))
 
 
 def read(equivalent: Equivalent) -> Robot:

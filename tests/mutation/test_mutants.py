@@ -6,7 +6,7 @@ from random import Random
 import pytest
 
 from grader.mutation.elements import elements
-from grader.mutation.mutants import Mutant, mutants, with_visuals
+from grader.mutation.mutants import Mutant, mutants
 from grader.mutation.mutation_test import sampled
 from grader.mutation.result import diff
 from tests.mutation.robots import ARM, CHANGES
@@ -24,7 +24,7 @@ def test_a_link_that_must_show_nothing_gets_a_visual() -> None:
     """Whether its tag is empty or not; other links do not."""
     box = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
     text = '<robot><link name="a"/><link name="b"></link><link name="c"/></robot>'
-    found = list(with_visuals(text, "a.urdf", ["a", "b", "nowhere"]))
+    found = [it for it in mutants(text, "a.urdf", ["a", "b", "nowhere"]) if it.family == "visual added"]
     assert [mutant.id for mutant in found] == ["visual added: link a", "visual added: link b"]
     assert [mutant.applied(text) for mutant in found] == [
         text.replace('"a"/>', f'"a">{box}</link>'),
