@@ -2,6 +2,7 @@
 
 import textwrap
 from collections.abc import Iterator, Sequence
+from os.path import commonprefix
 
 from grader import __version__
 from grader.grading.criterion import worth
@@ -31,6 +32,7 @@ from grader.text import counted, enumerated, first_lines, format_points, printab
 
 _MAX_OF_GROUP, _MAX_GROUPS, _MAX_DIFF, _MAX_LOSSES = 3, 12, 14, 10
 _DEEPEST = 4  # indentation of a sentence
+_AROUND = 20  # characters of a long line before what changes
 
 
 def render_rubric_test(test: RubricTest, width: int) -> str:
@@ -126,7 +128,15 @@ def _place(mutant: Mutant) -> str:
 
 
 def _diff(diff: str) -> list[str]:
-    return [f"      {line}" for line in first_lines(diff.splitlines(), _MAX_DIFF)]
+    """Return the lines of a diff; of a long line that changes, what is around the change."""
+    lines = first_lines(diff.splitlines(), _MAX_DIFF)
+    changed = [line[1:] for line in lines[3:] if line[:1] in "+-"]
+    before = len(commonprefix(changed)) - _AROUND if len(changed) == 2 else 0  # noqa: RUF071  of texts, not of paths
+    if before > _AROUND:
+        lines = [
+            f"{line[0]}...{line[1 + before :]}" if line[:1] in "+-" and i > 2 else line for i, line in enumerate(lines)
+        ]
+    return [f"      {line}" for line in lines]
 
 
 def _idle(found: MutantResults) -> Iterator[str]:
