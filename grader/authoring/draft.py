@@ -1,9 +1,7 @@
 """Measure a reference, write a rubric of the facts, and keep the criteria that the reference passes."""
 
-import tomllib
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from decimal import Decimal
 from itertools import chain, islice
 from pathlib import Path
 from typing import NamedTuple
@@ -17,6 +15,7 @@ from grader.checks.toml_types import WrongValue
 from grader.errors import InputError
 from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, read_rubric
+from grader.grading.toml_file import read_toml
 
 MAX_FACTS = 2000  # more than the largest robots have; criteria cost the square of their number
 
@@ -112,7 +111,8 @@ def _why_invalid(fact: Fact) -> str:
         return f"there is no check {fact.check}"
     for name, value in fact.arguments.items():
         try:
-            check.parameters[name].type.parse(tomllib.loads(f"it = {toml_literal(value)}", parse_float=Decimal)["it"])
+            _, read = read_toml(f"it = {toml_literal(value)}".encode(), Path())
+            check.parameters[name].type.parse(read["it"])
         except WrongValue as error:
             return f"{name} must be {error}"
     return ""
