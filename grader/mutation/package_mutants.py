@@ -19,13 +19,6 @@ _FOR_PEOPLE_TOO = re.compile(
 _XML_FAMILIES = ("attribute misspelt", "element deleted", "text misspelt", "name misspelt")
 _DISPLAY_TEXTS = (("Class",), ("Description Topic", "Value"), ("Topic", "Value"))
 
-_SCALAR = re.compile(
-    r"""
-      "[^"\n]*" | '[^'\n]*'
-    | [^\s#][^\n\r]*?(?=\s*(?:\r?\n|$|\s\#))    # base_link, of "Fixed Frame: base_link  # of the robot"
-    """,
-    re.VERBOSE,
-)
 Text = Callable[[str], str]  # returns the text of a file by its path in the submission
 
 
@@ -89,7 +82,7 @@ def _rviz(path: str, label: str, text: str, links: list[str]) -> Iterator[Mutant
     frame = root.get("Visualization Manager", "Global Options", "Fixed Frame") if root else None
     if frame is not None and frame.text:
         for other in (misspelt(frame.text), *links):
-            yield MutantEdit("fixed frame", f"{label} -> {other}", *_scalar_span(source, frame), other)
+            yield MutantEdit("fixed frame", f"{label} -> {other}", *frame.span, other)
     displays = root.get("Visualization Manager", "Displays") if root else None
     for display in displays.items if displays else ():
         title = display.get("Name") or display.get("Class")
@@ -97,7 +90,7 @@ def _rviz(path: str, label: str, text: str, links: list[str]) -> Iterator[Mutant
         yield MutantEdit("display deleted", place, *_line_span(source, display), "")
         enabled = display.get("Enabled")
         if enabled is not None and enabled.text == "true":
-            yield MutantEdit("display disabled", place, *_scalar_span(source, enabled), "false")
+            yield MutantEdit("display disabled", place, *enabled.span, "false")
         for keys in _DISPLAY_TEXTS:
             node = display.get(*keys)
             if node is not None and node.text:
@@ -105,7 +98,7 @@ def _rviz(path: str, label: str, text: str, links: list[str]) -> Iterator[Mutant
 
 
 def _misspelt(source: Source, label: str, node: YamlNode) -> Iterator[MutantEdit]:
-    start, end = _scalar_span(source, node)
+    start, end = node.span
     text = source.text[start:end].strip("'\"")
     if text:
         start = source.text.index(text, start)
@@ -127,13 +120,6 @@ def _scalars(node: YamlNode) -> Iterator[YamlNode]:
             yield from chain.from_iterable(map(_scalars, items))
         case dict(values):
             yield from chain.from_iterable(map(_scalars, values.values()))
-
-
-def _scalar_span(source: Source, node: YamlNode) -> tuple[int, int]:
-    """Return the offsets of the text of a value, with its quotes."""
-    start = source.offset(node.location.line, node.location.column)
-    found = _SCALAR.match(source.text, start)
-    return start, found.end() if found is not None else start
 
 
 def _line_span(source: Source, node: YamlNode) -> tuple[int, int]:
