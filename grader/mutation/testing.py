@@ -61,13 +61,7 @@ Progress = Callable[[int, int], None]  # how many submissions of how many are gr
 
 
 def run_rubric_test(
-    rubric: Rubric,
-    samples: list[Sample] | None,
-    *,
-    seed: int,
-    most: int,
-    progress: Progress,
-    grade_all: GradeAll,
+    rubric: Rubric, samples: list[Sample] | None, seed: int, most: int, progress: Progress, grade_all: GradeAll
 ) -> RubricTest:
     """Return the test of a rubric. Raises InputError without a readable reference, RubricError for wrong samples.
 
