@@ -7,11 +7,13 @@ from itertools import islice
 from typing import NamedTuple
 
 from grader.documents.labels import QUESTION_WORDS, STEPS, TASKS, WORDS, Label, matches, read_label
+from grader.text import cut
 
 Pattern = tuple[str, ...]  # the words of a heading, such as ("required", "question")
 
 _QUESTIONS: tuple[Pattern, ...] = (("required", "question"), ("optional", "question"), ("question",))
 _MAX_LINE = 1000  # characters of a line in which a label is searched
+_MAX_SHOWN = 40  # characters of a heading
 _MAX_WORDS = 6  # the first words of a line, which contain the label of a heading
 _MIN_RATIO = 0.85  # of a misspelt word: 0.93 for "reqired", but 0.71 for "requested"
 _MAX_SPLIT = 12  # words and signs at the beginning of a line that are looked at
@@ -57,6 +59,11 @@ class Heading(NamedTuple):
     is_bold: bool = False
     is_item: bool = False
     is_mention: bool = False
+
+    @property
+    def shown(self) -> str:
+        """Its beginning; of a question the words before its colon."""
+        return cut(" ".join((self.text.partition(":")[0] if self.pattern else self.text).split()), _MAX_SHOWN)
 
 
 def find_headings(lines: list[str], name: str, patterns: Collection[Pattern] = ()) -> tuple[Heading, ...]:
