@@ -130,11 +130,6 @@ def _idle(
     return tuple(name for name in trial.tested if name not in failed)
 
 
-def one_by_one(trial: Trial) -> GradeAll:
-    """Return what grades mutants here, one after the other."""
-    return lambda mutants: (outcome_of(trial, mutant) for mutant in mutants)
-
-
 def _survivor(trial: Trial, mutant: Mutant) -> Survivor:
     """Return a mutant that loses nothing, with the reason for which the rubric ignores it."""
     ignored = trial.rubric.ignored

@@ -16,7 +16,7 @@ from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric, load_rubric
 from grader.mutation import testing
-from grader.mutation.mutation_test import mutant_results, mutants_of, one_by_one
+from grader.mutation.mutation_test import mutant_results, mutants_of, outcome_of
 from grader.mutation.trial import Trial
 from grader.submission.opening import open_submission
 from tests.command_line import run
@@ -154,7 +154,9 @@ def test_mutants_of_a_reference_lose_something(lab: str) -> None:
     trial = Trial(grade(rubric, rubric.solution.submission), rubric.solution.submission)
     assert testing.tested_equivalents(trial, seed=15).losses == ()
     # Without the search for idle criteria, which takes as long as 500 mutants.
-    found = mutant_results(trial, [*mutants_of(trial)], 60, 15, one_by_one(trial), others=0)
+    found = mutant_results(
+        trial, [*mutants_of(trial)], 60, 15, lambda some: (outcome_of(trial, it) for it in some), others=0
+    )
     assert [survivor.mutant.id for survivor in found.survivors] == []
     assert found.caught >= 40
 
