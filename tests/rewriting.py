@@ -14,7 +14,6 @@ from lxml import etree
 
 from grader.mutation import rewritings as seeded
 from grader.mutation.trees import (
-    Style,
     add_joint,
     attribute_numbers,
     attribute_text,
@@ -22,12 +21,15 @@ from grader.mutation.trees import (
     fresh,
     move_frame,
     origin,
+    own_elements,
     parent_joint,
     pose,
     set_pose,
+    some,
 )
 from grader.robot.transforms import IDENTITY
 from grader.xml.parsing import Element
+from tests.writing_style import Style
 
 Step = Callable[[st.DrawFn, Element], None]
 
@@ -135,6 +137,31 @@ def _turns_about_z(joint: Element) -> bool:
 # --- Steps that say the same in other values --------------------------------------------------------------------------
 
 
+def _turn_fully(random: Random, tree: Element, _: seeded.RewritingRules) -> bool:
+    """Write rotations with additional full turns, or by their other three angles."""
+    origins = list(own_elements(tree, "origin"))
+    for found in some(random, origins):
+        found.set("rpy", attribute_text(_other_angles(random, attribute_numbers(found, "rpy"))))
+    return bool(origins)
+
+
+def _other_angles(random: Random, rpy: list[float]) -> list[float]:
+    """Return other angles of the same rotation."""
+    roll, pitch, yaw = rpy
+    if random.random() < 0.5:
+        roll, pitch, yaw = roll + pi, pi - pitch, yaw + pi
+    return [angle + 2 * pi * random.randint(-3, 3) for angle in (roll, pitch, yaw)]
+
+
+def _scale_axes(random: Random, tree: Element, _: seeded.RewritingRules) -> bool:
+    """Scale axes of joints."""
+    axes = list(own_elements(tree, "axis"))
+    for axis in some(random, axes):
+        factor = 10 ** random.uniform(-2, 2)
+        axis.set("xyz", attribute_text(factor * number for number in attribute_numbers(axis, "xyz")))
+    return bool(axes)
+
+
 def _seeded(step: seeded.Rewriting) -> Step:
     """Return a step that draws the seed of one of `grader rubric test`."""
 
@@ -145,8 +172,8 @@ def _seeded(step: seeded.Rewriting) -> Step:
 
 
 _NO_NAMES = seeded.RewritingRules((), lambda _: False)
-other_angles = _seeded(seeded.turn_fully)
-scale_axis = _seeded(seeded.scale_axes)
+other_angles = _seeded(_turn_fully)
+scale_axis = _seeded(_scale_axes)
 shuffle = _seeded(seeded.shuffle)
 
 

@@ -47,7 +47,7 @@ class Sample:
 
     def open(self) -> Submission:
         """Return the submission."""
-        return self.expected.open(self.rubric)
+        return opened(self.path, self.rubric)
 
     def grade(self) -> Report:
         """Return its report, the same object each time: every format is tested on all samples."""

@@ -1,11 +1,10 @@
 """Measure a reference, write a rubric of the facts, and keep the criteria that the reference passes."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from decimal import Decimal
 from itertools import chain, islice
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from grader.authoring.ignored import ignored_mutants
 from grader.authoring.rubric_text import Head, criterion_ids, rubric_text, toml_literal
@@ -16,6 +15,7 @@ from grader.checks.toml_types import WrongValue
 from grader.errors import InputError
 from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, read_rubric
+from grader.grading.toml_file import read_toml
 
 MAX_FACTS = 2000  # more than the largest robots have; criteria cost the square of their number
 
@@ -111,17 +111,8 @@ def _why_invalid(fact: Fact) -> str:
         return f"there is no check {fact.check}"
     for name, value in fact.arguments.items():
         try:
-            check.parameters[name].type.parse(_as_read(value))
+            _, read = read_toml(f"it = {toml_literal(value)}".encode(), Path())
+            check.parameters[name].type.parse(read["it"])
         except WrongValue as error:
             return f"{name} must be {error}"
     return ""
-
-
-def _as_read(value: Any) -> Any:
-    """Return a value as it is read from a TOML file."""
-    match value:
-        case Mapping():
-            return {key: _as_read(item) for key, item in value.items()}
-        case list():
-            return list(map(_as_read, value))
-    return Decimal(repr(value)) if isinstance(value, float) else value

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from grader.checks.measures.fact import Solution
-from grader.package.package import Package
 
 
 class IgnoredMutants(NamedTuple):
@@ -17,8 +16,6 @@ class IgnoredMutants(NamedTuple):
 
 _TEMPLATE = "These entries of data_files are those of the template; the criteria are about files that ROS 2 opens."
 _MODULES = "No check is about the Python modules of the package, or about where its programs are installed."
-
-
 _CONDITION = "The launch file starts this node only with other arguments than the defaults."
 _FOLDER = "ros2 launch finds a launch file in any folder of the installed package."
 
@@ -26,21 +23,14 @@ _FOLDER = "ros2 launch finds a launch file in any folder of the installed packag
 def ignored_mutants(solution: Solution) -> Iterator[IgnoredMutants]:
     """Yield what a rubric of all facts of a solution ignores nevertheless."""
     package = solution.submission.package
-    if package is not None:
-        yield from _of_launch_files(package)
-        yield from () if package.is_cmake else _of_setup(package)
-
-
-def _of_launch_files(package: Package) -> Iterator[IgnoredMutants]:
+    if package is None:
+        return
     for path in package.launch_files:
-        nodes = [node for node in package.launch(path).nodes if node.when is False]
-        if nodes:
-            yield IgnoredMutants(
-                [f"* {path} *{name}*" for name in dict.fromkeys(node.executable for node in nodes)], _CONDITION
-            )
-
-
-def _of_setup(package: Package) -> Iterator[IgnoredMutants]:
+        names = dict.fromkeys(node.executable for node in package.launch(path).nodes if node.when is False)
+        if names:
+            yield IgnoredMutants([f"* {path} *{name}*" for name in names], _CONDITION)
+    if package.is_cmake:
+        return
     modules = [path for path in package.tree.files if path.endswith("/__init__.py") or path == "setup.cfg"]
     if modules:
         yield IgnoredMutants([f"file *: {path}" for path in modules], _MODULES)

@@ -19,24 +19,6 @@ def assignment(key: str, value: Any) -> str:
     return f"{_key(key)} = {toml_literal(value)}"
 
 
-def table(path: str, values: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the lines of a table of a criterion: in one line, or else under a heading, with its own tables after it."""
-    key = path.rpartition(".")[2]
-    line = assignment(key, values)
-    if len(line) <= WIDTH:
-        yield line
-        return
-    yield from ("", f"[{path}]")
-    inner = {name: value for name, value in values.items() if isinstance(value, Mapping)}
-    for name, value in values.items():
-        if name not in inner:
-            yield from toml_lines(name, value)
-    for name, value in inner.items():
-        yield from ("", f"[{path}.{_key(name)}]")
-        for deeper, item in value.items():
-            yield from toml_lines(deeper, item)
-
-
 def toml_literal(value: Any) -> str:
     """Return a value as TOML, in one line."""
     match value:
@@ -128,35 +110,22 @@ def criterion_ids(facts: Sequence[Fact]) -> dict[str, Fact]:
 
 
 def _head(head: Head, points: int) -> Iterator[str]:
-    given = {
-        "id": head.id,
-        "title": head.title,
-        "reference": head.reference,
-        "urdf": head.urdf,
-        "package": head.package,
-    }
-    comments = {
-        "reference": "the solution that must get full marks",
-        "urdf": "where a package keeps the file that is graded",
-        "package": "the name of the package that is graded",
-    }
-    lines = {key: assignment(key, value) for key, value in given.items() if value}
-    width = max(len(lines[key]) for key in comments if key in lines)
     yield from [f"#:schema {head.schema}"] if head.schema else []
-    for key, line in lines.items():
-        yield f"{line:{width}}  # {comments[key]}" if key in comments else line
+    yield from (assignment("id", head.id), assignment("title", head.title))
+    yield f"{assignment('reference', head.reference)}  # the solution that must get full marks"
+    yield f"{assignment('urdf', head.urdf)}  # where a package keeps the file that is graded"
+    yield from (
+        [f"{assignment('package', head.package)}  # the name of the package that is graded"] if head.package else []
+    )
     yield assignment("points", points)
 
 
 def _defaults(checks: set[str]) -> Iterator[str]:
     yield from ("", "[defaults]", assignment("part", _ROBOT), assignment("points", 1))
     known = (usable_check(name) for name in check_names() if name in checks)
-    usuals = {check.name: check.about.usual for check in known if check is not None and check.about.usual}
-    lines = {name: assignment(name, usual.arguments) for name, usual in usuals.items()}
-    if lines:
-        yield from ("", "[defaults.with]")
-        width = max(map(len, lines.values()))
-        yield from (f"{line:{width}}  # {usuals[name].unit}" for name, line in lines.items())
+    usuals = [(check.name, check.about.usual) for check in known if check is not None and check.about.usual]
+    yield from ("", "[defaults.with]") if usuals else ()
+    yield from (f"{assignment(name, usual.arguments)}  # {usual.unit}" for name, usual in usuals)
 
 
 def _part(name: str, title: str, needs: str, points: int) -> Iterator[str]:
@@ -176,5 +145,12 @@ def _criterion(name: str, fact: Fact) -> Iterator[str]:
         yield assignment("about", printable(fact.about))
     yield assignment("title", printable(fact.title))
     yield f"check = {toml_literal(fact.check)}"
-    if fact.arguments:
-        yield from table("criterion.with", fact.arguments)
+    if len(assignment("with", fact.arguments)) <= WIDTH:
+        yield from [assignment("with", fact.arguments)] if fact.arguments else []
+        return
+    yield from ("", "[criterion.with]")
+    for key, value in sorted(fact.arguments.items(), key=lambda item: isinstance(item[1], Mapping)):
+        is_long = isinstance(value, Mapping) and len(assignment(key, value)) > WIDTH
+        yield from ("", f"[criterion.with.{_key(key)}]") if is_long else ()
+        for inner, item in value.items() if is_long else ((key, value),):
+            yield from toml_lines(inner, item)

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 import typer
 
 from grader.cli.options import AnswersOption, Commands, FormatOption, RubricOption, rubric_ids
-from grader.cli.terminal import screen, show_class, warn
+from grader.cli.terminal import TERMINAL, warn
 from grader.report.formats import OutputFormat
 from grader.usecases import rubrics
 from grader.usecases.rubrics import DEFAULT_RUBRIC
@@ -162,10 +162,10 @@ def run_test(
 
       grader rubric test my_lab.toml samples --fail-under 100%
     """
-    from grader.usecases.rubric_making import TestRequest, test
+    from grader.usecases.rubric_making import test_rubric
 
-    request = TestRequest(name, folder, fail_under, seed, mutants, output_format)
-    text, code = test(request, screen(), show_class)
+    is_json = output_format is OutputFormat.JSON
+    text, code = test_rubric(name, folder, fail_under, seed, mutants, is_json, TERMINAL)
     write_stdout(text)
     return code
 

@@ -6,36 +6,19 @@ from typing import NamedTuple
 
 from grader.documents.collection import DocumentCollection
 from grader.documents.converter import PICTURE
-from grader.documents.document import Document
-from grader.documents.headings import Heading, Pattern, has_words, question_of
+from grader.documents.document import Document, Passage
+from grader.documents.headings import Heading, Pattern, has_words, is_about, question_of
 from grader.documents.labels import KEYWORDS, WORDS, Label, matches, read_label, stem
-from grader.documents.questions import Answer, AnswerMatch, Ordinal, match_answer, read_ordinal
+from grader.documents.questions import AnswerMatch, Ordinal, match_answer, read_ordinal
 from grader.source import Location
-from grader.text import cut
 
 _MAX_TEXT = 32_000  # characters, which no written answer has
 _MAX_QUESTION = 4000  # characters of a question
 _MAX_HEADING_WORDS = 6  # a passage of so few words is a heading without a text
 _MAX_MATCHES = 50  # headings of one document that are compared
-_MAX_SHOWN = 40  # characters of a heading
 _COPIED = frozenset(
     {"required", "optional", "question", "answer", "task", "step"}
 )  # words of a question, besides its own
-
-
-class Passage(NamedTuple):
-    """The part of a document about a question; `location` is its beginning, and `where` says it for a person.
-
-    `how` says why this is the passage, unless it is headed by the task and step. If that is not certain, it may belong
-    to another question. It is empty if it holds only the question.
-    """
-
-    text: str
-    location: Location
-    where: str
-    how: str = ""
-    is_certain: bool = True
-    is_empty: bool = False
 
 
 class AnswerSearch(NamedTuple):
@@ -91,7 +74,7 @@ class _AnswerSearch:
             if matches(wanted, read_label(stem(document.file.name))):  # the file is named for the place
                 spans = [Heading(0, len(document.lines), "", wanted)]
             else:
-                spans = [head for head in self._headings(document) if _is_about(wanted, head)][:_MAX_MATCHES]
+                spans = [head for head in self._headings(document) if is_about(wanted, head)][:_MAX_MATCHES]
             for head in spans:
                 passage = self._cut(document, head)
                 if passage is None:
@@ -121,15 +104,11 @@ class _AnswerSearch:
         headings = [[(document, head) for head in self._headings(document)] for document in self._read]
         for group in (*headings, [(document, _of_file(document, wanted.pattern)) for document in self._read]):
             heads = [(document, head) for document, head in group if _is_shared(wanted.pattern, head)]
-            cut = ((head, self._cut(document, head)) for document, head in heads[:_MAX_MATCHES])
-            pairs = [(head, passage) for head, passage in cut if passage is not None]
-            answers = [
-                Answer(_heading_text(head), head.number, head.section, passage.is_empty, "\n" not in passage.text)
-                for head, passage in pairs
-            ]
+            cut = (self._cut(document, head) for document, head in heads[:_MAX_MATCHES])
+            answers = [passage for passage in cut if passage is not None]
             match = match_answer(wanted, self._task, answers)
             if match is not None:
-                found.append(_join(match, [pairs[index][1] for index in match.indices]))
+                found.append(_join(match, [answers[index] for index in match.indices]))
         found.sort(key=lambda passage: (passage.is_empty, not passage.is_certain))
         return found[0] if found else None
 
@@ -145,7 +124,7 @@ class _AnswerSearch:
             return None
         text = text[:_MAX_TEXT] + (" [...]" if len(text) > _MAX_TEXT else "")
         at = Location(document.file.path, start + 1, 1)
-        return Passage(text, at, _where(document, head, at), is_empty=self._is_question_only(text))
+        return Passage(text, at, _where(document, head, at), head, is_empty=self._is_question_only(text))
 
     def _is_question_only(self, text: str) -> bool:
         """Return whether a passage holds only the question's words; one that ends in "?" may be worded differently."""
@@ -162,12 +141,6 @@ def _own_words(text: str) -> list[str]:
     words = WORDS.findall(text)
     pairs = pairwise([*words, ""])
     return [word for word, after in pairs if not word.isdecimal() and not (word in KEYWORDS and after.isdecimal())]
-
-
-def _is_about(wanted: Label, head: Heading) -> bool:
-    if not wanted.steps and wanted.task is None:  # plain words, which begin the heading or are in one that is marked
-        return head.pattern == wanted.words or (bool(head.level) and matches(wanted, read_label(head.text)))
-    return matches(wanted, head.label, head.task)
 
 
 def _of_file(document: Document, pattern: Pattern) -> Heading:
@@ -190,17 +163,11 @@ def _join(match: AnswerMatch, passages: list[Passage]) -> Passage:
     )
 
 
-def _heading_text(head: Heading) -> str:
-    """Return the beginning of a heading; of a question the words before its colon."""
-    text = " ".join((head.text.partition(":")[0] if head.pattern else head.text).split())
-    return cut(text, _MAX_SHOWN)
-
-
 def _where(document: Document, head: Heading, at: Location) -> str:
     """Return where a passage is: its page, or its heading, or its line where editors count lines."""
     page = document.page(head.start)
     if page is not None:
         return f"on page {page} of {at.path}"
     if document.file.suffix == ".docx":
-        return f'in {at.path}, below "{_heading_text(head)}"' if head.text else f"in {at.path}"
+        return f'in {at.path}, below "{head.shown}"' if head.text else f"in {at.path}"
     return f"in {at.path}, from line {at.line}"

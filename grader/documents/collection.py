@@ -6,7 +6,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Collection, Mapping, Sequence
-from contextlib import suppress
 from fnmatch import translate
 from functools import lru_cache
 from math import ceil
@@ -21,7 +20,6 @@ from grader.errors import InputError, MachineError
 from grader.files.tree import File, Tree
 
 MAX_SECONDS = 20.0  # for all Word and PDF files of a submission
-NOTICE_SECONDS = 1.0  # of reading in all, before it is said what is being read
 _TEXT_LIMIT, _DOCUMENT_LIMIT = 1024 * 1024, 32 * 1024 * 1024  # bytes
 _MAX_FILES, _MAX_CONVERTED = 40, 8
 _NO_ANSWERS = {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md", "top_level.txt", "SOURCES.txt"}
@@ -137,14 +135,8 @@ class DocumentCollection:
             raise late
         data = file.read(_DOCUMENT_LIMIT)
         # -P: modules are imported neither from the current folder, which may be the student's, nor from our own.
-        command = [
-            sys.executable,
-            "-P",
-            str(converter.__file__),
-            file.suffix[1:],
-            str(ceil(self._seconds)),
-            str(os.getpid()),
-        ]
+        limits = str(ceil(self._seconds)), str(os.getpid())
+        command = [sys.executable, "-P", str(converter.__file__), file.suffix[1:], *limits]
         began = time.monotonic()
         try:  # an interruption ends the process as well
             code, output = self._run(command, data, file.path)
@@ -164,23 +156,20 @@ class DocumentCollection:
         return output
 
     def _run(self, command: list[str], data: bytes, path: str) -> tuple[int, bytes]:
-        """Return the exit code and the output of a converter, and show the path of its file if the user has to wait."""
-        with TemporaryFile() as file:  # not a pipe: after a timeout, `communicate` would not write the rest into it
-            file.write(data)
-            file.seek(0)
-            with subprocess.Popen(command, stdin=file, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
-                quiet = max(0.0, min(self._seconds, NOTICE_SECONDS - (MAX_SECONDS - self._seconds)))
-                try:
-                    out = self._output(process, quiet, path)
-                except BaseException:  # time is up, or an interruption
-                    process.kill()
-                    raise
-                finally:
-                    self._show_file("")
-                return process.returncode, out
-
-    def _output(self, process: subprocess.Popen[bytes], quiet: float, path: str) -> bytes:
-        with suppress(subprocess.TimeoutExpired):
-            return process.communicate(timeout=quiet)[0]
+        """Return the exit code and the output of a converter; meanwhile the path of its file is shown."""
         self._show_file(path)
-        return process.communicate(timeout=self._seconds - quiet)[0]
+        try:
+            with TemporaryFile() as file:  # not a pipe: after a timeout, `communicate` would not write the rest into it
+                file.write(data)
+                file.seek(0)
+                done = subprocess.run(
+                    command,
+                    stdin=file,
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.DEVNULL,
+                    timeout=self._seconds,
+                    check=False,
+                )
+        finally:
+            self._show_file("")
+        return done.returncode, done.stdout

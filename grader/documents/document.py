@@ -4,7 +4,9 @@ from bisect import bisect_right
 from typing import NamedTuple
 
 from grader.documents import converter
+from grader.documents.headings import Heading
 from grader.files.tree import File
+from grader.source import Location
 
 MAX_LINES = 2000  # of one document
 CONVERTED = (".docx", ".pdf")  # whose text a separate process reads
@@ -31,6 +33,22 @@ class Document(NamedTuple):
             first, last = self.page(start) or 1, self.page(max(start, end - 1)) or 1
             start, end = self.pages[first - 1], (*self.pages, len(self.lines))[last]
         return converter.PICTURE in self.lines[start:end]
+
+
+class Passage(NamedTuple):
+    """The part of a document below a heading; `location` is its beginning, and `where` says it for a person.
+
+    `how` says why this is the passage, unless it is headed by the task and step. If that is not certain, it may belong
+    to another question. It is empty if it holds only the question.
+    """
+
+    text: str
+    location: Location
+    where: str
+    head: Heading
+    how: str = ""
+    is_certain: bool = True
+    is_empty: bool = False
 
 
 class Unread(NamedTuple):

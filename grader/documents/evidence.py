@@ -1,13 +1,13 @@
 """Pictures and other evidence in a submission: found by name or headings in documents, and described, never graded."""
 
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from grader.documents.collection import DocumentCollection
 from grader.documents.document import Document
 from grader.documents.evidence_files import EvidenceFile, LabelledFile, as_evidence
-from grader.documents.headings import Heading
+from grader.documents.headings import Heading, is_about
 from grader.documents.labels import Label, matches, read_label, stem
 from grader.files.tree import File
 from grader.names import closest
@@ -40,7 +40,8 @@ def find_evidence(
         return FoundEvidence(as_evidence(certain))
     others = [labelled for labelled in files if not labelled.label.is_complete]
     meant = [it for it in others if it.loose.is_complete and _is_named(it.loose, wanted)]
-    inside = [*_below_headings(documents, wanted)]
+    headings = _headings_about(documents, wanted) if documents is not None else []
+    inside = [(_below(document, head), _is_certain(label, document, head)) for document, head, label in headings]
     found = [*as_evidence(meant), *(file for file, is_certain in inside if is_certain)]
     if found := [file for file in found if not _PRELAB.search(file.path)]:
         return FoundEvidence(tuple(found))
@@ -64,8 +65,7 @@ def find_all_evidence(
     """Return the evidence for each of several lists of names.
 
     A file is perhaps meant for one of them, the first without a file, unless its headings name several, it could not
-    be read, or it has pictures without headings. A file that names another step, or only the task if that has one step,
-    is perhaps meant for the nearest step of its task without a file.
+    be read, or it has pictures without headings.
     """
     found = [find_evidence(files, one, documents) for one in names]
     claimed = {file.path for one in found for file in one.files}
@@ -75,27 +75,7 @@ def find_all_evidence(
         perhaps = tuple(file for file in one.possible if file.heading or file.path not in claimed - several)
         claimed |= {file.path for file in perhaps}
         found[index] = FoundEvidence(one.files, perhaps)
-    steps = [(label, index) for index, one in enumerate(names) for label in map(read_label, one) if label.is_complete]
-    without = {index for index, one in enumerate(found) if not one.files}
-    for labelled in files:
-        near = _nearest(labelled.loose, steps, without) if labelled.file.path not in claimed else None
-        if near is not None:
-            found[near] = FoundEvidence((), (*found[near].possible, *as_evidence([labelled])))
     return found
-
-
-def _nearest(wanted: Label, steps: Sequence[tuple[Label, int]], without: Collection[int]) -> int | None:
-    """Return which of those without a file belongs to the nearest step of the same task; None if there is none of it.
-
-    A label without a step means the only step of its task.
-    """
-    of_task = [(it, index) for it, index in steps if it.task == wanted.task]
-    if not wanted.steps and len(of_task) > 1:
-        return None
-    distances = [
-        (abs(min(it.steps) - min(wanted.steps or it.steps)), index) for it, index in of_task if index in without
-    ]
-    return min(distances)[1] if distances else None
 
 
 def _may_match(wanted: Label, labelled: LabelledFile) -> bool:
@@ -114,34 +94,26 @@ def headed(documents: DocumentCollection, names: Sequence[str]) -> list[tuple[Do
 def _headings_about(documents: DocumentCollection, wanted: Sequence[Label]) -> list[tuple[Document, Heading, Label]]:
     read, _ = documents.named(DOCUMENTS)
     heads = [(document, head) for document in read for head in _step_headings(documents, document)]
-    found = ([(document, head, label) for document, head in heads if _is_about(label, head)] for label in wanted)
+    found = ([(document, head, label) for document, head in heads if is_about(label, head)] for label in wanted)
     return next(filter(None, found), [])
 
 
-def _below_headings(
-    documents: DocumentCollection | None, wanted: Sequence[Label]
-) -> Iterator[tuple[EvidenceFile, bool]]:
-    """Yield the headings of documents with the first of the labels that occurs, and whether each is certain."""
-    for document, head, label in _headings_about(documents, wanted) if documents is not None else ():
-        yield _below(document, head), _is_certain(label, document, head)
-
-
-def _whole_documents(documents: DocumentCollection | None) -> Iterator[File]:
-    """Yield the documents that may hold any evidence: those not read, and those with pictures without headings.
+def _whole_documents(documents: DocumentCollection | None) -> list[File]:
+    """Return the documents that may hold any evidence: those not read, and those with pictures without headings.
 
     A pre-lab has none.
     """
-    if documents is not None:
-        yield from (file for file in _without_headings(documents) if not _PRELAB.search(file.path))
-
-
-def _without_headings(documents: DocumentCollection) -> Iterator[File]:
+    if documents is None:
+        return []
     read, unread = documents.named(DOCUMENTS)
-    for document in read:
-        has_steps = any(head.label.steps for head in _step_headings(documents, document))
-        if document.has_picture() and not has_steps and not read_label(stem(document.file.path)).is_complete:
-            yield document.file
-    yield from (documents.tree.files[it.path] for it in unread if it.path)
+    found = [it.file for it in read if it.has_picture() and not _names_steps(documents, it)]
+    found += [documents.tree.files[it.path] for it in unread if it.path]
+    return [file for file in found if not _PRELAB.search(file.path)]
+
+
+def _names_steps(documents: DocumentCollection, document: Document) -> bool:
+    is_named = read_label(stem(document.file.path)).is_complete
+    return is_named or any(head.label.steps for head in _step_headings(documents, document))
 
 
 def _step_headings(documents: DocumentCollection, document: Document) -> list[Heading]:
@@ -153,12 +125,6 @@ def _is_certain(wanted: Label, document: Document, head: Heading) -> bool:
     names = read_label(head.text[:_MAX_SHOWN])
     is_named = bool(names.steps) or names.task is not None or not (wanted.steps or wanted.task is not None)
     return is_named and document.has_picture(head.start, head.end)
-
-
-def _is_about(wanted: Label, head: Heading) -> bool:
-    if not wanted.steps and wanted.task is None:  # plain words, in a line that is marked as a heading
-        return bool(head.level) and matches(wanted, read_label(head.text))
-    return matches(wanted, head.label, head.task)
 
 
 def _below(document: Document, head: Heading) -> EvidenceFile:

@@ -6,12 +6,14 @@ from collections.abc import Collection, Iterable
 from itertools import islice
 from typing import NamedTuple
 
-from grader.documents.labels import QUESTION_WORDS, STEPS, TASKS, WORDS, Label, read_label
+from grader.documents.labels import QUESTION_WORDS, STEPS, TASKS, WORDS, Label, matches, read_label
+from grader.text import cut
 
 Pattern = tuple[str, ...]  # the words of a heading, such as ("required", "question")
 
 _QUESTIONS: tuple[Pattern, ...] = (("required", "question"), ("optional", "question"), ("question",))
 _MAX_LINE = 1000  # characters of a line in which a label is searched
+_MAX_SHOWN = 40  # characters of a heading
 _MAX_WORDS = 6  # the first words of a line, which contain the label of a heading
 _MIN_RATIO = 0.85  # of a misspelt word: 0.93 for "reqired", but 0.71 for "requested"
 _MAX_SPLIT = 12  # words and signs at the beginning of a line that are looked at
@@ -58,6 +60,11 @@ class Heading(NamedTuple):
     is_item: bool = False
     is_mention: bool = False
 
+    @property
+    def shown(self) -> str:
+        """Its beginning; of a question the words before its colon."""
+        return cut(" ".join((self.text.partition(":")[0] if self.pattern else self.text).split()), _MAX_SHOWN)
+
 
 def find_headings(lines: list[str], name: str, patterns: Collection[Pattern] = ()) -> tuple[Heading, ...]:
     """Return the headings among the lines of a document.
@@ -90,6 +97,14 @@ def find_headings(lines: list[str], name: str, patterns: Collection[Pattern] = (
         heading._replace(end=_end(heading, islice(ending, bisect_right(starts, heading.start), None), lines))
         for heading in found
     )
+
+
+def is_about(wanted: Label, head: Heading) -> bool:
+    """Return whether a heading has a label: plain words begin it, or are in one that is marked as a heading."""
+    if not wanted.steps and wanted.task is None:
+        is_pattern = bool(head.pattern) and head.pattern == wanted.words
+        return is_pattern or (head.level > 0 and matches(wanted, read_label(head.text)))
+    return matches(wanted, head.label, head.task)
 
 
 def has_words(line: str) -> bool:

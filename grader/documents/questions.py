@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from grader.documents.document import Passage
 from grader.documents.headings import Pattern
 from grader.documents.labels import WORDS
 
@@ -16,19 +17,6 @@ class Ordinal(NamedTuple):
     pattern: Pattern
     number: int
     total: int
-
-
-class Answer(NamedTuple):
-    """A passage below a heading that questions share: the number of the heading, and the task that it is below.
-
-    The passage is empty if it holds only the question, and a line if it ends with the heading's own.
-    """
-
-    heading: str
-    number: int | None
-    section: int | None
-    is_empty: bool
-    is_line: bool
 
 
 class AnswerMatch(NamedTuple):
@@ -45,7 +33,7 @@ def read_ordinal(place: str) -> Ordinal | None:
     return Ordinal(tuple(WORDS.findall(found[1])), int(found[2]), int(found[3])) if found else None
 
 
-def match_answer(wanted: Ordinal, task: int | None, answers: Sequence[Answer]) -> AnswerMatch | None:
+def match_answer(wanted: Ordinal, task: int | None, answers: Sequence[Passage]) -> AnswerMatch | None:
     """Return which of the answers in one document belongs to a question of a task; None if there is none for it.
 
     In this order: the only one below the heading of the task; the one with its number; the one at its place, if there
@@ -53,17 +41,17 @@ def match_answer(wanted: Ordinal, task: int | None, answers: Sequence[Answer]) -
     """
     if not answers:
         return None
-    below = [index for index, answer in enumerate(answers) if answer.section == task]
-    if task is not None and len(below) == 1 and all(answer.section is not None for answer in answers):
+    below = [index for index, answer in enumerate(answers) if answer.head.section == task]
+    if task is not None and len(below) == 1 and all(answer.head.section is not None for answer in answers):
         return AnswerMatch(
             tuple(below), True, f"the only {_answer_text(answers, below)} below the heading of task {task}"
         )
     written = [index for index, answer in enumerate(answers) if not answer.is_empty]
-    numbers = [answer.number for answer in answers if answer.number is not None]
+    numbers = [answer.head.number for answer in answers if answer.head.number is not None]
     if len(numbers) == len(answers) and max(numbers) <= wanted.total:
         return _answer_by_number(wanted, task, answers, written)
     for indices in (list(range(len(answers))), written, _answers_after_list(answers, wanted.total)):
-        in_order = all(answers[index].number in (None, place) for place, index in enumerate(indices, start=1))
+        in_order = all(answers[index].head.number in (None, place) for place, index in enumerate(indices, start=1))
         if len(indices) == wanted.total and in_order:
             index = indices[wanted.number - 1]
             how = f"in order: heading {wanted.number} of {wanted.total} like {_answer_text(answers, [index])}"
@@ -74,27 +62,32 @@ def match_answer(wanted: Ordinal, task: int | None, answers: Sequence[Answer]) -
 
 
 def _answer_by_number(
-    wanted: Ordinal, task: int | None, answers: Sequence[Answer], written: Sequence[int]
+    wanted: Ordinal, task: int | None, answers: Sequence[Passage], written: Sequence[int]
 ) -> AnswerMatch | None:
     """Return the answer below the question's number; of several, as with a list of the questions, that with text."""
-    hits = [index for index, answer in enumerate(answers) if answer.number == wanted.number]
+    hits = [index for index, answer in enumerate(answers) if answer.head.number == wanted.number]
     if len(hits) > 1:
         hits = [index for index in hits if index in written] or hits
     if not hits:
         return None
     if len(hits) > 1:
         return AnswerMatch(tuple(hits), False, f"{len(hits)} headings like {_answer_text(answers, hits)}")
-    section = answers[hits[0]].section
+    section = answers[hits[0]].head.section
     is_other = len(wanted.pattern) == 1 and None not in (section, task) and section != task
     where = f", but below the heading of task {section}" if is_other else ""
     return AnswerMatch(tuple(hits), not is_other, f"by the number in {_answer_text(answers, hits)}{where}")
 
 
-def _answers_after_list(answers: Sequence[Answer], total: int) -> list[int]:
+def _answers_after_list(answers: Sequence[Passage], total: int) -> list[int]:
     """Return the answers that follow a list of all questions; none without such a list."""
-    is_list = len(answers) == 2 * total and all(answer.is_line for answer in answers[:total])
-    return list(range(total, 2 * total)) if is_list and not any(answer.is_line for answer in answers[total:]) else []
+    is_list = len(answers) == 2 * total and all(map(_is_line, answers[:total]))
+    return list(range(total, 2 * total)) if is_list and not any(map(_is_line, answers[total:])) else []
 
 
-def _answer_text(answers: Sequence[Answer], indices: Sequence[int]) -> str:
-    return f'"{answers[indices[0]].heading}"'
+def _answer_text(answers: Sequence[Passage], indices: Sequence[int]) -> str:
+    return f'"{answers[indices[0]].head.shown}"'
+
+
+def _is_line(answer: Passage) -> bool:
+    """Return whether an answer ends with the line of its heading."""
+    return "\n" not in answer.text

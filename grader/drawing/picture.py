@@ -104,14 +104,11 @@ def _frames(rubric: Rubric, robot: Configuration, solution: Configuration | None
     named = [name for name, _ in given.most_common()]
     pairs = [(selected(robot, name), selected(solution, name) if solution is not None else name) for name in named]
     roots = (next(iter(robot.main_tree), None), next(iter(solution.main_tree), None) if solution is not None else None)
-    known = [pair for pair in pairs if robot.robot.has_link(pair[0]) and _has(solution, pair[1])]
+    both = [(own, like) for own, like in pairs if solution is None or solution.robot.has_link(like)]
+    known = [pair for pair in both if robot.robot.has_link(pair[0])]
     sizes = Counter(_root_of(robot, link.name) for link in robot.robot.links)
     del sizes[""]  # links on loops have no pose in each other's frames
     return max(known, key=lambda pair: sizes[_root_of(robot, pair[0])], default=roots)
-
-
-def _has(robot: Configuration | None, link: str) -> bool:
-    return robot is None or robot.robot.has_link(link)
 
 
 def _root_of(robot: Configuration, link: str) -> str:
@@ -155,33 +152,20 @@ def _differences(
 ) -> tuple[tuple[Body, ...], tuple[str, ...]]:
     """Return the bodies and frames of the reference that differ from the scene's, where criteria about them failed."""
     seen = {body.link for body in scene.bodies}
-    shapes = {
-        link
-        for link, results in about.items()
-        if link not in seen or any(it.criterion.check.about.picture for it in results)
-    }
-    places = {
-        link
-        for link, results in about.items()
-        if link not in scene.poses or any(it.criterion.check.about.picture == "frame" for it in results)
-    }
+    kinds = {link: {it.criterion.check.about.picture for it in results} for link, results in about.items()}
+    shapes = {link for link, found in kinds.items() if link not in seen or any(found)}
     outlines = tuple(body for body in reference.bodies if body.link in shapes and not _shows(scene, reference, body))
-    frames = tuple(
-        link
-        for link in about
-        if link in places and link in reference.poses and not _is_same_place(scene, reference, link)
-    )
-    return outlines, frames
+    places = [link for link, found in kinds.items() if link not in scene.poses or "frame" in found]
+    known = (link for link in places if link in reference.poses)
+    return outlines, tuple(link for link in known if not _is_same_place(scene, reference, link))
 
 
 def _shows(scene: Scene, reference: Scene, wanted: Body) -> bool:
     """Return whether a link of the scene has the same body at the same place as the reference."""
-    for body in scene.bodies:
-        if body.link == wanted.link:
-            found = mismatch(wanted.shape, reference.pose(wanted), body.shape, scene.pose(body), _SAME)
-            if found is not None and found.largest <= _SAME:
-                return True
-    return False
+    pose = reference.pose(wanted)
+    own = [body for body in scene.bodies if body.link == wanted.link]
+    found = (mismatch(wanted.shape, pose, body.shape, scene.pose(body), _SAME) for body in own)
+    return any(it is not None and it.largest <= _SAME for it in found)
 
 
 def _is_same_place(scene: Scene, reference: Scene, link: str) -> bool:
@@ -197,9 +181,8 @@ def _point(scene: Scene | None, link: str) -> Vector | None:
     if scene is None or link not in scene.poses:
         return None
     pose = scene.poses[link]
-    if not any(body.link == link for body in scene.bodies):
-        return pose.translation
     with suppress(MissingElement, NotDecided):
         centre = placed_by(pose, main_visual(scene.robot, link).origin).translation
-        return centre if is_drawable(centre) else pose.translation
+        if is_drawable(centre) and any(body.link == link for body in scene.bodies):
+            return centre
     return pose.translation

@@ -91,53 +91,41 @@ def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> 
     `wheels` are links that are meant to roll; other links count as wheels if they roll and stand on the ground.
     """
     omitted: dict[str, dict[str, None]] = {}  # the links that are not shown, or not wholly, by reason
-    poses = dict(_poses(robot, frame, omitted))
-    omitted |= {_MESHES: {}, _UNKNOWN: {}}
-    bodies = [*dict.fromkeys(_bodies(robot, poses, omitted))]
-    scene = Scene(robot, frame, poses, tuple(bodies[:_MAX_BODIES]), (), ())
-    missing = [
-        f"Not shown: {enumerated([*map(quoted, names)], _MAX_NAMED)}: {why}" for why, names in omitted.items() if names
-    ]
+    poses: dict[str, Transform] = {}
+    bodies: dict[Body, None] = {}  # each once
+    for link in robot.robot.links:
+        pose = _pose(robot, link.name, frame)
+        if isinstance(pose, Transform):
+            poses[link.name] = pose
+            found = [_body(link.name, visual) for visual in link.visuals]
+            found += [_UNKNOWN] if link.unresolved.keys() & {"visual", ""} else []
+        else:
+            found = [pose] if link.visuals else []
+        bodies |= {body: None for body in found if isinstance(body, Body)}
+        for reason in (body for body in found if isinstance(body, str)):
+            omitted.setdefault(reason, {})[link.name] = None
+    scene = Scene(robot, frame, poses, (*bodies,)[:_MAX_BODIES], (), ())
+    missing = [f"Not shown: {enumerated([*map(quoted, names)], _MAX_NAMED)}: {why}" for why, names in omitted.items()]
     if len(bodies) > _MAX_BODIES:
         missing.append(f"Not shown: {counted(len(bodies) - _MAX_BODIES, 'more shape')}")
     return replace(scene, wheels=(*_wheels(scene, wheels),), missing=tuple(missing))
 
 
-def _poses(robot: Configuration, frame: str, omitted: dict[str, dict[str, None]]) -> Iterator[tuple[str, Transform]]:
-    """Yield the poses of links."""
-    for link in robot.robot.links:
-        try:
-            pose = robot.pose(link.name, relative_to=frame)
-            reason = "" if is_drawable(pose.translation) else "it is too far away"
-        except _NOT_KNOWN as error:
-            reason = str(error)
-        if not reason:
-            yield link.name, pose
-        elif link.visuals:
-            omitted.setdefault(reason, {})[link.name] = None
+def _pose(robot: Configuration, link: str, frame: str) -> Transform | str:
+    """Return the pose of a link, or why it has none that can be drawn."""
+    try:
+        pose = robot.pose(link, relative_to=frame)
+    except _NOT_KNOWN as error:
+        return str(error)
+    return pose if is_drawable(pose.translation) else "it is too far away"
 
 
-def _bodies(
-    robot: Configuration, poses: Mapping[str, Transform], omitted: dict[str, dict[str, None]]
-) -> Iterator[Body]:
-    """Yield the shapes of links that have a pose."""
-    for link in robot.robot.links:
-        if link.name not in poses:
-            continue
-        if link.unresolved.keys() & {"visual", ""}:
-            omitted[_UNKNOWN][link.name] = None
-        for visual in link.visuals:
-            if isinstance(visual.geometry, Mesh):
-                omitted[_MESHES][link.name] = None
-            elif (body := _body(link.name, visual, visual.geometry)) is not None:
-                yield body
-            else:
-                omitted[_UNKNOWN][link.name] = None
-
-
-def _body(link: str, visual: Visual, shape: Shape) -> Body | None:
+def _body(link: str, visual: Visual) -> Body | str:
+    """Return the body of a visual, or why it is not drawn."""
     drawn: Shape
-    match shape:
+    match visual.geometry:
+        case Mesh():
+            return _MESHES
         case Box(size=(x, y, z)):
             sizes, drawn = (x, y, z), Box((abs(x), abs(y), abs(z)))
         case Cylinder(radius=radius, length=length):
@@ -145,8 +133,8 @@ def _body(link: str, visual: Visual, shape: Shape) -> Body | None:
         case Sphere(radius=radius):
             sizes, drawn = (radius, 0.0, 0.0), Sphere(abs(radius))
     pose = placed_by(Transform(), visual.origin)
-    if is_empty(shape) or not is_drawable(sizes) or not is_drawable(pose.translation):
-        return None
+    if is_empty(visual.geometry) or not is_drawable(sizes) or not is_drawable(pose.translation):
+        return _UNKNOWN
     return Body(link, drawn, pose, _clamp(visual.material.rgba) if visual.material is not None else _WITHOUT_MATERIAL)
 
 
@@ -172,17 +160,10 @@ def _wheels(scene: Scene, meant: Collection[str]) -> Iterator[Wheel]:
     for joint in robot.parent_joints.values():
         link = joint.child
         if link not in meant and joint.type == "continuous" and bottoms.get(link, inf) <= ground:
-            is_round = isinstance(_main_shape(robot, link), Cylinder | Sphere)
-            yield from (wheel for wheel in _wheel(scene, link) if is_round and wheel.travel is not None)
+            found = [wheel for wheel in _wheel(scene, link) if wheel.travel is not None]
+            yield from found if found and isinstance(main_visual(robot, link).geometry, Cylinder | Sphere) else ()
     for link in meant:
         yield from _wheel(scene, link)
-
-
-def _main_shape(robot: Configuration, link: str) -> object:
-    try:
-        return main_visual(robot, link).geometry
-    except _NOT_KNOWN:
-        return None
 
 
 def _wheel(scene: Scene, link: str) -> Iterator[Wheel]:

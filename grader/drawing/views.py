@@ -4,7 +4,7 @@ A box, a cylinder and a sphere are convex, so the outline of each in a view is t
 Lengths on the sheet are pixels, and y points down.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from itertools import product
 from math import floor, log10
 from typing import Any, NamedTuple
@@ -13,9 +13,8 @@ import numpy as np
 
 from grader.drawing.picture import Picture
 from grader.drawing.scene import Body, Scene
-from grader.robot.model import Box, Cylinder
-from grader.robot.shapes import extent
-from grader.robot.transforms import Transform, Vector
+from grader.robot.model import Box, Sphere
+from grader.robot.transforms import Vector
 
 Place = tuple[float, float]
 Points = Any  # an array of shape (n, 3), or (n, 2) in a view
@@ -62,23 +61,31 @@ class Panel(NamedTuple):
         x, y, z = np.array((self.right, self.up, self.near)) @ direction
         return float(x), -float(y), float(z)
 
+    def places(self, points: Points) -> Points:
+        """Return the positions of points of the frame on the sheet."""
+        centre = self.left + self.width / 2.0, self.top + (TITLE + self.height) / 2.0
+        across = (np.array(points) - self.middle) @ np.array((self.right, self.up)).T
+        return centre + across * (self.scale, -self.scale)
+
     def place(self, point: Vector) -> Place:
         """Return the position of a point of the frame on the sheet."""
-        x, y, _ = self.direction((point[0] - self.middle[0], point[1] - self.middle[1], point[2] - self.middle[2]))
-        return (
-            self.left + self.width / 2.0 + self.scale * x,
-            self.top + (TITLE + self.height) / 2.0 + self.scale * y,
-        )
+        x, y = self.places(point)
+        return float(x), float(y)
 
     def outline(self, scene: Scene, body: Body) -> list[Place]:
         """Return the corners of the outline of a body."""
-        pose, shape = scene.pose(body), body.shape
-        x, y = self.place(pose.translation)
-        if not isinstance(shape, Box | Cylinder):
-            return hull((x, y) + _CIRCLE * shape.radius * self.scale)
-        points = _CORNERS * shape.size if isinstance(shape, Box) else _CAPS * (shape.radius, shape.radius, shape.length)
-        across = np.array((self.right, self.up)) @ np.reshape(pose.rotation, (3, 3))
-        return hull((x, y) + points @ across.T * (self.scale, -self.scale))
+        if isinstance(body.shape, Sphere):
+            return hull(self.places(scene.pose(body).translation) + _CIRCLE * body.shape.radius * self.scale)
+        return hull(self.places(points_of(scene, body)))
+
+
+def points_of(scene: Scene, body: Body) -> Points:
+    """Return points of the frame whose hull is a body; of a sphere, those that are farthest along the axes."""
+    pose, shape = scene.pose(body), body.shape
+    if isinstance(shape, Sphere):
+        return pose.translation + shape.radius * np.vstack([np.eye(3), -np.eye(3)])
+    points = _CORNERS * shape.size if isinstance(shape, Box) else _CAPS * (shape.radius, shape.radius, shape.length)
+    return points @ np.reshape(pose.rotation, (3, 3)).T + pose.translation
 
 
 def hull(points: Points) -> list[Place]:
@@ -101,7 +108,7 @@ def _half_hull(ordered: list[Place]) -> list[Place]:
 
 def from_back_to_front(scene: Scene, panel: Panel) -> list[Body]:
     """Return the bodies by the depth of their nearest points; slanted ones that interlock may be in the wrong order."""
-    return sorted(scene.bodies, key=lambda body: extent(body.shape, scene.pose(body), panel.near)[1])
+    return sorted(scene.bodies, key=lambda body: float((points_of(scene, body) @ panel.near).max()))
 
 
 class Sheet(NamedTuple):
@@ -138,26 +145,22 @@ def sheet_of(picture: Picture, top: float = 0.0) -> Sheet:
     return Sheet(panels, (left, top), top + upper + tall, scale)
 
 
-def _bounds(picture: Picture) -> tuple[Any, Any]:
+def _bounds(picture: Picture) -> tuple[Points, Points]:
     """Return the least and the largest coordinates (m) of what a picture shows, in the frame."""
-    points = np.array([*_extremes(picture)] or [(0.0, 0.0, 0.0)])
+    shown = [([(0.0, 0.0, 0.0)])]
+    for scene, bodies, links in (
+        (picture.scene, picture.scene.bodies, framed_links(picture)),
+        (picture.reference, picture.outlines, picture.frames),
+    ):
+        if scene is not None:
+            shown += [points_of(scene, body) for body in bodies] + [[scene.poses[link].translation] for link in links]
+    points = np.concatenate(shown)
     low, high = points.min(axis=0), points.max(axis=0)
     far = _FAR * (high - low).max()
-    for scene in filter(None, (picture.scene, picture.reference)):
-        if scene.ground is not None and low[2] - far <= (ground := scene.ground.translation[2]) <= high[2] + far:
-            low[2], high[2] = min(low[2], ground), max(high[2], ground)
+    ground = picture.scene.ground
+    if ground is not None and low[2] - far <= ground.translation[2] <= high[2] + far:
+        low[2], high[2] = min(low[2], ground.translation[2]), max(high[2], ground.translation[2])
     return low, high
-
-
-def _extremes(picture: Picture) -> Iterator[Vector]:
-    scenes = [(picture.scene, picture.scene.bodies, framed_links(picture))]
-    if picture.reference is not None:
-        scenes.append((picture.reference, picture.outlines, [*picture.frames]))
-    for scene, bodies, links in scenes:
-        yield from (scene.poses[link].translation for link in links)
-        for body in bodies:
-            (a, b), (c, d), (e, f) = (extent(body.shape, scene.pose(body), axis) for axis in _TOP[1:])
-            yield from ((a, c, e), (b, d, f))
 
 
 def framed_links(picture: Picture) -> list[str]:
@@ -174,19 +177,11 @@ def framed_links(picture: Picture) -> list[str]:
     return [link for link in links if link in scene.poses]
 
 
-def lifted_ground(picture: Picture) -> Transform | None:
-    """Return the ground of the reference if it differs in height from the robot's by more than 1 mm."""
-    own, other = picture.scene.ground, picture.reference.ground if picture.reference is not None else None
-    is_lifted = own is not None and other is not None and abs(own.translation[2] - other.translation[2]) > 0.001
-    return other if is_lifted else None
-
-
 class FreePlaces:
     """The rectangles of a panel that labels have taken, and those of signs that they should not cover."""
 
     def __init__(self, panel: Panel) -> None:
-        self._low = panel.left, panel.top + TITLE
-        self._high = panel.left + panel.width, panel.top + panel.height
+        self._panel = panel.left, panel.top + TITLE, panel.left + panel.width, panel.top + panel.height
         self._taken: list[tuple[float, ...]] = []
         self._signs: list[tuple[float, ...]] = []
 
@@ -200,12 +195,13 @@ class FreePlaces:
 
         One that covers a sign is taken only if there is no other; labels never overlap.
         """
+        half, low_x, low_y, high_x, high_y = (size[0] / 2.0, size[1] / 2.0), *self._panel
         centres = [(place[0] + across, place[1] + down) for across, down in shifts]
-        for others in (self._signs, ()):
+        for others in ([*self._taken, *self._signs], self._taken):
             for x, y in centres:
-                box = (x - size[0] / 2.0, y - size[1] / 2.0, x + size[0] / 2.0, y + size[1] / 2.0)
-                room = (box[0] - self._low[0], box[1] - self._low[1], self._high[0] - box[2], self._high[1] - box[3])
-                if min(room) >= 0.0 and not any(_overlap(box, other) for other in (*self._taken, *others)):
+                box = (x - half[0], y - half[1], x + half[0], y + half[1])
+                is_inside = low_x <= box[0] and low_y <= box[1] and box[2] <= high_x and box[3] <= high_y
+                if is_inside and not any(_overlap(box, other) for other in others):
                     self._taken.append(box)
                     return x, y
         return None

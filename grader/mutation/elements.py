@@ -21,8 +21,8 @@ class Element(NamedTuple):
     end: int
     parent: int
     attributes: tuple[Attribute, ...]
-    label: str = ""
-    tags: tuple[str, ...] = ()  # of those above it, from the root, and its own
+    label: str
+    tags: tuple[str, ...]  # of those above it, from the root, and its own
 
     @property
     def is_foreign(self) -> bool:
@@ -37,21 +37,35 @@ def elements(text: str) -> list[Element]:
     """Return the elements of markup in document order."""
     found: list[Element] = []
     open_ones: list[int] = []
+    counts: Counter[tuple[int, str]] = Counter()  # of equal siblings, counted from the second on: `visual 2`
     position = 0
     while token := TOKEN.search(text, position):
         position = token.end()
         if token[0] == "<":
             position, is_empty = head_end(text, token.start())
             parent, tag = open_ones[-1] if open_ones else -1, text[token.end() : name_end(text, token.start())]
-            tags = (*(found[parent].tags if parent >= 0 else ()), tag)
+            above = found[parent] if parent >= 0 else None
             own = tuple(attributes(text, token.start()))
-            found.append(Element(tag, token.start(), position, position, parent, own, "", tags))
+            label = " ".join([tag, *_name(text, tag, own, parent)])
+            counts[parent, label] += 1
+            label += f" {counts[parent, label]}" if counts[parent, label] > 1 else ""
+            label = f"{above.label}/{label}" if above is not None and parent > 0 else label
+            tags = (*(above.tags if above is not None else ()), tag)
+            found.append(Element(tag, token.start(), position, position, parent, own, label, tags))
             if not is_empty:
                 open_ones.append(len(found) - 1)
         elif token[0].startswith("</") and open_ones:
             index = open_ones.pop()
             found[index] = found[index]._replace(end=token.end())
-    return _label(text, found)
+    return found
+
+
+def _name(text: str, tag: str, own: Iterable[Attribute], parent: int) -> list[str]:
+    """Return the name of an element, if it has one; that of a material inside of a visual is a value."""
+    if parent < 0 or (parent and tag == "material"):
+        return []
+    values = (text[slice(*attribute.value)] for attribute in own if attribute.name in _NAMED_BY)
+    return [name for name in values if name][:1]
 
 
 def text_span(text: str, element: Element) -> tuple[int, int] | None:
@@ -68,24 +82,3 @@ def names_of_tag(text: str, found: Iterable[Element], tag: str) -> list[str]:
     """Return the names of the elements with a tag, each once."""
     own = (attribute for element in found if element.tag == tag for attribute in element.attributes)
     return list(dict.fromkeys(text[slice(*attribute.value)] for attribute in own if attribute.name == "name"))
-
-
-def _label(text: str, found: list[Element]) -> list[Element]:
-    """Return the elements with their labels; equal siblings are counted from the second on: `visual 2`."""
-    counts: Counter[tuple[int, str]] = Counter()
-    labelled: list[Element] = []
-    for element in found:
-        own = " ".join([element.tag, *_name(text, element)])
-        counts[element.parent, own] += 1
-        count = counts[element.parent, own]
-        own += f" {count}" if count > 1 else ""
-        above = labelled[element.parent].label if element.parent > 0 else ""
-        labelled.append(element._replace(label=f"{above}/{own}" if above else own))
-    return labelled
-
-
-def _name(text: str, element: Element) -> list[str]:
-    if element.parent < 0 or (element.parent and element.tag == "material"):  # there the name is a value of the visual
-        return []
-    values = (text[slice(*attribute.value)] for attribute in element.attributes if attribute.name in _NAMED_BY)
-    return [name for name in values if name][:1]

@@ -43,38 +43,22 @@ class Mutant(NamedTuple):
 
 
 class MutantEdit(NamedTuple):
-    """A change of a text between two offsets: its family, its place by names, and what tells it from others there."""
+    """A change of a text between two offsets: its family, and its place by names, with what tells it from others."""
 
     family: str
     label: str
     start: int
     end: int
     new: str
-    detail: str = ""
     tags: tuple[str, ...] = ()
 
 
-def mutants(text: str, path: str = "") -> Iterator[Mutant]:
-    """Yield every mutant of a URDF or xacro once."""
-    return as_mutants(text, path, _changes(text))
+def mutants(text: str, path: str = "", hidden: Collection[str] = ()) -> Iterator[Mutant]:
+    """Yield every mutant of a URDF or xacro once; `hidden` are links that must show nothing, which show a box."""
+    return as_mutants(text, path, _changes(text, {f"link {name}" for name in hidden}))
 
 
-def with_visuals(text: str, path: str, links: Collection[str]) -> Iterator[Mutant]:
-    """Yield the mutants in which one of these links, which must show nothing, shows a box."""
-    own = [
-        found for found in elements(text) if found.tag == "link" and found.label in {f"link {name}" for name in links}
-    ]
-    return as_mutants(text, path, (_with_visual(text, link) for link in own))
-
-
-def _with_visual(text: str, link: Element) -> MutantEdit:
-    is_empty = text[link.head_end - 2] == "/"
-    start = link.head_end - (2 if is_empty else 0)
-    new = f">{_BOX}</link>" if is_empty else _BOX
-    return MutantEdit("visual added", link.label, start, link.head_end, new, tags=(*link.tags, "visual"))
-
-
-def as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator[Mutant]:
+def as_mutants(text: str, path: str, changes: Iterable[MutantEdit], tags: tuple[str, ...] = ()) -> Iterator[Mutant]:
     """Yield the mutants that changes of a file make, each once and with an id of its own."""
     seen: set[tuple[int, int, str]] = set()
     ids: dict[str, int] = {}
@@ -83,14 +67,14 @@ def as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator[
         if key in seen or text[change.start : change.end] == change.new:
             continue
         seen.add(key)
-        name = f"{change.family}: {change.label}{f' -> {change.detail}' if change.detail else ''}"
+        name = f"{change.family}: {change.label}"
         ids[name] = ids.get(name, 0) + 1
         name += f" ({ids[name]})" if ids[name] > 1 else ""
         line = text.count("\n", 0, change.start) + 1
-        yield Mutant(name, change.family, path, line, *key, tags=change.tags)
+        yield Mutant(name, change.family, path, line, *key, tags=change.tags or tags)
 
 
-def _changes(text: str) -> Iterator[MutantEdit]:
+def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
     found = elements(text)
     known = {tag: names_of_tag(text, found, tag) for tag in ("link", "joint", "material")}
     for element in found:
@@ -101,6 +85,11 @@ def _changes(text: str) -> Iterator[MutantEdit]:
             yield from of_value(text, element.label, span, "", (*element.tags, "@"))
         if element.parent >= 0:
             yield from _of_element(text, element, found[element.parent])
+        if element.label in hidden:
+            is_empty = text[element.head_end - 2] == "/"
+            span = element.head_end - (2 if is_empty else 0), element.head_end
+            new = f">{_BOX}</link>" if is_empty else _BOX
+            yield MutantEdit("visual added", element.label, *span, new, (*element.tags, "visual"))
 
 
 def _of_attribute(
@@ -108,14 +97,14 @@ def _of_attribute(
 ) -> Iterator[MutantEdit]:
     name, span = attribute.name, attribute.value
     label, tags = f"{element.label} {name}", (*element.tags, f"@{name}")
-    yield MutantEdit("attribute deleted", label, attribute.start - 1, attribute.end, "", tags=tags)
+    yield MutantEdit("attribute deleted", label, attribute.start - 1, attribute.end, "", tags)
     name_end = attribute.start + len(name)
-    yield MutantEdit("attribute misspelt", label, attribute.start, name_end, misspelt(name), tags=tags)
+    yield MutantEdit("attribute misspelt", label, attribute.start, name_end, misspelt(name), tags)
     if name in _NAMES:
         kind = element.tag if element.tag in known else name if name in known else "link"
         yield from of_name(text, label, span, known[kind], tags)
     elif name == "type" and element.tag == "joint":
-        yield from (MutantEdit("type", label, *span, other, other, tags) for other in _TYPES)
+        yield from (MutantEdit("type", f"{label} -> {other}", *span, other, tags) for other in _TYPES)
     elif name not in _UNTOUCHED and not name.startswith("xmlns"):
         changes = of_value(text, element.label, span, name, tags)
         yield from (change for change in changes if name != "params" or change.family != "text misspelt")
@@ -124,7 +113,7 @@ def _of_attribute(
         if upper is not None:
             first, last = sorted((span, upper.value))
             swapped = text[slice(*last)] + text[first[1] : last[0]] + text[slice(*first)]
-            yield MutantEdit("limits exchanged", element.label, first[0], last[1], swapped, tags=tags)
+            yield MutantEdit("limits exchanged", element.label, first[0], last[1], swapped, tags)
 
 
 def of_name(
@@ -132,10 +121,10 @@ def of_name(
 ) -> Iterator[MutantEdit]:
     """Yield changes of a name: misspelt, in other case, or another name that exists."""
     name = text[slice(*span)]
-    yield MutantEdit("name misspelt", label, *span, misspelt(name), tags=tags)
-    yield MutantEdit("name capitalised", label, *span, name.title() if name.islower() else name.lower(), tags=tags)
+    yield MutantEdit("name misspelt", label, *span, misspelt(name), tags)
+    yield MutantEdit("name capitalised", label, *span, name.title() if name.islower() else name.lower(), tags)
     family = "material exchanged" if "material" in tags[-2:] else "name exchanged"
-    yield from (MutantEdit(family, label, *span, other, other, tags) for other in _next(name, list(others)))
+    yield from (MutantEdit(family, f"{label} -> {other}", *span, other, tags) for other in _next(name, list(others)))
 
 
 def _next(name: str, names: list[str]) -> list[str]:
@@ -155,14 +144,14 @@ def of_value(
     parts = [f"{label}{part}" for part in _parts(name, len(pieces))]
     for part, (low, high) in zip(parts, pieces, strict=True):
         for family, number in _alternatives(float(text[low:high])):
-            yield MutantEdit(family, part, low, high, f"{number:.6g}", tags=tags)
+            yield MutantEdit(family, part, low, high, f"{number:.6g}", tags)
     for part, ((low, middle), (next_low, high)) in zip(parts, pairwise(pieces), strict=False):
         swapped = text[next_low:high] + text[middle:next_low] + text[low:middle]
-        yield MutantEdit("number exchanged", part, low, high, swapped, tags=tags)
+        yield MutantEdit("number exchanged", part, low, high, swapped, tags)
     if not pieces and text[start:end].strip():
-        yield MutantEdit("text misspelt", label, start, end, misspelt(text[start:end]), tags=tags)
+        yield MutantEdit("text misspelt", label, start, end, misspelt(text[start:end]), tags)
         if name == "filename":
-            yield MutantEdit("text in other case", label, start, end, text[start:end].swapcase(), tags=tags)
+            yield MutantEdit("text in other case", label, start, end, text[start:end].swapcase(), tags)
 
 
 def _parts(name: str, count: int) -> list[str]:
@@ -187,12 +176,12 @@ def _alternatives(value: float) -> Iterable[tuple[str, float]]:
 
 def _of_element(text: str, element: Element, parent: Element) -> Iterator[MutantEdit]:
     own, label, tags = text[element.start : element.end], element.label, element.tags
-    yield MutantEdit("element deleted", label, element.start, element.end, "", tags=tags)
+    yield MutantEdit("element deleted", label, element.start, element.end, "", tags)
     if not element.is_foreign:  # whether a simulator reads the second one depends on the simulator
-        yield MutantEdit("element duplicated", label, element.end, element.end, f"\n{own}", tags=tags)
+        yield MutantEdit("element duplicated", label, element.end, element.end, f"\n{own}", tags)
     if parent.parent >= 0:
         between = text[parent.start : element.start]
-        yield MutantEdit("element moved up", label, parent.start, element.end, f"{own}\n{between}", tags=tags)
+        yield MutantEdit("element moved up", label, parent.start, element.end, f"{own}\n{between}", tags)
 
 
 def misspelt(name: str) -> str:

@@ -1,15 +1,15 @@
 """Grade the mutants of a rubric's reference: each must lose points, and each criterion must fail on some mutant."""
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from random import Random
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 from grader.grading.criterion import Criterion
-from grader.mutation.mutants import Mutant, mutants, with_visuals
+from grader.mutation.mutants import Mutant, mutants
 from grader.mutation.package_mutants import package_mutants
-from grader.mutation.result import Loss, MutantResults, Survivor, hunk
+from grader.mutation.result import Loss, MutantResults, Survivor, diff
 from grader.mutation.trial import Trial
 from grader.package.package import MANIFEST
 from grader.submission.urdf import Read
@@ -22,8 +22,7 @@ def mutants_of(trial: Trial) -> Iterator[Mutant]:
     criteria = [trial.expected[name].criterion for name in trial.tested]
     hidden = [found.arguments.get("link", "") for found in criteria if found.check.name == "shows_nothing"]
     for path in trial.robot_files:
-        yield from mutants(trial.text(path), path)
-        yield from with_visuals(trial.text(path), path, hidden)
+        yield from mutants(trial.text(path), path, hidden)
     package, urdf = trial.reference.package, trial.reference.urdf
     if package is not None:
         robot = urdf.reading.robot if isinstance(urdf, Read) else None
@@ -64,7 +63,7 @@ class MutantOutcome(NamedTuple):
     """What the criteria made of a mutant: those that fail, and the faulty ones."""
 
     mutant: Mutant
-    fate: Literal["caught", "same", "survived", "faulty"]
+    fate: str  # caught, same, survived or faulty
     failed: tuple[str, ...] = ()
     faults: Mapping[str, str] = {}
 
@@ -79,98 +78,72 @@ def outcome_of(trial: Trial, mutant: Mutant) -> MutantOutcome:
         return MutantOutcome(mutant, "caught")
     results = list(trial.results(mutant, submission, trial.expected))
     faults = {found.criterion.id: found.outcome.message for found in results if found.outcome.status == "errored"}
-    fate: Literal["caught", "same", "survived", "faulty"] = "survived"
-    if faults:
-        fate = "faulty"
-    elif any(map(trial.is_lost, results)):
-        fate = "caught"
-    elif trial.is_same(mutant, submission):
-        fate = "same"
+    is_lost = any(map(trial.is_lost, results))
+    fate = "faulty" if faults else "caught" if is_lost else "same" if trial.is_same(mutant, submission) else "survived"
     failed = tuple(found.criterion.id for found in results if found.outcome.status == "failed")
     return MutantOutcome(mutant, fate, failed, faults)
 
 
-class MutationTest:
-    """The mutants of one reference, at most `most` of them, sampled evenly over the families."""
+def mutant_results(
+    trial: Trial,
+    every: Sequence[Mutant],
+    most: int,
+    seed: int,
+    grade_all: GradeAll,
+    step: ShowStep = lambda: None,
+    others: int = _MAX_OTHERS,
+) -> MutantResults:
+    """Grade at most `most` of the mutants, and more of them only to find out which criteria are idle."""
+    chosen = sampled(every, most, Random(seed))
+    found: dict[Mutant, MutantOutcome] = {}
+    for outcome in grade_all(chosen):
+        step()
+        found[outcome.mutant] = outcome
+    outcomes = [found[mutant] for mutant in chosen]
+    fates = Counter(outcome.fate for outcome in outcomes)
+    survivors = [_survivor(trial, outcome.mutant) for outcome in outcomes if outcome.fate == "survived"]
+    faulty = [outcome for outcome in outcomes if outcome.fate == "faulty"]
+    patterns = [pattern for row in trial.rubric.ignored for pattern in row.mutants]
+    left = sampled([mutant for mutant in every if mutant not in found], others, Random(seed))
+    return MutantResults(
+        len(every),
+        len(chosen),
+        fates["caught"],
+        fates["same"],
+        tuple(it for it in survivors if not it.reason),
+        tuple(it for it in survivors if it.reason),
+        tuple(it for it in patterns if not any(_is_match(mutant, it) for mutant in every)),
+        _idle(trial, outcomes, left, grade_all),
+        tuple(Loss(it.mutant.id, it.faults, _diff(trial, it.mutant)) for it in faulty),
+    )
 
-    def __init__(self, trial: Trial, most: int, seed: int) -> None:
-        self.trial, self.seed = trial, seed
-        self.all = list(mutants_of(trial))
-        self.chosen = sampled(self.all, most, Random(seed))
-        self.caught = self.same = 0
-        self.survivors: list[Survivor] = []
-        self.faults: list[Loss] = []
-        self.idle = dict.fromkeys(trial.tested)
 
-    def run(self, step: ShowStep, grade_all: GradeAll | None = None) -> MutantResults:
-        """Grade the mutants and return what became of them; without `grade_all` one after the other."""
-        grade_all = grade_all or self._one_by_one
-        found: dict[Mutant, MutantOutcome] = {}
-        for outcome in grade_all(self.chosen):
-            step()
-            found[outcome.mutant] = outcome
-        for mutant in self.chosen:
-            self._add(found[mutant])
-        self._try_others(grade_all)
-        return MutantResults(
-            len(self.all),
-            len(self.chosen),
-            self.caught,
-            self.same,
-            tuple(found for found in self.survivors if not found.reason),
-            tuple(found for found in self.survivors if found.reason),
-            self._unused_patterns(),
-            tuple(self.idle),
-            tuple(self.faults),
-        )
+def _idle(
+    trial: Trial, outcomes: Iterable[MutantOutcome], others: Sequence[Mutant], grade_all: GradeAll
+) -> tuple[str, ...]:
+    """Return the criteria that no mutant fails; others are graded only until there are none of these."""
+    failed = {name for outcome in outcomes for name in outcome.failed}
+    for start in range(0, len(others), _GROUP):
+        if failed.issuperset(trial.tested):
+            break
+        failed |= {name for outcome in grade_all(others[start : start + _GROUP]) for name in outcome.failed}
+    return tuple(name for name in trial.tested if name not in failed)
 
-    def _one_by_one(self, mutants: Sequence[Mutant]) -> Iterator[MutantOutcome]:
-        return (outcome_of(self.trial, mutant) for mutant in mutants)
 
-    def _add(self, outcome: MutantOutcome) -> None:
-        """Count a mutant, and keep it if it loses nothing although it is another robot, or if a check is faulty."""
-        self._forget_idle(outcome)
-        match outcome.fate:
-            case "faulty":
-                self.faults.append(Loss(outcome.mutant.id, outcome.faults, self._diff(outcome.mutant)))
-            case "caught":
-                self.caught += 1
-            case "same":
-                self.same += 1
-            case "survived":
-                self.survivors.append(self._survivor(outcome))
+def _survivor(trial: Trial, mutant: Mutant) -> Survivor:
+    """Return a mutant that loses nothing, with the reason for which the rubric ignores it."""
+    ignored = trial.rubric.ignored
+    reasons = (row.reason for row in ignored if any(_is_match(mutant, pattern) for pattern in row.mutants))
+    return Survivor(mutant, _diff(trial, mutant), next(reasons, ""))
 
-    def _forget_idle(self, outcome: MutantOutcome) -> None:
-        for name in outcome.failed:
-            self.idle.pop(name, None)
 
-    def _survivor(self, outcome: MutantOutcome) -> Survivor:
-        mutant = outcome.mutant
-        ignored = self.trial.rubric.ignored
-        reasons = (row.reason for row in ignored if any(_is_match(mutant, pattern) for pattern in row.mutants))
-        return Survivor(mutant, self._diff(mutant), next(reasons, ""))
-
-    def _diff(self, mutant: Mutant) -> str:
-        if mutant.renamed:
-            return f"rename {mutant.path} to {mutant.renamed}"
-        if mutant.is_deleted:
-            return f"delete {mutant.path}"
-        text = self.trial.text(mutant.path)
-        return hunk(mutant.path, text, mutant.applied(text))
-
-    def _try_others(self, grade_all: GradeAll) -> None:
-        """Find out whether mutants that were not sampled fail the criteria that no other one fails."""
-        chosen = set(self.chosen)
-        others = sampled([mutant for mutant in self.all if mutant not in chosen], _MAX_OTHERS, Random(self.seed))
-        for start in range(0, len(others), _GROUP):
-            if not self.idle:
-                return
-            for outcome in grade_all(others[start : start + _GROUP]):
-                self._forget_idle(outcome)
-
-    def _unused_patterns(self) -> tuple[str, ...]:
-        patterns = [pattern for row in self.trial.rubric.ignored for pattern in row.mutants]
-        return tuple(pattern for pattern in patterns if not any(_is_match(mutant, pattern) for mutant in self.all))
+def _diff(trial: Trial, mutant: Mutant) -> str:
+    if mutant.renamed:
+        return f"rename {mutant.path} to {mutant.renamed}"
+    if mutant.is_deleted:
+        return f"delete {mutant.path}"
+    text = trial.text(mutant.path)
+    return diff(mutant.path, text, mutant.applied(text))
 
 
 def _is_match(mutant: Mutant, pattern: str) -> bool:

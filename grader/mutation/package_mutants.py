@@ -4,9 +4,8 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 from itertools import chain
 
-from grader.mutation.elements import elements, text_span
 from grader.mutation.mutants import Mutant, MutantEdit, as_mutants, misspelt, mutants
-from grader.mutation.python_mutants import launch_changes, setup_changes
+from grader.mutation.python_mutants import python_changes
 from grader.package.package import MANIFEST, SETUP, Package
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.source import Source
@@ -17,17 +16,9 @@ _FOR_PEOPLE_TOO = re.compile(
     r"(^|/)(test|tests|doc|docs|\.[^/]*)/"  # test/test_pep257.py, .github/workflows/build.yml
     r"|(^|/)(LICENSE|README|CHANGELOG|\.)[^/]*$"  # LICENSE, README.html, .gitignore
 )
-_BUILD_TYPES = ("ament_python", "ament_cmake")
 _XML_FAMILIES = ("attribute misspelt", "element deleted", "text misspelt", "name misspelt")
 _DISPLAY_TEXTS = (("Class",), ("Description Topic", "Value"), ("Topic", "Value"))
 
-_SCALAR = re.compile(
-    r"""
-      "[^"\n]*" | '[^'\n]*'
-    | [^\s#][^\n\r]*?(?=\s*(?:\r?\n|$|\s\#))    # base_link, of "Fixed Frame: base_link  # of the robot"
-    """,
-    re.VERBOSE,
-)
 Text = Callable[[str], str]  # returns the text of a file by its path in the submission
 
 
@@ -42,94 +33,76 @@ def package_mutants(package: Package, links: Iterable[str], text: Text) -> Itera
             folder, slash, name = path.rpartition("/")
             renamed = f"{folder}{slash}{misspelt(name)}"
             yield Mutant(f"file renamed: {own}", "file renamed", path, 1, renamed=renamed, tags=("file",))
-        changes = _changes(package, own, names)
-        if changes is not None:
+        kind = _kind(package, own)
+        if kind is not None:
             content = text(path)
-            yield from as_mutants(content, path, changes(path, own, content))
+            changes = _rviz(path, own, content, names) if kind == "rviz" else _changes(path, own, content)
+            yield from as_mutants(content, path, changes, (kind,))
 
 
-def _changes(package: Package, own: str, links: list[str]) -> Callable[[str, str, str], Iterator[MutantEdit]] | None:
-    """Return what yields the changes of a file; None for one in which no mistakes are made here."""
-    if own == MANIFEST:
-        return _manifest
-    if own == SETUP:
-        return setup_changes
-    if own in package.rviz_files:
-        return lambda path, label, text: _rviz(path, label, text, links)
-    if own in package.launch_files:
-        return next((made for ending, made in _LAUNCH.items() if own.endswith(ending)), None)
-    return None
+def _kind(package: Package, own: str) -> str | None:
+    """Return what a file is called where its mutants are grouped; None for one in which no mistakes are made here."""
+    if own in (MANIFEST, SETUP):
+        return own
+    return "rviz" if own in package.rviz_files else "launch" if own in package.launch_files else None
 
 
-def _manifest(path: str, label: str, text: str) -> Iterator[MutantEdit]:
-    """Yield changes of the name and the build type; the dependencies are not read here."""
-    del path
-    for element in elements(text):
-        span = text_span(text, element)
-        if element.tag not in ("name", "build_type") or span is None:
-            continue
-        place, tags = f"{label} {element.tag}", (MANIFEST,)
-        yield MutantEdit("text misspelt", place, *span, misspelt(text[slice(*span)]), tags=tags)
-        yield MutantEdit("element deleted", place, element.start, element.end, "", tags=tags)
-        if element.tag == "build_type":
-            yield from (MutantEdit("build type", place, *span, other, other, tags) for other in _BUILD_TYPES)
+def _changes(path: str, label: str, text: str) -> Iterator[MutantEdit]:
+    """Yield the changes of a file that builds or starts something, by its format."""
+    match path.rpartition(".")[2]:
+        case "py":
+            yield from python_changes(path, label, text)
+        case "xml" | "launch":
+            yield from _xml(path, label, text)
+        case "yaml" | "yml":
+            yield from _launch_yaml(path, label, text)
 
 
-def _launch_xml(path: str, label: str, text: str) -> Iterator[MutantEdit]:
+def _xml(path: str, label: str, text: str) -> Iterator[MutantEdit]:
+    """Yield the changes of a launch file, or of the name and the build type in package.xml: no other tag is read."""
     for mutant in mutants(text, path):
-        if mutant.family in _XML_FAMILIES:
+        is_read = label != MANIFEST or not {"name", "build_type"}.isdisjoint(mutant.tags)
+        if is_read and mutant.family in _XML_FAMILIES:
             place = f"{label} {mutant.id.partition(': ')[2]}"
-            yield MutantEdit(mutant.family, place, mutant.start, mutant.end, mutant.new, tags=("launch",))
+            yield MutantEdit(mutant.family, place, mutant.start, mutant.end, mutant.new)
 
 
 def _launch_yaml(path: str, label: str, text: str) -> Iterator[MutantEdit]:
     root, source = _yaml(path, text), Source(path, text)
     actions = root.get("launch") if root else None
     for number, item in enumerate(actions.items if actions else (), 1):
-        yield MutantEdit("action removed", f"{label} {number}", *_line_span(source, item), "", tags=("launch",))
+        yield MutantEdit("action removed", f"{label} {number}", *_line_span(source, item), "")
         for scalar in _scalars(item):
-            yield from _misspelt(source, label, scalar, ("launch",))
-
-
-_LAUNCH = {
-    ".py": launch_changes,
-    ".xml": _launch_xml,
-    ".launch": _launch_xml,
-    ".yaml": _launch_yaml,
-    ".yml": _launch_yaml,
-}
+            yield from _misspelt(source, label, scalar)
 
 
 def _rviz(path: str, label: str, text: str, links: list[str]) -> Iterator[MutantEdit]:
     """Yield changes of the fixed frame, and of each display: deleted, disabled, its class or topic misspelt."""
-    root, source, tags = _yaml(path, text), Source(path, text), ("rviz",)
+    root, source = _yaml(path, text), Source(path, text)
     frame = root.get("Visualization Manager", "Global Options", "Fixed Frame") if root else None
     if frame is not None and frame.text:
-        start, end = _scalar_span(source, frame)
-        yield MutantEdit("fixed frame", label, start, end, misspelt(frame.text), misspelt(frame.text), tags)
-        yield from (
-            MutantEdit("fixed frame", label, start, end, link, link, tags) for link in links if link != frame.text
-        )
+        for other in (misspelt(frame.text), *links):
+            yield MutantEdit("fixed frame", f"{label} -> {other}", *frame.span, other)
     displays = root.get("Visualization Manager", "Displays") if root else None
     for display in displays.items if displays else ():
         title = display.get("Name") or display.get("Class")
         place = f"{label} {title.text if title else ''}".rstrip()
-        yield MutantEdit("display deleted", place, *_line_span(source, display), "", tags=tags)
+        yield MutantEdit("display deleted", place, *_line_span(source, display), "")
         enabled = display.get("Enabled")
         if enabled is not None and enabled.text == "true":
-            yield MutantEdit("display disabled", place, *_scalar_span(source, enabled), "false", tags=tags)
+            yield MutantEdit("display disabled", place, *enabled.span, "false")
         for keys in _DISPLAY_TEXTS:
             node = display.get(*keys)
             if node is not None and node.text:
-                yield from _misspelt(source, f"{place} {'/'.join(keys)}", node, tags)
+                yield from _misspelt(source, f"{place} {'/'.join(keys)}", node)
 
 
-def _misspelt(source: Source, label: str, node: YamlNode, tags: tuple[str, ...]) -> Iterator[MutantEdit]:
-    start, end = _scalar_span(source, node)
+def _misspelt(source: Source, label: str, node: YamlNode) -> Iterator[MutantEdit]:
+    start, end = node.span
     text = source.text[start:end].strip("'\"")
     if text:
         start = source.text.index(text, start)
-        yield MutantEdit("text misspelt", f"{label} {text}", start, start + len(text), misspelt(text), tags=tags)
+        yield MutantEdit("text misspelt", f"{label} {text}", start, start + len(text), misspelt(text))
 
 
 def _yaml(path: str, text: str) -> YamlNode | None:
@@ -147,13 +120,6 @@ def _scalars(node: YamlNode) -> Iterator[YamlNode]:
             yield from chain.from_iterable(map(_scalars, items))
         case dict(values):
             yield from chain.from_iterable(map(_scalars, values.values()))
-
-
-def _scalar_span(source: Source, node: YamlNode) -> tuple[int, int]:
-    """Return the offsets of the text of a value, with its quotes."""
-    start = source.offset(node.location.line, node.location.column)
-    found = _SCALAR.match(source.text, start)
-    return start, found.end() if found is not None else start
 
 
 def _line_span(source: Source, node: YamlNode) -> tuple[int, int]:

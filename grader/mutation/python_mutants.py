@@ -1,75 +1,51 @@
 """Mutants of setup.py and of launch files in Python: strings misspelt, entries of lists and imports deleted."""
 
 import ast
-from collections.abc import Iterable, Iterator
+import re
+from collections.abc import Iterator
 
 from grader.mutation.mutants import MutantEdit, misspelt
 from grader.package.edits.python_file import PythonFile, keyword
+from grader.package.package import SETUP
 from grader.source import Source
 
 # Arguments that only people read.
-_FOR_PEOPLE = (
-    *(
-        "version",
-        "description",
-        "long_description",
-        "license",
-        "maintainer",
-        "maintainer_email",
-        "author",
-        "author_email",
-    ),
-    *("url", "keywords", "classifiers", "zip_safe", "install_requires", "tests_require", "exclude"),
+_FOR_PEOPLE = re.compile(
+    "(long_)?description|(author|maintainer)(_email)?|(install|tests)_requires?|classifiers|exclude|keywords|license|url"
+    "|version|zip_safe"
 )
 _MAX_LABEL = 70
 
 
-def setup_changes(path: str, label: str, text: str) -> Iterator[MutantEdit]:
-    """Yield the changes of a setup.py: an entry of data_files or an import deleted, a string misspelt."""
+def python_changes(path: str, label: str, text: str) -> Iterator[MutantEdit]:
+    """Yield the changes of a file: an entry of data_files, an action or an import deleted, a string misspelt."""
     file = PythonFile(Source(path, text))
-    tags = ("setup.py",)
-    for call in file.calls("setup"):
-        entries = keyword(call, "data_files")
-        yield from _removals(file, "data_files entry deleted", label, _items(entries.value if entries else None), tags)
-    for node in file.imports:
-        start, end = file.span(node)
-        yield MutantEdit("import deleted", f"{label} {file.segment(node)}", start, end, "pass", tags=tags)
-    yield from _strings(file, label, tags)
-
-
-def launch_changes(path: str, label: str, text: str) -> Iterator[MutantEdit]:
-    """Yield the changes of a launch file: an action removed, a string misspelt."""
-    file = PythonFile(Source(path, text))
-    tags = ("launch",)
-    for call in file.calls("LaunchDescription"):
-        yield from _removals(file, "action removed", label, _items(call.args[0] if call.args else None), tags)
-    for call in file.calls("add_action"):
-        start, end = file.span(call)
-        yield MutantEdit(
-            "action removed",
-            f"{label} {_short(file, call.args[0] if call.args else call)}",
-            start,
-            end,
-            "None",
-            tags=tags,
-        )
-    yield from _strings(file, label, tags)
-
-
-def _items(value: ast.expr | None) -> list[ast.expr]:
-    return value.elts if isinstance(value, ast.List | ast.Tuple) else []
-
-
-def _removals(
-    file: PythonFile, family: str, label: str, items: Iterable[ast.expr], tags: tuple[str, ...]
-) -> Iterator[MutantEdit]:
-    """Yield the removal of each item of a list, with the comma after it."""
-    for item in items:
+    is_setup = label == SETUP
+    family = "data_files entry deleted" if is_setup else "action removed"
+    for item in _entries(file):
         start, end = file.span(item)
         after = file.text[end:].lstrip()
-        if after.startswith(","):
-            end = file.text.index(",", end) + 1
-        yield MutantEdit(family, f"{label} {_short(file, item)}", start, end, "", tags=tags)
+        end = file.text.index(",", end) + 1 if after.startswith(",") else end
+        yield MutantEdit(family, f"{label} {_short(file, item)}", start, end, "")
+    for call in file.calls("add_action"):
+        action = call.args[0] if call.args else call
+        yield MutantEdit(family, f"{label} {_short(file, action)}", *file.span(call), "None")
+    for node in file.imports if is_setup else ():
+        yield MutantEdit("import deleted", f"{label} {file.segment(node)}", *file.span(node), "pass")
+    ignored = [*_for_people(file)]
+    for literal in file.literals:
+        if literal.text.strip() and not any(start <= literal.start < end for start, end in ignored):
+            place = f"{label} {literal.text[:_MAX_LABEL]}"
+            yield MutantEdit("string misspelt", place, literal.start, literal.end, misspelt(literal.text))
+
+
+def _entries(file: PythonFile) -> Iterator[ast.expr]:
+    """Yield the entries of data_files, and the actions of a launch file."""
+    given = [keyword(call, "data_files") for call in file.calls("setup")]
+    lists = [found.value for found in given if found is not None]
+    lists += [call.args[0] for call in file.calls("LaunchDescription") if call.args]
+    for found in lists:
+        yield from found.elts if isinstance(found, ast.List | ast.Tuple) else ()
 
 
 def _short(file: PythonFile, node: ast.expr) -> str:
@@ -79,21 +55,11 @@ def _short(file: PythonFile, node: ast.expr) -> str:
     return text.strip("'\"") if len(text) <= _MAX_LABEL else text[:_MAX_LABEL]
 
 
-def _strings(file: PythonFile, label: str, tags: tuple[str, ...]) -> Iterator[MutantEdit]:
-    ignored = list(_for_people(file))
-    for literal in file.literals:
-        if literal.text.strip() and not any(start <= literal.start < end for start, end in ignored):
-            text = literal.text if len(literal.text) <= _MAX_LABEL else literal.text[:_MAX_LABEL]
-            yield MutantEdit(
-                "string misspelt", f"{label} {text}", literal.start, literal.end, misspelt(literal.text), tags=tags
-            )
-
-
 def _for_people(file: PythonFile) -> Iterator[tuple[int, int]]:
     """Yield the offsets of docstrings and of arguments that only people read."""
     for node in file.nodes:
         match node:
             case ast.Expr(value=ast.Constant()):
                 yield file.span(node)
-            case ast.keyword(arg=str(name)) if name in _FOR_PEOPLE:
+            case ast.keyword(arg=str(name)) if _FOR_PEOPLE.fullmatch(name):
                 yield file.span(node)

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from decimal import Decimal
-from itertools import takewhile
+from difflib import unified_diff
 from typing import NamedTuple
 
 from grader.grading.report import Report
@@ -11,34 +11,9 @@ from grader.mutation.mutants import Mutant
 _CONTEXT = 2  # lines around a change
 
 
-def hunk(path: str, before: str, after: str) -> str:
-    """Return the unified diff of two texts that differ in one place, without a line break at its end."""
-    old, new = before.splitlines(), after.splitlines()
-    start = _common(old, new)
-    end = _common(old[start:][::-1], new[start:][::-1])
-    first, last = max(0, start - _CONTEXT), min(end, _CONTEXT)
-    removed, added = old[start : len(old) - end], new[start : len(new) - end]
-    above, below = old[first:start], old[len(old) - end : len(old) - end + last]
-    size = len(above) + len(below)
-    lines = [
-        f"--- {path}",
-        f"+++ {path}",
-        f"@@ -{_span(first, size + len(removed))} +{_span(first, size + len(added))} @@",
-        *(f" {line}" for line in above),
-        *(f"-{line}" for line in removed),
-        *(f"+{line}" for line in added),
-        *(f" {line}" for line in below),
-    ]
-    return "\n".join(lines)
-
-
-def _common(one: list[str], other: list[str]) -> int:
-    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(one, other, strict=False)))
-
-
-def _span(first: int, size: int) -> str:
-    """Return the range of lines as diff writes it: an empty one names the line before."""
-    return f"{first + (size > 0)},{size}"
+def diff(path: str, before: str, after: str) -> str:
+    """Return the unified diff of two texts of a file, without a line break at its end."""
+    return "\n".join(unified_diff(before.splitlines(), after.splitlines(), path, path, n=_CONTEXT, lineterm=""))
 
 
 class Loss(NamedTuple):
@@ -50,7 +25,7 @@ class Loss(NamedTuple):
 
 
 class Survivor(NamedTuple):
-    """A mutant that loses nothing: its diff of one hunk, and why the rubric ignores it."""
+    """A mutant that loses nothing: its diff, and why the rubric ignores it."""
 
     mutant: Mutant
     diff: str

@@ -1,16 +1,17 @@
 """Rewritings of a robot, each of a family: another file, the same robot. A step returns whether it changed anything."""
 
+import re
+from collections import Counter
 from collections.abc import Callable, Collection
-from math import pi
 from random import Random
 from typing import NamedTuple
 
-from grader.mutation.elements import FOREIGN
+from lxml import etree
+
+from grader.checks.check import EQUIVALENTS
 from grader.mutation.trees import (
+    XACRO,
     add_joint,
-    add_link,
-    attribute_numbers,
-    attribute_text,
     end,
     fresh,
     move_frame,
@@ -24,10 +25,15 @@ from grader.mutation.trees import (
 )
 from grader.robot.transforms import Transform, unit
 from grader.xml.parsing import Element
+from grader.xml.urdf_format import PARTS
 
 _SORTED = ("link", "joint", "material", "visual", "collision")  # of these the order does not matter
 _SLIDING = "prismatic"
 _TURNING = ("revolute", "continuous")
+_COMMENTS = ("", " a robot ", ' <link name="ghost"/> ', "\n  0.6 / 4\n  ", " $ & % ")
+_NUMBER = re.compile(r"(?<![\w.+-])-?(?:0|[1-9]\d*)(?:\.\d+)?(?![\w.])")  # that xacro writes as it is
+_MAX_DIGITS = 12  # that survive the conversion to a float and back
+_MAX_PROPERTIES = 8
 
 
 class RewritingRules(NamedTuple):
@@ -40,16 +46,13 @@ class RewritingRules(NamedTuple):
 Rewriting = Callable[[Random, Element, RewritingRules], bool]
 
 
-def shuffle(random: Random, tree: Element, around: RewritingRules) -> bool:
+def shuffle(random: Random, tree: Element, _: RewritingRules) -> bool:
     """Change the order of elements: links, joints and materials, and those inside of each."""
-    del around
     free = ("joint", "material", "collision") if _has_shared_material(tree) else _SORTED
     for owner in [tree, *own_elements(tree, "link", "joint", "visual", "collision", "inertial")]:
-        children = list(owner)
-        shuffled = random.sample(children, len(children))
-        for child in children:
-            owner.remove(child)
-        owner.extend(_stable(children, shuffled, free))
+        ranks = {child.tag: random.random() for child in owner}  # of several origins the first counts
+        order = {child: random.random() if child.tag in free else ranks[child.tag] for child in owner}
+        owner[:] = sorted(owner, key=order.__getitem__)
     return True
 
 
@@ -60,18 +63,8 @@ def _has_shared_material(tree: Element) -> bool:
     return any(names.count(name) > 1 and name not in known for name in set(names))
 
 
-def _stable(before: list[Element], after: list[Element], free: tuple[str, ...]) -> list[Element]:
-    """Return the shuffled elements with those whose order matters in it: the first of several origins counts."""
-    queues: dict[str, list[Element]] = {}
-    for element in before:
-        if element.tag not in free:
-            queues.setdefault(str(element.tag), []).append(element)
-    return [queues[str(element.tag)].pop(0) if str(element.tag) in queues else element for element in after]
-
-
-def split_joints(random: Random, tree: Element, around: RewritingRules) -> bool:
+def split_joints(random: Random, tree: Element, _: RewritingRules) -> bool:
     """Put an empty link into the middle of fixed joints; their names stay in the chain."""
-    del around
     fixed = [joint for joint in tree.iterchildren("joint") if joint.get("type") == "fixed"]
     for joint in some(random, fixed):
         split_joint(tree, joint, _any_pose(random), is_first=random.random() < 0.5)
@@ -81,7 +74,7 @@ def split_joints(random: Random, tree: Element, around: RewritingRules) -> bool:
 def split_joint(tree: Element, joint: Element, first: Transform, *, is_first: bool) -> None:
     """Put an empty link into a joint, at `first` in the parent's frame; `is_first` if the upper half keeps the name."""
     middle, parent, child = fresh(tree, "link"), end(joint, "parent"), end(joint, "child")
-    add_link(tree, middle)
+    etree.SubElement(tree, "link", {"name": middle})
     second = first.inverse() @ pose(joint)
     if is_first:
         add_joint(tree, fresh(tree, "joint"), middle, child.get("link", ""), second)
@@ -93,9 +86,9 @@ def split_joint(tree: Element, joint: Element, first: Transform, *, is_first: bo
         parent.set("link", middle)
 
 
-def move_frames(random: Random, tree: Element, around: RewritingRules) -> bool:
+def move_frames(random: Random, tree: Element, rules: RewritingRules) -> bool:
     """Move the frames of links together with what is in them, where nothing refers to the frame."""
-    links = [link for link in tree.iterchildren("link") if around.may_move(link.get("name", ""))]
+    links = [link for link in tree.iterchildren("link") if rules.may_move(link.get("name", ""))]
     moved = False
     for link in some(random, links):
         joint = parent_joint(tree, link.get("name", ""))
@@ -119,67 +112,87 @@ def _free_move(random: Random, joint: Element) -> Transform | None:
     return Transform(translation=(x * slide, y * slide, z * slide)) @ Transform(change.rotation)
 
 
-def turn_fully(random: Random, tree: Element, around: RewritingRules) -> bool:
-    """Write rotations with additional full turns, or by their other three angles."""
-    del around
-    origins = list(own_elements(tree, "origin"))
-    for found in some(random, origins):
-        found.set("rpy", attribute_text(other_angles(random, attribute_numbers(found, "rpy"))))
-    return bool(origins)
+# The elements that have or use the name of a link, joint or material, with the attribute.
+_NAMED = {
+    "link": (("link", "name"), ("parent", "link"), ("child", "link")),
+    "joint": (("joint", "name"), ("mimic", "joint")),
+    "material": (("material", "name"),),
+}
 
 
-def other_angles(random: Random, rpy: list[float]) -> list[float]:
-    """Return other angles of the same rotation."""
-    roll, pitch, yaw = rpy
-    if random.random() < 0.5:
-        roll, pitch, yaw = roll + pi, pi - pitch, yaw + pi
-    return [angle + 2 * pi * random.randint(-3, 3) for angle in (roll, pitch, yaw)]
-
-
-def scale_axes(random: Random, tree: Element, around: RewritingRules) -> bool:
-    """Scale axes of joints."""
-    del around
-    axes = list(own_elements(tree, "axis"))
-    for axis in some(random, axes):
-        factor = 10 ** random.uniform(-2, 2)
-        axis.set("xyz", attribute_text(factor * number for number in attribute_numbers(axis, "xyz")))
-    return bool(axes)
-
-
-def rename_links(random: Random, tree: Element, around: RewritingRules) -> bool:
+def rename_links(random: Random, tree: Element, rules: RewritingRules) -> bool:
     """Rename links and materials that nothing but this file refers to."""
-    return _rename_around(random, tree, around, ("link", "material"))
+    renamed = [_rename(random, tree, rules, tag) for tag in ("link", "material")]
+    return any(renamed)
 
 
-def rename_joints(random: Random, tree: Element, around: RewritingRules) -> bool:
+def rename_joints(random: Random, tree: Element, rules: RewritingRules) -> bool:
     """Rename joints that nothing but this file refers to."""
-    return _rename_around(random, tree, around, ("joint",))
-
-
-def _rename_around(random: Random, tree: Element, around: RewritingRules, tags: tuple[str, ...]) -> bool:
-    changed = False
     children = [end(joint, "child").get("link") for joint in tree.iterchildren("joint")]
-    if "joint" in tags and len(set(children)) < len(children):  # of two parents, the joint that is last by name counts
-        return False
-    for tag in tags:
-        elements = own_elements(tree, tag) if tag == "material" else tree.iterchildren(tag)
-        names = dict.fromkeys(element.get("name", "") for element in elements)
-        for name in some(random, [name for name in names if name and name not in around.named]):
-            _rename(tree, tag, name, f"{name}_{random.randint(2, 99)}x")
-            changed = True
-    return changed
+    is_tree = len(set(children)) == len(children)  # of two parents, the joint that is last by name counts
+    return is_tree and _rename(random, tree, rules, "joint")
 
 
-_REFERENCES = {"link": ("link",), "joint": ("joint",), "material": ()}
-
-
-def _rename(tree: Element, tag: str, name: str, new: str) -> None:
-    for element in own_elements(tree, "*"):
-        if element.tag == tag and element.get("name") == name:
-            element.set("name", new)
-        for attribute in _REFERENCES[tag]:
-            if element.get(attribute) == name and element.tag in ("parent", "child", "mimic"):
+def _rename(random: Random, tree: Element, rules: RewritingRules, tag: str) -> bool:
+    uses = [(element, attribute) for owner, attribute in _NAMED[tag] for element in own_elements(tree, owner)]
+    names = dict.fromkeys(element.get(attribute, "") for element, attribute in uses if element.tag == tag)
+    chosen = some(random, [name for name in names if name and name not in rules.named])
+    for name in chosen:
+        new = f"{name}_{random.randint(2, 99)}x"
+        for element, attribute in uses:
+            if element.get(attribute) == name:
                 element.set(attribute, new)
+    return bool(chosen)
+
+
+def change_layout(random: Random, tree: Element, _: RewritingRules) -> bool:
+    """Change the order of attributes, and add comments; `text_of` changes the white space."""
+    for element in [*own_elements(tree, "*")]:
+        attributes = [*element.attrib.items()]
+        random.shuffle(attributes)
+        element.attrib.clear()
+        element.attrib.update(attributes)
+        if random.random() < 0.2:
+            element.addprevious(etree.Comment(random.choice(_COMMENTS)))
+    return True
+
+
+def use_properties(random: Random, tree: Element, _: RewritingRules) -> bool:
+    """Write numbers that occur more than once as properties of xacro."""
+    values = [(it, str(key)) for it in own_elements(tree, "*") for key in it.attrib if PARTS.get(str(key))]
+    counts = Counter(number for it, key in values for number in _NUMBER.findall(it.get(key, "")))
+    repeated = [number for number, count in counts.items() if count > 1 and len(number) <= _MAX_DIGITS]
+    if not repeated or _has_dollar(tree):
+        return False
+    chosen = random.sample(repeated, min(len(repeated), _MAX_PROPERTIES))
+    names = {number: f"number_{index}" for index, number in enumerate(chosen)}
+    for it, key in values:
+        it.set(
+            key,
+            _NUMBER.sub(lambda found: f"${{{names[found[0]]}}}" if found[0] in names else found[0], it.get(key, "")),
+        )
+    for number, name in names.items():
+        tree.insert(0, etree.Element(f"{{{XACRO}}}property", {"name": name, "value": number}))
+    return True
+
+
+def use_macro(random: Random, tree: Element, _: RewritingRules) -> bool:
+    """Write a link as a macro of xacro."""
+    links = [link for link in tree.iterchildren("link") if link.get("name")]
+    if not links or _has_dollar(tree):
+        return False
+    link = random.choice(links)
+    tree.replace(link, etree.Element(f"{{{XACRO}}}part", {"name": link.get("name", "")}))
+    macro = etree.Element(f"{{{XACRO}}}macro", {"name": "part", "params": "name"})
+    link.set("name", "${name}")
+    macro.append(link)
+    tree.insert(0, macro)
+    return True
+
+
+def _has_dollar(tree: Element) -> bool:
+    """Return whether xacro would evaluate something in a tree."""
+    return b"$" in etree.tostring(tree)
 
 
 def _any_pose(random: Random) -> Transform:
@@ -187,8 +200,11 @@ def _any_pose(random: Random) -> Transform:
     return origin(xyz, [round(random.uniform(-3, 3), 6) for _ in range(3)])
 
 
-def words_of_foreign(tree: Element) -> set[str]:
-    """Return the words in the elements for simulators and controllers."""
-    found = [element for tag in FOREIGN for child in tree.iterchildren(tag) for element in child.iter("*")]
-    values = [value for element in found for value in (element.text or "", *map(str, element.attrib.values()))]
-    return {word for value in values for word in value.split()}
+LAYOUT, *AS_XACRO = EQUIVALENTS[-3:]
+STEPS: dict[str, Rewriting] = dict(
+    zip(
+        EQUIVALENTS,
+        (shuffle, split_joints, move_frames, rename_links, rename_joints, change_layout, use_properties, use_macro),
+        strict=True,
+    )
+)

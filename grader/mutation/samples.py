@@ -1,21 +1,21 @@
 """Sample submissions: folders with an expected.toml, which says what their report must be."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
-from grader.checks.toml_types import TomlType, WrongValue, simple_type, toml_type
+from grader.checks.toml_types import simple_type, toml_type
 from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped
 from grader.grading.grade import grade
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric
 from grader.grading.toml_file import complain_of, read_toml
+from grader.grading.toml_rows import KeyTable, TomlRowReader
 from grader.mutation.result import Loss, SampleResults
 from grader.names import did_you_mean
 from grader.submission.opening import open_submission
-from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import printable_path
 
@@ -27,11 +27,11 @@ _IDS = simple_type(
     lambda value: isinstance(value, list) and all(isinstance(name, str) for name in value),
     tuple,
 )
-_KEYS: Mapping[str, TomlType] = {
-    **dict.fromkeys(("about", "path", "rubric"), _TEXT),
-    "verdict": toml_type(Literal["clean", "degraded", "rejected", "missing"]),
-    **dict.fromkeys(("lost", "carried", "pending"), _IDS),
-}
+_VERDICT = toml_type(Literal["clean", "degraded", "rejected", "missing"])
+_WORDS = {"lost": "loses its points", "carried": "fails without a deduction", "pending": "needs manual grading"}
+_TABLE = KeyTable(
+    "sample", dict.fromkeys(("about", "path", "rubric"), _TEXT) | {"verdict": _VERDICT} | dict.fromkeys(_WORDS, _IDS)
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,17 +57,9 @@ class Sample:
         """The name of its folder."""
         return self.folder.name
 
-    def open(self, rubric: Rubric) -> Submission:
-        """Return the submission, opened as the command line does. Raises InputError."""
-        path = str(self.folder / self.path)
-        return open_submission(path, rubric.lab)
-
     def expected(self, name: str) -> str:
         """Return what must become of a criterion, in words."""
         return next((words for kind, words in _WORDS.items() if name in getattr(self, kind)), "passes")
-
-
-_WORDS = {"lost": "loses its points", "carried": "fails without a deduction", "pending": "needs manual grading"}
 
 
 def read_samples(folder: Path) -> list[Sample]:
@@ -82,18 +74,9 @@ def read_samples(folder: Path) -> list[Sample]:
 
 def _sample(path: Path) -> Sample:
     text, table = read_toml(read_capped(path, advice=""), path)
-    complaints: list[tuple[tuple[str | int, ...], str]] = []
-    values: dict[str, Any] = {}
-    for key, value in table.items():
-        if key not in _KEYS:
-            hint = did_you_mean(key, _KEYS) or f"; it has: {', '.join(_KEYS)}"
-            complaints.append(((key,), f"an {EXPECTED} has no key {key!r}{hint}"))
-            continue
-        try:
-            values[key] = _KEYS[key].parse(value)
-        except WrongValue as error:
-            complaints.append(((key,), f"{key} must be {error}"))
-    complain_of(complaints, text, path)
+    reader = TomlRowReader()
+    values = reader.row((), table, _TABLE)
+    complain_of(reader.complaints, text, path)
     return Sample(path.parent, **values)
 
 
@@ -126,7 +109,7 @@ def _check_names(rubric: Rubric, samples: list[Sample]) -> None:
 def differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
     """Yield what differs from the expected report: a criterion that is not adjusted, or `verdict`, and a message."""
     try:
-        submission = sample.open(rubric)
+        submission = open_submission(str(sample.folder / sample.path), rubric.lab)
     except InputError as error:
         yield "submission", f"cannot be read: {error}"
         return
@@ -141,10 +124,10 @@ def _differing(sample: Sample, report: Report) -> Iterator[tuple[str, str]]:
     graded = {result.criterion.id: result for result in report.results}
     for criterion in (row for row in report.rubric.criteria if row.adjustment is None):
         result, expected = graded.get(criterion.id), sample.expected(criterion.id)
-        actual = _actual(result) if result is not None else "is not graded"
-        if actual != expected and (result is not None or expected != "passes"):
-            message = f": {result.outcome.message}" if result is not None else ""
-            yield criterion.id, f"{actual}, expected: {expected}{message}"
+        if result is not None and _actual(result) != expected:
+            yield criterion.id, f"{_actual(result)}, expected: {expected}: {result.outcome.message}"
+        elif result is None and expected != "passes":
+            yield criterion.id, f"is not graded, expected: {expected}"
 
 
 def _actual(result: Result) -> str:

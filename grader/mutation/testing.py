@@ -1,7 +1,7 @@
 """Test a rubric on its own reference solution, whose equivalents must lose nothing."""
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Sequence
 from functools import lru_cache
 from itertools import count
 from pathlib import Path
@@ -10,10 +10,10 @@ from grader.errors import InputError
 from grader.grading.deciding import decide
 from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, read_rubric
-from grader.mutation.equivalents import FAMILIES, Equivalent, Equivalents, breaking
+from grader.mutation.equivalents import FAMILIES, Equivalent, breaking, equivalents
 from grader.mutation.mutants import Mutant
-from grader.mutation.mutation_test import GradeAll, MutantOutcome, MutationTest, outcome_of
-from grader.mutation.result import EquivalentResults, Loss, RubricTest, hunk
+from grader.mutation.mutation_test import GradeAll, MutantOutcome, mutant_results, mutants_of, outcome_of
+from grader.mutation.result import EquivalentResults, Loss, RubricTest, diff
 from grader.mutation.samples import Sample, tested_samples
 from grader.mutation.trial import Trial
 from grader.submission.editing import with_urdf
@@ -30,13 +30,13 @@ def tested_equivalents(trial: Trial, seed: int) -> EquivalentResults:
     assert urdf.reading.robot is not None
     tried: Counter[str] = Counter()
     losses: list[Loss] = []
-    for equivalent in Equivalents(trial.rubric, urdf.reading.root, urdf.reading.robot, trial.kept, seed).all():
-        submission = _submission(trial.reference, urdf, equivalent)
+    for equivalent in equivalents(trial.rubric, urdf.reading.root, urdf.reading.robot, trial.kept, seed):
         tried[equivalent.family] += 1
-        lost = dict(_first_loss(trial, submission, equivalent))
+        submission = _submission(trial.reference, urdf, equivalent)
+        results = decide(trial.rubric, submission, _criteria_to_pass(trial, submission, equivalent))
+        lost = {result.criterion.id: result.outcome.message for result in results if trial.is_lost(result)}
         if lost:
-            diff = hunk(urdf.path, equivalent.before, equivalent.text)
-            losses.append(Loss(equivalent.name, lost, diff))
+            losses.append(Loss(equivalent.name, lost, diff(urdf.path, equivalent.before, equivalent.text)))
     unused = {name: "there is nothing to change" for name in FAMILIES if name not in tried}
     return EquivalentResults(dict(tried), unused, tuple(losses))
 
@@ -50,12 +50,6 @@ def _submission(reference: Submission, urdf: Read, equivalent: Equivalent) -> Su
     return read_submission(data, identity=reference.id, path=f"{name.removesuffix('.xacro')}.xacro")
 
 
-def _first_loss(trial: Trial, submission: Submission, equivalent: Equivalent) -> Iterator[tuple[str, str]]:
-    for result in decide(trial.rubric, submission, _criteria_to_pass(trial, submission, equivalent)):
-        if trial.is_lost(result):
-            yield result.criterion.id, result.outcome.message
-
-
 def _criteria_to_pass(trial: Trial, submission: Submission, equivalent: Equivalent) -> Collection[str]:
     """Return the criteria on the robot that must still pass; for a URDF on its own, those that need nothing else."""
     criteria = (trial.expected[name].criterion for name in trial.tested)
@@ -67,28 +61,22 @@ Progress = Callable[[int, int], None]  # how many submissions of how many are gr
 
 
 def run_rubric_test(
-    rubric: Rubric,
-    samples: list[Sample] | None,
-    *,
-    seed: int,
-    most: int,
-    progress: Progress,
-    grade_all: GradeAll,
+    rubric: Rubric, samples: list[Sample] | None, seed: int, most: int, progress: Progress, grade_all: GradeAll
 ) -> RubricTest:
     """Return the test of a rubric. Raises InputError without a readable reference, RubricError for wrong samples.
 
     `grade_all` grades mutants elsewhere, as `mutant_outcomes` does.
     """
     trial = _trial_of(rubric)
-    mutation = MutationTest(trial, most, seed)
-    total = len(mutation.chosen) + len(samples or ())
+    every = [*mutants_of(trial)]
+    total = min(most, len(every)) + len(samples or ())
     counter = count(1)
 
     def step() -> None:
         progress(next(counter), total)
 
     of_samples = tested_samples(rubric, samples, step) if samples is not None else None
-    mutants = mutation.run(step, grade_all)
+    mutants = mutant_results(trial, every, most, seed, grade_all, step)
     return RubricTest(trial.report, seed, mutants, tested_equivalents(trial, seed), of_samples)
 
 

@@ -8,7 +8,6 @@ from typing import Any
 from grader.checks.manual import MANUAL_CHECKS
 from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
-from grader.grading.criterion import Criterion
 from grader.grading.deciding import decide
 from grader.grading.hints.trials import is_worse
 from grader.grading.report import Report, Result
@@ -24,14 +23,9 @@ _TEXTS = (".py", ".xml", ".yaml", ".yml", ".rviz", ".launch", ".cfg", ".json", "
 
 
 def names_in(rubric: Rubric) -> set[str]:
-    """Return every text in the arguments of a rubric's checks, also the keys of tables."""
-    return {name for criterion in rubric.criteria for name in names_of(criterion)}
-
-
-def names_of(criterion: Criterion) -> set[str]:
-    """Return every text in the arguments of a criterion, and the joints that it poses."""
-    carried = [one.arguments for one in criterion.carried]
-    return set(texts([criterion.arguments, *carried, getattr(criterion, "at", {})]))
+    """Return every text in the arguments of a rubric's checks, also keys of tables, and the joints that it poses."""
+    used = [(it.arguments, it.at, [one.arguments for one in it.carried]) for it in rubric.criteria]
+    return set(_texts(used))
 
 
 def words_in_files(submission: Submission) -> set[str]:
@@ -46,15 +40,15 @@ def words_in_files(submission: Submission) -> set[str]:
     return found
 
 
-def texts(value: Any) -> Iterator[str]:
+def _texts(value: Any) -> Iterator[str]:
     """Yield the texts in the arguments of a check, also the keys of tables."""
     if isinstance(value, str):
         yield value
     elif isinstance(value, Mapping):
-        yield from texts([*value, *value.values()])
+        yield from _texts([*value, *value.values()])
     elif isinstance(value, list | tuple):
         for item in value:
-            yield from texts(item)
+            yield from _texts(item)
 
 
 _OF_ROBOT = (".urdf", ".xacro")

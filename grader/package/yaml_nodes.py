@@ -31,11 +31,18 @@ class YamlNode:
     mark: Any  # PyYAML's; a Location is made only on demand
     value: "str | list[YamlNode] | dict[str, YamlNode]"
     quoted: bool = False  # a text in quotes, which is a string even if it is true or 1
+    end_mark: Any = None  # of a text
 
     @property
     def location(self) -> Location:
         """Where it begins."""
         return _location(self.source, self.mark)
+
+    @property
+    def span(self) -> tuple[int, int]:
+        """The offsets of the start and the end of a text, with its quotes."""
+        shift = int(self.source.text.startswith("\ufeff"))
+        return self.mark.index + shift, self.end_mark.index + shift
 
     def get(self, *keys: str) -> "YamlNode | None":
         """Return the node at a path of keys, None where there is none."""
@@ -118,7 +125,7 @@ class _Anchors:
         if isinstance(event, yaml.AliasEvent):
             return self._node_of(event.anchor or "", _location(self._source, event.start_mark))
         if isinstance(event, yaml.ScalarEvent):
-            node = YamlNode(self._source, event.start_mark, event.value, event.style in ("'", '"'))
+            node = YamlNode(self._source, event.start_mark, event.value, event.style in ("'", '"'), event.end_mark)
         else:
             node = YamlNode(self._source, event.start_mark, [] if isinstance(event, yaml.SequenceStartEvent) else {})
         if event.anchor:

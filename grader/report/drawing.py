@@ -4,15 +4,17 @@ It needs no script or other file. A page that contains it adds `STYLE` to its ow
 """
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from textwrap import wrap
 
-from grader.drawing.picture import Callout, Picture, picture_of, plain_picture
-from grader.drawing.views import WIDTH, Panel, Sheet, from_back_to_front, lifted_ground, sheet_of
-from grader.grading.report import Report
+from grader.drawing.picture import Picture, picture_of, plain_picture
+from grader.drawing.scene import Body
+from grader.drawing.views import WIDTH, Panel, Sheet, from_back_to_front, sheet_of
+from grader.grading.report import Report, Result
 from grader.report.content import bonus_line, grade_line, score_text, summary
 from grader.report.details import remarks_on
-from grader.report.drawing_signs import Signs, wheel_sign
+from grader.report.drawing_signs import Signs, ground_line, wheel_sign
 from grader.report.drawing_words import description, heading, why_no_picture
 from grader.report.inspection import Inspection, effect
 from grader.report.svg_elements import STYLE, badge, circle, escaped, path, polygon, segment, text
@@ -30,44 +32,44 @@ def drawing_element(picture: Picture, title: str = "", *, legend: bool = True, a
 
     Screen readers read the title, and a description of the callouts.
     """
-    shown = title or "Three views of the robot"
     sheet = sheet_of(picture, _height(above) if title else 0.0)
-    parts = [f"<g>{''.join(_view(panel, picture))}</g>" for panel in sheet.panels]
+    parts = _headline(title, above) if title else []
+    parts += [f"<g>{''.join(_view(panel, picture))}</g>" for panel in sheet.panels]
     parts += _key(sheet, picture, legend=legend)
-    height = sheet.height
-    if legend:
-        notes = picture.scene.missing if picture.scene.bodies else (*picture.scene.missing, _NO_SHAPES)
-        height, below = _legend(sheet.height, picture.callouts, notes)
-        parts += below
-    return _svg(shown, description(picture), height, [*(_headline(title, above) if title else ()), *parts])
+    height, below = _legend(picture, sheet.height) if legend else (sheet.height, [])
+    return _svg(title or "Three views of the robot", description(picture), height, [*parts, *below])
 
 
 def _svg(title: str, words: str, height: float, parts: Iterable[str]) -> str:
-    size = f'viewBox="0 0 {WIDTH:g} {height:.0f}" width="{WIDTH:g}" height="{height:.0f}"'
+    size = f'width="{WIDTH:g}" height="{height:.0f}"'
     said = f"<title>{escaped(title[:_MAX_TITLE])}</title><desc>{escaped(words)}</desc>"
-    paper = f'<rect class="paper" width="{WIDTH:g}" height="{height:.0f}"/>'
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" class="drawing" role="img" {size}>{said}{paper}{"".join(parts)}</svg>'
-    )
+    start = f'<svg xmlns="http://www.w3.org/2000/svg" class="drawing" role="img" viewBox="0 0 {WIDTH:g} {height:.0f}"'
+    return f'{start} {size}>{said}<rect class="paper" {size}/>{"".join(parts)}</svg>'
 
 
 def _view(panel: Panel, picture: Picture) -> Iterator[str]:
     """Yield a view: the ground, the shapes from back to front, then the signs."""
     yield text("faint", (panel.left + _LEFT, panel.top + _LEFT), panel.title)
-    signs = Signs(panel, picture)
-    yield from signs.grounds()
-    outlines = [(body, panel.outline(picture.scene, body)) for body in from_back_to_front(picture.scene, panel)]
-    for body, corners in outlines:
-        red, green, blue, alpha = body.rgba
-        # As WCAG 2.2 defines it, with a plain gamma: dark edges on light colours, light edges on dark ones.
-        is_dark = alpha >= 0.5 and 0.2126 * red**2.2 + 0.7152 * green**2.2 + 0.0722 * blue**2.2 <= 0.18
-        fill = "".join(f"{round(255.0 * value):02x}" for value in (red, green, blue))
-        looks = f'fill="#{fill}" fill-opacity="{alpha:.2g}" stroke="{"#e8eaed" if is_dark else "#1c1f23"}"'
-        name = escaped(body.link[:_MAX_NAME])
-        yield f'<polygon {looks} points="{polygon(corners)[1:-1].replace("L", " ")}"><title>{name}</title></polygon>'
+    if ground := ground_line(panel, picture):
+        yield path("ground", segment(*ground))
+    outlines = [
+        (body, polygon(panel.outline(picture.scene, body))) for body in from_back_to_front(picture.scene, panel)
+    ]
+    for body, outline in outlines:
+        points = outline[1:-1].replace("L", " ")
+        yield f'<polygon {_looks(body)} points="{points}"><title>{escaped(body.link[:_MAX_NAME])}</title></polygon>'
     if len(outlines) > 1:  # what a shape hides shows through
-        yield path("hidden", "".join(polygon(corners) for _, corners in outlines))
-    yield from signs.all()
+        yield path("hidden", "".join(outline for _, outline in outlines))
+    yield from Signs(panel, picture).all()
+
+
+def _looks(body: Body) -> str:
+    """Return the colour of a body, with dark edges on light colours and light edges on dark ones."""
+    red, green, blue, alpha = body.rgba
+    # The luminance as WCAG 2.2 defines it, with a plain gamma.
+    is_dark = alpha >= 0.5 and 0.2126 * red**2.2 + 0.7152 * green**2.2 + 0.0722 * blue**2.2 <= 0.18
+    fill = "".join(f"{round(255.0 * value):02x}" for value in (red, green, blue))
+    return f'fill="#{fill}" fill-opacity="{alpha:.2g}" stroke="{"#e8eaed" if is_dark else "#1c1f23"}"'
 
 
 def _key(sheet: Sheet, picture: Picture, *, legend: bool) -> Iterator[str]:
@@ -77,64 +79,60 @@ def _key(sheet: Sheet, picture: Picture, *, legend: bool) -> Iterator[str]:
     ends = (segment((x, top - 4.0), (x, top + 4.0)) for x in (left, left + length))
     yield path("ground", segment((left, top), (left + length, top)) + "".join(ends))
     yield text("text", (left + length + 8.0, top + 4.0), words)
-    for row, (look, meaning) in enumerate(_meanings(picture, legend=legend), 1):
-        x, y = left, top + 6.0 + row * _ROW
-        yield _sign(look, x, y)
-        yield text("faint", (x + 34.0, y + 4.0), meaning)
+    for row, (sign, meaning) in enumerate(_meanings(picture, legend=legend), 1):
+        y = top + 6.0 + row * _ROW
+        yield sign(left, y)
+        yield text("faint", (left + 34.0, y + 4.0), meaning)
 
 
-def _meanings(picture: Picture, *, legend: bool) -> Iterator[tuple[str, str]]:
-    """Yield the signs of a drawing with their meanings."""
+def _meanings(picture: Picture, *, legend: bool) -> Iterator[tuple[Callable[[float, float], str], str]]:
+    """Yield what draws each sign of a drawing, with its meaning."""
     travels = [wheel.travel is not None for wheel in picture.scene.wheels]
     if any(callout.point is not None for callout in picture.callouts):
-        yield "badge", f"points lost{': see below' if legend else ''}"
-    if picture.outlines or picture.frames or lifted_ground(picture) is not None:
-        yield "reference", "reference solution"
+        yield lambda x, y: badge((x + 12.0, y), 1), f"points lost{': see below' if legend else ''}"
+    if picture.outlines or picture.frames:
+        yield partial(_line, "reference"), "reference solution"
     if any(travels):
-        yield "arrow", "driving direction, positive turn"
+        yield lambda x, y: path("arrow", wheel_sign((x - 3.0, y), (1.0, 0.0, 0.0))), "driving direction, positive turn"
     if not all(travels):
-        yield "slash", "wheel does not roll"
-    yield "axes", "frame of a link: x, y, z"
+        yield lambda x, y: path("arrow", wheel_sign((x + 12.0, y), None)), "wheel does not roll"
+    yield _axes, "frame of a link: x, y, z"
     if len(picture.scene.bodies) > 1:
-        yield "hidden", "hidden edge"
+        yield partial(_line, "hidden"), "hidden edge"
 
 
-def _sign(look: str, x: float, y: float) -> str:
-    match look:
-        case "badge":
-            return badge((x + 12.0, y), 1)
-        case "arrow":
-            return path("arrow", wheel_sign((x - 3.0, y), (1.0, 0.0, 0.0)))
-        case "slash":
-            return path("arrow", wheel_sign((x + 12.0, y), None))
-        case "axes":
-            ends = (("x", segment((x + 6.0, y + 5.0), (x + 20.0, y + 5.0))), ("y", circle((x + 6.0, y + 5.0), 2.5)))
-            lines = (*ends, ("z", segment((x + 6.0, y + 5.0), (x + 6.0, y - 9.0))))
-            return "".join(path(f"axis-{name}", data) for name, data in lines)
+def _line(look: str, x: float, y: float) -> str:
     return path(look, segment((x, y), (x + 26.0, y)))
 
 
-def _legend(top: float, callouts: Sequence[Callout], notes: Sequence[str]) -> tuple[float, list[str]]:
+def _axes(x: float, y: float) -> str:
+    start = x + 6.0, y + 5.0
+    lines = {"x": segment(start, (x + 20.0, y + 5.0)), "y": circle(start, 2.5), "z": segment(start, (x + 6.0, y - 9.0))}
+    return "".join(path(f"axis-{name}", data) for name, data in lines.items())
+
+
+def _legend(picture: Picture, top: float) -> tuple[float, list[str]]:
     """Return the failed criteria of each callout, and notes, below `top`, and where they end."""
-    if not callouts and not notes:
+    notes = picture.scene.missing if picture.scene.bodies else (*picture.scene.missing, _NO_SHAPES)
+    if not picture.callouts and not notes:
         return top, []
-    parts = [path("rule", segment((_LEFT, top + 8.0), (WIDTH - _LEFT, top + 8.0)))]
-    left, y = _LEFT + _INDENT, top + 28.0
-    for callout in callouts:
-        parts.append(badge((_LEFT + 9.0, y - 4.0), callout.number))
-        lost = [
-            f"{result.criterion.id} ({counted_points(result.criterion.points)}): {result.outcome.message}"
-            for result in callout.results
-        ]
-        for look, words in (("strong", heading(callout)), *(("text", words) for words in lost)):
-            some = _lines(words, WIDTH - _LEFT - left)
-            parts += (text(look, (left, y + n * _LINE), line) for n, line in enumerate(some))
-            y += _LINE * len(some)
-        y += 6.0
-    for line in (line for note in notes for line in _lines(note, WIDTH - _LEFT - left)):
-        parts.append(text("text", (left, y), line))
-        y += _LINE
-    return y + 2.0, parts
+    parts, y = [path("rule", segment((_LEFT, top + 8.0), (WIDTH - _LEFT, top + 8.0)))], top + 28.0
+    rows = [("text", note) for note in notes]
+    blocks = [
+        (one.number, [("strong", heading(one)), *(("text", _loss(it)) for it in one.results)])
+        for one in picture.callouts
+    ]
+    for number, words in (*blocks, (0, rows)):
+        parts += [badge((_LEFT + 9.0, y - 4.0), number)] if number else []
+        for look, line in ((look, line) for look, row in words for line in _lines(row, _WIDTH - _INDENT)):
+            parts.append(text(look, (_LEFT + _INDENT, y), line))
+            y += _LINE
+        y += 6.0 if number else 2.0
+    return y, parts
+
+
+def _loss(result: Result) -> str:
+    return f"{result.criterion.id} ({counted_points(result.criterion.points)}): {result.outcome.message}"
 
 
 def _lines(words: str, width: float, most: int = _MAX_LINES) -> list[str]:
@@ -170,14 +168,12 @@ def _file(picture: Picture | None, title: str, words: Iterable[str], reason: str
     else:
         above += ["", *_lines(reason, _WIDTH)]
         drawn = _svg(title, reason, _height(above), _headline(title, above))
-    start, rest = drawn.split("<title>", 1)
-    return f"{start}<style>svg{{max-width:100%;height:auto}}{STYLE}</style><title>{rest}\n"
+    return drawn.replace("<title>", f"<style>svg{{max-width:100%;height:auto}}{STYLE}</style><title>", 1) + "\n"
 
 
 def _headline(title: str, above: Sequence[str]) -> list[str]:
-    shown = _lines(title, _WIDTH / 1.5, 1)
-    lines = [text("faint", (_LEFT, 2.0 * _LEFT + _LINE * number), line) for number, line in enumerate(above, 1)]
-    return [*(text("title", (_LEFT, 26.0), line) for line in shown), *lines]
+    shown = [text("title", (_LEFT, 26.0), line) for line in _lines(title, _WIDTH / 1.5, 1)]
+    return shown + [text("faint", (_LEFT, 2.0 * _LEFT + _LINE * number), line) for number, line in enumerate(above, 1)]
 
 
 def _height(above: Sequence[str]) -> float:

@@ -37,7 +37,7 @@ def mismatch(
     None for shapes of different kinds. Without `turned`, their orientations do not count.
     """
     apart = hypot(*minus(T_w_a.translation, T_w_b.translation))
-    found = [Mismatch(apart, *(way if turned else (way[0], 0.0, 0.0))) for way in ways(a, T_w_a, b, T_w_b)]
+    found = [Mismatch(apart, *(way if turned else (way[0], 0.0, 0.0))) for way in _ways(a, T_w_a, b, T_w_b)]
     return min(found, key=lambda way: (not way.size <= tolerance) + (not way.turn <= tolerance), default=None)
 
 
@@ -47,7 +47,7 @@ def turn_between(one: Rotation, other: Rotation) -> float:
     return degrees(acos(max(-1.0, min(1.0, (trace - 1.0) / 2.0))))
 
 
-def ways(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> Iterator[tuple[float, float, float]]:
+def _ways(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> Iterator[tuple[float, float, float]]:
     """Yield the size, turn and angle of the difference for each way to lay a shape over another, aligned axes first."""
     match a, b:
         case Sphere(), Sphere():

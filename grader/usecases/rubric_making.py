@@ -8,7 +8,6 @@ from decimal import Decimal
 from functools import partial
 from itertools import chain
 from pathlib import Path
-from typing import NamedTuple
 
 from grader.authoring.draft import RubricDraft, draft
 from grader.authoring.rubric_text import Head
@@ -22,9 +21,7 @@ from grader.mutation.mutation_test import GradeAll, MutantOutcome
 from grader.mutation.samples import read_samples
 from grader.mutation.testing import mutant_outcomes, run_rubric_test
 from grader.package.package import MANIFEST
-from grader.report.formats import OutputFormat
 from grader.report.rubric_test import render_rubric_test, render_rubric_test_json
-from grader.report.screen import Screen
 from grader.robot.kinematics import Configuration
 from grader.submission.opening import STANDARD_INPUT, open_submission
 from grader.submission.packages import package_around
@@ -33,7 +30,7 @@ from grader.submission.urdf import Absent, Read, Unreadable
 from grader.text import enumerated, printable, printable_path, shell_quoted
 from grader.usecases.exit_codes import ExitCode, read_threshold
 from grader.usecases.rubrics import load, rubric_summary
-from grader.usecases.terminal import ShowClass, Warn
+from grader.usecases.terminal import Terminal, Warn
 from grader.usecases.writing import missing_folder, save_bytes
 from grader.workers.pool import Processes, processors
 from grader.workers.progress import Progress
@@ -140,37 +137,23 @@ _MAX_PERCENT = 100
 _SECONDS = 60.0  # for some mutants
 
 
-class TestRequest(NamedTuple):
-    """What is tested, and how."""
+def test_rubric(
+    name: str, folder: Path | None, fail_under: str | None, seed: int, most: int, is_json: bool, terminal: Terminal
+) -> tuple[str, ExitCode]:
+    """Return the result of testing a rubric, and the exit code.
 
-    rubric: str
-    folder: Path | None
-    fail_under: str | None
-    seed: int
-    mutants: int
-    format: OutputFormat
-
-
-def test(request: TestRequest, screen: Screen, show_class: ShowClass) -> tuple[str, ExitCode]:
-    """Return the result as text and the exit code; raises GraderError for a broken rubric or without a reference."""
-    least = _least(request.fail_under)
-    rubric = load(request.rubric)
-    samples = read_samples(request.folder) if request.folder is not None else None
-    with show_class(f"Testing {rubric.id}") as show, _workers(rubric) as grade_all:
-        result = run_rubric_test(
-            rubric,
-            samples,
-            seed=request.seed,
-            most=request.mutants,
-            progress=lambda done, total: show(Progress(total, done)),
-            grade_all=grade_all,
-        )
+    Raises GraderError for a broken rubric or one without a reference.
+    """
+    least = _least(fail_under)
+    rubric = load(name)
+    samples = read_samples(folder) if folder is not None else None
+    with terminal.show_class(f"Testing {rubric.id}") as show, _workers(rubric) as grade_all:
+        progress = lambda done, total: show(Progress(total, done))  # noqa: E731
+        result = run_rubric_test(rubric, samples, seed, most, progress, grade_all)
+    text = render_rubric_test_json(result) if is_json else render_rubric_test(result, terminal.screen().width)
     is_passed = result.is_sound and (least is None or result.mutants.score >= least)
-    is_json = request.format is OutputFormat.JSON
-    text = render_rubric_test_json(result) if is_json else render_rubric_test(result, screen.width)
-    if result.is_faulty:
-        return text, ExitCode.FAULT
-    return text, ExitCode.PASSED if is_passed else ExitCode.FAILED
+    code = ExitCode.PASSED if is_passed else ExitCode.FAILED
+    return text, ExitCode.FAULT if result.is_faulty else code
 
 
 @contextmanager

@@ -164,7 +164,7 @@ def test_pictures(review: Review, open_page: Open) -> None:
     assert page.evaluate(sizes) == [[True, 640, 400]]
     page.goto(f"{review.url}9")
     assert page.locator("img:visible").count() == 0
-    assert "Not shown: screen.png: its content is SVG" in page.locator(".not-shown").inner_text()
+    assert "Not shown: screen.png: it is not a PNG" in page.locator(".not-shown").inner_text()
     assert not [request for request in opened.requests if "/9/picture" in request]
 
 

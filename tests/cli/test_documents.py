@@ -33,12 +33,11 @@ class _Terminal(StringIO):
 
 
 @pytest.mark.exhaustive
-@pytest.mark.parametrize(("stream", "seconds", "lines"), [(_Terminal, 0.0, 1), (_Terminal, 1e9, 0), (StringIO, 0.0, 0)])
-def test_a_document_that_takes_long_is_named(
-    stream: type[StringIO], seconds: float, lines: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("stream", "lines"), [(_Terminal, 1), (StringIO, 0)])
+def test_a_document_that_is_read_is_named(
+    stream: type[StringIO], lines: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """On a terminal, after a time; the line is removed before the report is printed. The document is read all the same."""
-    monkeypatch.setattr("grader.documents.collection.NOTICE_SECONDS", seconds)
+    """On a terminal; the line is removed before the report is printed."""
     monkeypatch.setenv("COLUMNS", "80")
     shutil.copytree(ROOT / "rubrics/lab6/my_robot", tmp_path / "my_robot")
     (tmp_path / "an\x1b swers.docx").write_bytes(docx("Task 1 step 15", "Two roots."))

@@ -95,7 +95,7 @@ def test_an_equivalent_that_loses_points_fails(tmp_path: Path, monkeypatch: pyte
     assert done.returncode == 1
     text = done.stdout.decode()
     assert "These equivalents of the reference lose points:\n\n  fixed joints split 1\n    frame: the rpy is" in text
-    assert '-<origin xyz="1 2 3" rpy="0.1 0.2 0.3"/>' in text
+    assert '-    <origin xyz="1 2 3" rpy="0.1 0.2 0.3"/>' in text
 
 
 def test_a_check_that_is_faulty_on_a_mutant_is_not_a_catch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,7 +8,6 @@ from grader.documents import pictures
 from grader.documents.pictures import EmbeddedPicture, NotShown, image_type, read_picture, verified
 from grader.errors import FileError
 from grader.files.tree import File
-from tests.work import limited_work
 
 SHOWN = {
     "PNG": b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "JPEG": b"\xff\xd8\xff\xe0", "GIF": b"GIF89a\x80\2\xe0\1",
@@ -16,24 +15,16 @@ SHOWN = {
 }  # fmt: skip
 SCRIPT = b"<script>alert(1)</script>"
 NOT_SHOWN = {
-    "HTML": (b"<!DOCTYPE html><html>" + SCRIPT, "its content is HTML, which can contain scripts"),
-    "a script": (SCRIPT, "its content is HTML, which can contain scripts"),
-    "SVG": (b'<svg xmlns="http://www.w3.org/2000/svg">' + SCRIPT, "its content is SVG, which can contain scripts"),
-    "SVG with a prolog": (
-        b'<?xml version="1.0"?>\n<!-- a --><!DOCTYPE svg PUBLIC "a" "b">\n<svg onload="alert(1)"/>',
-        "its content is SVG, which can contain scripts",
-    ),
-    "SVG after tags in a comment and entities": (
-        b"<?xml version='1.0'?><?xml-stylesheet href='a'?><!-- <a> <b> --><!DOCTYPE svg [<!ENTITY a 'b'>]>\n<svg>",
-        "its content is SVG, which can contain scripts",
-    ),
-    "TIFF": (b"II*\0" + bytes(20), "its content is TIFF, which browsers do not show"),
-    "HEIC": (b"\0\0\0\x18ftypheic\0\0\0\0mif1heic", "its content is HEIC, which browsers do not show"),
-    "a video": (b"\0\0\0\x18ftypisom\0\0\0\0isomavc1", "its content is a video"),
-    "a shell script": (b"#!/bin/sh\nrm -rf ~\n", "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF"),
-    "text that begins like a BMP": (b"BMW" + b" drives" * 20, "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF"),
-    "nothing": (b"", "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF"),
-}  # fmt: skip
+    "HTML": b"<!DOCTYPE html><html>" + SCRIPT,
+    "SVG": b'<svg xmlns="http://www.w3.org/2000/svg">' + SCRIPT,
+    "TIFF": b"II*\0" + bytes(20),
+    "HEIC": b"\0\0\0\x18ftypheic\0\0\0\0mif1heic",
+    "a video": b"\0\0\0\x18ftypisom\0\0\0\0isomavc1",
+    "a shell script": b"#!/bin/sh\nrm -rf ~\n",
+    "text that begins like a BMP": b"BMW" + b" drives" * 20,
+    "nothing": b"",
+}
+WHY = "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF: open it yourself, with care"
 
 
 def png(width: int, height: int) -> bytes:
@@ -64,19 +55,8 @@ def test_pictures_are_shown(name: str) -> None:
 
 @pytest.mark.parametrize("name", NOT_SHOWN)
 def test_everything_else_is_not_shown(name: str) -> None:
-    """The name `screen.png` makes nothing a picture; the reason names what the content is, and what to do."""
-    data, why = NOT_SHOWN[name]
-    found = read_picture(file_of(data))
-    assert isinstance(found, NotShown)
-    assert found.where == "screen.png"
-    assert found.reason.startswith(f"{why}: open it yourself")
-
-
-@pytest.mark.parametrize("part", [b"<!>", b"<!-->", b"<!---->", b"<!--><!-->", b"<![]>", b"<![", b"<?>", b"<!--", b" "])
-def test_hostile_markup_is_read_in_linear_time(part: bytes) -> None:
-    """Declarations that end in no picture cost the time of their bytes, however they repeat."""
-    with limited_work(1_000):
-        assert isinstance(verified(part * 400, "screen.png"), NotShown)
+    """The name `screen.png` makes nothing a picture; the reason says what to do."""
+    assert read_picture(file_of(NOT_SHOWN[name])) == NotShown("screen.png", WHY)
 
 
 def test_large_files_are_not_read(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,9 +6,9 @@ from random import Random
 import pytest
 
 from grader.mutation.elements import elements
-from grader.mutation.mutants import Mutant, mutants, with_visuals
+from grader.mutation.mutants import Mutant, mutants
 from grader.mutation.mutation_test import sampled
-from grader.mutation.result import hunk
+from grader.mutation.result import diff
 from tests.mutation.robots import ARM, CHANGES
 
 FOUND = {mutant.id: mutant for mutant in mutants(ARM, "birch.urdf")}
@@ -24,7 +24,7 @@ def test_a_link_that_must_show_nothing_gets_a_visual() -> None:
     """Whether its tag is empty or not; other links do not."""
     box = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
     text = '<robot><link name="a"/><link name="b"></link><link name="c"/></robot>'
-    found = list(with_visuals(text, "a.urdf", ["a", "b", "nowhere"]))
+    found = [it for it in mutants(text, "a.urdf", ["a", "b", "nowhere"]) if it.family == "visual added"]
     assert [mutant.id for mutant in found] == ["visual added: link a", "visual added: link b"]
     assert [mutant.applied(text) for mutant in found] == [
         text.replace('"a"/>', f'"a">{box}</link>'),
@@ -70,10 +70,10 @@ def test_a_sample_has_the_same_number_of_each_family() -> None:
     assert sampled(every, 0, Random(1)) == []
 
 
-def test_a_diff_has_one_hunk() -> None:
-    """Two lines around the change, and the ranges of lines as diff writes them."""
+def test_a_diff_has_two_lines_around_the_change() -> None:
+    """And the ranges of lines as diff writes them."""
     before = "".join(f"{number}\n" for number in range(1, 8))
-    assert hunk("a.urdf", before, before.replace("4\n", "x\ny\n")).split("\n") == [
+    assert diff("a.urdf", before, before.replace("4\n", "x\ny\n")).split("\n") == [
         "--- a.urdf", "+++ a.urdf", "@@ -2,5 +2,6 @@", " 2", " 3", "-4", "+x", "+y", " 5", " 6",
     ]  # fmt: skip
-    assert hunk("a", "", "x\n") == "--- a\n+++ a\n@@ -0,0 +1,1 @@\n+x"
+    assert diff("a", "", "x\n") == "--- a\n+++ a\n@@ -0,0 +1 @@\n+x"
