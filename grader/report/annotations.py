@@ -12,10 +12,12 @@ from typing import NamedTuple
 
 from grader.grading.report import Report
 from grader.problems import Severity
-from grader.report.content import note_lines, other_problems, provenance, score_text, summary_lines
-from grader.report.details import remarks_on, result_details, sentence
+from grader.report.blocks import Entry
+from grader.report.content import closing_lines, head, other_problems, score_text
+from grader.report.details import remarks_on, sentence
+from grader.report.document import document, entries, failures
 from grader.report.locations import RepositoryLocation, SourceOf, archive_around, in_repository, location_text
-from grader.report.order import FailedCriterion, alike, earned_text, failures, is_failure, points_of, status_of
+from grader.report.order import earned_text, is_failure, points_of
 from grader.source import Base, Location
 from grader.text import counted_points, printable
 
@@ -61,7 +63,8 @@ def render_github(report: Report, base: Base) -> str:
 def _findings(report: Report, base: Base) -> list[_Finding]:
     """Return what to fix; `base` is where the submission is in its repository."""
     source_of = cache(report.submission.source)  # reads each file once
-    found = [_of_criterion(failure, report, source_of, base) for failure in failures(report)]
+    known = entries(report)
+    found = [_of_criterion(known[failure.id], source_of, base) for failure in failures(report)]
     found += _undecided_finding(report)
     found += _remarks(report)
     for problem in sorted(other_problems(report), key=lambda problem: _ORDER.index(problem.severity)):
@@ -71,16 +74,14 @@ def _findings(report: Report, base: Base) -> list[_Finding]:
     return found
 
 
-def _of_criterion(failure: FailedCriterion, report: Report, source_of: SourceOf, base: Base) -> _Finding:
-    result, skipped, is_bonus = failure.result, failure.skipped, failure.result.criterion.bonus
-    details = result_details(result, report)
-    lines = [*details.words, *details.advice, details.expected]
-    lines += [f"Extra credit: {earned_text(result)}."] if is_bonus else []
+def _of_criterion(entry: Entry, source_of: SourceOf, base: Base) -> _Finding:
+    skipped, is_bonus, where = entry.skipped, entry.result.criterion.bonus, entry.location
+    lines = entry.texts("finding", "comment", "hint", "feedback", "expected")
+    lines += [f"Extra credit: {earned_text(entry.result)}."] if is_bonus else []
     lines += [f"Skipped because of it: {len(skipped)} more, {points_of(skipped)}."] if skipped else []
-    where = details.location
     location = in_repository(where, source_of(where.path), base) if where is not None else None
-    level: Severity = "note" if result.why_given or is_bonus else "error"
-    return _Finding(failure.id, level, _text(lines, where, base), location, failure.lost)
+    level: Severity = "note" if entry.result.why_given or is_bonus else "error"
+    return _Finding(entry.id, level, _text(lines, where, base), location, entry.lost)
 
 
 def _undecided_finding(report: Report) -> Iterator[_Finding]:
@@ -96,7 +97,7 @@ def _undecided_finding(report: Report) -> Iterator[_Finding]:
 def _remarks(report: Report) -> Iterator[_Finding]:
     """Yield a note for each criterion that is adjusted, or has a comment and is no failure."""
     for result in report.results:
-        remarks = remarks_on(result, report) if not is_failure(result) else ()
+        remarks = remarks_on(result) if not is_failure(result) else ()
         if remarks:
             yield _Finding(result.criterion.id, "note", "\n".join(remarks))
 
@@ -116,15 +117,13 @@ def _rest(found: Sequence[_Finding]) -> _Finding:
 
 def _overview(report: Report) -> str:
     """Return the lines about the whole submission and the undecided criteria."""
+    found, lines = document(report), [line.text for line in head(report)]  # first, because the rest may be cut off
     pending = ", ".join(result.criterion.id for result in report.results if result.is_open)
-    skipped = alike((one for one in report.results if status_of(one) == "skipped"), lambda one: one.because or "")
-    lines = [*summary_lines(report), provenance(report)]  # first, because the rest may be cut off
     lines += [f"Needs manual grading: {pending}"] if pending else []
-    for cause, results in skipped:
-        names = ", ".join(result.criterion.id for result in results)
-        lines += [f"Skipped because {cause} failed: {names}"] if cause else []
+    lines += [text for entry in found.failures for text in entry.texts("skipped")]
+    lines += [line.text for line in found.skipped]
     lines += [f"{result.criterion.id}: {result.why_given}" for result in report.results if result.carried]
-    return "\n".join((*lines, *note_lines(report)))
+    return "\n".join((*lines, *closing_lines(report)))
 
 
 def command(name: str, location: RepositoryLocation | None, title: str, text: str) -> str:

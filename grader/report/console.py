@@ -1,19 +1,96 @@
 """Print parts of a report on a rich console: source excerpts, lists of problems, wrapped text."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from enum import Enum, auto
+from typing import NamedTuple, get_args
 
 from rich.console import Console
 from rich.text import Text
 
 from grader.problems import Problem
-from grader.report.locations import calls_text, excerpt
+from grader.report.blocks import Line, Role
+from grader.report.details import ASCII_SYMBOLS, STYLES, SYMBOLS
+from grader.report.locations import SourceOf, calls_text, excerpt
 from grader.source import Location, Source
 from grader.text import first_lines, printable
 
-SEVERITY_STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
+INDENT = 2
+LOOKS: Mapping[Role, str] = {
+    **dict.fromkeys(get_args(Role), ""),
+    **dict.fromkeys(("pending", "comment", "hint"), "bold"),
+    **dict.fromkeys(("provenance", "expected", "part", "ignored"), "dim"),
+    **dict.fromkeys(("missing", "skipped", "alike", "warning"), "yellow"),
+    "feedback": "italic",
+    "error": "bold red",
+    "note": "cyan",
+}
 _MAX_PROBLEMS = 30
 _LAST_WORD, _LAST_NUMBER = re.compile(r"\s+\S*$"), re.compile(r"\s+[-+.\d]+$")  # a number keeps its unit
+
+
+class Room(Enum):
+    """What a page has room for: everything in any number of rows, or what fits into 24."""
+
+    ANY = auto()
+    EVERYTHING = auto()  # of a short report
+    NO_TITLES = auto()  # of what failed, and no groups that passed
+    NO_EMPTY_ROWS = auto()  # as well
+
+
+class Page(NamedTuple):
+    """The rows of a report for a console, and how much room there is. All texts are printable."""
+
+    console: Console
+    room: Room
+    rows: list[Text]
+
+    @property
+    def is_whole(self) -> bool:
+        """Return whether there is room for everything."""
+        return self.room is Room.ANY
+
+    @property
+    def is_tight(self) -> bool:
+        """Return whether there are no empty rows."""
+        return self.room is Room.NO_EMPTY_ROWS
+
+    def leave_row(self) -> None:
+        """Add an empty row if there is room for it."""
+        if not self.is_tight:
+            self.rows.append(Text())
+
+    def title(self, text: str | Text, style: str = "bold") -> None:
+        """Add a title below an empty row."""
+        self.leave_row()
+        self.line(text, style)
+
+    def line(self, text: str | Text, style: str = "") -> None:
+        """Add a line, with an indent where it wraps."""
+        self.inset(text, style, head=Text())
+
+    def inset(
+        self, text: str | Text, style: str = "", indent: int = INDENT, head: Text | None = None, most: int | None = None
+    ) -> None:
+        """Add a text below a title or an item, of more than `most` rows the first ones."""
+        self.rows.append(block(self.console, Text(text, style) if isinstance(text, str) else text, indent, head, most))
+
+    def item(self, status: str, *parts: str | tuple[str, str]) -> None:
+        """Add texts, with their styles, behind the symbol of a status."""
+        self.inset(Text.assemble(*parts), head=self.mark(status) + Text(" "))
+
+    def mark(self, status: str) -> Text:
+        """Return the symbol of a status in its colour."""
+        return Text(symbol(self.console, SYMBOLS[status], ASCII_SYMBOLS[status]), STYLES[status])
+
+    def print(self) -> None:
+        """Print the rows, all at once: a print costs more than a row."""
+        put(self.console, Text("\n").join(self.rows))
+
+    def lines(self, lines: Iterable[Line]) -> None:
+        """Add lines, each in the look of its role."""
+        for line in lines:
+            self.line(line.text, LOOKS[line.role])
 
 
 def wrapped(console: Console, text: Text, indent: int, head: Text | None = None) -> None:
@@ -37,7 +114,7 @@ def block(console: Console, text: Text, indent: int, head: Text | None = None, m
 
 
 def put(console: Console, text: Text) -> None:
-    """Print lines that are wrapped already, all at once: a print costs more than a line."""
+    """Print lines that are wrapped already."""
     console.print(text, overflow="ignore", no_wrap=True, crop=False)
 
 
@@ -55,22 +132,21 @@ def excerpt_block(
     return text
 
 
-def show_problems(
-    console: Console, problems: tuple[Problem, ...], source_of: Callable[[str], Source | None], main: str | None
-) -> None:
-    """Print problems with their code and location, errors with their source line. In `main` only the line is named."""
+def problem_rows(
+    console: Console, problems: Sequence[Problem], source_of: SourceOf, main: str | None
+) -> Iterator[Text]:
+    """Yield problems with their code and location, errors with their source line. In `main` only the line is named."""
     for problem in problems[:_MAX_PROBLEMS]:
-        style = SEVERITY_STYLES[problem.severity]
+        where, style = problem.location, LOOKS[problem.severity]
         head = Text.assemble("  ", (f"{problem.code} {problem.severity:<7} ", style))
-        where = problem.location
         named = f"line {where.line}" if where.path == main else f"{printable(where.path)}:{where.line}"
-        prefix = Text(f"{named}{calls_text(where)}: ", style="dim")
-        wrapped(console, prefix + Text(printable(problem.message)), len(head), head)
+        message = Text.assemble((f"{named}{calls_text(where)}: ", "dim"), printable(problem.message))
+        yield block(console, message, len(head), head)
         source = source_of(where.path) if problem.severity == "error" else None
         if source is not None:
-            put(console, excerpt_block(console, source, where, min(len(head), console.width // 5)))
+            yield excerpt_block(console, source, where, min(len(head), console.width // 5))
     for text in first_lines([problem.code for problem in problems], _MAX_PROBLEMS)[_MAX_PROBLEMS:]:
-        wrapped(console, Text(text), 2)
+        yield block(console, Text(text), INDENT)
 
 
 def symbol(console: Console, fancy: str, plain: str) -> str:

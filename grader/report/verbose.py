@@ -1,0 +1,66 @@
+"""The whole report on a terminal: each criterion with all that is said about it."""
+
+from itertools import groupby
+
+from rich.text import Text
+
+from grader.grading.report import Report, Result
+from grader.report import content
+from grader.report.blocks import Section
+from grader.report.console import INDENT, LOOKS, Page, problem_rows
+from grader.report.document import Document
+from grader.report.entries import show_entry
+from grader.report.order import earned_text, groups, status_of
+from grader.text import printable
+
+
+def show_everything(report: Report, found: Document, page: Page) -> None:
+    """Add a report, without its last lines."""
+    page.lines(content.head(report))
+    for section in found.sections:
+        _show_section(section, report, page)
+    _show_parts(report, page)
+    for section in content.closing(report):
+        _show_section(section, report, page)
+    page.leave_row()
+    if report.submission.has_urdf:
+        page.line("grader inspect shows the whole robot.", "dim")
+
+
+def _show_section(section: Section, report: Report, page: Page) -> None:
+    page.title(section.title)
+    for number, entry in enumerate(section.entries):
+        if number and section.title == "Failed":
+            page.leave_row()
+        show_entry(entry, report, page)
+    if section.lines and section.lines[0].role in ("error", "warning", "note"):
+        problems, submission = content.other_problems(report), report.submission
+        page.rows.extend(problem_rows(page.console, problems, submission.source, submission.path))
+        return
+    for line in section.lines:
+        page.inset(line.text, LOOKS[line.role], 2 * INDENT if line.role in ("found", "missing") else INDENT)
+
+
+def _show_parts(report: Report, page: Page) -> None:
+    """Add each part with its groups and all their criteria."""
+    for part, of_part in groupby(groups(report), key=lambda group: group.part):
+        found, title = list(of_part), report.rubric.part(part).title
+        if len(report.parts) > 1:
+            points = earned_text(*(result for group in found for result in group.results))
+            page.title(f"{printable(title)}  {points}", "bold underline")
+        for group in found:
+            if len(found) > 1 or group.title != title:
+                page.title(Text.assemble((printable(group.title), "bold"), (f"  {group.points}", "dim")))
+            for result in group.results:
+                start = Text.assemble("  ", page.mark(status_of(result)), f" {earned_text(result):<5} ")
+                page.inset(_row(result), indent=len(start), head=start)
+
+
+def _row(result: Result) -> Text:
+    """Return a criterion in a line: its title if it passed, else its name, because a title would read as a fact."""
+    status = status_of(result)
+    if status == "passed":
+        return Text(printable(result.criterion.title))
+    is_consequence = status == "skipped" and result.because is not None
+    reason = f"  skipped because {printable(result.because or '')} failed" if is_consequence else ""
+    return Text.assemble(printable(result.criterion.id), (reason, "dim"))
