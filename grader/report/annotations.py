@@ -14,17 +14,16 @@ from grader.grading.report import Report
 from grader.problems import Severity
 from grader.report.blocks import Entry
 from grader.report.content import closing_lines, head, other_problems, score_text
-from grader.report.details import remarks_on, sentence
-from grader.report.document import document, entries, failures
+from grader.report.details import remarks_on
+from grader.report.document import document
 from grader.report.locations import RepositoryLocation, SourceOf, archive_around, in_repository, location_text
-from grader.report.order import earned_text, is_failure, points_of
+from grader.report.order import earned_text, is_failure, is_manual, points_of
 from grader.source import Base, Location
 from grader.text import counted_points, printable
 
 _MAX_ANNOTATIONS = 10  # of each type
 _MAX_MESSAGE = 4000  # characters
 _COMMANDS: dict[Severity, str] = {"error": "error", "warning": "warning", "note": "notice"}
-_ORDER = tuple(_COMMANDS)
 
 
 class _Finding(NamedTuple):
@@ -48,7 +47,7 @@ class _Finding(NamedTuple):
 
 def render_github(report: Report, base: Base) -> str:
     """Return the annotations of a report: the score as a notice, then the findings, most points first."""
-    found = _findings(report, base)
+    found = [*_findings(report, base)]
     if base.is_outside:  # a file of the repository may have the same path
         found = [finding._replace(location=None) for finding in found]
     lines = [command("notice", None, f"{score_text(report)}: {printable(report.rubric.title)}", _overview(report))]
@@ -60,46 +59,31 @@ def render_github(report: Report, base: Base) -> str:
     return "".join(lines)
 
 
-def _findings(report: Report, base: Base) -> list[_Finding]:
-    """Return what to fix; `base` is where the submission is in its repository."""
-    source_of = cache(report.submission.source)  # reads each file once
-    known = entries(report)
-    found = [_of_criterion(known[failure.id], source_of, base) for failure in failures(report)]
-    found += _undecided_finding(report)
-    found += _remarks(report)
-    for problem in sorted(other_problems(report), key=lambda problem: _ORDER.index(problem.severity)):
-        text = _text([printable(problem.message)], problem.location, base)
-        location = in_repository(problem.location, source_of(problem.location.path), base)
-        found.append(_Finding(problem.code, problem.severity, text, location))
-    return found
-
-
-def _of_criterion(entry: Entry, source_of: SourceOf, base: Base) -> _Finding:
-    skipped, is_bonus, where = entry.skipped, entry.result.criterion.bonus, entry.location
-    lines = entry.texts("finding", "comment", "hint", "feedback", "expected")
-    lines += [f"Extra credit: {earned_text(entry.result)}."] if is_bonus else []
-    lines += [f"Skipped because of it: {len(skipped)} more, {points_of(skipped)}."] if skipped else []
-    location = in_repository(where, source_of(where.path), base) if where is not None else None
-    level: Severity = "note" if entry.result.why_given or is_bonus else "error"
-    return _Finding(entry.id, level, _text(lines, where, base), location, entry.lost)
-
-
-def _undecided_finding(report: Report) -> Iterator[_Finding]:
-    """Yield one finding for all automatic criteria that need manual grading here, with the reasons."""
-    results = report.pending_automatic
-    if results:
-        reasons = dict.fromkeys(sentence(result.outcome.message) for result in results)
-        names = ", ".join(result.criterion.id for result in results)
-        text = "\n".join((*reasons, f"Could not be decided ({points_of(results)}): {names}"))
-        yield _Finding(results[0].criterion.id, "warning", text)
-
-
-def _remarks(report: Report) -> Iterator[_Finding]:
-    """Yield a note for each criterion that is adjusted, or has a comment and is no failure."""
+def _findings(report: Report, base: Base) -> Iterator[_Finding]:
+    """Yield what to fix or grade manually, and remarks; `base` is where the submission is in its repository."""
+    found, source_of = document(report), cache(report.submission.source)  # reads each file once
+    for entry in (*found.failures, *(one for one in found.pending if not is_manual(one.result))):
+        yield _of_criterion(entry, source_of, base)
     for result in report.results:
         remarks = remarks_on(result) if not is_failure(result) else ()
         if remarks:
             yield _Finding(result.criterion.id, "note", "\n".join(remarks))
+    for problem in other_problems(report):
+        where = problem.location
+        text = _text([printable(problem.message)], where, base)
+        yield _Finding(problem.code, problem.severity, text, in_repository(where, source_of(where.path), base))
+
+
+def _of_criterion(entry: Entry, source_of: SourceOf, base: Base) -> _Finding:
+    skipped, is_bonus, where = entry.skipped, entry.result.criterion.bonus, entry.location
+    lines = entry.texts("finding", "comment", "hint", "feedback", "expected", "alike")
+    lines += [f"Extra credit: {earned_text(entry.result)}."] if is_bonus else []
+    lines += [f"Skipped because of it: {len(skipped)} more, {points_of(skipped)}."] if skipped else []
+    location = in_repository(where, source_of(where.path), base) if where is not None else None
+    if not is_failure(entry.result):
+        return _Finding(entry.id, "warning", _text(lines, where, base), location)
+    level: Severity = "note" if entry.result.why_given or is_bonus else "error"
+    return _Finding(entry.id, level, _text(lines, where, base), location, entry.lost)
 
 
 def _text(lines: list[str], where: Location | None, base: Base) -> str:

@@ -1,7 +1,7 @@
 """Print parts of a report on a rich console: source excerpts, lists of problems, wrapped text."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from enum import Enum, auto
 from typing import NamedTuple, get_args
 
@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.problems import Problem
-from grader.report.blocks import Line, Role
+from grader.report.blocks import Role
 from grader.report.details import ASCII_SYMBOLS, STYLES, SYMBOLS
 from grader.report.locations import SourceOf, calls_text, excerpt
 from grader.source import Location, Source
@@ -87,11 +87,6 @@ class Page(NamedTuple):
         """Print the rows, all at once: a print costs more than a row."""
         put(self.console, Text("\n").join(self.rows))
 
-    def lines(self, lines: Iterable[Line]) -> None:
-        """Add lines, each in the look of its role."""
-        for line in lines:
-            self.line(line.text, LOOKS[line.role])
-
 
 def wrapped(console: Console, text: Text, indent: int, head: Text | None = None) -> None:
     """Print text that keeps its indent when it wraps; `head` replaces the indent of the first line."""
@@ -123,11 +118,11 @@ def excerpt_block(
 ) -> Text:
     """Return the source line of a location, and if wanted a line that underlines the marked part."""
     number = str(where.line)
-    line = excerpt(source, where, max(8, console.width - indent - len(number) - 3))
+    before, meant, after = excerpt(source, where, max(8, console.width - indent - len(number) - 3))
     mark, bar = symbol(console, "\u2500", "-"), symbol(console, "\u2502", "|")
-    text = Text.assemble((f"{' ' * indent}{number} {bar} ", "dim"), line.text)
+    text = Text.assemble((f"{' ' * indent}{number} {bar} ", "dim"), (before + meant + after).rstrip())
     if is_underlined:
-        under = " " * line.start + mark * line.width
+        under = " " * len(before) + mark * max(1, len(meant))
         text.append(f"\n{' ' * (indent + len(number))} {bar} ", "dim").append(under, style)
     return text
 

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 from grader.checks.outcome import Outcome
 from grader.grading.criterion import Criterion
 from grader.grading.report import Report, Result
+from grader.report import answers
 from grader.report.blocks import Answer, Block, Diff, Entry, Line
 from grader.report.locations import SourceOf, excerpt_lines, location_text
 from grader.report.order import alike, is_failure, is_manual, points_of
@@ -95,18 +96,12 @@ def answer_lines(outcome: Outcome) -> list[str]:
     if not isinstance(text, str):
         return []
     is_markup = outcome.location is None or counts_lines(outcome.location)
-    return _plain_lines(text) if is_markup else text.strip("\n").splitlines()
+    return answers.plain_lines(text) if is_markup else text.strip("\n").splitlines()
 
 
 def model_lines(criterion: Criterion) -> list[str]:
     """Return the lines of the model answer, as plain text; none if the criterion has no answer or is loaded without."""
-    return _plain_lines(criterion.answer) if criterion.answer else []
-
-
-def _plain_lines(markdown: str) -> list[str]:
-    from grader.report.answers import plain_lines  # late: few reports have answers
-
-    return plain_lines(markdown)
+    return answers.plain_lines(criterion.answer) if criterion.answer else []
 
 
 def counts_lines(location: Location) -> bool:

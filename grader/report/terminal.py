@@ -1,21 +1,30 @@
 """A report for a person at a terminal: what to fix first; the score last, where the eye is when the command ends.
 
-Text of a submission is never interpreted as markup or control codes.
+In 24 rows it has of each failure what it costs, what is wrong and what to do, and of the rest what is open. What has no
+room is joined, cut or left out. Text of a submission is never interpreted as markup or control codes.
 """
+
+from collections.abc import Sequence
 
 from rich.console import Console
 from rich.text import Text
 
+from grader.grading.criterion import worth
 from grader.grading.report import Report
+from grader.problems import Problem
 from grader.report import content
-from grader.report.brief import show_brief
-from grader.report.console import Page, Room
-from grader.report.document import document
+from grader.report.blocks import Entry
+from grader.report.console import LOOKS, Page, Room
+from grader.report.details import carried_text, pending_reason, remarks_on
+from grader.report.document import Document, document
+from grader.report.entries import show_entry
+from grader.report.order import alike, groups, is_manual
 from grader.report.verbose import show_everything
-from grader.text import printable
+from grader.text import counted, enumerated, printable
 
 _ROWS = 24  # of a common terminal
 _SHORT = Room.EVERYTHING, Room.NO_TITLES, Room.NO_EMPTY_ROWS
+_MAX_NAMES, _MAX_KINDS, _MAX_FILES, _MAX_MISSING = 3, 3, 2, 2
 
 
 def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
@@ -26,11 +35,130 @@ def render_terminal(report: Report, console: Console, *, verbose: bool = False) 
         if verbose:
             show_everything(report, found, page)
         else:
-            show_brief(report, found, page)
+            _show_brief(report, found, page)
         _show_end(report, page)
         if sum(row.plain.count("\n") + 1 for row in page.rows) <= _ROWS:
             break
     page.print()
+
+
+def _show_brief(report: Report, found: Document, page: Page) -> None:
+    """Add the short report, without its last lines."""
+    _show_start(report, page)
+    listed = (entry for entry in found.failures if not (entry.result.why_given or entry.first))
+    for number, entry in enumerate(listed):
+        page.leave_row()
+        show_entry(entry, report, page, number)
+    carried = [entry.result for entry in found.failures if entry.result.why_given]
+    lines = [*([carried_text(carried)] if carried else []), *(line.text for line in found.skipped)]
+    if lines:
+        page.leave_row()
+    for line in lines:
+        page.line(line, "yellow")
+    _show_pending(report, found.pending, page)
+    for section in found.remarks:
+        page.leave_row()
+        for entry in section.entries:
+            words = " ".join(remarks_on(entry.result)) or entry.texts("finding")[0]
+            page.item(entry.status, (printable(entry.id), "bold"), f"  {entry.points}: {words}")
+    _show_groups(report, page)
+    _show_submission(report, page)
+    page.leave_row()
+
+
+def _show_start(report: Report, page: Page) -> None:
+    """Print what was graded; the package only if the path of the URDF does not show it."""
+    submission = report.submission
+    graded = printable(submission.path or submission.id)
+    graded += ", which ROS 2 rejects" if submission.verdict == "rejected" else ""
+    page.line(f"grader {report.version}, {printable(report.rubric.id)}: {graded}", "dim")
+    folder = f"{submission.package.folder}/" if submission.package is not None and submission.package.folder else ""
+    package = content.package_line(report)
+    if package and not (submission.path or "").startswith(folder or "urdf/"):
+        page.line(package, "dim")
+    if submission.another_robot:
+        page.line(content.notes(report)[0], "yellow")
+
+
+def _show_pending(report: Report, pending: Sequence[Entry], page: Page) -> None:
+    """Print what needs manual grading: where each answer and picture was found, or why a check cannot decide."""
+    if pending:
+        page.title(content.pending_points(report) if report.open_points else "Not graded")
+    every = [one for entry in pending for one in (entry, *entry.also)]
+    for reason, some in alike(every, lambda entry: pending_reason(entry.result)):
+        results = [entry.result for entry in some]
+        if any(one.comment or (is_manual(one) and one.criterion.answer) for one in results):
+            for entry in some:
+                show_entry(entry, report, page)
+            continue
+        names = enumerated([printable(entry.id) for entry in some], _MAX_NAMES)
+        points = worth(result.criterion for result in results).short
+        page.item("pending", (names, "bold"), f" ({points}): {reason}")
+
+
+def _show_groups(report: Report, page: Page) -> None:
+    """Print the points of each group, except those of which nothing is known yet: they are listed elsewhere."""
+    known = [group for group in groups(report) if not all(result.is_open for result in group.results)]
+    kinds = alike(known, lambda group: group.status)
+    shown = [kind for kind in kinds if page.room is Room.EVERYTHING or kind[0] != "passed"]
+    if shown:
+        page.leave_row()
+    for status, some in sorted(shown, key=lambda kind: kind[0] == "passed"):
+        page.item(status, ", ".join(f"{printable(group.title)} {group.points}" for group in some))
+
+
+def _show_submission(report: Report, page: Page) -> None:
+    """Print the evidence in a line, problems, notes, and the first of the files that were not graded."""
+    evidence, submission = _evidence_line(report), report.submission
+    if evidence and not page.is_tight:
+        page.line(evidence, "dim")
+    _show_problems(report, page)
+    for line in content.notes(report)[bool(submission.another_robot) :]:
+        page.line(line, "cyan")
+    others, ignored = [file.path for file in submission.other_candidates], submission.ignored
+    lines = [f"Not graded: {enumerated(others, _MAX_FILES)} (--verbose says why)"] if others else []
+    more = f" (and {len(ignored) - 1} more: --verbose lists them)" if len(ignored) > 1 else ""
+    for line in (*lines, *(f"Ignored: {file}{more}" for file in ignored[:1])):
+        page.line(printable(line), "dim")
+
+
+def _evidence_line(report: Report) -> str:
+    """Return how many pieces of evidence were found, and which were not; empty if the lab asks for none."""
+    lacking = [one for one in report.evidence if not one.files]
+    texts = [f"Evidence: {len(report.evidence) - len(lacking) or 'none'} of {len(report.evidence)} found"]
+    texts += [content.evidence_text(one) for one in lacking if one.possible]
+    missing = [one.evidence.title for one in lacking if not one.possible]
+    texts += [f"missing: {enumerated(missing, _MAX_MISSING)}"] if 0 < len(missing) < len(report.evidence) else []
+    return printable("; ".join(texts)) if report.evidence else ""
+
+
+def _show_problems(report: Report, page: Page) -> None:
+    """Print one problem of each kind of error and warning that no failed criterion has reported."""
+    problems = content.other_problems(report)
+    listed = [found for found in problems if found.severity != "note"]
+    if page.is_tight:
+        problems = listed = [found for found in listed if not found.kind.is_consequence]
+    if listed:
+        page.leave_row()
+    kinds = alike(listed, lambda problem: f"{problem.code} {problem.location.path}")
+    # No criterion is about the entry for package.xml (PKG015), so this is the only place that reports it.
+    shown = [some for index, (_, some) in enumerate(kinds) if index < _MAX_KINDS or some[0].code == "PKG015"]
+    for some in shown:
+        _show_kind(some, page)
+    rest = len(problems) - sum(map(len, shown))
+    if rest:
+        noun = "problem" if len(kinds) > len(shown) else "note"
+        words = counted(rest, f"more {noun}" if listed else noun)
+        page.line(f"{words}: --verbose shows {'it' if rest == 1 else 'them'}", "dim")
+
+
+def _show_kind(problems: Sequence[Problem], page: Page) -> None:
+    """Print problems of one kind in one file: code, place and message of the first, and how many more."""
+    first, more = problems[0], len(problems) - 1
+    where = f"{printable(first.location.path.rpartition('/')[2])}:{first.location.line}"
+    text = Text.assemble((f"{first.code} {first.severity} ", LOOKS[first.severity]), (where, "dim"))
+    text.append(f"{f' and {more} more' if more else ''}: {printable(first.message)}")
+    page.inset(text, head=Text(), most=1 if page.is_tight else 2)
 
 
 def _show_end(report: Report, page: Page) -> None:

@@ -16,7 +16,8 @@ from grader.text import printable
 
 def show_everything(report: Report, found: Document, page: Page) -> None:
     """Add a report, without its last lines."""
-    page.lines(content.head(report))
+    for line in content.head(report):
+        page.line(line.text, LOOKS[line.role])
     for section in found.sections:
         _show_section(section, report, page)
     _show_parts(report, page)
