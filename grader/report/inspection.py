@@ -124,7 +124,7 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
         page.title("Tree")
         signs = tuple(symbol(console, *pair) for pair in zip(_BRANCHES, ("|- ", "`- ", "|  "), strict=True))
         for indent, link, joint in islice(tree(robot, signs), _MAX_LISTED):
-            page.rows.append(Text.assemble(f"  {indent}{link}", (f"  {joint}" if joint else "", "dim")))
+            page.rows.append(Text.assemble(f"  {indent}{printable(link)}", (joint_text(joint), "dim")))
         _add_rest(page, len(robot.roots) + len(robot.parent_joints))
         page.title(f"Poses in {printable(inspection.relative_to)!r} (x y z in m, roll pitch yaw in rad)")
         for link, pose in islice(inspection.poses(), _MAX_LISTED):
@@ -144,20 +144,16 @@ def effect(inspection: Inspection) -> str:
     return _EFFECTS[inspection.verdict]
 
 
-def tree(robot: Configuration, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, str, str]]:
-    """Yield every link after its parent: the branches before it, its name, and its parent joint in words."""
+def tree(robot: Configuration, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, str, Joint | None]]:
+    """Yield every link after its parent: the branches before it, its name, and its parent joint."""
     children = dict(alike(robot.parent_joints.values(), lambda joint: joint.parent))
     branch, last, bar = signs
     for root in robot.roots:
-        yield "", printable(root), ""
+        yield "", root, None
         stack = _branches(children.get(root, ()), "")
         while stack:
             joint, indent, is_last = stack.pop()
-            yield (
-                f"{indent}{last if is_last else branch}",
-                printable(joint.child),
-                f"{printable(joint.name)}: {_joint_text(joint)}",
-            )
+            yield f"{indent}{last if is_last else branch}", joint.child, joint
             stack += _branches(children.get(joint.child, ()), (indent + ("   " if is_last else bar))[-60:])
 
 
@@ -165,8 +161,11 @@ def _branches(joints: Sequence[Joint], indent: str) -> list[tuple[Joint, str, bo
     return [(joint, indent, index == 0) for index, joint in enumerate(reversed(joints))]
 
 
-def _joint_text(joint: Joint) -> str:
-    words = printable(joint.type) or "no type"
+def joint_text(joint: Joint | None) -> str:
+    """Return a joint in words; empty for the parent joint of a root."""
+    if joint is None:
+        return ""
+    words = f"  {printable(joint.name)}: {printable(joint.type) or 'no type'}"
     if joint.type not in ("fixed", "floating"):
         words += f" about {_numbers(joint.axis)}" if joint.axis is not None else " about an unreadable axis"
     if joint.limit is not None and isfinite(joint.limit.upper - joint.limit.lower):

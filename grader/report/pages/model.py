@@ -7,6 +7,7 @@ from typing import Any
 from grader.checks.visuals import main_visual
 from grader.drawing.picture import Picture
 from grader.drawing.scene import Body, Scene, Wheel
+from grader.report.inspection import tree
 from grader.robot.frames import motion_of, placed_by
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Joint, Sphere
@@ -62,26 +63,13 @@ def _robot(scene: Scene, expected: Scene | None = None, failed: Collection[str] 
     return {
         "links": [*map(printable, links)],
         "parent": [joints[id(parents[name])] if name in parents else -1 for name in links],
-        "order": [links[name] for name in _top_down(robot, links)],
+        "order": [links[name] for _, name, _ in tree(robot)],
         "joints": [_joint(joint, robot, links, named) for joint in robot.robot.joints],
         "frame": links[scene.frame],
         "root": links[scene.root],
         "shapes": [_shape(body, links, is_wheel=body.link in turning) for body in scene.bodies],
         "wheels": [_wheel(wheel, scene, links, expected, failed) for wheel in scene.wheels],
     }
-
-
-def _top_down(robot: Configuration, links: Mapping[str, int]) -> list[str]:
-    """Return the links that are in a tree, each after the one above it."""
-    depths: dict[str, int] = {}
-    for name in links:
-        above = [name]
-        while above[-1] in robot.parent_joints and above[-1] not in depths and len(above) <= len(links):
-            above.append(robot.parent_joints[above[-1]].parent)
-        if len(above) <= len(links):
-            start = depths.get(above[-1], 0)
-            depths |= {link: start + number for number, link in enumerate(reversed(above))}
-    return sorted(depths, key=lambda name: depths[name])
 
 
 def _joint(joint: Joint, robot: Configuration, links: Mapping[str, int], named: Mapping[str, int]) -> Data:
