@@ -12,12 +12,11 @@ from typing import NamedTuple
 
 from grader.grading.report import Report
 from grader.problems import Severity
-from grader.report.blocks import Entry
 from grader.report.content import closing_lines, head, other_problems, score_text
+from grader.report.criteria import Entry, earned_text, is_failure, is_manual, points_of
 from grader.report.details import remarks_on
 from grader.report.document import document
 from grader.report.locations import RepositoryLocation, SourceOf, archive_around, in_repository, location_text
-from grader.report.order import earned_text, is_failure, is_manual, points_of
 from grader.source import Base, Location
 from grader.text import counted_points, printable
 

@@ -8,10 +8,9 @@ from grader.checks.tree import urdf_loads
 from grader.grading.criterion import worth
 from grader.grading.report import EvidenceResult, Report
 from grader.problems import Problem
-from grader.report.blocks import Line, Section
+from grader.report.criteria import Line, Section, sum_text
 from grader.report.document import failures
 from grader.report.locations import location_text
-from grader.report.order import sum_text
 from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted
 from grader.xml.catalogue import RECOVERED
 

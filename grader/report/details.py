@@ -5,10 +5,8 @@ from collections.abc import Iterable, Iterator
 from grader.checks.outcome import Outcome
 from grader.grading.criterion import Criterion
 from grader.grading.report import Report, Result
-from grader.report import answers
-from grader.report.blocks import Answer, Block, Diff, Entry, Line
+from grader.report.criteria import Answer, Block, Diff, Entry, Line, alike, is_failure, is_manual, points_of
 from grader.report.locations import SourceOf, excerpt_lines, location_text
-from grader.report.order import alike, is_failure, is_manual, points_of
 from grader.source import Location
 from grader.text import by_name, enumerated, printable, signed_points
 
@@ -36,7 +34,7 @@ def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iter
     has_failed = entry.status == "failed" and result.manual_mark is None
     is_mistake = has_failed and not result.carried  # else the advice would be to change what is as it should be
     has_subject = report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot")
-    yield from _said(result)
+    yield from _findings(result)
     if outcome.location is not None and has_failed:
         yield outcome.location
     if is_asked:
@@ -53,7 +51,7 @@ def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iter
         yield Line("skipped", skipped_text(entry.id, entry.skipped))
 
 
-def _said(result: Result) -> Iterator[Line]:
+def _findings(result: Result) -> Iterator[Line]:
     """Yield what the points of a criterion are due to, and the comment without points."""
     outcome, mark, comment = result.outcome, result.manual_mark, result.comment
     if result.is_adjusted:  # what the check found is not the student's mistake
@@ -74,7 +72,7 @@ def _said(result: Result) -> Iterator[Line]:
 
 def remarks_on(result: Result) -> list[str]:
     """Return why a criterion is adjusted, and a grader's comment; nothing without either."""
-    return [line.text for line in _said(result) if result.is_adjusted or line.role == "comment"]
+    return [line.text for line in _findings(result) if result.is_adjusted or line.role == "comment"]
 
 
 def _answers(result: Result) -> Iterator[Answer]:
@@ -96,12 +94,18 @@ def answer_lines(outcome: Outcome) -> list[str]:
     if not isinstance(text, str):
         return []
     is_markup = outcome.location is None or counts_lines(outcome.location)
-    return answers.plain_lines(text) if is_markup else text.strip("\n").splitlines()
+    return _plain_lines(text) if is_markup else text.strip("\n").splitlines()
 
 
 def model_lines(criterion: Criterion) -> list[str]:
     """Return the lines of the model answer, as plain text; none if the criterion has no answer or is loaded without."""
-    return answers.plain_lines(criterion.answer) if criterion.answer else []
+    return _plain_lines(criterion.answer) if criterion.answer else []
+
+
+def _plain_lines(markdown: str) -> list[str]:
+    from grader.report.answers import plain_lines  # late: few reports have answers
+
+    return plain_lines(markdown)
 
 
 def counts_lines(location: Location) -> bool:

@@ -5,9 +5,8 @@ from decimal import Decimal
 from typing import NamedTuple
 
 from grader.grading.report import Report
-from grader.report.blocks import Answer, Entry, Line, Section
+from grader.report.criteria import Answer, Entry, Line, Section, alike, is_failure, points_of, status_of
 from grader.report.details import blocks_of, skipped_text
-from grader.report.order import alike, is_failure, points_of, status_of
 from grader.text import enumerated
 
 _REMARKS = ("Marked manually", "Corrected after grading", "Comments")
@@ -46,7 +45,7 @@ def document(report: Report, *, everything: bool = False) -> Document:
     remarks = zip(_REMARKS, (marked, by_status.get("adjusted", ()), commented), strict=True)
     failed = [known[failure.id] for failure in failures(report)]
     return Document(
-        tuple(_joined(_told_once(failed))),
+        tuple(_joined(_without_repeats(failed))),
         tuple(
             Line("skipped", skipped_text(cause, some))
             for cause, some in skipped
@@ -102,13 +101,13 @@ def _together(some: tuple[Entry, ...]) -> tuple[Entry, ...]:
     return first._replace(also=tuple(also)), *(one._replace(first=first.id) for one in also)
 
 
-def _told_once(failed: Iterable[Entry]) -> Iterator[Entry]:
+def _without_repeats(failed: Iterable[Entry]) -> Iterator[Entry]:
     """Yield entries without feedback that an earlier one has."""
-    told = set[Line]()
+    seen = set[Line]()
     for entry in failed:
         feedback = {one for one in entry.blocks if isinstance(one, Line) and one.role == "feedback"}
-        yield entry._replace(blocks=tuple(block for block in entry.blocks if block not in feedback & told))
-        told |= feedback
+        yield entry._replace(blocks=tuple(block for block in entry.blocks if block not in feedback & seen))
+        seen |= feedback
 
 
 def _joined(entries: Iterable[Entry]) -> Iterator[Entry]:

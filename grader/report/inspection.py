@@ -10,8 +10,9 @@ from rich.text import Text
 
 from grader.errors import MissingElement, NotDecided
 from grader.report.as_json import PROBLEM
-from grader.report.console import Page, Room, problem_rows, symbol
+from grader.report.console import Page, Room, symbol
 from grader.report.content import UNDECIDED, VERDICTS
+from grader.report.criteria import alike
 from grader.report.json_data import (
     NUMBER,
     TEXT,
@@ -26,7 +27,7 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
-from grader.report.order import alike
+from grader.report.verbose import problem_rows
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.reader import Reading

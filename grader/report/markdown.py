@@ -11,11 +11,10 @@ from textwrap import indent
 
 from grader.grading.report import Report
 from grader.report import content
-from grader.report.blocks import Answer, Diff, Entry, Line, Section
+from grader.report.criteria import Answer, CriteriaGroup, Diff, Entry, Line, Section, earned_text, groups, has_passed
 from grader.report.details import SYMBOLS
 from grader.report.document import document
 from grader.report.locations import diff_lines, excerpt_lines, location_text
-from grader.report.order import CriteriaGroup, earned_text, groups, has_passed
 from grader.source import Location
 from grader.text import enumerated, printable
 

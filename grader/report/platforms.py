@@ -20,12 +20,11 @@ from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.report import Report, Result
 from grader.report.as_json import ADDITIONS
-from grader.report.blocks import Entry
+from grader.report.criteria import Entry, earned_text, is_failure
 from grader.report.details import plain_lines
 from grader.report.document import entries
 from grader.report.json_data import exact, to_json
 from grader.report.markdown import criterion_markdown, overview_markdown
-from grader.report.order import earned_text, is_failure
 from grader.text import counted_points, printable
 
 

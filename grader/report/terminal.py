@@ -13,13 +13,10 @@ from grader.grading.criterion import worth
 from grader.grading.report import Report
 from grader.problems import Problem
 from grader.report import content
-from grader.report.blocks import Entry
-from grader.report.console import LOOKS, Page, Room
+from grader.report.console import LOOKS, Page, Room, show_entry
+from grader.report.criteria import Entry, alike, groups, is_manual
 from grader.report.details import carried_text, pending_reason, remarks_on
 from grader.report.document import Document, document
-from grader.report.entries import show_entry
-from grader.report.order import alike, groups, is_manual
-from grader.report.verbose import show_everything
 from grader.text import counted, enumerated, printable
 
 _ROWS = 24  # of a common terminal
@@ -29,13 +26,12 @@ _MAX_NAMES, _MAX_KINDS, _MAX_FILES, _MAX_MISSING = 3, 3, 2, 2
 
 def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
     """Print a report, with `verbose` everything in it, else in 24 rows as far as possible."""
-    found = document(report, everything=verbose)
+    found, show = document(report, everything=verbose), _show_brief
+    if verbose:
+        from grader.report.verbose import show_everything as show  # late: most reports are short
     for room in [Room.ANY] if verbose else _SHORT:
         page = Page(console, room, [])
-        if verbose:
-            show_everything(report, found, page)
-        else:
-            _show_brief(report, found, page)
+        show(report, found, page)
         _show_end(report, page)
         if sum(row.plain.count("\n") + 1 for row in page.rows) <= _ROWS:
             break
@@ -67,7 +63,7 @@ def _show_brief(report: Report, found: Document, page: Page) -> None:
 
 
 def _show_start(report: Report, page: Page) -> None:
-    """Print what was graded; the package only if the path of the URDF does not show it."""
+    """Add what was graded; the package only if the path of the URDF does not show it."""
     submission = report.submission
     graded = printable(submission.path or submission.id)
     graded += ", which ROS 2 rejects" if submission.verdict == "rejected" else ""
@@ -81,7 +77,7 @@ def _show_start(report: Report, page: Page) -> None:
 
 
 def _show_pending(report: Report, pending: Sequence[Entry], page: Page) -> None:
-    """Print what needs manual grading: where each answer and picture was found, or why a check cannot decide."""
+    """Add what needs manual grading: where each answer and picture was found, or why a check cannot decide."""
     if pending:
         page.title(content.pending_points(report) if report.open_points else "Not graded")
     every = [one for entry in pending for one in (entry, *entry.also)]
@@ -97,7 +93,7 @@ def _show_pending(report: Report, pending: Sequence[Entry], page: Page) -> None:
 
 
 def _show_groups(report: Report, page: Page) -> None:
-    """Print the points of each group, except those of which nothing is known yet: they are listed elsewhere."""
+    """Add the points of each group, except those of which nothing is known yet: they are listed elsewhere."""
     known = [group for group in groups(report) if not all(result.is_open for result in group.results)]
     kinds = alike(known, lambda group: group.status)
     shown = [kind for kind in kinds if page.room is Room.EVERYTHING or kind[0] != "passed"]
@@ -108,7 +104,7 @@ def _show_groups(report: Report, page: Page) -> None:
 
 
 def _show_submission(report: Report, page: Page) -> None:
-    """Print the evidence in a line, problems, notes, and the first of the files that were not graded."""
+    """Add the evidence in a line, problems, notes, and the first of the files that were not graded."""
     evidence, submission = _evidence_line(report), report.submission
     if evidence and not page.is_tight:
         page.line(evidence, "dim")
@@ -133,7 +129,7 @@ def _evidence_line(report: Report) -> str:
 
 
 def _show_problems(report: Report, page: Page) -> None:
-    """Print one problem of each kind of error and warning that no failed criterion has reported."""
+    """Add one problem of each kind of error and warning that no failed criterion has reported."""
     problems = content.other_problems(report)
     listed = [found for found in problems if found.severity != "note"]
     if page.is_tight:
@@ -153,7 +149,7 @@ def _show_problems(report: Report, page: Page) -> None:
 
 
 def _show_kind(problems: Sequence[Problem], page: Page) -> None:
-    """Print problems of one kind in one file: code, place and message of the first, and how many more."""
+    """Add problems of one kind in one file: code, place and message of the first, and how many more."""
     first, more = problems[0], len(problems) - 1
     where = f"{printable(first.location.path.rpartition('/')[2])}:{first.location.line}"
     text = Text.assemble((f"{first.code} {first.severity} ", LOOKS[first.severity]), (where, "dim"))
@@ -162,7 +158,7 @@ def _show_kind(problems: Sequence[Problem], page: Page) -> None:
 
 
 def _show_end(report: Report, page: Page) -> None:
-    """Print whether ROS 2 loads the URDF, the next command, and the score."""
+    """Add whether ROS 2 loads the URDF, the next command, and the score."""
     command, verdict = content.next_command(report), content.verdict_and_counts(report)
     following = f"Next: {command}" if command else content.what_is_left(report)
     lines = [f"{verdict}. {following}"] if page.is_tight else [verdict, following]

@@ -1,17 +1,21 @@
 """The whole report on a terminal: each criterion with all that is said about it."""
 
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 
+from rich.console import Console
 from rich.text import Text
 
 from grader.grading.report import Report, Result
+from grader.problems import Problem
 from grader.report import content
-from grader.report.blocks import Section
-from grader.report.console import INDENT, LOOKS, Page, problem_rows
+from grader.report.console import INDENT, LOOKS, Page, block, excerpt_block, show_entry
+from grader.report.criteria import Section, earned_text, groups, status_of
 from grader.report.document import Document
-from grader.report.entries import show_entry
-from grader.report.order import earned_text, groups, status_of
-from grader.text import printable
+from grader.report.locations import SourceOf, calls_text
+from grader.text import first_lines, printable
+
+_MAX_PROBLEMS = 30
 
 
 def show_everything(report: Report, found: Document, page: Page) -> None:
@@ -65,3 +69,20 @@ def _row(result: Result) -> Text:
     is_consequence = status == "skipped" and result.because is not None
     reason = f"  skipped because {printable(result.because or '')} failed" if is_consequence else ""
     return Text.assemble(printable(result.criterion.id), (reason, "dim"))
+
+
+def problem_rows(
+    console: Console, problems: Sequence[Problem], source_of: SourceOf, main: str | None
+) -> Iterator[Text]:
+    """Yield problems with their code and location, errors with their source line. In `main` only the line is named."""
+    for problem in problems[:_MAX_PROBLEMS]:
+        where, style = problem.location, LOOKS[problem.severity]
+        head = Text.assemble("  ", (f"{problem.code} {problem.severity:<7} ", style))
+        named = f"line {where.line}" if where.path == main else f"{printable(where.path)}:{where.line}"
+        message = Text.assemble((f"{named}{calls_text(where)}: ", "dim"), printable(problem.message))
+        yield block(console, message, len(head), head)
+        source = source_of(where.path) if problem.severity == "error" else None
+        if source is not None:
+            yield excerpt_block(console, source, where, min(len(head), console.width // 5))
+    for text in first_lines([problem.code for problem in problems], _MAX_PROBLEMS)[_MAX_PROBLEMS:]:
+        yield block(console, Text(text), INDENT)

@@ -12,10 +12,10 @@ from grader.drawing.picture import Picture, plain_picture
 from grader.drawing.scene import Scene
 from grader.errors import MissingElement, NotDecided
 from grader.report.content import problem_line
+from grader.report.criteria import alike
 from grader.report.drawing import drawing_element
 from grader.report.inspection import Inspection, effect, joint_text, tree
 from grader.report.locations import source_lines
-from grader.report.order import alike
 from grader.report.pages.model import picture_data
 from grader.report.pages.shell import Assets, render_page
 from grader.report.svg_elements import STYLE

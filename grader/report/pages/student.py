@@ -7,12 +7,11 @@ from typing import NamedTuple
 from grader.drawing.picture import picture_of
 from grader.grading.report import Report
 from grader.report import content
-from grader.report.blocks import Entry
+from grader.report.criteria import CriteriaGroup, Entry, earned_text, groups, status_of
 from grader.report.details import STATUS_WORDS, SYMBOLS
 from grader.report.document import document, failures
 from grader.report.drawing_words import why_no_picture
 from grader.report.locations import diff_lines, location_text, source_lines
-from grader.report.order import CriteriaGroup, earned_text, groups, status_of
 from grader.report.pages.robot import render_robot_page
 from grader.text import format_points, printable
 
