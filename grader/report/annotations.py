@@ -5,7 +5,7 @@ rest.
 https://docs.github.com/actions/reference/workflow-commands-for-github-actions
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from functools import cache
 from typing import NamedTuple
@@ -16,7 +16,7 @@ from grader.report.content import closing_lines, head, other_problems, score_tex
 from grader.report.criteria import Entry, earned_text, is_failure, is_manual, points_of
 from grader.report.details import remarks_on
 from grader.report.document import document
-from grader.report.locations import RepositoryLocation, SourceOf, archive_around, in_repository, location_text
+from grader.report.locations import SourceOf, archive_around, location_text, width_of
 from grader.source import Base, Location
 from grader.text import counted_points, printable
 
@@ -29,13 +29,13 @@ class _Finding(NamedTuple):
     """One thing to fix.
 
     `rule` is the id of the criterion or the code of the problem, `text` is printable and has several lines, `lost`
-    includes the points of criteria that are skipped because of it. Without a `location` the whole submission is meant.
+    includes the points of criteria that are skipped because of it. Without a `place` the whole submission is meant.
     """
 
     rule: str
     level: Severity
     text: str
-    location: RepositoryLocation | None = None
+    place: Mapping[str, str] = {}
     lost: Decimal = Decimal(0)
 
     @property
@@ -47,14 +47,12 @@ class _Finding(NamedTuple):
 def render_github(report: Report, base: Base) -> str:
     """Return the annotations of a report: the score as a notice, then the findings, most points first."""
     found = [*_findings(report, base)]
-    if base.is_outside:  # a file of the repository may have the same path
-        found = [finding._replace(location=None) for finding in found]
-    lines = [command("notice", None, f"{score_text(report)}: {printable(report.rubric.title)}", _overview(report))]
+    lines = [command("notice", {}, f"{score_text(report)}: {printable(report.rubric.title)}", _overview(report))]
     for level, name in _COMMANDS.items():
         some = [finding for finding in found if finding.level == level]
         room = _MAX_ANNOTATIONS - (level == "note")
         listed = some if len(some) <= room else [*some[: room - 1], _rest(some[room - 1 :])]
-        lines += [command(name, one.location, f"{one.rule}{one.cost}", one.text) for one in listed]
+        lines += [command(name, one.place, f"{one.rule}{one.cost}", one.text) for one in listed]
     return "".join(lines)
 
 
@@ -70,7 +68,7 @@ def _findings(report: Report, base: Base) -> Iterator[_Finding]:
     for problem in other_problems(report):
         where = problem.location
         text = _text([printable(problem.message)], where, base)
-        yield _Finding(problem.code, problem.severity, text, in_repository(where, source_of(where.path), base))
+        yield _Finding(problem.code, problem.severity, text, _place(where, source_of, base))
 
 
 def _of_criterion(entry: Entry, source_of: SourceOf, base: Base) -> _Finding:
@@ -78,11 +76,21 @@ def _of_criterion(entry: Entry, source_of: SourceOf, base: Base) -> _Finding:
     lines = entry.texts("finding", "comment", "hint", "feedback", "expected", "alike")
     lines += [f"Extra credit: {earned_text(entry.result)}."] if is_bonus else []
     lines += [f"Skipped because of it: {len(skipped)} more, {points_of(skipped)}."] if skipped else []
-    location = in_repository(where, source_of(where.path), base) if where is not None else None
-    if not is_failure(entry.result):
-        return _Finding(entry.id, "warning", _text(lines, where, base), location)
     level: Severity = "note" if entry.result.why_given or is_bonus else "error"
-    return _Finding(entry.id, level, _text(lines, where, base), location, entry.lost)
+    level, lost = (level, entry.lost) if is_failure(entry.result) else ("warning", Decimal(0))
+    return _Finding(entry.id, level, _text(lines, where, base), _place(where, source_of, base), lost)
+
+
+def _place(where: Location | None, source_of: SourceOf, base: Base) -> Mapping[str, str]:
+    """Return the properties of an annotation at a location, as seen from the root of the repository; empty without."""
+    if where is None or base.is_outside:  # a file of the repository may have the same path
+        return {}
+    if archive := base.archive or archive_around(where.path):
+        return {"file": printable(archive if base.archive else base.folder + archive)}
+    source, line = source_of(where.path), str(where.line)
+    width = width_of(source.line(where.line), where.column) if source is not None else 1
+    ends = {"col": str(where.column), "endColumn": str(where.column + width - 1)}
+    return {"file": printable(base.folder + where.path), "line": line, "endLine": line, **ends}
 
 
 def _text(lines: list[str], where: Location | None, base: Base) -> str:
@@ -95,7 +103,7 @@ def _rest(found: Sequence[_Finding]) -> _Finding:
     names = ", ".join(dict.fromkeys(finding.rule for finding in found))
     lost = sum((finding.lost for finding in found), Decimal(0))
     text = f"See the report for: {names}"
-    return found[0]._replace(rule=f"{len(found)} more", text=text, lost=lost, location=None)
+    return found[0]._replace(rule=f"{len(found)} more", text=text, lost=lost, place={})
 
 
 def _overview(report: Report) -> str:
@@ -109,21 +117,14 @@ def _overview(report: Report) -> str:
     return "\n".join((*lines, *closing_lines(report)))
 
 
-def command(name: str, location: RepositoryLocation | None, title: str, text: str) -> str:
+def command(name: str, place: Mapping[str, str], title: str, text: str) -> str:
     """Return one annotation: `error`, `warning` or `notice` of printable text, with a line break at its end."""
-    properties = [*_position(location), ("title", title)]
-    listed = ",".join(f"{key}={_data(value).replace(':', '%3A').replace(',', '%2C')}" for key, value in properties)
+    values = {
+        key: _data(value).replace(":", "%3A").replace(",", "%2C") for key, value in {**place, "title": title}.items()
+    }
+    listed = ",".join(f"{key}={value}" for key, value in values.items())
     message = text if len(text) <= _MAX_MESSAGE else f"{text[:_MAX_MESSAGE]}..."
     return f"::{name} {listed}::{_data(message)}\n"
-
-
-def _position(location: RepositoryLocation | None) -> Iterator[tuple[str, str]]:
-    if location is not None:
-        yield "file", printable(location.path)
-        if location.line is not None:
-            last = max(location.column, location.end - 1)
-            yield from (("line", str(location.line)), ("endLine", str(location.line)))
-            yield from (("col", str(location.column)), ("endColumn", str(last)))
 
 
 def _data(text: str) -> str:

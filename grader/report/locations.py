@@ -4,9 +4,8 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from difflib import SequenceMatcher
 from itertools import groupby
-from typing import NamedTuple
 
-from grader.source import Base, Edit, Location, Source
+from grader.source import Edit, Location, Source
 from grader.text import first_lines, printable
 
 _MEANT = r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+"""  # attribute, tag, word
@@ -21,18 +20,6 @@ _MARGIN = 4  # characters before the marked part, if the line is cut
 _MAX_CALLS = 3  # macros of xacro that are named
 _MAX_LENGTH = 200  # the same for a diff: of a longer line only the old and the new text are in it
 _MAX_LINES = 40  # of a diff
-
-
-class RepositoryLocation(NamedTuple):
-    """A location as seen from the repository's root, from 1; `end` is the column after the marked part.
-
-    Without a line it is the whole file.
-    """
-
-    path: str
-    line: int | None = None
-    column: int = 1
-    end: int = 1
 
 
 def width_of(line: str, column: int) -> int:
@@ -100,18 +87,6 @@ def archive_around(path: str) -> str:
     """Return the archive in a submission that a file is in; empty if it is in none."""
     found = re.match(_ARCHIVE, path)
     return found[1] if found else ""
-
-
-def in_repository(where: Location, source: Source | None, base: Base) -> RepositoryLocation:
-    """Return a location of a submission as seen from the repository's root."""
-    archive = base.archive or archive_around(where.path)
-    if archive:
-        return RepositoryLocation(archive if base.archive else base.folder + archive)
-    path = base.folder + where.path
-    if source is None:
-        return RepositoryLocation(path, where.line, where.column, where.column)
-    width = width_of(source.line(where.line), where.column)
-    return RepositoryLocation(path, where.line, where.column, where.column + width)
 
 
 def diff_lines(edits: Sequence[Edit], source_of: SourceOf) -> list[str]:
