@@ -119,10 +119,8 @@ def _overview(report: Report) -> str:
 
 def command(name: str, place: Mapping[str, str], title: str, text: str) -> str:
     """Return one annotation: `error`, `warning` or `notice` of printable text, with a line break at its end."""
-    values = {
-        key: _data(value).replace(":", "%3A").replace(",", "%2C") for key, value in {**place, "title": title}.items()
-    }
-    listed = ",".join(f"{key}={value}" for key, value in values.items())
+    properties = [*place.items(), ("title", title)]
+    listed = ",".join(f"{key}={_data(value).replace(':', '%3A').replace(',', '%2C')}" for key, value in properties)
     message = text if len(text) <= _MAX_MESSAGE else f"{text[:_MAX_MESSAGE]}..."
     return f"::{name} {listed}::{_data(message)}\n"
 
