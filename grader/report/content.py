@@ -38,12 +38,6 @@ def counting_text(report: Report) -> str:
     return format_points(report.grade.points) if report.grade.points is not None else "Excused"
 
 
-def headline(report: Report) -> str:
-    """Return the points that count and the maximum in short: 58.5/70."""
-    text = score_text(report)
-    return text.replace(" / ", "/").removesuffix(" points")
-
-
 def grade_line(report: Report) -> str:
     """Return how the grade of a student in a class came about; empty if it is the score of automatic criteria."""
     if report.grade is None:
@@ -56,13 +50,6 @@ def grade_line(report: Report) -> str:
     if report.grade.points is None:
         return f"Excused; the criteria give {text} points."
     return f"Final mark, instead of {text} points." if report.grade.is_final else f"Points: {text}."
-
-
-def graded_line(report: Report) -> str:
-    """Return the version of the grader, the rubric, and the URDF, or the submission without one."""
-    graded = printable(report.submission.path or report.submission.id)
-    graded += ", which ROS 2 rejects" if report.submission.verdict == "rejected" else ""
-    return f"grader {report.version}, {printable(report.rubric.id)}: {graded}"
 
 
 def summary(report: Report) -> str:

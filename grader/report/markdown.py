@@ -5,8 +5,8 @@ Text of a submission is escape: it never becomes markup, HTML, a link or a menti
 
 import html
 import re
-from collections.abc import Iterable, Iterator, Sequence
-from itertools import groupby
+from collections.abc import Iterator, Sequence
+from itertools import accumulate, groupby
 from textwrap import indent
 
 from grader.grading.report import Report
@@ -35,7 +35,7 @@ _CUT = "**The report is cut off here, because it is too long.** A report that is
 
 def render_markdown(report: Report, picture: str = "") -> str:
     """Return the report. `picture` is the relative address of the robot's drawing, which is shown."""
-    return _join(_blocks(report, _picture(report, picture), answers=True))
+    return "\n".join(f"{block}\n" for block in _blocks(report, _picture(report, picture), answers=True))
 
 
 def cut_markdown(report: Report, most: int, pictures: Sequence[str] = ()) -> str:
@@ -46,17 +46,13 @@ def cut_markdown(report: Report, most: int, pictures: Sequence[str] = ()) -> str
     """
     names = enumerated([code(printable(name)) for name in pictures])
     named = f"Pictures of the robot: {names} (in the artifacts of this run, if the job uploads them)." if names else ""
-    text = _join(_blocks(report, named, answers=False))
-    if len(text.encode()) <= most:
-        return text
-    kept: list[str] = []
-    left = most - len(_CUT.encode())
-    for block in _blocks(report, named, answers=False):
-        left -= len(block.encode()) + 2
-        if left < 0:
-            break
-        kept.append(f"{block}\n")
-    return "\n".join((*kept, _CUT)) if len(_CUT.encode()) <= most else ""
+    blocks = [f"{block}\n" for block in _blocks(report, named, answers=False)]
+    whole, room = "\n".join(blocks), most - len(_CUT.encode())
+    if len(whole.encode()) <= most:
+        return whole
+    ends = accumulate(len(block.encode()) + 1 for block in blocks)
+    kept = (block for block, end in zip(blocks, ends, strict=True) if end <= room)
+    return "\n".join((*kept, _CUT)) if room >= 0 else ""
 
 
 def overview_markdown(report: Report) -> str:
@@ -68,10 +64,6 @@ def overview_markdown(report: Report) -> str:
 def criterion_markdown(entry: Entry, report: Report) -> str:
     """Return the text about one criterion, besides its title and points."""
     return "\n\n".join(_details(entry, report, answers=False))
-
-
-def _join(blocks: Iterable[str]) -> str:
-    return "\n".join(f"{block}\n" for block in blocks)
 
 
 def _picture(report: Report, address: str) -> str:

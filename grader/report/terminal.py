@@ -167,5 +167,6 @@ def _show_end(report: Report, page: Page) -> None:
         page.line(line)
     counting = report.counting
     is_full = counting is not None and counting + report.open_points >= report.max_score
-    score = (content.headline(report), "bold green" if is_full else "bold")
-    page.inset(Text.assemble(score, "  ", (printable(report.rubric.title), "bold")), indent=0)
+    score = content.score_text(report).replace(" / ", "/").removesuffix(" points")
+    title = (f"  {printable(report.rubric.title)}", "bold")
+    page.inset(Text.assemble((score, "bold green" if is_full else "bold"), title), indent=0)
