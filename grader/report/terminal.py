@@ -11,7 +11,6 @@ from rich.text import Text
 
 from grader.grading.criterion import worth
 from grader.grading.report import Report
-from grader.problems import Problem
 from grader.report import content
 from grader.report.console import LOOKS, Page, Room, show_entry
 from grader.report.criteria import Entry, alike, groups, is_manual
@@ -129,7 +128,7 @@ def _evidence_line(report: Report) -> str:
 
 
 def _show_problems(report: Report, page: Page) -> None:
-    """Add one problem of each kind of error and warning that no failed criterion has reported."""
+    """Add the first problem of each kind that no failed criterion has reported, and how many more there are."""
     problems = content.other_problems(report)
     listed = [found for found in problems if found.severity != "note"]
     if page.is_tight:
@@ -139,22 +138,16 @@ def _show_problems(report: Report, page: Page) -> None:
     kinds = alike(listed, lambda problem: f"{problem.code} {problem.location.path}")
     # No criterion is about the entry for package.xml (PKG015), so this is the only place that reports it.
     shown = [some for index, (_, some) in enumerate(kinds) if index < _MAX_KINDS or some[0].code == "PKG015"]
-    for some in shown:
-        _show_kind(some, page)
+    for first, *others in shown:
+        where = f"{printable(first.location.path.rpartition('/')[2])}:{first.location.line}"
+        text = Text.assemble((f"{first.code} {first.severity} ", LOOKS[first.severity]), (where, "dim"))
+        text.append(f"{f' and {len(others)} more' if others else ''}: {printable(first.message)}")
+        page.inset(text, head=Text(), most=1 if page.is_tight else 2)
     rest = len(problems) - sum(map(len, shown))
     if rest:
         noun = "problem" if len(kinds) > len(shown) else "note"
         words = counted(rest, f"more {noun}" if listed else noun)
         page.line(f"{words}: --verbose shows {'it' if rest == 1 else 'them'}", "dim")
-
-
-def _show_kind(problems: Sequence[Problem], page: Page) -> None:
-    """Add problems of one kind in one file: code, place and message of the first, and how many more."""
-    first, more = problems[0], len(problems) - 1
-    where = f"{printable(first.location.path.rpartition('/')[2])}:{first.location.line}"
-    text = Text.assemble((f"{first.code} {first.severity} ", LOOKS[first.severity]), (where, "dim"))
-    text.append(f"{f' and {more} more' if more else ''}: {printable(first.message)}")
-    page.inset(text, head=Text(), most=1 if page.is_tight else 2)
 
 
 def _show_end(report: Report, page: Page) -> None:

@@ -24,8 +24,9 @@ def picture_data(picture: Picture) -> dict[str, Any]:
     """Return the data of the script: the robot, the reference, and the callouts."""
     scene, reference = picture.scene, picture.reference
     links, others = _indices(scene), _indices(reference) if reference is not None else {}
+    lost = [(callout.link, result.criterion.check.about) for callout in picture.callouts for result in callout.results]
     return {
-        "robot": _robot(scene, reference, _failed_wheels(picture)),
+        "robot": _robot(scene, reference, {link for link, about in lost if about.picture == "wheel"}),
         "reference": _robot(reference) if reference is not None else None,
         "same": [links.get(name, -1) for name in others],
         "callouts": [
@@ -43,15 +44,6 @@ def picture_data(picture: Picture) -> dict[str, Any]:
 def _indices(scene: Scene) -> dict[str, int]:
     """Return the number of each link; links with the same name have one number."""
     return {name: number for number, name in enumerate(dict.fromkeys(link.name for link in scene.robot.robot.links))}
-
-
-def _failed_wheels(picture: Picture) -> set[str]:
-    """Return the links whose drive direction failed a criterion."""
-    return {
-        callout.link
-        for callout in picture.callouts
-        if any(result.criterion.check.about.picture == "wheel" for result in callout.results)
-    }
 
 
 def _robot(scene: Scene, expected: Scene | None = None, failed: Collection[str] = ()) -> Data:
