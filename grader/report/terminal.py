@@ -161,5 +161,5 @@ def _show_end(report: Report, page: Page) -> None:
     counting = report.counting
     is_full = counting is not None and counting + report.open_points >= report.max_score
     score = content.score_text(report).replace(" / ", "/").removesuffix(" points")
-    title = (f"  {printable(report.rubric.title)}", "bold")
-    page.inset(Text.assemble((score, "bold green" if is_full else "bold"), title), indent=0)
+    parts = (score, "bold green" if is_full else "bold"), "  ", (printable(report.rubric.title), "bold")
+    page.inset(Text.assemble(*parts), indent=0)
