@@ -5,37 +5,37 @@ rest.
 https://docs.github.com/actions/reference/workflow-commands-for-github-actions
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from functools import cache
 from typing import NamedTuple
 
 from grader.grading.report import Report
 from grader.problems import Severity
-from grader.report.content import note_lines, other_problems, provenance, score_text, summary_lines
-from grader.report.details import remarks_on, result_details, sentence
-from grader.report.locations import RepositoryLocation, SourceOf, archive_around, in_repository, location_text
-from grader.report.order import FailedCriterion, alike, earned_text, failures, is_failure, points_of, status_of
+from grader.report.content import closing_lines, head, other_problems, score_text
+from grader.report.criteria import Entry, earned_text, is_failure, is_manual, points_of
+from grader.report.details import remarks_on
+from grader.report.document import document
+from grader.report.locations import SourceOf, archive_around, location_text, width_of
 from grader.source import Base, Location
 from grader.text import counted_points, printable
 
 _MAX_ANNOTATIONS = 10  # of each type
 _MAX_MESSAGE = 4000  # characters
 _COMMANDS: dict[Severity, str] = {"error": "error", "warning": "warning", "note": "notice"}
-_ORDER = tuple(_COMMANDS)
 
 
 class _Finding(NamedTuple):
     """One thing to fix.
 
     `rule` is the id of the criterion or the code of the problem, `text` is printable and has several lines, `lost`
-    includes the points of criteria that are skipped because of it. Without a `location` the whole submission is meant.
+    includes the points of criteria that are skipped because of it. Without a `place` the whole submission is meant.
     """
 
     rule: str
     level: Severity
     text: str
-    location: RepositoryLocation | None = None
+    place: Mapping[str, str] = {}
     lost: Decimal = Decimal(0)
 
     @property
@@ -46,59 +46,51 @@ class _Finding(NamedTuple):
 
 def render_github(report: Report, base: Base) -> str:
     """Return the annotations of a report: the score as a notice, then the findings, most points first."""
-    found = _findings(report, base)
-    if base.is_outside:  # a file of the repository may have the same path
-        found = [finding._replace(location=None) for finding in found]
-    lines = [command("notice", None, f"{score_text(report)}: {printable(report.rubric.title)}", _overview(report))]
+    found = [*_findings(report, base)]
+    lines = [command("notice", {}, f"{score_text(report)}: {printable(report.rubric.title)}", _overview(report))]
     for level, name in _COMMANDS.items():
         some = [finding for finding in found if finding.level == level]
         room = _MAX_ANNOTATIONS - (level == "note")
         listed = some if len(some) <= room else [*some[: room - 1], _rest(some[room - 1 :])]
-        lines += [command(name, one.location, f"{one.rule}{one.cost}", one.text) for one in listed]
+        lines += [command(name, one.place, f"{one.rule}{one.cost}", one.text) for one in listed]
     return "".join(lines)
 
 
-def _findings(report: Report, base: Base) -> list[_Finding]:
-    """Return what to fix; `base` is where the submission is in its repository."""
-    source_of = cache(report.submission.source)  # reads each file once
-    found = [_of_criterion(failure, report, source_of, base) for failure in failures(report)]
-    found += _undecided_finding(report)
-    found += _remarks(report)
-    for problem in sorted(other_problems(report), key=lambda problem: _ORDER.index(problem.severity)):
-        text = _text([printable(problem.message)], problem.location, base)
-        location = in_repository(problem.location, source_of(problem.location.path), base)
-        found.append(_Finding(problem.code, problem.severity, text, location))
-    return found
-
-
-def _of_criterion(failure: FailedCriterion, report: Report, source_of: SourceOf, base: Base) -> _Finding:
-    result, skipped, is_bonus = failure.result, failure.skipped, failure.result.criterion.bonus
-    details = result_details(result, report)
-    lines = [*details.words, *details.advice, details.expected]
-    lines += [f"Extra credit: {earned_text(result)}."] if is_bonus else []
-    lines += [f"Skipped because of it: {len(skipped)} more, {points_of(skipped)}."] if skipped else []
-    where = details.location
-    location = in_repository(where, source_of(where.path), base) if where is not None else None
-    level: Severity = "note" if result.why_given or is_bonus else "error"
-    return _Finding(failure.id, level, _text(lines, where, base), location, failure.lost)
-
-
-def _undecided_finding(report: Report) -> Iterator[_Finding]:
-    """Yield one finding for all automatic criteria that need manual grading here, with the reasons."""
-    results = report.pending_automatic
-    if results:
-        reasons = dict.fromkeys(sentence(result.outcome.message) for result in results)
-        names = ", ".join(result.criterion.id for result in results)
-        text = "\n".join((*reasons, f"Could not be decided ({points_of(results)}): {names}"))
-        yield _Finding(results[0].criterion.id, "warning", text)
-
-
-def _remarks(report: Report) -> Iterator[_Finding]:
-    """Yield a note for each criterion that is adjusted, or has a comment and is no failure."""
+def _findings(report: Report, base: Base) -> Iterator[_Finding]:
+    """Yield what to fix or grade manually, and remarks; `base` is where the submission is in its repository."""
+    found, source_of = document(report), cache(report.submission.source)  # reads each file once
+    for entry in (*found.failures, *(one for one in found.pending if not is_manual(one.result))):
+        yield _of_criterion(entry, source_of, base)
     for result in report.results:
-        remarks = remarks_on(result, report) if not is_failure(result) else ()
+        remarks = remarks_on(result) if not is_failure(result) else ()
         if remarks:
             yield _Finding(result.criterion.id, "note", "\n".join(remarks))
+    for problem in other_problems(report):
+        where = problem.location
+        text = _text([printable(problem.message)], where, base)
+        yield _Finding(problem.code, problem.severity, text, _place(where, source_of, base))
+
+
+def _of_criterion(entry: Entry, source_of: SourceOf, base: Base) -> _Finding:
+    skipped, is_bonus, where = entry.skipped, entry.result.criterion.bonus, entry.location
+    lines = entry.texts("finding", "comment", "hint", "feedback", "expected", "alike")
+    lines += [f"Extra credit: {earned_text(entry.result)}."] if is_bonus else []
+    lines += [f"Skipped because of it: {len(skipped)} more, {points_of(skipped)}."] if skipped else []
+    level: Severity = "note" if entry.result.why_given or is_bonus else "error"
+    level, lost = (level, entry.lost) if is_failure(entry.result) else ("warning", Decimal(0))
+    return _Finding(entry.id, level, _text(lines, where, base), _place(where, source_of, base), lost)
+
+
+def _place(where: Location | None, source_of: SourceOf, base: Base) -> Mapping[str, str]:
+    """Return the properties of an annotation at a location, as seen from the root of the repository; empty without."""
+    if where is None or base.is_outside:  # a file of the repository may have the same path
+        return {}
+    if archive := base.archive or archive_around(where.path):
+        return {"file": printable(archive if base.archive else base.folder + archive)}
+    source, line = source_of(where.path), str(where.line)
+    width = width_of(source.line(where.line), where.column) if source is not None else 1
+    ends = {"col": str(where.column), "endColumn": str(where.column + width - 1)}
+    return {"file": printable(base.folder + where.path), "line": line, "endLine": line, **ends}
 
 
 def _text(lines: list[str], where: Location | None, base: Base) -> str:
@@ -111,37 +103,26 @@ def _rest(found: Sequence[_Finding]) -> _Finding:
     names = ", ".join(dict.fromkeys(finding.rule for finding in found))
     lost = sum((finding.lost for finding in found), Decimal(0))
     text = f"See the report for: {names}"
-    return found[0]._replace(rule=f"{len(found)} more", text=text, lost=lost, location=None)
+    return found[0]._replace(rule=f"{len(found)} more", text=text, lost=lost, place={})
 
 
 def _overview(report: Report) -> str:
     """Return the lines about the whole submission and the undecided criteria."""
+    found, lines = document(report), [line.text for line in head(report)]  # first, because the rest may be cut off
     pending = ", ".join(result.criterion.id for result in report.results if result.is_open)
-    skipped = alike((one for one in report.results if status_of(one) == "skipped"), lambda one: one.because or "")
-    lines = [*summary_lines(report), provenance(report)]  # first, because the rest may be cut off
     lines += [f"Needs manual grading: {pending}"] if pending else []
-    for cause, results in skipped:
-        names = ", ".join(result.criterion.id for result in results)
-        lines += [f"Skipped because {cause} failed: {names}"] if cause else []
+    lines += [text for entry in found.failures for text in entry.texts("skipped")]
+    lines += [line.text for line in found.skipped]
     lines += [f"{result.criterion.id}: {result.why_given}" for result in report.results if result.carried]
-    return "\n".join((*lines, *note_lines(report)))
+    return "\n".join((*lines, *closing_lines(report)))
 
 
-def command(name: str, location: RepositoryLocation | None, title: str, text: str) -> str:
+def command(name: str, place: Mapping[str, str], title: str, text: str) -> str:
     """Return one annotation: `error`, `warning` or `notice` of printable text, with a line break at its end."""
-    properties = [*_position(location), ("title", title)]
+    properties = [*place.items(), ("title", title)]
     listed = ",".join(f"{key}={_data(value).replace(':', '%3A').replace(',', '%2C')}" for key, value in properties)
     message = text if len(text) <= _MAX_MESSAGE else f"{text[:_MAX_MESSAGE]}..."
     return f"::{name} {listed}::{_data(message)}\n"
-
-
-def _position(location: RepositoryLocation | None) -> Iterator[tuple[str, str]]:
-    if location is not None:
-        yield "file", printable(location.path)
-        if location.line is not None:
-            last = max(location.column, location.end - 1)
-            yield from (("line", str(location.line)), ("endLine", str(location.line)))
-            yield from (("col", str(location.column)), ("endColumn", str(last)))
 
 
 def _data(text: str) -> str:

@@ -10,6 +10,7 @@ from grader.classroom.changes import Change, PointsChange
 from grader.classroom.graded import Run
 from grader.classroom.lateness import time_text
 from grader.report.console import wrapped
+from grader.report.criteria import alike
 from grader.report.json_data import (
     COUNT,
     GRADER,
@@ -25,7 +26,6 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
-from grader.report.order import alike
 from grader.text import counted, first_lines, format_points, named, printable, signed_points
 
 _MAX_NAMED = 5  # criteria of a student

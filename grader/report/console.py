@@ -1,19 +1,165 @@
-"""Print parts of a report on a rich console: source excerpts, lists of problems, wrapped text."""
+"""A report on a rich console: rows of wrapped text, criteria with all that is said about them, source lines."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Iterator, Mapping
+from enum import Enum, auto
+from typing import NamedTuple, get_args
 
 from rich.console import Console
 from rich.text import Text
 
-from grader.problems import Problem
-from grader.report.locations import calls_text, excerpt
+from grader.grading.report import Report
+from grader.report.criteria import Answer, Block, Diff, Entry, Line, Role, is_failure, points_of
+from grader.report.details import ASCII_SYMBOLS, STYLES, SYMBOLS, hint_text
+from grader.report.locations import diff_lines, excerpt, location_text
 from grader.source import Location, Source
-from grader.text import first_lines, printable
+from grader.text import counted, printable
 
-SEVERITY_STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
-_MAX_PROBLEMS = 30
+INDENT = 2
+LOOKS: Mapping[Role, str] = {
+    **dict.fromkeys(get_args(Role), ""),
+    **dict.fromkeys(("pending", "comment", "hint"), "bold"),
+    **dict.fromkeys(("provenance", "expected", "part", "ignored"), "dim"),
+    **dict.fromkeys(("missing", "skipped", "alike", "warning"), "yellow"),
+    "feedback": "italic",
+    "error": "bold red",
+    "note": "cyan",
+}
+_DIFF_STYLES = {"-": "red", "+": "green"}
+_MAX_FIRST = 3  # failures with their source line
+_MAX_ROWS, _MAX_REASON = 4, 2  # rows of a message, and of a reason; a hint has fewer than a message
 _LAST_WORD, _LAST_NUMBER = re.compile(r"\s+\S*$"), re.compile(r"\s+[-+.\d]+$")  # a number keeps its unit
+
+
+class Room(Enum):
+    """What a page has room for: everything in any number of rows, or what fits into 24."""
+
+    ANY = auto()
+    EVERYTHING = auto()  # of a short report
+    NO_TITLES = auto()  # of what failed, and no groups that passed
+    NO_EMPTY_ROWS = auto()  # as well
+
+
+class Page(NamedTuple):
+    """The rows of a report for a console, and how much room there is. All texts are printable."""
+
+    console: Console
+    room: Room
+    rows: list[Text]
+
+    @property
+    def is_whole(self) -> bool:
+        """Return whether there is room for everything."""
+        return self.room is Room.ANY
+
+    @property
+    def is_tight(self) -> bool:
+        """Return whether there are no empty rows."""
+        return self.room is Room.NO_EMPTY_ROWS
+
+    def leave_row(self) -> None:
+        """Add an empty row if there is room for it."""
+        if not self.is_tight:
+            self.rows.append(Text())
+
+    def title(self, text: str | Text, style: str = "bold") -> None:
+        """Add a title below an empty row."""
+        self.leave_row()
+        self.line(text, style)
+
+    def line(self, text: str | Text, style: str = "") -> None:
+        """Add a line, with an indent where it wraps."""
+        self.inset(text, style, head=Text())
+
+    def inset(
+        self, text: str | Text, style: str = "", indent: int = INDENT, head: Text | None = None, most: int | None = None
+    ) -> None:
+        """Add a text below a title or an item, of more than `most` rows the first ones."""
+        self.rows.append(block(self.console, Text(text, style) if isinstance(text, str) else text, indent, head, most))
+
+    def item(self, status: str, *parts: str | tuple[str, str]) -> None:
+        """Add texts, with their styles, behind the symbol of a status."""
+        self.inset(Text.assemble(*parts), head=self.mark(status) + Text(" "))
+
+    def mark(self, status: str) -> Text:
+        """Return the symbol of a status in its colour."""
+        return Text(symbol(self.console, SYMBOLS[status], ASCII_SYMBOLS[status]), STYLES[status])
+
+    def print(self) -> None:
+        """Print the rows, all at once: a print costs more than a row."""
+        put(self.console, Text("\n").join(self.rows))
+
+
+def show_entry(entry: Entry, report: Report, page: Page, number: int = 0) -> None:
+    """Add a criterion; `number` counts failures, of which a short report has only the first with all blocks."""
+    head, message, source_of = _head(entry, page), Text(" ".join(entry.texts("finding"))), report.submission.source
+    if page.is_tight:
+        most = _MAX_ROWS if number < _MAX_FIRST else _MAX_REASON
+        page.inset(Text(": ").join((head, message)), head=Text(), most=most)
+    else:
+        page.line(head)
+        page.inset(message)
+    for part in entry.blocks if page.is_whole else _shortened(entry, page, is_first=number < _MAX_FIRST):
+        match part:
+            case Line(role, text) if role != "finding":
+                is_cut = page.is_tight and role in ("feedback", "expected")
+                page.inset(text, LOOKS[role], most=_MAX_REASON - (number > 0) if is_cut else None)
+            case Location():
+                source = source_of(part.path)
+                if source is not None and source.line(part.line).strip():
+                    page.rows.append(excerpt_block(page.console, source, part, INDENT, is_underlined=not page.is_tight))
+            case Answer(title, lines):
+                page.inset(f"{title}:", "bold")
+                for line in lines:
+                    page.inset(line, indent=2 * INDENT)
+            case Diff(edits):
+                for line in diff_lines(edits, source_of):
+                    page.inset(line, _DIFF_STYLES.get(line[0], "dim"), 2 * INDENT)
+
+
+def _head(entry: Entry, page: Page) -> Text:
+    """Return the name of a failure, its cost and place, or the title, name and points of another criterion."""
+    name, mark = printable(entry.id), page.mark(entry.status)
+    if not is_failure(entry.result):
+        title = printable(entry.result.criterion.title)
+        return Text.assemble(mark, " ", (title, "bold"), (f"  {name}", "dim"), f"  {entry.points}")
+    text = Text.assemble(mark, " ", (name, "bold"), (f"  {entry.points}", STYLES[entry.status]))
+    if entry.location is not None:
+        where = entry.location._replace(calls=()) if page.is_tight else entry.location
+        text.append(f"  {location_text(where)}", "dim")
+    return text
+
+
+def _shortened(entry: Entry, page: Page, *, is_first: bool) -> Iterator[Block]:
+    """Yield the blocks for which a short report has room."""
+    advice = entry.texts("hint", "feedback")
+    is_clear = entry.result.outcome.expected is not None or (page.is_tight and bool(advice))
+    has_reasons = is_first or not page.is_tight
+    for part in entry.blocks:
+        match part:
+            case Location() if is_first:
+                yield part
+            case Line("hint", text):
+                yield Line("hint", _short_hint(entry, text, page))
+            case Line("comment" | "alike"):
+                yield part
+            case Answer() if not is_failure(entry.result):
+                yield part
+            case Line("feedback") if has_reasons:
+                yield part
+            case Line("expected") if has_reasons and (page.room is Room.EVERYTHING or not is_clear):
+                yield part
+            case Line("skipped") if not page.is_tight:
+                words = f"{counted(len(entry.skipped), 'criterion is', 'criteria are')} skipped because of it"
+                yield Line("skipped", f"{words} ({points_of(entry.skipped)}).")
+
+
+def _short_hint(entry: Entry, text: str, page: Page) -> str:
+    """Return the hint, or what is wrong if its edits are too long."""
+    rows, hint = block(page.console, Text(text), INDENT).plain.count("\n") + 1, entry.result.hint
+    if hint is None or not hint.cause or rows < _MAX_ROWS:
+        return text
+    return hint_text(entry, f"Wrong: {hint.cause}. --verbose shows the edits.")
 
 
 def wrapped(console: Console, text: Text, indent: int, head: Text | None = None) -> None:
@@ -37,7 +183,7 @@ def block(console: Console, text: Text, indent: int, head: Text | None = None, m
 
 
 def put(console: Console, text: Text) -> None:
-    """Print lines that are wrapped already, all at once: a print costs more than a line."""
+    """Print lines that are wrapped already."""
     console.print(text, overflow="ignore", no_wrap=True, crop=False)
 
 
@@ -46,31 +192,13 @@ def excerpt_block(
 ) -> Text:
     """Return the source line of a location, and if wanted a line that underlines the marked part."""
     number = str(where.line)
-    line = excerpt(source, where, max(8, console.width - indent - len(number) - 3))
+    before, meant, after = excerpt(source, where, max(8, console.width - indent - len(number) - 3))
     mark, bar = symbol(console, "\u2500", "-"), symbol(console, "\u2502", "|")
-    text = Text.assemble((f"{' ' * indent}{number} {bar} ", "dim"), line.text)
+    text = Text.assemble((f"{' ' * indent}{number} {bar} ", "dim"), (before + meant + after).rstrip())
     if is_underlined:
-        under = " " * line.start + mark * line.width
+        under = " " * len(before) + mark * max(1, len(meant))
         text.append(f"\n{' ' * (indent + len(number))} {bar} ", "dim").append(under, style)
     return text
-
-
-def show_problems(
-    console: Console, problems: tuple[Problem, ...], source_of: Callable[[str], Source | None], main: str | None
-) -> None:
-    """Print problems with their code and location, errors with their source line. In `main` only the line is named."""
-    for problem in problems[:_MAX_PROBLEMS]:
-        style = SEVERITY_STYLES[problem.severity]
-        head = Text.assemble("  ", (f"{problem.code} {problem.severity:<7} ", style))
-        where = problem.location
-        named = f"line {where.line}" if where.path == main else f"{printable(where.path)}:{where.line}"
-        prefix = Text(f"{named}{calls_text(where)}: ", style="dim")
-        wrapped(console, prefix + Text(printable(problem.message)), len(head), head)
-        source = source_of(where.path) if problem.severity == "error" else None
-        if source is not None:
-            put(console, excerpt_block(console, source, where, min(len(head), console.width // 5)))
-    for text in first_lines([problem.code for problem in problems], _MAX_PROBLEMS)[_MAX_PROBLEMS:]:
-        wrapped(console, Text(text), 2)
 
 
 def symbol(console: Console, fancy: str, plain: str) -> str:

@@ -8,8 +8,9 @@ from grader.checks.tree import urdf_loads
 from grader.grading.criterion import worth
 from grader.grading.report import EvidenceResult, Report
 from grader.problems import Problem
+from grader.report.criteria import Line, Section, sum_text
+from grader.report.document import failures
 from grader.report.locations import location_text
-from grader.report.order import earned_text, failures, sum_text
 from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted
 from grader.xml.catalogue import RECOVERED
 
@@ -19,7 +20,7 @@ VERDICTS = {
     "degraded": "ROS 2 loads the file, but drops content of it",
     "rejected": "ROS 2 rejects the file",
 }
-_MAX_LISTED, _MAX_FILES, _MAX_MISSING = 12, 2, 2
+_MAX_LISTED = 12
 _STATUSES = ("passed", "failed", "skipped", "pending", "errored", "adjusted", "marked manually")
 _WORDS = {"pending": ("needs manual grading", "need manual grading"), "adjusted": ("corrected after grading",) * 2}
 
@@ -37,12 +38,6 @@ def counting_text(report: Report) -> str:
     return format_points(report.grade.points) if report.grade.points is not None else "Excused"
 
 
-def headline(report: Report) -> str:
-    """Return the points that count and the maximum in short: 58.5/70."""
-    most = earned_text(*report.results).partition("/")[2]
-    return f"{counting_text(report)}/{most}" if report.counting is not None else counting_text(report)
-
-
 def grade_line(report: Report) -> str:
     """Return how the grade of a student in a class came about; empty if it is the score of automatic criteria."""
     if report.grade is None:
@@ -55,18 +50,6 @@ def grade_line(report: Report) -> str:
     if report.grade.points is None:
         return f"Excused; the criteria give {text} points."
     return f"Final mark, instead of {text} points." if report.grade.is_final else f"Points: {text}."
-
-
-def graded_line(report: Report) -> str:
-    """Return the version of the grader, the rubric, and the URDF, or the submission without one."""
-    graded = printable(report.submission.path or report.submission.id)
-    graded += ", which ROS 2 rejects" if report.submission.verdict == "rejected" else ""
-    return f"grader {report.version}, {printable(report.rubric.id)}: {graded}"
-
-
-def provenance(report: Report) -> str:
-    """Return the version of the grader, and the rubric with its hash."""
-    return f"grader {report.version}, rubric {printable(report.rubric.id)}, sha256 {report.rubric.sha256}"
 
 
 def summary(report: Report) -> str:
@@ -106,16 +89,17 @@ def package_line(report: Report) -> str:
     return printable(f"package {package.name}{f' in {package.folder}' if package.folder else ''}")
 
 
-def summaries(report: Report) -> list[str]:
-    """Return what a report says first: how the grade came about, the URDF, the criteria, extra credit, the package."""
-    return [*filter(None, (grade_line(report), summary(report), bonus_line(report), package_line(report)))]
-
-
-def pending_line(report: Report) -> str:
-    """Return how many points need manual grading, and which automatic criteria are among them; empty if none do."""
-    names = [printable(result.criterion.id) for result in report.pending_automatic]
-    rest = f"; could not be decided: {enumerated(names, _MAX_LISTED)}" if names else ""
-    return f"{pending_points(report)}{rest}" if report.open_points else ""
+def head(report: Report) -> Iterator[Line]:
+    """Yield what a report says first: how the grade came about, the URDF, the criteria, the package, what is open."""
+    for text in (grade_line(report), summary(report), bonus_line(report), package_line(report)):
+        yield from [Line("summary", text)] if text else []
+    if report.open_points:
+        names = [printable(result.criterion.id) for result in report.pending_automatic]
+        rest = f"; could not be decided: {enumerated(names, _MAX_LISTED)}" if names else ""
+        yield Line("pending", pending_points(report) + rest)
+    sha256 = report.rubric.sha256
+    yield Line("provenance", f"grader {report.version}, rubric {printable(report.rubric.id)}, sha256 {sha256}")
+    yield from (Line("note", text) for text in notes(report))
 
 
 def pending_points(report: Report) -> str:
@@ -128,63 +112,42 @@ def notes(report: Report) -> list[str]:
     return [f"Note: {printable(note)}" for note in report.all_notes]
 
 
-def first_ignored(report: Report) -> list[str]:
-    """Return the other candidates for grading in a line, and the first ignored file, with the number of the others."""
-    others, ignored = [file.path for file in report.submission.other_candidates], report.submission.ignored
-    lines = [f"Not graded: {enumerated(others, _MAX_FILES)} (--verbose says why)"] if others else []
-    more = f" (and {len(ignored) - 1} more: --verbose lists them)" if len(ignored) > 1 else ""
-    lines += [f"Ignored: {file}{more}" for file in ignored[:1]]
-    return list(map(printable, lines))
+def closing(report: Report) -> Iterator[Section]:
+    """Yield the evidence, the problems that no criterion has reported, and other candidates with ignored files."""
+    files = [f"Other candidate {file.path}: {file.reason}" for file in report.submission.other_candidates]
+    files += [f"Ignored: {file}" for file in report.submission.ignored]
+    problems = other_problems(report)
+    sections = (
+        Section("Evidence", lines=tuple(_evidence(report))),
+        Section(
+            f"Other problems in the {'file' if report.submission.is_single else 'files'}",
+            lines=tuple(Line(problem.severity, problem_line(problem)) for problem in problems),
+        ),
+        Section("Ignored files", lines=tuple(Line("ignored", printable(it)) for it in first_lines(files, _MAX_LISTED))),
+    )
+    yield from (section for section in sections if section.lines)
 
 
-def ignored_lines(report: Report) -> list[str]:
-    """Return the other candidates for grading and the ignored files; of many the first, and how many more there are."""
-    lines = [f"Other candidate {file.path}: {file.reason}" for file in report.submission.other_candidates]
-    lines += [f"Ignored: {file}" for file in report.submission.ignored]
-    return [printable(line) for line in first_lines(lines, _MAX_LISTED)]
+def closing_lines(report: Report) -> list[str]:
+    """Return the evidence, other problems and files as plain text."""
+    return [text for part in closing(report) for text in (f"{part.title}:", *(line.text for line in part.lines))]
 
 
-def evidence(report: Report) -> Iterator[tuple[str, list[tuple[str, bool]]]]:
-    """Yield the title of each part with its pieces of evidence and whether it was found; then the other pictures."""
-    for part, found_files in groupby(report.evidence, key=lambda found_files: found_files.evidence.part):
-        title = printable(report.rubric.part(part).title)
-        yield title, [(_evidence_text(found), bool(found.files)) for found in found_files]
+def _evidence(report: Report) -> Iterator[Line]:
+    """Yield the title of each part, then its evidence; last the other pictures."""
+    for part, of_part in groupby(report.evidence, key=lambda found: found.evidence.part):
+        yield Line("part", printable(report.rubric.part(part).title))
+        yield from (Line("found" if found.files else "missing", evidence_text(found)) for found in of_part)
     if report.other_pictures:
-        yield "Other pictures and documents", [(printable(file.words), True) for file in report.other_pictures]
+        yield Line("part", "Other pictures and documents")
+        yield from (Line("found", printable(file.words)) for file in report.other_pictures)
 
 
-def evidence_line(report: Report) -> str:
-    """Return how many pieces of evidence were found, and which were not; empty if the lab asks for none."""
-    found = sum(bool(found_files.files) for found_files in report.evidence)
-    texts = [f"Evidence: {found or 'none'} of {len(report.evidence)} found"]
-    lacking = [found_files for found_files in report.evidence if not found_files.files]
-    texts += [_evidence_text(found_files) for found_files in lacking if found_files.possible]
-    missing = [found_files.evidence.title for found_files in lacking if not found_files.possible]
-    texts += [f"missing: {enumerated(missing, _MAX_MISSING)}"] if 0 < len(missing) < len(report.evidence) else []
-    return printable("; ".join(texts)) if report.evidence else ""
-
-
-def _evidence_text(found: EvidenceResult) -> str:
+def evidence_text(found: EvidenceResult) -> str:
     """Return a piece of evidence with its files, or with those that are perhaps meant."""
     files = ", ".join(file.words for file in found.files)
     perhaps = enumerated([file.words for file in found.possible], _MAX_LISTED, "or")
     return printable(f"{found.evidence.title}: {files or (f'perhaps {perhaps}' if perhaps else 'missing')}")
-
-
-def note_lines(report: Report) -> list[str]:
-    """Return notes on the whole submission: how it was read, other candidates, ignored files, evidence."""
-    texts = [f"Evidence, {part}: {text}" for part, lines in evidence(report) for text, _ in lines]
-    return [*notes(report), *ignored_lines(report), *texts]
-
-
-def summary_lines(report: Report) -> list[str]:
-    """Return what a report says first, and what needs manual grading."""
-    return [*summaries(report), *filter(None, [pending_line(report)])]
-
-
-def submission_lines(report: Report) -> list[str]:
-    """Return all lines about the whole submission, besides its score."""
-    return summary_lines(report) + note_lines(report)
 
 
 def problem_line(problem: Problem) -> str:
@@ -199,11 +162,6 @@ def other_problems(report: Report) -> list[Problem]:
     told = [(RECOVERED, "") for it in failed if it.criterion.check.function is urdf_loads]
     left = (problem for problem in report.problems if (problem.kind, problem.subject) not in told)
     return [problem for problem in left if (problem.location, problem.message) not in reported]
-
-
-def other_problems_title(report: Report) -> str:
-    """Return the title of the problems that no failed criterion has reported."""
-    return f"Other problems in the {'file' if report.submission.is_single else 'files'}"
 
 
 def next_command(report: Report) -> str:

@@ -1,13 +1,12 @@
 """The content of a report on one criterion, sentence by sentence, or on several, for every format to lay out."""
 
-from collections.abc import Iterable
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator
 
 from grader.checks.outcome import Outcome
 from grader.grading.criterion import Criterion
-from grader.grading.report import Hint, Report, Result
-from grader.report.locations import excerpt_lines, location_text
-from grader.report.order import FailedCriterion, alike, failures, is_failure, is_manual, points_of, status_of
+from grader.grading.report import Report, Result
+from grader.report.criteria import Answer, Block, Diff, Entry, Line, alike, is_failure, is_manual, points_of
+from grader.report.locations import SourceOf, excerpt_lines, location_text
 from grader.source import Location
 from grader.text import by_name, enumerated, printable, signed_points
 
@@ -25,74 +24,63 @@ SYMBOLS, ASCII_SYMBOLS, STYLES, STATUS_WORDS = ({row[0]: row[column] for row in 
 _MAX_FILES, _MAX_CRITERIA = 2, 3
 
 
-class Details(NamedTuple):
-    """The sentences of a report on a criterion, besides its id and points.
+def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iterator[Block]:
+    """Yield what is said about a criterion: what is wrong and where, the answer, what to do, what was expected.
 
-    `comment` is a grader's comment without points. `answer` is the student's answer to a question, line by line, and
-    `model_answer` the instructor's, if the rubric was loaded with its answers. `location` is where to look and
-    `expected` what should be, if the criterion failed; `hint` is a change that makes it pass, in printable sentences.
+    A hint is in place of the rubric's feedback; with `everything` there are both.
     """
-
-    sentences: tuple[str, ...]
-    answer: tuple[str, ...]
-    model_answer: tuple[str, ...]
-    location: Location | None
-    feedback: str
-    expected: str
-    hint: Hint | None
-    comment: str
-
-    @property
-    def words(self) -> tuple[str, ...]:
-        """The sentences, and the comment."""
-        return (*self.sentences, *filter(None, [self.comment]))
-
-    @property
-    def advice(self) -> tuple[str, ...]:
-        """What to do: the hint, or the rubric's feedback where there is none."""
-        return tuple(filter(None, [self.hint.message if self.hint is not None else self.feedback]))
-
-
-def result_details(result: Result, report: Report) -> Details:
-    """Return the details of one criterion, whatever its status."""
-    criterion, outcome, comment = result.criterion, result.outcome, result.comment
+    result, criterion, outcome = entry.result, entry.result.criterion, entry.result.outcome
     is_asked = outcome.status == "pending" and not result.is_adjusted
-    has_failed = status_of(result) == "failed" and result.manual_mark is None
+    has_failed = entry.status == "failed" and result.manual_mark is None
     is_mistake = has_failed and not result.carried  # else the advice would be to change what is as it should be
     has_subject = report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot")
-    return Details(
-        _sentences(result),
-        _printable(answer_lines(outcome)) if is_asked else (),
-        _printable(model_lines(criterion)) if is_asked else (),
-        outcome.location if has_failed else None,
-        _one_line(criterion.feedback) if is_mistake and has_subject else "",
+    yield from _findings(result)
+    if outcome.location is not None and has_failed:
+        yield outcome.location
+    if is_asked:
+        yield from _answers(result)
+    if result.hint is not None and is_mistake:
+        yield Line("hint", sentence(hint_text(entry, result.hint.message)))
+        yield from [Diff(result.hint.edits)] if result.hint.edits and not entry.first else []
+    if criterion.feedback and is_mistake and has_subject and (everything or result.hint is None):
+        yield Line("feedback", _one_line(criterion.feedback))
+    if is_failure(result) and not is_asked:
         # The title of a criterion is never stated alone, because it would read as a fact.
-        f"Passes when: {sentence(criterion.title)}" if is_failure(result) and not is_asked else "",
-        _hint(result, report) if is_mistake else None,
-        sentence(f"Comment{by_name(comment.by)}: {_one_line(comment.text)}") if comment is not None else "",
-    )
+        yield Line("expected", f"Passes when: {sentence(criterion.title)}")
+    if entry.skipped:
+        yield Line("skipped", skipped_text(entry.id, entry.skipped))
 
 
-def remarks_on(result: Result, report: Report) -> tuple[str, ...]:
-    """Return why a criterion is adjusted, and a grader's comment; nothing without either."""
-    if not (result.is_adjusted or result.comment):
-        return ()
-    details = result_details(result, report)
-    return details.words if result.is_adjusted else (details.comment,)
-
-
-def _sentences(result: Result) -> tuple[str, ...]:
-    """Return what a criterion's points are due to: an adjustment, a manual mark, or what the check found."""
-    outcome, given = result.outcome, result.manual_mark
+def _findings(result: Result) -> Iterator[Line]:
+    """Yield what the points of a criterion are due to, and the comment without points."""
+    outcome, mark, comment = result.outcome, result.manual_mark, result.comment
     if result.is_adjusted:  # what the check found is not the student's mistake
-        return (sentence(_one_line(result.why_given)),)
-    if given is not None:
-        comment = f": {_one_line(given.comment)}" if given.comment else ""
-        check = () if outcome.status == "pending" else (sentence(f"The check: {outcome.status}. {outcome.message}"),)
-        return (sentence(f"Marked{by_name(given.by) or ' manually'}{comment}"), *check)
-    if outcome.status == "skipped" and result.because:
-        return (f"Skipped because {result.because} failed.",)
-    return (sentence(outcome.message), *filter(None, [result.why_given]))
+        yield Line("finding", sentence(_one_line(result.why_given)))
+    elif mark is not None:
+        words = f": {_one_line(mark.comment)}" if mark.comment else ""
+        yield Line("finding", sentence(f"Marked{by_name(mark.by) or ' manually'}{words}"))
+        if outcome.status != "pending":
+            yield Line("finding", sentence(f"The check: {outcome.status}. {outcome.message}"))
+    elif outcome.status == "skipped" and result.because:
+        yield Line("finding", f"Skipped because {result.because} failed.")
+    else:
+        yield Line("finding", sentence(outcome.message))
+        yield from [Line("finding", result.why_given)] if result.why_given else []
+    if comment is not None:
+        yield Line("comment", sentence(f"Comment{by_name(comment.by)}: {_one_line(comment.text)}"))
+
+
+def remarks_on(result: Result) -> list[str]:
+    """Return why a criterion is adjusted, and a grader's comment; nothing without either."""
+    return [line.text for line in _findings(result) if result.is_adjusted or line.role == "comment"]
+
+
+def _answers(result: Result) -> Iterator[Answer]:
+    """Yield the student's answer to a question, and the model answer if the rubric was loaded with its answers."""
+    found = tuple(printable(line) for line in answer_lines(result.outcome) if line.strip())
+    model = tuple(printable(line) for line in model_lines(result.criterion) if line.strip())
+    yield from [Answer("Found", found)] if found else []
+    yield from [Answer("Model answer", model)] if model else []
 
 
 def _one_line(text: str) -> str:
@@ -125,11 +113,6 @@ def counts_lines(location: Location) -> bool:
     return not location.path.lower().endswith((".pdf", ".docx"))
 
 
-def _printable(lines: Iterable[str]) -> tuple[str, ...]:
-    """Return the lines that are not blank."""
-    return tuple(printable(line) for line in lines if line.strip())
-
-
 def sentence(message: str) -> str:
     """Return a message as a printable sentence, with a capital and a full stop."""
     text = printable(message)
@@ -138,38 +121,33 @@ def sentence(message: str) -> str:
     return text if text.endswith((".", "?")) else f"{text}."
 
 
-def _hint(result: Result, report: Report) -> Hint | None:
-    """Return the hint of a criterion, which says what it fixes besides; one that another failure shows names that."""
-    if result.hint is None:
-        return None
-    failure = next(failure for failure in failures(report) if failure.id == result.criterion.id)
-    hint = hint_of(failure, result.hint)
-    return hint._replace(message=sentence(hint.message))
-
-
-def hint_of(failure: FailedCriterion, hint: Hint) -> Hint:
-    """Return a hint of a failure, which says what it fixes besides."""
-    if failure.first:
-        return hint._replace(message=f"Fixed by the same edit as {failure.first}.", edits=())
-    also = [f"{other.id}, {signed_points(-other.lost)}" for other in failure.also]
-    skipped = (result.criterion.id for one in (failure, *failure.also) for result in one.skipped)
+def hint_text(entry: Entry, message: str) -> str:
+    """Return the message of the hint of a failure, with what the same edit fixes besides."""
+    hint = entry.result.hint
+    if entry.first or hint is None:
+        return f"Fixed by the same edit as {entry.first}."
+    also = [f"{other.id}, {signed_points(-other.lost)}" for other in entry.also]
+    skipped = (result.criterion.id for one in (entry, *entry.also) for result in one.skipped)
     left = [name for name in skipped if name not in hint.gains]
-    texts = [hint.message.removesuffix(".")]
+    texts = [message.removesuffix(".")]
     texts += ["Other edits are as good"] if hint.certainty == "one of several" else []
     texts += [f"Also fixes {enumerated(also, _MAX_CRITERIA)}"] if also else []
     texts += [f"Then look at {enumerated(left, _MAX_CRITERIA)}"] if left else []
-    return hint._replace(message=f"{'. '.join(texts)}.")
+    return f"{'. '.join(texts)}."
 
 
-def criterion_lines(result: Result, report: Report) -> list[str]:
-    """Return the lines about one criterion: the finding, its place, the answer, what to do."""
-    details = result_details(result, report)
-    lines = list(details.words)
-    if details.location is not None:
-        lines += [location_text(details.location), *excerpt_lines(details.location, report.submission.source)]
-    if details.answer:
-        lines += ["Found:", *(f"  {line}" for line in details.answer)]
-    return [*lines, *details.advice]
+def plain_lines(entry: Entry, source_of: SourceOf) -> list[str]:
+    """Return an entry as plain text: the finding, its place, the answer, what to do."""
+    lines: list[str] = []
+    for block in entry.blocks:
+        match block:
+            case Line("finding" | "comment" | "hint" | "feedback", text):
+                lines.append(text)
+            case Location():
+                lines += [location_text(block), *excerpt_lines(block, source_of)]
+            case Answer("Found", found):
+                lines += ["Found:", *(f"  {line}" for line in found)]
+    return lines
 
 
 def pending_reason(result: Result) -> str:

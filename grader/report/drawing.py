@@ -147,7 +147,7 @@ def render_svg(report: Report) -> str:
     """Return the drawing of the graded robot as a file; without a robot, a sentence with the reason."""
     words = [grade_line(report), summary(report), bonus_line(report)]
     for result in report.results:
-        words += [f"{printable(result.criterion.id)}: {remark}" for remark in remarks_on(result, report)]
+        words += [f"{printable(result.criterion.id)}: {remark}" for remark in remarks_on(result)]
     return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, why_no_picture(report))
 
 

@@ -2,7 +2,7 @@
 
 from grader.drawing.picture import Callout, Picture, picture_of
 from grader.grading.report import Report
-from grader.report.order import points_of
+from grader.report.criteria import points_of
 from grader.submission.urdf import Absent
 from grader.text import enumerated, printable
 

@@ -10,8 +10,9 @@ from rich.text import Text
 
 from grader.errors import MissingElement, NotDecided
 from grader.report.as_json import PROBLEM
-from grader.report.console import put, show_problems, symbol, wrapped
+from grader.report.console import Page, Room, symbol
 from grader.report.content import UNDECIDED, VERDICTS
+from grader.report.criteria import alike
 from grader.report.json_data import (
     NUMBER,
     TEXT,
@@ -26,7 +27,7 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
-from grader.report.order import alike
+from grader.report.verbose import problem_rows
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.reader import Reading
@@ -112,37 +113,31 @@ def inspection_json(inspection: Inspection) -> str:
 
 def inspection_terminal(inspection: Inspection, console: Console) -> None:
     """Print the inspection."""
+    page = Page(console, Room.ANY, [])
     reading, robot = inspection.reading, inspection.robot
     name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
     verdict = (effect(inspection), _STYLES[inspection.verdict])
-    head = ((printable(inspection.path), "bold"), ": ", verdict, f", {printable(name)}")
-    console.print(Text.assemble(*head))
+    page.inset(Text.assemble((printable(inspection.path), "bold"), ": ", verdict, f", {printable(name)}"), indent=0)
     if reading.problems:
-        _print_title(console, "Problems")
-        show_problems(console, reading.problems, lambda _: reading.source, inspection.path)
-    if robot is None or inspection.relative_to is None:  # without a root there is neither a tree nor a frame
-        return
-    _print_title(console, "Tree")
-    signs = tuple(symbol(console, *pair) for pair in zip(_BRANCHES, ("|- ", "`- ", "|  "), strict=True))
-    for indent, link, joint in islice(tree(robot, signs), _MAX_LISTED):
-        put(console, Text.assemble(f"  {indent}{link}", (f"  {joint}" if joint else "", "dim")))
-    _print_rest(console, len(robot.roots) + len(robot.parent_joints))
-    frame = printable(inspection.relative_to)
-    _print_title(console, f"Poses in {frame!r} (x y z in m, roll pitch yaw in rad)")
-    for link, pose in islice(inspection.poses(), _MAX_LISTED):
-        text = (_pose_text(pose), "cyan") if isinstance(pose, Transform) else (printable(pose), "red")
-        wrapped(console, Text.assemble(f"{printable(link)}  ", text), 2)
-    _print_rest(console, len(robot.robot.links))
+        page.title("Problems")
+        page.rows.extend(problem_rows(console, reading.problems, lambda _: reading.source, inspection.path))
+    if robot is not None and inspection.relative_to is not None:  # else there is neither a tree nor a frame
+        page.title("Tree")
+        signs = tuple(symbol(console, *pair) for pair in zip(_BRANCHES, ("|- ", "`- ", "|  "), strict=True))
+        for indent, link, joint in islice(tree(robot, signs), _MAX_LISTED):
+            page.rows.append(Text.assemble(f"  {indent}{printable(link)}", (joint_text(joint), "dim")))
+        _add_rest(page, len(robot.roots) + len(robot.parent_joints))
+        page.title(f"Poses in {printable(inspection.relative_to)!r} (x y z in m, roll pitch yaw in rad)")
+        for link, pose in islice(inspection.poses(), _MAX_LISTED):
+            text = (_pose_text(pose), "cyan") if isinstance(pose, Transform) else (printable(pose), "red")
+            page.inset(Text.assemble(f"{printable(link)}  ", text))
+        _add_rest(page, len(robot.robot.links))
+    page.print()
 
 
-def _print_title(console: Console, title: str) -> None:
-    console.print()
-    console.print(Text(title, "bold"))
-
-
-def _print_rest(console: Console, count: int) -> None:
+def _add_rest(page: Page, count: int) -> None:
     if count > _MAX_LISTED:
-        console.print(Text(f"  ... and {count - _MAX_LISTED} more (--format json lists all)"))
+        page.inset(f"... and {count - _MAX_LISTED} more (--format json lists all)")
 
 
 def effect(inspection: Inspection) -> str:
@@ -150,20 +145,16 @@ def effect(inspection: Inspection) -> str:
     return _EFFECTS[inspection.verdict]
 
 
-def tree(robot: Configuration, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, str, str]]:
-    """Yield every link after its parent: the branches before it, its name, and its parent joint in words."""
+def tree(robot: Configuration, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, str, Joint | None]]:
+    """Yield every link after its parent: the branches before it, its name, and its parent joint."""
     children = dict(alike(robot.parent_joints.values(), lambda joint: joint.parent))
     branch, last, bar = signs
     for root in robot.roots:
-        yield "", printable(root), ""
+        yield "", root, None
         stack = _branches(children.get(root, ()), "")
         while stack:
             joint, indent, is_last = stack.pop()
-            yield (
-                f"{indent}{last if is_last else branch}",
-                printable(joint.child),
-                f"{printable(joint.name)}: {_joint_text(joint)}",
-            )
+            yield f"{indent}{last if is_last else branch}", joint.child, joint
             stack += _branches(children.get(joint.child, ()), (indent + ("   " if is_last else bar))[-60:])
 
 
@@ -171,8 +162,11 @@ def _branches(joints: Sequence[Joint], indent: str) -> list[tuple[Joint, str, bo
     return [(joint, indent, index == 0) for index, joint in enumerate(reversed(joints))]
 
 
-def _joint_text(joint: Joint) -> str:
-    words = printable(joint.type) or "no type"
+def joint_text(joint: Joint | None) -> str:
+    """Return a joint in words; empty for the parent joint of a root."""
+    if joint is None:
+        return ""
+    words = f"  {printable(joint.name)}: {printable(joint.type) or 'no type'}"
     if joint.type not in ("fixed", "floating"):
         words += f" about {_numbers(joint.axis)}" if joint.axis is not None else " about an unreadable axis"
     if joint.limit is not None and isfinite(joint.limit.upper - joint.limit.lower):

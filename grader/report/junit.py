@@ -10,10 +10,11 @@ from typing import Any
 from lxml import etree
 
 from grader.grading.report import Report, Result
-from grader.report.content import counting_text, other_problems, problem_line, provenance, score_text, submission_lines
-from grader.report.details import criterion_lines, result_details
+from grader.report.content import closing_lines, counting_text, head, score_text
+from grader.report.criteria import Entry, earned_text, is_failure, status_of
+from grader.report.details import plain_lines
+from grader.report.document import entries
 from grader.report.locations import archive_around
-from grader.report.order import earned_text, is_failure, status_of
 from grader.source import Base
 from grader.text import format_points, printable
 
@@ -25,16 +26,16 @@ _COUNTS = {"failures": "failure", "errors": "error", "skipped": "skipped"}
 def render_junit(report: Report, base: Base) -> str:
     """Return the report; its paths are those in the repository, where the submission is at `base`."""
     top = etree.Element("testsuites", {"name": printable(report.rubric.title), **_counts(report.results)})
-    problems = map(problem_line, other_problems(report))
-    said = [score_text(report), *submission_lines(report), *problems, provenance(report)]
-    parts = groupby(report.results, key=lambda result: result.criterion.part)
+    said = [score_text(report), *(line.text for line in head(report)), *closing_lines(report)]
+    parts = groupby(entries(report).values(), key=lambda entry: entry.result.criterion.part)
     suites = [(report.rubric.part(part).title, tuple(some)) for part, some in parts]
-    for number, (title, results) in enumerate(suites or [(report.rubric.title, ())]):
-        suite = etree.SubElement(top, "testsuite", {"name": printable(title), **_counts(results)})
+    for number, (title, some) in enumerate(suites or [(report.rubric.title, ())]):
+        counts = _counts(tuple(entry.result for entry in some))
+        suite = etree.SubElement(top, "testsuite", {"name": printable(title), **counts})
         if number == 0:  # the format has no other place for it that every reader shows
             _properties(suite, _facts(report))
-        for result in results:
-            _case(suite, result, report, base)
+        for entry in some:
+            _case(suite, entry, report, base)
         if number == 0:
             _put(suite, "system-out", said)
     etree.indent(top)
@@ -66,11 +67,11 @@ def _facts(report: Report) -> dict[str, str]:
     }
 
 
-def _case(suite: Any, result: Result, report: Report, base: Base) -> None:
-    criterion, kind, lines = result.criterion, _kind(result), criterion_lines(result, report)
+def _case(suite: Any, entry: Entry, report: Report, base: Base) -> None:
+    result, criterion, where = entry.result, entry.result.criterion, entry.location
+    kind, lines = _kind(result), plain_lines(entry, report.submission.source)
     name, group = printable(f"{criterion.title} ({criterion.id})"), f"{report.rubric.id}.{criterion.part}"
     case = etree.SubElement(suite, "testcase", name=name, classname=group)
-    where = result_details(result, report).location
     if where is not None and where.path != "-" and not (base.archive or archive_around(where.path)):
         case.set("file", printable(base.folder + where.path))
         case.set("line", str(where.line))

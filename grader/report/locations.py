@@ -4,9 +4,8 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from difflib import SequenceMatcher
 from itertools import groupby
-from typing import NamedTuple
 
-from grader.source import Base, Edit, Location, Source
+from grader.source import Edit, Location, Source
 from grader.text import first_lines, printable
 
 _MEANT = r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+"""  # attribute, tag, word
@@ -23,43 +22,25 @@ _MAX_LENGTH = 200  # the same for a diff: of a longer line only the old and the 
 _MAX_LINES = 40  # of a diff
 
 
-class Excerpt(NamedTuple):
-    """A source line, cut to the available width. The marked part starts at `start`, from 0, and is `width` long."""
-
-    text: str
-    start: int
-    width: int
-
-
-class RepositoryLocation(NamedTuple):
-    """A location as seen from the repository's root, from 1; `end` is the column after the marked part.
-
-    Without a line it is the whole file.
-    """
-
-    path: str
-    line: int | None = None
-    column: int = 1
-    end: int = 1
-
-
 def width_of(line: str, column: int) -> int:
     """Return the length of the attribute, tag or word at a column; 1 if there is none."""
     found = re.match(_MEANT, line[column - 1 :])
     return len(found[0].rstrip()) if found else 1
 
 
-def excerpt(source: Source, where: Location, room: int) -> Excerpt:
-    """Return the source line of a location, cut to a number of characters around the marked part."""
-    line = source.line(where.line)
-    start = where.column - 1
-    width = width_of(line, where.column)
-    cut = len(line) - len(line.lstrip())
-    if start + width - cut > room:
+def excerpt(source: Source, where: Location, room: int, indent: int | None = None) -> tuple[str, str, str]:
+    """Return the source line of a location: the text before the marked part, that part, and the rest.
+
+    Together they have a number of characters around the marked part; without `indent` the line is not indented.
+    """
+    line, start = source.line(where.line), where.column - 1
+    end = start + width_of(line, where.column)
+    cut = len(line) - len(line.lstrip()) if indent is None else min(indent, start)
+    if end - cut > room:
         cut = max(0, min(start - _MARGIN, len(line)))
-    before, meant = printable(line[cut:start]), printable(line[start : start + width])
-    text = (before + meant + printable(line[start + width :]))[:room].rstrip()
-    return Excerpt(text, len(before), max(1, min(len(meant), room - len(before))))
+    before, meant = printable(line[cut:start]), printable(line[start:end])
+    meant = meant[: max(0, room - len(before))]
+    return before, meant, printable(line[end:])[: max(0, room - len(before + meant))].rstrip()
 
 
 def calls_text(where: Location) -> str:
@@ -77,10 +58,10 @@ def excerpt_lines(where: Location, source_of: SourceOf) -> Iterator[str]:
     """Yield the source line of a location, and a line that underlines the marked part; nothing without the file."""
     source = source_of(where.path)
     if source is not None:
-        line = excerpt(source, where, _EXCERPT_WIDTH)
+        before, meant, after = excerpt(source, where, _EXCERPT_WIDTH)
         number = str(where.line)
-        yield f"{number} | {line.text}"
-        yield f"{' ' * len(number)} | {' ' * line.start}{'-' * line.width}"
+        yield f"{number} | {(before + meant + after).rstrip()}"
+        yield f"{' ' * len(number)} | {' ' * len(before)}{'-' * max(1, len(meant))}"
 
 
 def source_lines(where: Location, source_of: SourceOf) -> list[SourceLine]:
@@ -93,15 +74,12 @@ def source_lines(where: Location, source_of: SourceOf) -> list[SourceLine]:
     if source is None or not line.strip():
         return []
     if len(line) > _MAX_WIDTH:
-        text, start, width = excerpt(source, where, _MAX_WIDTH)
-        return [(where.line, text[:start], text[start : start + width], text[start + width :])]
+        return [(where.line, *excerpt(source, where, _MAX_WIDTH))]
     around = {number: source.line(number) for number in range(max(1, where.line - _AROUND), where.line + _AROUND + 1)}
     last = max(number for number, text in around.items() if text.strip())
     indent = min(len(text) - len(text.lstrip()) for text in around.values() if text.strip())
     lines = [(number, printable(text[indent:][:_MAX_WIDTH]), None, "") for number, text in around.items()]
-    start = where.column - 1
-    end = start + width_of(line, where.column)
-    marked = (where.line, line[min(indent, start) : start], line[start:end], line[end:])
+    marked = (where.line, *excerpt(source, where, _MAX_WIDTH, indent))
     return [marked if one[0] == where.line else one for one in lines if one[0] <= last]
 
 
@@ -109,18 +87,6 @@ def archive_around(path: str) -> str:
     """Return the archive in a submission that a file is in; empty if it is in none."""
     found = re.match(_ARCHIVE, path)
     return found[1] if found else ""
-
-
-def in_repository(where: Location, source: Source | None, base: Base) -> RepositoryLocation:
-    """Return a location of a submission as seen from the repository's root."""
-    archive = base.archive or archive_around(where.path)
-    if archive:
-        return RepositoryLocation(archive if base.archive else base.folder + archive)
-    path = base.folder + where.path
-    if source is None:
-        return RepositoryLocation(path, where.line, where.column, where.column)
-    width = width_of(source.line(where.line), where.column)
-    return RepositoryLocation(path, where.line, where.column, where.column + width)
 
 
 def diff_lines(edits: Sequence[Edit], source_of: SourceOf) -> list[str]:

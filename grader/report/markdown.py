@@ -5,14 +5,17 @@ Text of a submission is escape: it never becomes markup, HTML, a link or a menti
 
 import html
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from itertools import accumulate, groupby
 from textwrap import indent
 
-from grader.grading.report import Report, Result
+from grader.grading.report import Report
 from grader.report import content
-from grader.report.details import SYMBOLS, Details, result_details, skipped_text
+from grader.report.criteria import Answer, CriteriaGroup, Diff, Entry, Line, Section, earned_text, groups, has_passed
+from grader.report.details import SYMBOLS
+from grader.report.document import document
 from grader.report.locations import diff_lines, excerpt_lines, location_text
-from grader.report.order import CriteriaGroup, alike, earned_text, groups, has_passed, in_order, status_of
+from grader.source import Location
 from grader.text import enumerated, printable
 
 _HTML = {"<": "&lt;", ">": "&gt;", "&": "&amp;"}
@@ -25,13 +28,14 @@ _OPENING = re.compile(r"^([-+=]|\d+[.)](?= |$))")  # a list, rule or heading at 
 # GitHub looks for mentions and issue numbers after it has rendered Markdown, so escapes do not prevent them.
 _MENTION = re.compile(r"@|#(?=\d)")
 _FENCE = re.compile(r"`{3,}")
+_LOOKS = {"pending": "**{}**", "hint": "**{}**", "feedback": "*{}*", "part": "{}:"}
 _MAX_FENCE = 80  # backticks: GitHub's parser takes no more to start code, and counts those of a block to 255
 _CUT = "**The report is cut off here, because it is too long.** A report that is saved to a file is complete.\n"
 
 
 def render_markdown(report: Report, picture: str = "") -> str:
     """Return the report. `picture` is the relative address of the robot's drawing, which is shown."""
-    return _join(_blocks(report, _picture(report, picture), answers=True))
+    return "\n".join(f"{block}\n" for block in _blocks(report, _picture(report, picture), answers=True))
 
 
 def cut_markdown(report: Report, most: int, pictures: Sequence[str] = ()) -> str:
@@ -42,31 +46,24 @@ def cut_markdown(report: Report, most: int, pictures: Sequence[str] = ()) -> str
     """
     names = enumerated([code(printable(name)) for name in pictures])
     named = f"Pictures of the robot: {names} (in the artifacts of this run, if the job uploads them)." if names else ""
-    text = _join(_blocks(report, named, answers=False))
-    if len(text.encode()) <= most:
-        return text
-    kept: list[str] = []
-    left = most - len(_CUT.encode())
-    for block in _blocks(report, named, answers=False):
-        left -= len(block.encode()) + 2
-        if left < 0:
-            break
-        kept.append(f"{block}\n")
-    return "\n".join((*kept, _CUT)) if len(_CUT.encode()) <= most else ""
+    blocks = [f"{block}\n" for block in _blocks(report, named, answers=False)]
+    whole, room = "\n".join(blocks), most - len(_CUT.encode())
+    if len(whole.encode()) <= most:
+        return whole
+    ends = accumulate(len(block.encode()) + 1 for block in blocks)
+    kept = (block for block, end in zip(blocks, ends, strict=True) if end <= room)
+    return "\n".join((*kept, _CUT)) if room >= 0 else ""
 
 
 def overview_markdown(report: Report) -> str:
     """Return the report without its criteria."""
-    return "\n\n".join((*_head(report), *_evidence(report), *_problems(report)))
+    sections = (part for section in content.closing(report) for part in _section(section, report, answers=False))
+    return "\n\n".join((*_head(report), *sections))
 
 
-def criterion_markdown(result: Result, report: Report) -> str:
+def criterion_markdown(entry: Entry, report: Report) -> str:
     """Return the text about one criterion, besides its title and points."""
-    return "\n\n".join(_details(result_details(result, report), report, set(), answers=False))
-
-
-def _join(blocks: Iterable[str]) -> str:
-    return "\n".join(f"{block}\n" for block in blocks)
+    return "\n\n".join(_details(entry, report, answers=False))
 
 
 def _picture(report: Report, address: str) -> str:
@@ -84,95 +81,59 @@ def _blocks(report: Report, picture: str, *, answers: bool) -> Iterator[str]:
     yield from _head(report)
     if picture:
         yield picture
-    order, shown = in_order(report), set[str]()
-    if order.failures:
-        yield "## Failed"
-    for result, skipped, *_ in order.failures:
-        item = _item(result, report, shown, answers=answers)
-        text = escape(skipped_text(result.criterion.id, skipped)) if skipped else ""
-        yield f"{item}\n\n{indent(text, '  ')}" if text else item
-    for cause, some in alike(order.skipped, lambda result: result.because or ""):
-        yield escape(skipped_text(cause, some))
-    for title, results in order.sections:
-        yield f"## {title}"
-        yield from (_item(result, report, shown, answers=answers) for result in results)
-    if order.passed:
-        yield "## Passed"
-    yield from filter(None, map(_fold_passed, groups(report)))
-    yield from _evidence(report)
-    yield from _problems(report)
+    for section in document(report).sections:
+        yield from _section(section, report, answers=answers)
+    passed = [*filter(None, map(_fold_passed, groups(report)))]
+    yield from ("## Passed", *passed) if passed else ()
+    for section in content.closing(report):
+        yield from _section(section, report, answers=answers)
     command = content.next_command(report)
     yield f"Next: {code(command)}" if command else content.what_is_left(report)
+
+
+def _head(report: Report) -> Iterator[str]:
+    yield f"# {escape(content.score_text(report))}: {escape(printable(report.rubric.title))}"
+    yield from (_LOOKS.get(line.role, "{}").format(escape(line.text)) for line in content.head(report))
+
+
+def _section(section: Section, report: Report, *, answers: bool) -> Iterator[str]:
+    yield f"## {section.title}"
+    for entry in section.entries:
+        result, name = entry.result, code(entry.id)
+        is_bare = result.is_adjusted or bool(entry.texts("expected"))
+        name = name if is_bare else f"{escape(printable(result.criterion.title))} ({name})"
+        details = (indent(block, "  ") for block in _details(entry, report, answers=answers))
+        yield "\n\n".join((f"- {SYMBOLS[entry.status]} {earned_text(result)} {name}", *details))
+    for is_item, lines in groupby(section.lines, lambda line: line.role not in ("part", "skipped")):
+        texts = [_LOOKS.get(line.role, "{}").format(escape(line.text)) for line in lines]
+        yield from ["\n".join(f"- {text}" for text in texts)] if is_item else texts
+
+
+def _details(entry: Entry, report: Report, *, answers: bool) -> Iterator[str]:
+    """Yield the text about a criterion, block by block."""
+    for block in entry.blocks:
+        match block:
+            case Line(role, text):
+                yield _LOOKS.get(role, "{}").format(escape(text))
+            case Location():
+                yield code(location_text(block))
+                if excerpt := [*excerpt_lines(block, report.submission.source)]:
+                    yield fence(excerpt)
+            case Answer(title, lines) if answers or title == "Found":
+                yield f"{title}:"
+                yield fence(lines)
+            case Diff(edits):
+                yield fence(diff_lines(edits, report.submission.source), "diff")
 
 
 def _fold_passed(group: CriteriaGroup) -> str:
     """Return the criteria of a group that passed, folded below its points; empty if none did."""
     lines = [
-        f"- {_start(result)} {escape(printable(result.criterion.title))}"
+        f"- {SYMBOLS['passed']} {earned_text(result)} {escape(printable(result.criterion.title))}"
         for result in group.results
         if has_passed(result)
     ]
     return fold(f"{printable(group.title)} {group.points}", lines) if lines else ""
-
-
-def _head(report: Report) -> Iterator[str]:
-    yield f"# {escape(content.score_text(report))}: {escape(printable(report.rubric.title))}"
-    yield from map(escape, content.summaries(report))
-    if report.open_points:
-        yield f"**{escape(content.pending_line(report))}**"
-    yield escape(content.provenance(report))
-    yield from map(escape, (*content.notes(report), *content.ignored_lines(report)))
-
-
-def _item(result: Result, report: Report, shown: set[str], *, answers: bool) -> str:
-    criterion = result.criterion
-    details = result_details(result, report)
-    is_bare = bool(details.expected) or result.is_adjusted
-    name = code(criterion.id) if is_bare else f"{escape(printable(criterion.title))} ({code(criterion.id)})"
-    blocks = (indent(block, "  ") for block in _details(details, report, shown, answers=answers))
-    return "\n\n".join((f"- {_start(result)} {name}", *blocks))
-
-
-def _start(result: Result) -> str:
-    return f"{SYMBOLS[status_of(result)]} {earned_text(result)}"
-
-
-def _details(details: Details, report: Report, shown: set[str], *, answers: bool) -> Iterator[str]:
-    """Yield the text about a criterion, block by block, without feedback that is shown already."""
-    yield from map(escape, details.words)
-    if details.expected:
-        yield escape(details.expected)
-    if details.location is not None:
-        yield code(location_text(details.location))
-        lines = list(excerpt_lines(details.location, report.submission.source))
-        if lines:
-            yield fence(lines)
-    for title, lines in (("Found", list(details.answer)), ("Model answer", list(details.model_answer) * answers)):
-        if lines:
-            yield f"{title}:"
-            yield fence(lines)
-    hint = details.hint
-    if hint is not None:
-        yield f"**{escape(hint.message)}**"
-        if hint.edits:
-            yield fence(diff_lines(hint.edits, report.submission.source), "diff")
-    elif details.feedback and details.feedback not in shown:
-        shown.add(details.feedback)
-        yield f"*{escape(details.feedback)}*"
-
-
-def _evidence(report: Report) -> Iterator[str]:
-    for number, (part, lines) in enumerate(content.evidence(report)):
-        if number == 0:
-            yield "## Evidence"
-        yield f"{escape(part)}:"
-        yield "\n".join(f"- {escape(text)}" for text, _ in lines)
-
-
-def _problems(report: Report) -> Iterator[str]:
-    if problems := content.other_problems(report):
-        yield f"## {content.other_problems_title(report)}"
-        yield from (f"- {escape(content.problem_line(problem))}" for problem in problems)
 
 
 def escape(text: str) -> str:
@@ -192,7 +153,7 @@ def code(text: str) -> str:
     return f"{fence}{space}{text}{space}{fence}"
 
 
-def fence(lines: list[str], language: str = "text") -> str:
+def fence(lines: Sequence[str], language: str = "text") -> str:
     """Return printable lines, none of them blank, as a code block that nothing in them can end."""
     fence = "`" * max((len(found[0]) + 1 for line in lines for found in _FENCE.finditer(line)), default=3)
     if len(fence) > _MAX_FENCE:

@@ -20,10 +20,11 @@ from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.report import Report, Result
 from grader.report.as_json import ADDITIONS
-from grader.report.details import criterion_lines
+from grader.report.criteria import Entry, earned_text, is_failure
+from grader.report.details import plain_lines
+from grader.report.document import entries
 from grader.report.json_data import exact, to_json
 from grader.report.markdown import criterion_markdown, overview_markdown
-from grader.report.order import earned_text, is_failure, status_of
 from grader.text import counted_points, printable
 
 
@@ -45,20 +46,20 @@ def render_gradescope(report: Report) -> str:
                 "submission_sha256": report.submission.sha256,
                 "pending": exact(report.pending),
             },
-            "tests": [_gradescope_test(result, report) for result in report.results],
+            "tests": [_gradescope_test(entry, report) for entry in entries(report).values()],
         }
     )
 
 
-def _gradescope_test(result: Result, report: Report) -> dict[str, Any]:
-    criterion, status = result.criterion, result.outcome.status
+def _gradescope_test(entry: Entry, report: Report) -> dict[str, Any]:
+    result, criterion, status = entry.result, entry.result.criterion, entry.result.outcome.status
     kinds = [word for word, is_one in (("extra credit", criterion.bonus), ("manual grading", result.is_open)) if is_one]
     most = f" ({', '.join((f'up to {counted_points(criterion.points)}', *kinds))})" if kinds else ""
     return {
         **({} if result.is_open else _gradescope_points(result)),
         "name": printable(criterion.title) + most,
         "number": _number(criterion, report),
-        "output": criterion_markdown(result, report),
+        "output": criterion_markdown(entry, report),
         "output_format": "md",
         "tags": [criterion.id, criterion.part, "adjusted" if result.is_adjusted else status],
         "visibility": "visible",
@@ -128,7 +129,7 @@ def render_classroom50(report: Report, identity: Mapping[str, str]) -> str:
             **identity,
             "score": int(min(report.score, report.max_score) * scale),
             "max-score": int(report.max_score * scale),
-            "tests": [_classroom50_test(result, report, scale) for result in report.results],
+            "tests": [_classroom50_test(entry, report, scale) for entry in entries(report).values()],
         }
     )
 
@@ -140,12 +141,13 @@ def _scale(report: Report) -> int:
     return int(10 ** max(0, digits))
 
 
-def _classroom50_test(result: Result, report: Report, scale: int) -> dict[str, Any]:
+def _classroom50_test(entry: Entry, report: Report, scale: int) -> dict[str, Any]:
+    result = entry.result
     bonus = [f"Extra credit: {earned_text(result)}. It is not part of the maximum."] if result.criterion.bonus else []
     return {
         "test-name": printable(f"{result.criterion.title} ({result.criterion.id})"),
-        "passed": status_of(result) in ("passed", "adjusted"),
+        "passed": entry.status in ("passed", "adjusted"),
         "score": int(min(result.points, result.criterion.points) * scale),
         "max-score": int(result.criterion.points * scale),
-        "message": "\n".join((*bonus, *criterion_lines(result, report))),
+        "message": "\n".join((*bonus, *plain_lines(entry, report.submission.source))),
     }

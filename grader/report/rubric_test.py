@@ -9,6 +9,7 @@ from grader.grading.criterion import worth
 from grader.mutation.mutants import Mutant
 from grader.mutation.result import Loss, MutantResults, RubricTest, Survivor
 from grader.report.as_json import SCORE
+from grader.report.criteria import alike
 from grader.report.json_data import (
     COUNT,
     GRADER,
@@ -27,7 +28,6 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
-from grader.report.order import alike
 from grader.text import counted, enumerated, first_lines, format_points, printable, without_commands
 
 _MAX_OF_GROUP, _MAX_GROUPS, _MAX_DIFF, _MAX_LOSSES = 3, 12, 14, 10

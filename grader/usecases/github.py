@@ -40,7 +40,7 @@ def publish_refusal(reason: str, annotate: Annotate, warn: Warn) -> None:
     from grader.report.markdown import escape
 
     lines = [printable(line) for line in reason.splitlines()]
-    annotate(command("error", None, "Nothing was graded", "\n".join(lines)))
+    annotate(command("error", {}, "Nothing was graded", "\n".join(lines)))
     text = "\n\n".join(("# Nothing was graded", *map(escape, lines))) + "\n"
     _add_to_summary(lambda room: text if len(text.encode()) <= room else "", warn)
 

@@ -248,7 +248,6 @@ def gradescope_text(text: str) -> str:
 _TESTS = "it has a test for each criterion, and no room for anything else"
 _NAMED = "of ten notices one names all that wait and all that are skipped"
 _SUM = "it names what to fix, and gives the sum of the extra credit with the score"
-_PERSON = "it is for a person, who has started this grader and named this rubric"
 
 
 class FormatReader(NamedTuple):
@@ -269,7 +268,6 @@ READERS: Mapping[Format, FormatReader] = {
         str.splitlines,
         lambda _: None,  # its lines have no structure
         str,
-        {"rubric": _PERSON},
     ),
     Format.MARKDOWN: FormatReader(read_markdown, markdown_structure, markdown_text),
     Format.HTML: FormatReader(read_page, page_structure, page_text),

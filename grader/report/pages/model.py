@@ -7,6 +7,7 @@ from typing import Any
 from grader.checks.visuals import main_visual
 from grader.drawing.picture import Picture
 from grader.drawing.scene import Body, Scene, Wheel
+from grader.report.inspection import tree
 from grader.robot.frames import motion_of, placed_by
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Joint, Sphere
@@ -23,8 +24,9 @@ def picture_data(picture: Picture) -> dict[str, Any]:
     """Return the data of the script: the robot, the reference, and the callouts."""
     scene, reference = picture.scene, picture.reference
     links, others = _indices(scene), _indices(reference) if reference is not None else {}
+    lost = [(callout.link, result.criterion.check.about) for callout in picture.callouts for result in callout.results]
     return {
-        "robot": _robot(scene, reference, _failed_wheels(picture)),
+        "robot": _robot(scene, reference, {link for link, about in lost if about.picture == "wheel"}),
         "reference": _robot(reference) if reference is not None else None,
         "same": [links.get(name, -1) for name in others],
         "callouts": [
@@ -44,15 +46,6 @@ def _indices(scene: Scene) -> dict[str, int]:
     return {name: number for number, name in enumerate(dict.fromkeys(link.name for link in scene.robot.robot.links))}
 
 
-def _failed_wheels(picture: Picture) -> set[str]:
-    """Return the links whose drive direction failed a criterion."""
-    return {
-        callout.link
-        for callout in picture.callouts
-        if any(result.criterion.check.about.picture == "wheel" for result in callout.results)
-    }
-
-
 def _robot(scene: Scene, expected: Scene | None = None, failed: Collection[str] = ()) -> Data:
     links, robot = _indices(scene), scene.robot
     joints = {id(joint): number for number, joint in enumerate(robot.robot.joints)}
@@ -62,26 +55,13 @@ def _robot(scene: Scene, expected: Scene | None = None, failed: Collection[str] 
     return {
         "links": [*map(printable, links)],
         "parent": [joints[id(parents[name])] if name in parents else -1 for name in links],
-        "order": [links[name] for name in _top_down(robot, links)],
+        "order": [links[name] for _, name, _ in tree(robot)],
         "joints": [_joint(joint, robot, links, named) for joint in robot.robot.joints],
         "frame": links[scene.frame],
         "root": links[scene.root],
         "shapes": [_shape(body, links, is_wheel=body.link in turning) for body in scene.bodies],
         "wheels": [_wheel(wheel, scene, links, expected, failed) for wheel in scene.wheels],
     }
-
-
-def _top_down(robot: Configuration, links: Mapping[str, int]) -> list[str]:
-    """Return the links that are in a tree, each after the one above it."""
-    depths: dict[str, int] = {}
-    for name in links:
-        above = [name]
-        while above[-1] in robot.parent_joints and above[-1] not in depths and len(above) <= len(links):
-            above.append(robot.parent_joints[above[-1]].parent)
-        if len(above) <= len(links):
-            start = depths.get(above[-1], 0)
-            depths |= {link: start + number for number, link in enumerate(reversed(above))}
-    return sorted(depths, key=lambda name: depths[name])
 
 
 def _joint(joint: Joint, robot: Configuration, links: Mapping[str, int], named: Mapping[str, int]) -> Data:

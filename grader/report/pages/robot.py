@@ -12,10 +12,10 @@ from grader.drawing.picture import Picture, plain_picture
 from grader.drawing.scene import Scene
 from grader.errors import MissingElement, NotDecided
 from grader.report.content import problem_line
+from grader.report.criteria import alike
 from grader.report.drawing import drawing_element
-from grader.report.inspection import Inspection, effect, tree
+from grader.report.inspection import Inspection, effect, joint_text, tree
 from grader.report.locations import source_lines
-from grader.report.order import alike
 from grader.report.pages.model import picture_data
 from grader.report.pages.shell import Assets, render_page
 from grader.report.svg_elements import STYLE
@@ -189,7 +189,8 @@ def inspection_html(inspection: Inspection) -> str:
     """Return the inspection as an HTML page, with the joints at the given positions."""
     reading, robot = inspection.reading, inspection.robot
     sources = {reading.source.path: reading.source}
-    lines = (f"{indent}{link}  {joint}" for indent, link, joint in (tree(robot) if robot is not None else ()))
+    links = tree(robot) if robot is not None else ()
+    lines = (f"{indent}{printable(link)}{joint_text(joint)}" for indent, link, joint in links)
     values = {
         "version": __version__,
         "title": printable(robot.robot.name if robot is not None else inspection.path),
