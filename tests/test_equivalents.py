@@ -266,7 +266,7 @@ def mimicking(*rules: tuple[str, str]) -> bytes:
 
 @pytest.mark.parametrize("offset", ["0", "0.5", "-3"])
 def test_a_wheel_that_follows_the_other_rolls_like_it(offset: str) -> None:
-    """A small positive turn starts from the joint's position, which a mimic's offset may have moved."""
+    """A small positive rotation starts from the joint's position, which a mimic's offset may have moved."""
     report = graded(mimicking((PLACES["RIGHT"], f"joint='base_left_wheel_joint' offset='{offset}'")))
     assert lost(report) == {"right-wheel-continuous"}  # which should move by itself
 

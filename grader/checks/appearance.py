@@ -44,7 +44,7 @@ def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNega
     is_turned = is_turned and any(visual.origin.rpy)
     at = place(visual.origin.location, "rpy") if is_turned else place(visual.geometry.location, "size")
     if actual is None:
-        return failed(f"the box of {link!r} is turned: its edges should be along the axes of {link!r}", at)
+        return failed(f"the box of {link!r} is rotated: its edges should be along the axes of {link!r}", at)
     fine = min(actual) >= 0.0 and all_within(actual, size, tolerance)
     message = f"{link!r} shows a box {point(actual)} m"
     if not fine:

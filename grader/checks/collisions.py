@@ -189,7 +189,7 @@ def _differs(message: str, nearest: Collision, off: Mismatch | None, tolerance: 
     found = [
         (f"{in_millimetres(off.apart)} away", off.apart, nearest.origin.location, "xyz"),
         (f"of a size {in_millimetres(off.size)} off", off.size, nearest.geometry.location, None),
-        (f"turned by {in_degrees(off.angle)}", off.turn, nearest.origin.location, "rpy"),
+        (f"rotated by {in_degrees(off.angle)}", off.turn, nearest.origin.location, "rpy"),
     ]
     wrong = [row for row in found if not row[1] <= tolerance + SLACK]
     text = " and ".join(text for text, *_ in wrong)

@@ -96,7 +96,7 @@ def under_the_base(
     if not (within(x, 0.0, tolerance) and within(y, 0.0, tolerance)):
         faults.append(f"{base!r} is at x, y = {point((x, y))} m in it and should be at 0 0")
     if turned > angle + SLACK:
-        faults.append(f"{base!r} is turned by {in_degrees(turned)} in it and should not be turned")
+        faults.append(f"{base!r} is rotated by {in_degrees(turned)} in it and should not be rotated")
     heights = {wheel: difference(value, "above", "below") for wheel, value in off.items()}
     faults += [f"the lowest point of {wheel!r} is {height} it" for wheel, height in heights.items()]
     if missing is not None and not faults:

@@ -60,7 +60,7 @@ def _candidates(solid: MassProperties, shapes: Sequence[tuple[Shape, Transform]]
     if isinstance(shape, Cylinder):
         for axis, direction in _AXES:
             yield f"the axis of the cylinder were {axis}", _about(shape, solid.mass, direction)
-    yield f"the {name} were not turned", turned(solid_inertia(shape, solid.mass), IDENTITY_ROTATION)
+    yield f"the {name} were not rotated", turned(solid_inertia(shape, solid.mass), IDENTITY_ROTATION)
     lengths = shape.size if isinstance(shape, Box) else (0.0, 0.0, shape.length) if isinstance(shape, Cylinder) else ()
     for length, (_, direction) in zip(lengths, _AXES, strict=False):
         x, y, z = pose.rotate(direction)

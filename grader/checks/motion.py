@@ -58,7 +58,7 @@ def rolls_forward(
         return judged(False, message, None, ahead, tolerance, "deg", at=at, detail=detail)
     off = degrees_between(travel, ahead)
     fine = off <= tolerance + SLACK
-    message = f"a small positive turn of {link!r} {_heading(off, travel, base)}"
+    message = f"a small positive rotation of {link!r} {_heading(off, travel, base)}"
     message += "" if fine else "; it should drive it forward"
     return judged(fine, message, travel, ahead, tolerance, "deg", at=at, detail=detail)
 
@@ -66,7 +66,7 @@ def rolls_forward(
 def travel_of(
     robot: Configuration, link: str, joint: Joint, base: str, up: Vector
 ) -> tuple[Vector, Literal[""]] | tuple[None, str]:
-    """Return the direction in which a wheel drives its base at a small positive turn, or None and why it does not roll.
+    """Return the direction in which a small positive rotation drives the base, or None and why the wheel does not roll.
 
     The direction is a unit vector in the base's frame, perpendicular to the unit vector `up`. Raises MissingElement,
     NotDecided or UnknownShape if it cannot be determined.

@@ -40,7 +40,7 @@ class Body(NamedTuple):
 
 
 class Wheel(NamedTuple):
-    """A wheel in the frame of a scene: its centre, and the unit direction in which it drives at a positive turn.
+    """A wheel in the frame of a scene: its centre, and the unit direction in which it drives at a positive rotation.
 
     `travel` is None if it does not roll; `is_free` is whether neither limits nor another joint determine how far it
     turns.

@@ -93,7 +93,7 @@ def _meanings(picture: Picture, *, legend: bool) -> Iterator[tuple[Callable[[flo
     if picture.outlines or picture.frames:
         yield partial(_line, "reference"), "reference solution"
     if any(travels):
-        yield lambda x, y: path("arrow", wheel_sign((x - 3.0, y), (1.0, 0.0, 0.0))), "driving direction, positive turn"
+        yield lambda x, y: path("arrow", wheel_sign((x - 3.0, y), (1.0, 0.0, 0.0))), "driven so by a positive rotation"
     if not all(travels):
         yield lambda x, y: path("arrow", wheel_sign((x + 12.0, y), None)), "wheel does not roll"
     yield _axes, "frame of a link: x, y, z"

@@ -70,7 +70,7 @@ def _quarter_turns() -> Iterator[Rotation]:
 
 def _fit(pairs: _Pairs, rotation: Rotation) -> tuple[int, Transform]:
     """Return how many points a rotation and the best translation lay over each other, and both."""
-    from statistics import median  # late: most robots are not turned
+    from statistics import median  # late: most robots are not rotated
 
     turned = Transform(rotation)
     offsets = [minus(ours, turned.apply(theirs)) for ours, theirs in pairs]
@@ -84,7 +84,7 @@ def _description(T: Transform) -> str:
     if angle > 1.0:
         about = [axis for axis, turn in zip("xyz", T.rpy, strict=True) if abs(turn) > 0.1]
         sign = "-" if len(about) == 1 and min(T.rpy) < -0.1 and angle < 179.0 else ""
-        words.append(f"turned by {sign}{round(angle)} degrees" + (f" about {about[0]}" if len(about) == 1 else ""))
+        words.append(f"rotated by {sign}{round(angle)} degrees" + (f" about {about[0]}" if len(about) == 1 else ""))
     if hypot(*T.translation) > _NEAR:
         words.append(f"moved by {' '.join(f'{value:g}' for value in T.translation)} m")
     return " and ".join(words)

@@ -250,7 +250,7 @@ def test_the_eccentricity_does_not_depend_on_the_frame(
 @examples(10)
 @given(tilt=st.floats(0.0, 180.0))
 def test_a_wobble_is_at_most_a_right_angle(tilt: float) -> None:
-    """An axis has no sign: turned by 179 degrees it is one degree off."""
+    """An axis has no sign: rotated by 179 degrees it is one degree off."""
     found = rolling(wheel=link("wheel", visual(cylinder(), rpy=(radians(tilt), 0.0, 0.0))))
     outcome = ask(turns_about_itself, found, **{**ITSELF, "angle": 0.0})
     if min(tilt, 180.0 - tilt) > 1e-6:

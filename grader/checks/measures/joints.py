@@ -40,7 +40,7 @@ def _frame(solution: Solution, joint: Joint) -> Fact:
     pose = solution.robot.pose(link, relative_to=parent)
     xyz, rpy = lengths(pose.translation), [whole_angle(angle) for angle in pose.rpy]
     title = f"The frame {link} is at {in_title(xyz)} m in {parent}"
-    title += f", turned by rpy {in_title(map(whole_degrees, pose.rpy))} degrees" if any(rpy) else ", not turned"
+    title += f", rotated by rpy {in_title(map(whole_degrees, pose.rpy))} degrees" if any(rpy) else ", not rotated"
     arguments = {"link": link, "relative_to": parent, "xyz": xyz, **({"rpy": rpy} if any(rpy) else {})}
     return Fact(link, "frame", title, "frame_at", arguments)
 

@@ -172,7 +172,7 @@ def _pose_words(pose: Transform) -> str:
     """Return a position in metres, and the angles in degrees unless all are 0."""
     place = " ".join(f"{round(value, 4) + 0.0:g}" for value in pose.translation)
     angles = [round(degrees(value), 1) + 0.0 for value in pose.rpy]
-    return f"{place}{'; turned by ' + ' '.join(f'{value:g}' for value in angles) + ' degrees' if any(angles) else ''}"
+    return f"{place}{'; rotated by ' + ' '.join(f'{value:g}' for value in angles) + ' degrees' if any(angles) else ''}"
 
 
 def _words(picture: Picture, moving: int) -> str:
