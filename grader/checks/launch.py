@@ -5,8 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from grader.checks.check import MEASURES, About
-from grader.checks.launch_file import fault_that_stops, launch_of, path_of
-from grader.checks.launch_places import ENDINGS, WORDS, FilePlace, place_of
+from grader.checks.launch_places import ENDINGS, WORDS, FilePlace, fault_that_stops, launch_of, path_of, place_of
 from grader.checks.outcome import Outcome, failed, judged, passed, pending
 from grader.errors import MissingElement
 from grader.package.launch.places import is_launch_named, is_of_one_machine, one_machine_only

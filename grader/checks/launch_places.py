@@ -1,17 +1,17 @@
-"""Where a launch file looks for its files, and whether a build installs them there."""
+"""The launch file that checks look at, where it looks for its files, and whether a build installs them there."""
 
 import posixpath
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from grader.errors import InputError
+from grader.errors import InputError, MissingElement, NotDecided
 from grader.files.reading import URDF_LIMIT
 from grader.names import closest
 from grader.package.launch.places import BY_UTF8, HOME, PREFIX, ROS, SHARE, WORKING_FOLDER, is_of_one_machine
 from grader.package.package import Package
 
 if TYPE_CHECKING:
-    from grader.package.launch.model import NamedFile
+    from grader.package.launch.model import Launch, NamedFile
 
 WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file", "read": "file"}
 ENDINGS = {
@@ -133,3 +133,33 @@ def _not_there(owner: Package, installed: Iterable[str], target: str, file: "Nam
         return FilePlace(file, "missing", message)
     similar = closest(name, alike) or (alike[0] if len(alike) == 1 and not is_include else None)
     return FilePlace(file, "wrong", f"{message}; there is {similar!r}" if similar else message)
+
+
+def path_of(package: Package, name: str) -> str:
+    """Return the path of a launch file. Raises MissingElement."""
+    path = package.launch_file(name)
+    if path is None:
+        raise package.missing("launch")
+    return path
+
+
+def launch_of(package: Package, name: str) -> "Launch":
+    """Return a launch file, evaluated. Raises MissingElement, and NotDecided for one that is not read."""
+    path = path_of(package, name)
+    launch = package.launch(path)
+    if launch.unread:
+        raise NotDecided(launch.unread, "the launch file cannot be read")
+    if launch.syntax is not None:
+        raise MissingElement("launch file", path, message=launch.syntax.message, location=launch.syntax.location)
+    return launch
+
+
+def fault_that_stops(package: Package, name: str, launch: "Launch") -> MissingElement:
+    """Return the fault of a launch file that starts nothing because of it."""
+    path, first = path_of(package, name), launch.faults[0]
+    return MissingElement("launch file", path, message=_faults(launch), location=first.location, problem=first.message)
+
+
+def _faults(launch: "Launch") -> str:
+    messages = list(dict.fromkeys(fault.message for fault in launch.faults))
+    return f"{messages[0]} (and {len(messages) - 1} more)" if len(messages) > 1 else messages[0]

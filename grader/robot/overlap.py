@@ -8,7 +8,7 @@ the shapes intersect, and the smallest one is the distance that b must move to s
 
 from collections.abc import Iterator
 from itertools import product
-from math import copysign, hypot
+from math import copysign, hypot, inf
 
 from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape, bounding_radius, half_width, shrunk, straight_edges
@@ -29,9 +29,12 @@ def penetration(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, allowed:
     reach = bounding_radius(a) + bounding_radius(b)
     if reach - hypot(*minus(T_w_b.translation, T_w_a.translation)) <= limit:
         return 0.0
-    scale = min(max(reach / _MAX_LENGTH, 1.0), 1e308)
-    pair = shrunk(a, scale), shrunk(b, scale), _scaled(T_w_a, scale).inverse() @ _scaled(T_w_b, scale)
-    depth = _overlap(*pair, least_overlap(*pair, limit / scale)) * scale
+    scale = 1.0
+    if reach > _MAX_LENGTH:
+        scale = min(reach / _MAX_LENGTH, 1e308)
+        a, b, T_w_a, T_w_b = shrunk(a, scale), shrunk(b, scale), _scaled(T_w_a, scale), _scaled(T_w_b, scale)
+    T_a_b = T_w_a.inverse() @ T_w_b
+    depth = _overlap(a, b, T_a_b, least_overlap(a, b, T_a_b, limit / scale)) * scale
     return depth if depth > limit else 0.0
 
 
@@ -44,10 +47,14 @@ def least_overlap(a: Shape, b: Shape, T_a_b: Transform, limit: float = _ROUNDING
     def overlap(direction: Vector) -> float:
         return _overlap(a, b, T_a_b, direction)
 
-    best = min(_likely_directions(a, b, T_a_b), key=overlap)
-    if isinstance(a, Sphere) or isinstance(b, Sphere):
-        return best
-    if overlap(best) > limit and _rims_matter(a, b, T_a_b):
+    best, least = (0.0, 0.0, 1.0), inf
+    for direction in _likely_directions(a, b, T_a_b):
+        found = overlap(direction)
+        if found < least:
+            best, least = direction, found
+        if least <= limit:
+            return best
+    if not isinstance(a, Sphere) and not isinstance(b, Sphere) and _rims_matter(a, b, T_a_b):
         from grader.robot.edge_overlap import least_edge_overlap  # late: it loads numpy
 
         best = min(best, least_edge_overlap(a, b, T_a_b), key=overlap)

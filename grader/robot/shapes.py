@@ -125,8 +125,6 @@ def bounding_radius(shape: Shape) -> float:
 
 def shrunk(shape: Shape, scale: float) -> Shape:
     """Return a shape with its lengths divided by a scale."""
-    if scale == 1.0:
-        return shape
     if isinstance(shape, Box):
         x, y, z = shape.size
         return Box((x / scale, y / scale, z / scale))

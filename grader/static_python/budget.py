@@ -4,7 +4,7 @@ from collections.abc import Collection
 from pathlib import PurePosixPath
 
 from grader.static_python import values as py
-from grader.static_python.knowledge import parts_of, refuse, too_large
+from grader.static_python.values import parts_of, too_large
 
 READING = 500_000  # parts that reading one submission may produce or look at: some 0.5 s
 CHARACTERS, _BITS = 16, 256  # that count as one part
@@ -93,4 +93,6 @@ class Budget:
             return 0
         if isinstance(part, py.Items | py.Namespace | py.PlainFunction):  # a plain function itself refuses these
             return 0
+        from grader.static_python.knowledge import refuse  # late: most gradings evaluate no Python
+
         return refuse(part, f"values of the type {type(part).__name__} are not supported")

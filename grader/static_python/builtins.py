@@ -9,16 +9,8 @@ from typing import Any
 
 from grader.static_python import values as py
 from grader.static_python.budget import Budget
-from grader.static_python.knowledge import (
-    call_plain,
-    checked_key,
-    items_of,
-    iterate,
-    known,
-    reason_of,
-    str_of,
-    too_large,
-)
+from grader.static_python.knowledge import call_plain, checked_key, items_of, iterate, known, reason_of, str_of
+from grader.static_python.values import too_large
 
 _MAX_DIGITS = 400  # that round leaves
 _OF_SIGNATURE = re.compile(r"positional argument|keyword argument|required keyword")

@@ -1,6 +1,6 @@
 """What is known of the values of Python expressions, and what a loop over one yields."""
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from io import StringIO
 from pathlib import PurePosixPath
 from typing import NoReturn
@@ -97,13 +97,6 @@ def unknown_in(value: Value) -> Unknown | None:
     return None
 
 
-def parts_of(part: Value) -> Collection[Value]:
-    """Return what a value contains."""
-    if isinstance(part, dict):
-        return [*part.keys(), *part.values()]
-    return part if isinstance(part, list | tuple | range) else [*part] if isinstance(part, VIEWS) else ()
-
-
 def checked_key(key: Value) -> Value:
     """Return a key of a dict: a text or a number whose hash no other one has. Raises Undetermined for other keys."""
     if not isinstance(key, str) and not (isinstance(key, int) and abs(key) < _MAX_KEY):
@@ -125,11 +118,6 @@ def has_text(value: Value) -> bool:
     if isinstance(value, list | tuple):
         return all(map(has_text, value))
     return isinstance(value, Items) or not isinstance(value, (*OPAQUE, StringIO, PurePosixPath, *VIEWS))
-
-
-def too_large(what: str) -> NoReturn:
-    """Raise Undetermined for a value that grows too large."""
-    raise Undetermined(f"a {what} grows too large")
 
 
 def path_text(value: Value) -> str | None:

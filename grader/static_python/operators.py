@@ -9,7 +9,8 @@ from pathlib import PosixPath, PurePosixPath
 
 from grader.static_python import values as py
 from grader.static_python.budget import CHARACTERS, Budget
-from grader.static_python.knowledge import call_plain, items_of, known, refuse, str_of, too_large
+from grader.static_python.knowledge import call_plain, items_of, known, refuse, str_of
+from grader.static_python.values import too_large
 
 _WIDE = re.compile(r"\*|\d{3}")
 _FIELD = re.compile(r"\{(?:\w*)\}")

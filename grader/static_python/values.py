@@ -1,11 +1,11 @@
 """The values of Python expressions: Python's own, and stand-ins for functions, iterators and what is not evaluated."""
 
 import ast
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from functools import cached_property
 from io import StringIO
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, Any, dataclass_transform
+from typing import TYPE_CHECKING, Any, NoReturn, dataclass_transform
 
 if TYPE_CHECKING:
     from grader.static_python.parse import Position
@@ -194,3 +194,15 @@ class DottedDict(dict[Value, Value]):
 
 
 OPAQUE = (Unknown, QualifiedName, BoundMethod, Call, Function, PlainFunction, Namespace, Items)
+
+
+def parts_of(part: Value) -> Collection[Value]:
+    """Return what a value contains."""
+    if isinstance(part, dict):
+        return [*part.keys(), *part.values()]
+    return part if isinstance(part, list | tuple | range) else [*part] if isinstance(part, VIEWS) else ()
+
+
+def too_large(what: str) -> NoReturn:
+    """Raise Undetermined for a value that grows too large."""
+    raise Undetermined(f"a {what} grows too large")
