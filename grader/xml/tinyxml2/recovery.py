@@ -67,7 +67,7 @@ class Recovery:
     """One pass over a text. A tag that does not fit closes those that are in its way, as the format of a URDF tells."""
 
     def __init__(self, text: str) -> None:
-        self._text = text
+        self._text = text.partition("\0")[0]  # TinyXML2 reads no further
         self._xml: list[str] = []
         self._offsets: list[int] = []
         self._assumed: list[NoteDifference] = []
@@ -78,7 +78,7 @@ class Recovery:
 
     def run(self) -> Scan:
         """Return the first robot as `recovered`, and what was assumed; nothing if no link of it can be read."""
-        position, text = 0, self._text.partition("\0")[0]
+        position, text = 0, self._text
         while len(self._assumed) < _MAX_ASSUMED and len(self._open) <= _MAX_DEPTH:
             if (start := text.find("<", position)) < 0:
                 break
