@@ -155,7 +155,7 @@ def hint_of(failure: FailedCriterion, hint: Hint) -> Hint:
     skipped = (result.criterion.id for one in (failure, *failure.also) for result in one.skipped)
     left = [name for name in skipped if name not in hint.gains]
     texts = [hint.message.removesuffix(".")]
-    texts += ["Other edits are as good"] if hint.certainty == "one of several" else []
+    texts += ["Other edits are as good"] if hint.certainty == "one of several" and hint.gains else []
     texts += [f"Also fixes {enumerated(also, _MAX_CRITERIA)}"] if also else []
     texts += [f"Then look at {enumerated(left, _MAX_CRITERIA)}"] if left else []
     return hint._replace(message=f"{'. '.join(texts)}.")

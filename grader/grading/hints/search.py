@@ -4,7 +4,7 @@ A `Piece` is what one mistake needs, with its words; a `Proposal` is one way to 
 proves becomes a `FoundHint`, and in a report a `Hint`. All of them together are the `Fix`.
 """
 
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
 from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
@@ -55,7 +55,9 @@ class HintSearch:
         self._difference = RobotDifference(self._draft, both) if self._draft is not None and both else None
         self.found: list[FoundHint] = []
         self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing, or two edits
-        self._refused, self._told = set[Edits](), set[Edits]()  # after all hints so far; those that look equally good
+        self._refused = set[Edits]()  # after all hints so far
+        self._told = set[str]()  # criteria for which two edits are told that cannot be told apart
+        self._taken: dict[str, Edits] = {}  # the edits after which a family was tried last
         self.results: Results = trials.results  # with all edits
         self._after: Results = self.results
         self.is_complete = self._is_cut = False
@@ -69,7 +71,8 @@ class HintSearch:
         """Search until nothing more is found, or the budget is spent."""
         with suppress(NoTrialsLeft):
             if self.trials.left:
-                for family in (self._of_reference, self._of_package, self._of_own, self._of_links, self._of_reference):
+                families = (self._of_reference, self._of_package, self._of_own, self._of_links)
+                for family in (*families, self._of_reference, self._of_package):
                     self._take(family)
                 self.is_complete = not self._is_cut
         self.trials.left = max(self.trials.left, 1 + self.trials.submission.cost)  # for the last one
@@ -89,14 +92,21 @@ class HintSearch:
 
     @property
     def _lost(self) -> list[str]:
-        return [name for name, result in self.results.items() if result.is_lost]
+        return [name for name, result in self.results.items() if result.is_lost and name not in self._told]
 
     def _take(self, family: Callable[[list[Criterion]], Iterable[Proposal]]) -> None:
-        """Try the edits of a family, and take those that are proven, those that gain most first."""
+        """Try the edits of a family, each once, and take those that are proven, those that gain most first."""
         lost, before = self._lost, self.edits
+        if self._taken.get(family.__name__) == before:
+            return
+        self._taken[family.__name__] = before
         tried: list[_Tried] = []
+        seen: set[Edits] = set()
         with self.trials.isolated():
             for proposal in family([self._criteria[name] for name in lost]) if lost else ():
+                if proposal.edits in seen:
+                    continue
+                seen.add(proposal.edits)
                 if self.trials.left < _RESERVE:
                     self._is_cut = True
                     break
@@ -130,22 +140,30 @@ class HintSearch:
             return False
         if not wanted & gains.keys() or (self._draft is not None and self._is_half(best)):
             return False
-        known = {name for found in self.found for name in found.gains}
+        known, after = {name for found in self.found for name in found.gains}, self._after
         gains = {name: points for name, points in gains.items() if name not in known} or gains
-        others = [it for it in tried if it.passes >= wanted and it.proposal.places.isdisjoint(best.proposal.places)]
-        equal = [it for it in others if self._order(it, lost) == self._order(best, lost)]
-        paths = [edit.path for it in (best, *equal[:1]) for edit in it.proposal.edits]
-        if equal and all(path.endswith((".urdf", ".xacro")) for path in paths):
+        equal = self._equal_to(best, together, wanted, tried)
+        is_of_robot = all(path.endswith((".urdf", ".xacro")) for path in {edit.path for edit in best.proposal.edits})
+        if equal is not None and is_of_robot:
             name = max((it for it in self._criteria if it in wanted), key=lambda name: self._criteria[name].points)
-            self.missing[name] = FoundHint(best.proposal, {}, "one of several", alternative=equal[0].proposal)
-            self._told |= {best.proposal.edits, *(it.proposal.edits for it in equal)}
-            self._refused |= self._told
+            self.missing[name] = FoundHint(best.proposal, {}, "one of several", alternative=equal.proposal)
+            self._told |= wanted
             return False
-        is_tie = any(self._order(it, lost) <= self._order(best, lost) for it in others)
-        self.found.append(FoundHint(best.proposal, gains, "one of several" if is_tie else "preferred", is_late))
-        self.results = self._after
-        self._refused = {*self._told}
+        self.found.append(FoundHint(best.proposal, gains, "one of several" if equal else "preferred", is_late))
+        self.results = after
+        self._refused = set()
         return True
+
+    def _equal_to(
+        self, best: _Tried, gains: Mapping[str, Decimal], wanted: Collection[str], tried: Iterable[_Tried]
+    ) -> _Tried | None:
+        """Return another edit that gains as much, at other places, and loses nothing either."""
+        lost, known = set(self._lost), {best.proposal.edits, *self._refused}
+        others = (it for it in tried if it.passes >= wanted and it.proposal.edits not in known)
+        equal = (it for it in others if self._order(it, lost) == self._order(best, lost))
+        apart = (it for it in equal if it.proposal.places.isdisjoint(best.proposal.places))
+        proven = (it for it in apart if gains.keys() <= self._gains(self.edits, it.proposal.edits, self.results).keys())
+        return next(proven, None)
 
     def _is_half(self, best: _Tried) -> bool:
         """Return whether an edit leaves what it should correct as well: in another call of a macro, or of its link."""
@@ -183,7 +201,7 @@ class HintSearch:
         return links_of(lost, self._difference.draft.robot, self._difference.reference.robot)
 
     def _of_reference(self, lost: list[Criterion]) -> Iterator[Proposal]:
-        """Yield what undoes a slip, then what differs from the other side of the robot, and from the reference."""
+        """Yield what undoes a slip, then what differs from the reference, and from the other side of the robot."""
         subjects = {criterion.check.subject for criterion in lost}
         if self._reading is not None and self._draft is not None and "urdf" in subjects:
             yield from undone_proposals(self._reading)
@@ -192,8 +210,8 @@ class HintSearch:
             yield from self._draft.corrections(self._difference.names)
             links = self._links(lost)
             yield from self._proposals(in_another_unit(self._difference))
-            yield from self._proposals(of_siblings(self._difference, links or ()))
             yield from self._proposals(self._difference.pieces, links)
+            yield from self._proposals(of_siblings(self._difference, links or ()))
 
     def _of_links(self, lost: list[Criterion]) -> Iterator[Proposal]:
         """Yield all values of the reference of a link and its joint."""

@@ -85,11 +85,14 @@ def _of_number(difference: RobotDifference, element: Element, name: str) -> Iter
     for values in () if defined else plausible(unit, values_of(element.get(name))):
         if min(values) > least:
             yield difference.of_sets([Set(element, "", name, format_numbers(values))], OWN)
+    coordinates = values_of(element.get(name)) if element.tag == "origin" else ()
     for text, edits_with in defined:
-        for (value,) in plausible(unit, values_of(text)):
+        (old,) = values_of(text)
+        for (value,) in plausible(unit, (old,)):
+            is_side = abs(old) == 1.0 and value != -old  # 1 and -1 are the sides
+            is_length = old > 0.0 > value and abs(old) != 1.0 and old not in coordinates
             edits = edits_with(format_number(value))
-            is_length = values_of(text)[0] > 0.0 > value and abs(value) != 1.0  # 1 and -1 are the sides
-            if edits and value > least and not is_length:
+            if edits and value > least and not is_length and not is_side:
                 cause = f"a number from which the {name} of {{}} is computed"
                 yield difference.piece(element, cause, edits, rank=OWN)
 
