@@ -20,8 +20,8 @@ _ATTRIBUTE = re.compile(
     r"""
     (?<![\w:.-])([A-Za-z_][\w:.-]*+)\s*+=\s*+(?:
         "([^"]*)"? | '([^']*)'?    # link="base", or link="base at the end of the tag
-      | [“”„]([^“”„]*)[“”„]
-      | ([^\s"'“”=]+)              # link=base
+      | [“”„‘’‚]([^“”„‘’‚]*)[“”„‘’‚]
+      | ([^\s"'“”„‘’‚=]+)           # link=base
     )
     """,
     re.VERBOSE,
@@ -197,7 +197,8 @@ class Recovery:
         at, opened = len(self._text[:offset].rstrip()), self._open[-1]
         indent = indentation(self._text, opened.offset)
         newline = "\r\n" if "\r\n" in self._text else "\n"
-        before = f"{newline}{indent}" if "\n" in self._text[opened.offset : at] else ""
+        is_replaced = self.changes and self.changes[-1][1:] == (at, "")  # a wrong end tag
+        before = f"{newline}{indent}" if "\n" in self._text[opened.offset : at] and not is_replaced else ""
         self._change(at, at, f"{before}</{opened.name}>")
 
     def _change(self, start: int, end: int, new: str) -> None:
