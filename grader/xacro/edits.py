@@ -92,15 +92,23 @@ class Rewriter:
         if definition is None or own is None:
             return []
         if found["keys"]:
-            file = self._yaml_file(definition.text) if _LOADED.match(definition.text) else None
-            keys = [a or b or c for a, b, c in _KEY.findall(found["keys"])]
-            return _in_yaml(file, keys, inner, scope) if file is not None else []
-        if "$" in own.text:
+            return self._in_yaml(definition, found["keys"], inner, depth)
+        if self.definitions(own):
             parts = _parts(own, Use(definition.scope, was, inner))
             changes = [self._definitions(part, definition.scope, a, b, depth - 1) for part, a, b in parts]
             return [change for several in changes for change in several] if all(changes) else []
         is_quoted = own.text[:1] == "'" == own.text[-1:]
         return [TextChange(own, f"'{inner}'" if is_quoted else merged(own.text, inner))]
+
+    def _in_yaml(self, definition: Definition, path: str, new: str, depth: int) -> list[TextChange]:
+        """Return the change in the YAML file from which a name is defined, at the keys that follow the name."""
+        part = _ALONE.fullmatch(definition.text) if not _LOADED.match(definition.text) else None
+        above = self._of_name(part["name"], definition.scope) if part is not None and part["name"] and depth else None
+        if part is not None and above is not None:
+            return self._in_yaml(above, part["keys"] + path, new, depth - 1)
+        file = self._yaml_file(definition.text) if _LOADED.match(definition.text) else None
+        keys = [a or b or c for a, b, c in _KEY.findall(path)]
+        return _in_yaml(file, keys, new, definition.scope) if file is not None else []
 
     def _of_name(self, name: str, scope: XacroScope) -> Definition | None:
         holder = scope.holder(name)

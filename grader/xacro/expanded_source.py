@@ -104,7 +104,7 @@ class ExpandedSource(Source):
     def corrections(self, names: Sequence[str]) -> "list[Proposal]":
         """Return edits that may correct undeclared and undefined names, calls of macros, and conditions.
 
-        `names` are those that the reference has.
+        `names` are those that the reference and the format have.
         """
         from grader.edits import Proposal
         from grader.names import near
