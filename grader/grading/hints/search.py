@@ -23,11 +23,13 @@ from grader.robot.edits.variants import in_another_unit, of_own, of_siblings
 from grader.source import Edits
 from grader.submission.raw_xacro import raw_xacro_proposals
 from grader.submission.urdf import Read
+from grader.xml.urdf_format import JOINT_TYPES
 
 if TYPE_CHECKING:
     from grader.package.package import Package
 
 _RESERVE = 20  # gradings for proofs
+_MAX_PARTS = 5  # edits of a hint that are left out one by one
 
 
 class _Tried(NamedTuple):
@@ -129,11 +131,13 @@ class HintSearch:
     def _prove(self, best: _Tried, tried: Iterable[_Tried]) -> bool:
         """Add an edit if it gains the points alone, or after the edits before it, and loses nothing of theirs."""
         edits = tuple(edit for edit in best.proposal.edits if edit not in self.edits)
-        best = best._replace(proposal=best.proposal._replace(edits=edits))
         lost = set(self._lost)
         wanted = best.passes & lost
-        alone = self._gains((), best.proposal.edits, self.trials.results) if self.found else {}
-        together = self._gains(self.edits, best.proposal.edits, self.results)
+        if best.proposal.rank in (REFERENCE, STRUCTURE):
+            edits = self._needed(edits)
+        best = best._replace(proposal=best.proposal._replace(edits=edits))
+        alone = self._gains((), edits, self.trials.results) if self.found else {}
+        together = self._gains(self.edits, edits, self.results)
         is_late = bool(self.found) and not wanted & alone.keys()
         gains = alone if self.found and not is_late else together
         if not together or not set(gains) <= {*together, *(it for found in self.found for it in found.gains)}:
@@ -154,8 +158,17 @@ class HintSearch:
         self._refused = set()
         return True
 
+    def _needed(self, edits: Edits) -> Edits:
+        """Leave out of a few edits the changes of values without which the others gain as much."""
+        gains = self._gains(self.edits, edits, self.results) if 1 < len(edits) <= _MAX_PARTS else {}
+        for edit in [it for it in edits if it.old and it.new] if gains else ():
+            rest = tuple(it for it in edits if it is not edit)
+            if rest and gains.keys() <= self._gains(self.edits, rest, self.results).keys():
+                edits = rest
+        return edits
+
     def _equal_to(
-        self, best: _Tried, gains: Mapping[str, Decimal], wanted: Collection[str], tried: Iterable[_Tried]
+        self, best: _Tried, gains: Mapping[str, Decimal], wanted: frozenset[str], tried: Iterable[_Tried]
     ) -> _Tried | None:
         """Return another edit that gains as much, at other places, and loses nothing either."""
         lost, known = set(self._lost), {best.proposal.edits, *self._refused}
@@ -207,7 +220,7 @@ class HintSearch:
             yield from undone_proposals(self._reading)
             yield from raw_xacro_proposals(self.trials.submission)
         if self._difference is not None and self._draft is not None and subjects & {"urdf", "robot"}:
-            yield from self._draft.corrections(self._difference.names)
+            yield from self._draft.corrections([*self._difference.names, *JOINT_TYPES])
             links = self._links(lost)
             yield from self._proposals(in_another_unit(self._difference))
             yield from self._proposals(self._difference.pieces, links)

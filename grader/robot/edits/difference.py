@@ -173,9 +173,9 @@ class RobotDifference(PieceMaker):
         """Add an element to another one: values of an origin or axis, another shape, or the element as it is."""
         tag, own = str(element.tag), child_of(parent, str(element.tag))
         if tag in ("origin", "axis"):  # one with default values only does not count
-            values = {str(key): str(value) for key, value in element.attrib.items()}
+            values = {str(key): normal(tag, str(key), str(value)) for key, value in element.attrib.items()}
             mine = {name: own.get(name) if own is not None else None for name in values}
-            off = [name for name, value in values.items() if normal(tag, name, mine[name]) != normal(tag, name, value)]
+            off = [name for name, value in values.items() if normal(tag, name, mine[name]) != value]
             yield from self.each([Set(parent, tag, name, values[name]) for name in off])
             return
         shape = next((it for it in parent if parent.tag == "geometry" and it.tag in CHILDREN["geometry"]), None)
