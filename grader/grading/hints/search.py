@@ -41,9 +41,16 @@ class HintSearch:
     """The search for one submission: `found` are proven edits that fit together, `edits` are those of all."""
 
     def __init__(
-        self, trials: Trials, reference: Draft | None, package: "Callable[[], Package | None]" = lambda: None
+        self,
+        trials: Trials,
+        reference: Draft | None,
+        package: "Callable[[], Package | None]" = lambda: None,
+        told: Collection[str] = (),
     ) -> None:
-        """`reference` and `package` are the robot and the package of the rubric's reference solution."""
+        """`reference` and `package` are the robot and the package of the rubric's reference solution.
+
+        No edit is searched for the criteria that are `told`.
+        """
         self.trials, self._package = trials, package
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
         urdf = trials.submission.urdf
@@ -58,7 +65,7 @@ class HintSearch:
         self.found: list[FoundHint] = []
         self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing, or two edits
         self._refused = set[Edits]()  # after all hints so far
-        self._told = set[str]()  # criteria for which two edits are told that cannot be told apart
+        self._told = {*told}  # also criteria for which two edits are told that cannot be told apart
         self._taken: dict[str, Edits] = {}  # the edits after which a family was tried last
         self.results: Results = trials.results  # with all edits
         self._after: Results = self.results
@@ -76,7 +83,7 @@ class HintSearch:
                 families = (self._of_reference, self._of_package, self._of_own, self._of_links)
                 for family in (*families, self._of_reference, self._of_package):
                     self._take(family)
-                self.is_complete = not self._is_cut
+                self.is_complete = not self._is_cut or not self._lost
         self.trials.left = max(self.trials.left, 1 + self.trials.submission.cost)  # for the last one
         with self.trials.isolated():
             self._verify()
@@ -133,18 +140,18 @@ class HintSearch:
         edits = tuple(edit for edit in best.proposal.edits if edit not in self.edits)
         lost = set(self._lost)
         wanted = best.passes & lost
-        if best.proposal.rank in (REFERENCE, STRUCTURE):
-            edits = self._needed(edits)
-        best = best._replace(proposal=best.proposal._replace(edits=edits))
-        alone = self._gains((), edits, self.trials.results) if self.found else {}
         together = self._gains(self.edits, edits, self.results)
+        if together and best.proposal.rank in (REFERENCE, STRUCTURE) and 1 < len(edits) <= _MAX_PARTS:
+            edits = self._needed(edits, together)
+        after, best = self._after, best._replace(proposal=best.proposal._replace(edits=edits))
+        alone = self._gains((), edits, self.trials.results) if self.found else {}
         is_late = bool(self.found) and not wanted & alone.keys()
         gains = alone if self.found and not is_late else together
         if not together or not set(gains) <= {*together, *(it for found in self.found for it in found.gains)}:
             return False
-        if not wanted & gains.keys() or (self._draft is not None and self._is_half(best)):
+        if not wanted & gains.keys() or (self._draft is not None and self._is_half(best, after)):
             return False
-        known, after = {name for found in self.found for name in found.gains}, self._after
+        known = {name for found in self.found for name in found.gains}
         gains = {name: points for name, points in gains.items() if name not in known} or gains
         equal = self._equal_to(best, together, wanted, tried)
         is_of_robot = all(path.endswith((".urdf", ".xacro")) for path in {edit.path for edit in best.proposal.edits})
@@ -158,13 +165,14 @@ class HintSearch:
         self._refused = set()
         return True
 
-    def _needed(self, edits: Edits) -> Edits:
+    def _needed(self, edits: Edits, gains: Mapping[str, Decimal]) -> Edits:
         """Leave out of a few edits the changes of values without which the others gain as much."""
-        gains = self._gains(self.edits, edits, self.results) if 1 < len(edits) <= _MAX_PARTS else {}
-        for edit in [it for it in edits if it.old and it.new] if gains else ():
+        after = self._after
+        for edit in [it for it in edits if it.old and it.new]:
             rest = tuple(it for it in edits if it is not edit)
             if rest and gains.keys() <= self._gains(self.edits, rest, self.results).keys():
-                edits = rest
+                edits, after = rest, self._after
+        self._after = after
         return edits
 
     def _equal_to(
@@ -178,10 +186,10 @@ class HintSearch:
         proven = (it for it in apart if gains.keys() <= self._gains(self.edits, it.proposal.edits, self.results).keys())
         return next(proven, None)
 
-    def _is_half(self, best: _Tried) -> bool:
+    def _is_half(self, best: _Tried, after: Results) -> bool:
         """Return whether an edit leaves what it should correct as well: in another call of a macro, or of its link."""
         assert self._draft is not None
-        lost = [self._criteria[name] for name, result in self._after.items() if result.is_lost]
+        lost = [self._criteria[name] for name, result in after.items() if result.is_lost]
         if leaves_others(best.proposal.shared, [self._criteria[name] for name in best.passes], lost):
             return True
         is_own = best.proposal.rank not in (REFERENCE, STRUCTURE) and bool(best.proposal.link)
@@ -214,7 +222,7 @@ class HintSearch:
         return links_of(lost, self._difference.draft.robot, self._difference.reference.robot)
 
     def _of_reference(self, lost: list[Criterion]) -> Iterator[Proposal]:
-        """Yield what undoes a slip, then what differs from the reference, and from the other side of the robot."""
+        """Yield what undoes a slip, then what differs from the other side of the robot, and from the reference."""
         subjects = {criterion.check.subject for criterion in lost}
         if self._reading is not None and self._draft is not None and "urdf" in subjects:
             yield from undone_proposals(self._reading)
@@ -223,8 +231,8 @@ class HintSearch:
             yield from self._draft.corrections([*self._difference.names, *JOINT_TYPES])
             links = self._links(lost)
             yield from self._proposals(in_another_unit(self._difference))
-            yield from self._proposals(self._difference.pieces, links)
             yield from self._proposals(of_siblings(self._difference, links or ()))
+            yield from self._proposals(self._difference.pieces, links)
 
     def _of_links(self, lost: list[Criterion]) -> Iterator[Proposal]:
         """Yield all values of the reference of a link and its joint."""

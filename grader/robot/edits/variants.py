@@ -31,21 +31,22 @@ def _parts(draft: Draft, link: str) -> Iterator[tuple[str, Element]]:
 
 
 def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
-    """Yield the numbers of the link at the other side, mirrored, where the student builds it unlike the reference."""
+    """Yield the numbers of the link at the other side, mirrored, where the student builds both unlike the reference."""
     for link in links:
         other = _WORD.sub(lambda word: _SIDES.get(word[0], word[0]), link)
         theirs = dict(reversed([*_parts(difference.draft, other)])) if other != link else {}
         like = dict(reversed([*_parts(difference.reference, other)])) if theirs else {}
+        mine = dict(reversed([*_parts(difference.reference, link)])) if theirs else {}
         for path, element in _parts(difference.draft, link):
             for name, known in TAGS[str(element.tag)].attributes.items() if path in theirs else ():
                 text, tag = theirs[path].get(name), str(element.tag)
                 given = like[path].get(name) if path in like else None
                 values = values_of(text)
                 if len(values) == len(known.parts) and normal(tag, name, text) != normal(tag, name, given):
-                    own = normal(tag, name, element.get(name))
-                    for mirrored in _mirrored(values):
-                        if normal(tag, name, format_numbers(mirrored)) != own:
-                            yield difference.of_sets([Set(element, "", name, format_numbers(mirrored))], SIBLING)
+                    others = {normal(tag, name, it.get(name)) for it in (element, mine.get(path, element))}
+                    for mirrored in map(format_numbers, _mirrored(values)):
+                        if normal(tag, name, mirrored) not in others:
+                            yield difference.of_sets([Set(element, "", name, mirrored)], SIBLING)
 
 
 def _mirrored(values: Values) -> Iterator[Values]:
