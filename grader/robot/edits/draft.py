@@ -83,9 +83,9 @@ class Draft(RobotElements):
         ]
 
     def _exchanged(self, sets: Collection[Set], ways: list[Edits]) -> list[Edits]:
-        """Return the ways to set values, of two that are exchanged with the one that exchanges their texts.
+        """Return the ways to set values: two that are exchanged get the text of each other.
 
-        It is the last way if names give both values: they may be defined the wrong way round.
+        If names give both values, they may also be defined the wrong way round.
         """
         element = next((one.element for one in sets), None)
         if element is None or len(sets) != 2 or any(one.element is not element for one in sets):
@@ -97,7 +97,7 @@ class Draft(RobotElements):
         if len(texts) != 2 or not all(wanted) or [values_of(one.value) for one in sets] != wanted:
             return ways
         edits = tuple(with_attribute(source, start, it.attribute, text) for it, text in zip(sets, texts, strict=True))
-        return [*ways[: _MAX_WAYS - 1], edits] if all("$" in text for text in texts) else [edits]
+        return [*ways[:1], edits] if all("$" in text for text in texts) else [edits]
 
     def _ways_of(self, element: Element, attribute: str, value: str, others: Mapping[Element, str]) -> list[Edits]:
         """Return the ways to give an attribute another text, and elements that come from the same text others."""

@@ -195,9 +195,11 @@ class Recovery:
     def _close_before(self, offset: int) -> None:
         """Note that the innermost open tag should be closed before an offset, in a line of its own if it has one."""
         at, opened = len(self._text[:offset].rstrip()), self._open[-1]
+        _, end, new = self.changes[-1] if self.changes else (0, 0, " ")
+        is_replaced = not new and not _OTHER.sub("", self._text[end:offset]).strip()  # a wrong end tag is there
+        at = end if is_replaced else at
         indent = indentation(self._text, opened.offset)
         newline = "\r\n" if "\r\n" in self._text else "\n"
-        is_replaced = self.changes and self.changes[-1][1:] == (at, "")  # a wrong end tag
         before = f"{newline}{indent}" if "\n" in self._text[opened.offset : at] and not is_replaced else ""
         self._change(at, at, f"{before}</{opened.name}>")
 
