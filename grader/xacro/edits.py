@@ -1,7 +1,8 @@
 """The ways to give expanded elements other values: edits of the xacro texts that they come from.
 
 A value is changed where it is defined, if a name alone gives it: in a property, in the argument of a macro call, in the
-default of an argument, in a YAML file. Else it is replaced where it is used. Nothing inside an expression is changed.
+default of an argument, in a YAML file. Else it is replaced where it is used, or given in a macro call that lacks it.
+Nothing inside an expression is changed.
 """
 
 import re
@@ -56,7 +57,17 @@ class Rewriter:
         by_place = {change.written[:3]: change for change in found}
         is_one = all(by_place[change.written[:3]].new == change.new for change in found)
         edits = edits_of(by_place.values()) if has_definition and is_one else None
-        return [*filter(None, [edits]), *self._literal(text, changed)]
+        return [*filter(None, [edits]), *self._literal(text, changed), *self._in_calls(text, changed)]
+
+    def _in_calls(self, text: Written, changed: Sequence[Use]) -> list[Edits]:
+        """Return the edits that give a parameter, of which a text is the default, in the calls of its macro."""
+        name = text.text[2:-1].strip() if text.text.startswith("${") else ""
+        definition = self._of_name(name, changed[0].scope)
+        if definition is None or definition.attribute != "params":
+            return []
+        calls = {use.call: use.new for use in changed if use.call is not None}
+        each = ((*call.source.element(call.tag), new) for call, new in calls.items())
+        return [tuple(with_attribute(source, start, name, new) for source, start, new in each)]
 
     def _literal(self, text: Written, changed: Sequence[Use]) -> list[Edits]:
         """Return the edit that writes a value where it is used; none where uses differ, or a YAML file gives it."""

@@ -70,7 +70,8 @@ class ExpandedSource(Source):
         for tag in self.siblings(next(iter(wanted))):
             node = self._nodes[tag]
             text = node.attributes.get(attribute, "") if attribute else "".join(map(str, node.children)).strip()
-            uses.append(Use(node.place.scope or scope, *wanted.get(tag, (text, text))))
+            call = node.place.calls[-1][1] if node.place.calls else None
+            uses.append(Use(node.place.scope or scope, *wanted.get(tag, (text, text)), call))
         return self._rewriter.ways(place, name, uses)
 
     def _place(self, tag: int, attribute: str) -> tuple[ScopePlace, str, XacroScope]:

@@ -82,6 +82,18 @@ TURNED: Changes = (
             id="the type of a joint in a condition",
         ),
         pytest.param(
+            '<xacro:macro name="paint" params="name:=gray"><material name="${name}"/></xacro:macro>',
+            (('<material name="gray"/>', "<xacro:paint/>"), ('<material name="white"/>', "<xacro:paint/>")),
+            [("<xacro:paint", '<xacro:paint name="white"')],
+            id="a parameter that a call of a macro does not give",
+        ),
+        pytest.param(
+            "",
+            (('<material name="gray">', '<material name="Gray">'),),
+            [('name="Gray"', 'name="gray"')],
+            id="the name of a material where it is defined",
+        ),
+        pytest.param(
             "",
             ((LEFT, LEFT.replace("0.2", "0.25")), (RIGHT, RIGHT.replace("-0.2", "-0.25")), ('xyz="0 0 -0.025"', 'xyz="0 0 0.025"')),
             [('xyz="0 0 0.025"', 'xyz="0 0 -0.025"')],

@@ -48,7 +48,13 @@ class RobotDifference(PieceMaker):
         return unique([*found, *self._materials(), *self._joint_names()])
 
     def _materials(self) -> Iterator[Piece]:
-        """Give what a link shows the colour of the reference, where no material of the robot has it."""
+        """Name a material as it is used, or give what a link shows the reference's colour if no material has it."""
+        own = {it.get("name") or "": it for it in self.draft.root.iterchildren("material")}
+        used_names = {it.get("name") or "" for it in self.draft.root.iterfind("link//material")}
+        for name in sorted(own.keys() - used_names):
+            meant = near(name, used_names - own.keys(), "material")
+            if meant is not None:
+                yield self.piece(own[name], "the name of {}", sets=(Set(own[name], "", "name", meant),))
         for used in self.draft.root.iter("material"):
             link = self.reference.link(self.draft.link_of(used))
             names = [it.get("name") or "" for it in link.iter("material")] if link is not None else []
@@ -56,7 +62,7 @@ class RobotDifference(PieceMaker):
             colour = child_of(like, "color") if like is not None else None
             if like is None or colour is None:
                 continue
-            if not any(it.get("name") == used.get("name") for it in self.draft.root.iterchildren("material")):
+            if (used.get("name") or "") not in own:
                 yield self.of_sets([Set(used, "color", "rgba", colour.get("rgba") or "")])
             elif (
                 self.draft.material(names[0]) is None
