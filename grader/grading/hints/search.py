@@ -35,6 +35,7 @@ _MAX_PARTS = 5  # edits of a hint that are left out one by one
 class _Tried(NamedTuple):
     proposal: Proposal
     passes: frozenset[str]
+    is_assumed: bool  # they may pass by what is undone, and not by the edit: others come first
 
 
 class HintSearch:
@@ -91,6 +92,7 @@ class HintSearch:
             known = {name for found in self.found for name in found.gains} | self.missing.keys()
             lost = {name: points for name, points in costs_of(self.trials.results).items() if name not in known}
             is_readable = self._reading is not None and self._reading.root is not None
+            is_readable = is_readable and self._draft is not None and not self._draft.is_refused
             self.missing |= missing_hints(self._difference, self._criteria, lost, is_readable=is_readable)
         return self
 
@@ -121,7 +123,7 @@ class HintSearch:
                     break
                 results = self.trials.graded((*before, *proposal.edits), lost)
                 passes = frozenset(name for name, result in results.items() if result.outcome.status == "passed")
-                tried += [_Tried(proposal, passes)] * bool(passes)
+                tried += [_Tried(proposal, passes, self.trials.is_assumed)] * bool(passes)
         while best := self._best(tried):
             if not self._prove(best, tried):
                 self._refused.add(best.proposal.edits)
@@ -131,9 +133,9 @@ class HintSearch:
         left = (it for it in tried if it.passes & lost and it.proposal.edits not in self._refused)
         return min(left, key=lambda it: self._order(it, lost), default=None)
 
-    def _order(self, one: _Tried, lost: Collection[str]) -> tuple[Decimal, int, int, int]:
+    def _order(self, one: _Tried, lost: Collection[str]) -> tuple[bool, Decimal, int, int, int]:
         gain = sum((self._criteria[name].points for name in one.passes if name in lost), Decimal(0))
-        return -gain, one.proposal.rank, one.proposal.way, one.proposal.size
+        return one.is_assumed, -gain, one.proposal.rank, one.proposal.way, one.proposal.size
 
     def _prove(self, best: _Tried, tried: Iterable[_Tried]) -> bool:
         """Add an edit if it gains the points alone, or after the edits before it, and loses nothing of theirs."""
@@ -142,7 +144,7 @@ class HintSearch:
         wanted = best.passes & lost
         together = self._gains(self.edits, edits, self.results)
         if together and best.proposal.rank in (REFERENCE, STRUCTURE) and 1 < len(edits) <= _MAX_PARTS:
-            edits = self._needed(edits, together)
+            edits, together = self._needed(edits, together)
         after, best = self._after, best._replace(proposal=best.proposal._replace(edits=edits))
         alone = self._gains((), edits, self.trials.results) if self.found else {}
         is_late = bool(self.found) and not wanted & alone.keys()
@@ -165,15 +167,16 @@ class HintSearch:
         self._refused = set()
         return True
 
-    def _needed(self, edits: Edits, gains: Mapping[str, Decimal]) -> Edits:
-        """Leave out of a few edits the changes of values without which the others gain as much."""
+    def _needed(self, edits: Edits, gains: dict[str, Decimal]) -> tuple[Edits, dict[str, Decimal]]:
+        """Leave out changes of values without which the others gain as much, and return what the rest gains."""
         after = self._after
         for edit in [it for it in edits if it.old and it.new]:
             rest = tuple(it for it in edits if it is not edit)
-            if rest and gains.keys() <= self._gains(self.edits, rest, self.results).keys():
-                edits, after = rest, self._after
+            left = self._gains(self.edits, rest, self.results) if rest else {}
+            if gains.keys() <= left.keys():
+                edits, gains, after = rest, left, self._after
         self._after = after
-        return edits
+        return edits, gains
 
     def _equal_to(
         self, best: _Tried, gains: Mapping[str, Decimal], wanted: frozenset[str], tried: Iterable[_Tried]

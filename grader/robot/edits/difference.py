@@ -1,5 +1,6 @@
 """The difference between a robot and the reference's, cut into pieces: each is an edit that may undo a mistake."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
@@ -48,11 +49,11 @@ class RobotDifference(PieceMaker):
         return unique([*found, *self._materials(), *self._joint_names()])
 
     def _materials(self) -> Iterator[Piece]:
-        """Name a material as it is used, or give what a link shows the reference's colour if no material has it."""
+        """Name a material as links use it, or give what a link shows the reference's colour if no material has it."""
         own = {it.get("name") or "": it for it in self.draft.root.iterchildren("material")}
-        used_names = {it.get("name") or "" for it in self.draft.root.iterfind("link//material")}
-        for name in sorted(own.keys() - used_names):
-            meant = near(name, used_names - own.keys(), "material")
+        uses = Counter(it.get("name") or "" for it in self.draft.root.iterfind("link//material"))
+        for name in sorted(own.keys() - uses.keys()):
+            meant = near(name, [it for it, number in uses.items() if number > 1 and it not in own], "material")
             if meant is not None:
                 yield self.piece(own[name], "the name of {}", sets=(Set(own[name], "", "name", meant),))
         for used in self.draft.root.iter("material"):
