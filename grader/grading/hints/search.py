@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from grader.package.package import Package
 
 _RESERVE = 20  # gradings for proofs
+_AROUND = " ,\r\n"  # of a text that is added
 _MAX_PARTS = 5  # edits of a hint that are left out one by one
 
 
@@ -183,7 +184,9 @@ class HintSearch:
     ) -> _Tried | None:
         """Return another edit that gains as much, at other places, and loses nothing either."""
         lost, known = set(self._lost), {best.proposal.edits, *self._refused}
+        added = {edit.new.strip(_AROUND) for edit in best.proposal.edits if not edit.old}  # also in the next line
         others = (it for it in tried if it.passes >= wanted and it.proposal.edits not in known)
+        others = (it for it in others if not added.issuperset(edit.new.strip(_AROUND) for edit in it.proposal.edits))
         equal = (it for it in others if self._order(it, lost) == self._order(best, lost))
         apart = (it for it in equal if it.proposal.places.isdisjoint(best.proposal.places))
         proven = (it for it in apart if gains.keys() <= self._gains(self.edits, it.proposal.edits, self.results).keys())

@@ -132,5 +132,5 @@ def _quote(text: str) -> str:
     """Return a text of the file between backticks, in one line."""
     line = " ".join(text.split()).replace("> <", "><")
     if not line:
-        return ""
+        return "a space" if text else ""
     return f"`{line}`" if len(line) <= _MAX_TEXT else f"`{line[: _MAX_TEXT - 3]}...`"
