@@ -13,7 +13,7 @@ from grader.errors import FileError, MachineError
 from grader.files import limits
 from grader.files.names import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
 from grader.files.reading import advice_for, read_capped, read_error, read_start, shown_below
-from grader.files.tree import File, IgnoredFile, Tree, keep_small, make_tree, parents
+from grader.files.tree import File, IgnoredFile, Tree, keep_small, make_tree
 from grader.text import printable_path
 
 _MAX_GENERATED = 10_000  # files of builds that are looked through for those of packages

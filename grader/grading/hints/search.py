@@ -4,26 +4,20 @@ A `Piece` is what one mistake needs, with its words; a `Proposal` is one way to 
 proves becomes a `FoundHint`, and in a report a `Hint`. All of them together are the `Fix`.
 """
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import suppress
 from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.edits import Proposal
 from grader.grading.criterion import Criterion
+from grader.grading.hints.families import Families
 from grader.grading.hints.missing import missing_hints
-from grader.grading.hints.targets import is_another, leaves_others, links_of, own_chain
+from grader.grading.hints.targets import leaves_others
 from grader.grading.hints.trials import FoundHint, NoTrialsLeft, Results, Trials, costs_of, gains_of
-from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
-from grader.robot.edits.groups import whole_elements, whole_links
-from grader.robot.edits.pieces import REFERENCE, STRUCTURE, Piece
-from grader.robot.edits.undone import undone_proposals
-from grader.robot.edits.variants import in_another_unit, of_own, of_siblings
+from grader.robot.edits.pieces import REFERENCE, STRUCTURE
 from grader.source import Edits
-from grader.submission.raw_xacro import raw_xacro_proposals
-from grader.submission.urdf import Read
-from grader.xml.urdf_format import JOINT_TYPES
 
 if TYPE_CHECKING:
     from grader.package.package import Package
@@ -53,17 +47,8 @@ class HintSearch:
 
         No edit is searched for the criteria that are `told`.
         """
-        self.trials, self._package = trials, package
+        self.trials, self._families = trials, Families(trials, reference, package)
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
-        urdf = trials.submission.urdf
-        self._reading = urdf.loaded if isinstance(urdf, Read) else None
-        self._draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
-        both = (
-            self._draft is not None
-            and not is_another(self._draft.robot, trials.rubric.links)
-            and (reference or self._draft)
-        )
-        self._difference = RobotDifference(self._draft, both) if self._draft is not None and both else None
         self.found: list[FoundHint] = []
         self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing, or two edits
         self._refused = set[Edits]()  # after all hints so far
@@ -82,8 +67,9 @@ class HintSearch:
         """Search until nothing more is found, or the budget is spent."""
         with suppress(NoTrialsLeft):
             if self.trials.left:
-                families = (self._of_reference, self._of_package, self._of_own, self._of_links)
-                for family in (*families, self._of_reference, self._of_package):
+                all_ = self._families
+                families = (all_.of_reference, all_.of_package, all_.of_own, all_.of_links)
+                for family in (*families, all_.of_reference, all_.of_package):
                     self._take(family)
                 self.is_complete = not self._is_cut or not self._lost
         self.trials.left = max(self.trials.left, 1 + self.trials.submission.cost)  # for the last one
@@ -92,9 +78,8 @@ class HintSearch:
         with self.trials.isolated():
             known = {name for found in self.found for name in found.gains} | self.missing.keys()
             lost = {name: points for name, points in costs_of(self.trials.results).items() if name not in known}
-            is_readable = self._reading is not None and self._reading.root is not None
-            is_readable = is_readable and self._draft is not None and not self._draft.is_refused
-            self.missing |= missing_hints(self._difference, self._criteria, lost, is_readable=is_readable)
+            if self._families.is_whole:
+                self.missing |= missing_hints(self._families.difference, self._criteria, lost)
         return self
 
     def _verify(self) -> None:
@@ -152,7 +137,7 @@ class HintSearch:
         gains = alone if self.found and not is_late else together
         if not together or not set(gains) <= {*together, *(it for found in self.found for it in found.gains)}:
             return False
-        if not wanted & gains.keys() or (self._draft is not None and self._is_half(best, after)):
+        if not wanted & gains.keys() or self._is_half(best, after):
             return False
         known = {name for found in self.found for name in found.gains}
         gains = {name: points for name, points in gains.items() if name not in known} or gains
@@ -194,12 +179,11 @@ class HintSearch:
 
     def _is_half(self, best: _Tried, after: Results) -> bool:
         """Return whether an edit leaves what it should correct as well: in another call of a macro, or of its link."""
-        assert self._draft is not None
         lost = [self._criteria[name] for name, result in after.items() if result.is_lost]
         if leaves_others(best.proposal.shared, [self._criteria[name] for name in best.passes], lost):
             return True
         is_own = best.proposal.rank not in (REFERENCE, STRUCTURE) and bool(best.proposal.link)
-        chains = (own_chain(it.arguments.get("link"), self._draft.robot, self._is_known) for it in lost if is_own)
+        chains = (self._families.chain(it.arguments.get("link")) for it in lost if is_own)
         return any(best.proposal.link in chain for chain in chains)
 
     def _gains(self, before: Edits, edits: Edits, against: Results) -> dict[str, Decimal]:
@@ -207,57 +191,3 @@ class HintSearch:
         after = self.trials.graded((*before, *edits), against)
         self._after = after or self._after
         return gains_of(against, after)
-
-    def _proposals(self, pieces: Iterable[Piece], links: Collection[str] | None = None) -> Iterator[Proposal]:
-        """Yield the edits of the text that pieces of these links stand for."""
-        assert self._draft is not None
-        for piece in pieces:
-            if links is None or piece.link in links or not self._is_known(piece.link):
-                shared = self._draft.shared(piece.sets)
-                for way, edits in enumerate(self._draft.ways(piece.sets)):
-                    if edits or piece.edits:
-                        yield Proposal((*edits, *piece.edits), piece.cause, piece.link, piece.rank, way, shared)
-
-    def _is_known(self, link: str) -> bool:
-        """Return whether the reference has a link: another one may be any of them."""
-        return self._difference is not None and self._difference.reference.robot.has_link(link)
-
-    def _links(self, lost: Iterable[Criterion]) -> list[str] | None:
-        """Return the links on which criteria depend; None if all may."""
-        assert self._difference is not None
-        return links_of(lost, self._difference.draft.robot, self._difference.reference.robot)
-
-    def _of_reference(self, lost: list[Criterion]) -> Iterator[Proposal]:
-        """Yield what undoes a slip, then what differs from the other side of the robot, and from the reference."""
-        subjects = {criterion.check.subject for criterion in lost}
-        if self._reading is not None and self._draft is not None and "urdf" in subjects:
-            yield from undone_proposals(self._reading)
-            yield from raw_xacro_proposals(self.trials.submission)
-        if self._difference is not None and self._draft is not None and subjects & {"urdf", "robot"}:
-            yield from self._draft.corrections([*self._difference.names, *JOINT_TYPES])
-            links = self._links(lost)
-            yield from self._proposals(in_another_unit(self._difference))
-            yield from self._proposals(of_siblings(self._difference, links or ()))
-            yield from self._proposals(self._difference.pieces, links)
-
-    def _of_links(self, lost: list[Criterion]) -> Iterator[Proposal]:
-        """Yield all values of the reference of a link and its joint."""
-        if self._difference is not None and any(criterion.check.subject == "robot" for criterion in lost):
-            links = self._links(lost)
-            yield from self._proposals(whole_links(self._difference), links)
-            yield from self._proposals(whole_elements(self._difference), links)
-
-    def _of_own(self, lost: list[Criterion]) -> Iterator[Proposal]:
-        """Yield the student's own numbers with another sign, order or unit."""
-        if self._difference is not None:
-            links = self._links([criterion for criterion in lost if criterion.check.subject == "robot"])
-            yield from self._proposals(of_own(self._difference, links or ()))
-
-    def _of_package(self, lost: list[Criterion]) -> Iterator[Proposal]:
-        own = [criterion for criterion in lost if criterion.check.subject not in ("urdf", "robot")]
-        if own:
-            from grader.package.edits.candidates import package_proposals  # late: a robot on its own needs none
-
-            wanted = [(criterion.check.about.looks_at, criterion.arguments) for criterion in own]
-            package = self.trials.submission.package
-            yield from package_proposals(package, self._package(), wanted, self.trials.isolated)
