@@ -62,7 +62,8 @@ def grade(
         problems += package_problems(submission.package)
     evidence, other_pictures = _evidence_of(rubric, submission, chosen if is_whole else ())
     notes += _note_on_unread(submission, evidence)
-    notes += _note_on_convention(rubric, submission, results) if is_explained else ()
+    convention, by_convention = _by_convention(rubric, submission, results) if is_explained else ((), frozenset[str]())
+    notes += convention
     if submission.is_costly and rubric.hints != "none" and any(result.is_lost for result in results):
         notes += (_NO_HINTS,)
     return Report(
@@ -74,6 +75,7 @@ def grade(
         evidence=evidence,
         other_pictures=other_pictures,
         notes=notes,
+        by_convention=by_convention,
     )
 
 
@@ -142,8 +144,10 @@ def _note_on_unread(submission: Submission, evidence: Sequence[EvidenceResult]) 
     return (f"not searched for evidence: {enumerated(list(map(str, unread)), _MAX_UNREAD)}",) if unread else ()
 
 
-def _note_on_convention(rubric: Rubric, submission: Submission, results: Sequence[Result]) -> tuple[str, ...]:
-    """Return a note on frames of the whole robot that are turned or moved alike, if undoing that makes criteria pass.
+def _by_convention(
+    rubric: Rubric, submission: Submission, results: Sequence[Result]
+) -> tuple[tuple[str, ...], frozenset[str]]:
+    """Return a note on frames of the whole robot that are turned or moved alike, and the criteria that it explains.
 
     The points stay: the lab says where its frames are. The note says that they are lost by one decision, not by many
     mistakes.
@@ -151,16 +155,17 @@ def _note_on_convention(rubric: Rubric, submission: Submission, results: Sequenc
     lost = {result.criterion.id for result in results if result.is_lost and result.criterion.check.subject == "robot"}
     found = _convention(rubric, submission) if len(lost) >= _MIN_OF_CONVENTION else None
     if found is None or not isinstance(submission.urdf, Read):
-        return ()
+        return (), frozenset()
     reading = submission.urdf.reading._replace(robot=found.robot)
     other = replace(submission, urdf=submission.urdf._replace(reading=reading))
     decided = [result for result in results if result.criterion.check.subject in ("urdf", "robot")]
     after = {result.criterion.id: result for result in decide(rubric, other, {it.criterion.id for it in decided})}
     before = {result.criterion.id for result in decided if result.outcome.status == "passed"}
-    gained = [after[name].criterion.points for name in lost if after[name].outcome.status == "passed"]
+    gained = frozenset(name for name in lost if after[name].outcome.status == "passed")
     is_one = len(gained) >= _MIN_OF_CONVENTION and all(after[name].outcome.status == "passed" for name in before)
-    points = counted_points(sum(gained, Decimal(0)))
-    return (f"everything is {found.description} relative to the handout: one decision, {points}",) if is_one else ()
+    points = counted_points(sum((after[name].criterion.points for name in gained), Decimal(0)))
+    note = f"everything is {found.description} relative to the handout: one decision, {points}"
+    return ((note,), gained) if is_one else ((), frozenset())
 
 
 def _convention(rubric: Rubric, submission: Submission) -> "Convention | None":

@@ -119,7 +119,8 @@ class Report(NamedTuple):
 
     `problems` are those of the URDF and, where a package is graded, of its files. `other_pictures` are pictures that no
     piece of evidence asks for. `notes` are sentences on how the submission was read. `hints_complete` says whether the
-    search for hints ended before its budget did. `score` is that of the criteria, whatever the `grade` is.
+    search for hints ended before its budget did. `by_convention` are the criteria that one decision on all frames
+    of the robot costs: no hint corrects one of them alone. `score` is that of the criteria, whatever the `grade` is.
     """
 
     submission: GradedSubmission
@@ -130,6 +131,7 @@ class Report(NamedTuple):
     evidence: tuple[EvidenceResult, ...] = ()
     other_pictures: "tuple[EvidenceFile, ...]" = ()
     notes: tuple[str, ...] = ()
+    by_convention: frozenset[str] = frozenset()
     hints_complete: bool = True
     version: str = __version__  # of the grader
     grade: Grade | None = None  # in a class, where a person or the late penalty changes the score

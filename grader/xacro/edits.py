@@ -1,7 +1,8 @@
 """The ways to give expanded elements other values: edits of the xacro texts that they come from.
 
 A value is changed where it is defined, if a name alone gives it: in a property, in the argument of a macro call, in the
-default of an argument, in a YAML file. Else it is replaced where it is used. Nothing inside an expression is changed.
+default of an argument, in a YAML file. Else it is replaced where it is used, or given in a macro call that lacks it.
+Nothing inside an expression is changed.
 """
 
 import re
@@ -56,7 +57,17 @@ class Rewriter:
         by_place = {change.written[:3]: change for change in found}
         is_one = all(by_place[change.written[:3]].new == change.new for change in found)
         edits = edits_of(by_place.values()) if has_definition and is_one else None
-        return [*filter(None, [edits]), *self._literal(text, changed)]
+        return [*filter(None, [edits]), *self._literal(text, changed), *self._in_calls(text, changed)]
+
+    def _in_calls(self, text: Written, changed: Sequence[Use]) -> list[Edits]:
+        """Return the edits that give a parameter, of which a text is the default, in the calls of its macro."""
+        name = text.text[2:-1].strip() if text.text.startswith("${") else ""
+        definition = self._of_name(name, changed[0].scope)
+        if definition is None or definition.attribute != "params":
+            return []
+        calls = {use.call: use.new for use in changed if use.call is not None}
+        each = ((*call.source.element(call.tag), new) for call, new in calls.items())
+        return [tuple(with_attribute(source, start, name, new) for source, start, new in each)]
 
     def _literal(self, text: Written, changed: Sequence[Use]) -> list[Edits]:
         """Return the edit that writes a value where it is used; none where uses differ, or a YAML file gives it."""
@@ -92,15 +103,23 @@ class Rewriter:
         if definition is None or own is None:
             return []
         if found["keys"]:
-            file = self._yaml_file(definition.text) if _LOADED.match(definition.text) else None
-            keys = [a or b or c for a, b, c in _KEY.findall(found["keys"])]
-            return _in_yaml(file, keys, inner, scope) if file is not None else []
-        if "$" in own.text:
+            return self._in_yaml(definition, found["keys"], inner, depth)
+        if self.definitions(own):
             parts = _parts(own, Use(definition.scope, was, inner))
             changes = [self._definitions(part, definition.scope, a, b, depth - 1) for part, a, b in parts]
             return [change for several in changes for change in several] if all(changes) else []
         is_quoted = own.text[:1] == "'" == own.text[-1:]
         return [TextChange(own, f"'{inner}'" if is_quoted else merged(own.text, inner))]
+
+    def _in_yaml(self, definition: Definition, path: str, new: str, depth: int) -> list[TextChange]:
+        """Return the change in the YAML file from which a name is defined, at the keys that follow the name."""
+        part = _ALONE.fullmatch(definition.text) if not _LOADED.match(definition.text) else None
+        above = self._of_name(part["name"], definition.scope) if part is not None and part["name"] and depth else None
+        if part is not None and above is not None:
+            return self._in_yaml(above, part["keys"] + path, new, depth - 1)
+        file = self._yaml_file(definition.text) if _LOADED.match(definition.text) else None
+        keys = [a or b or c for a, b, c in _KEY.findall(path)]
+        return _in_yaml(file, keys, new, definition.scope) if file is not None else []
 
     def _of_name(self, name: str, scope: XacroScope) -> Definition | None:
         holder = scope.holder(name)

@@ -47,6 +47,11 @@ class ExpandedSource(Source):
         return self._expander.files.followed
 
     @property
+    def is_refused(self) -> bool:
+        """Whether xacro refuses something, without which it was expanded."""
+        return bool(self._expander.problems)
+
+    @property
     def open_reason(self) -> str:
         """Why something could not be expanded; empty if everything was."""
         return next((found.reason for found in self._expander.undetermined), "")
@@ -70,7 +75,8 @@ class ExpandedSource(Source):
         for tag in self.siblings(next(iter(wanted))):
             node = self._nodes[tag]
             text = node.attributes.get(attribute, "") if attribute else "".join(map(str, node.children)).strip()
-            uses.append(Use(node.place.scope or scope, *wanted.get(tag, (text, text))))
+            call = node.place.calls[-1][1] if node.place.calls else None
+            uses.append(Use(node.place.scope or scope, *wanted.get(tag, (text, text)), call))
         return self._rewriter.ways(place, name, uses)
 
     def _place(self, tag: int, attribute: str) -> tuple[ScopePlace, str, XacroScope]:
@@ -104,7 +110,7 @@ class ExpandedSource(Source):
     def corrections(self, names: Sequence[str]) -> "list[Proposal]":
         """Return edits that may correct undeclared and undefined names, calls of macros, and conditions.
 
-        `names` are those that the reference has.
+        `names` are those that the reference and the format have.
         """
         from grader.edits import Proposal
         from grader.names import near

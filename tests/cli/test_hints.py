@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from grader.grading.hints.families import Families
 from grader.grading.hints.search import HintSearch
 from grader.grading.levels import LEVELS
 from tests.command_line import run
@@ -223,14 +224,20 @@ def test_a_submission_that_is_too_large_has_its_own_sentence(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(
-    "steps", [["run"], ["_take"], ["_of_reference", "_of_package", "_of_own", "_of_links"]], ids="-".join
+    ("where", "steps"),
+    [
+        (HintSearch, ["run"]),
+        (HintSearch, ["_take"]),
+        (Families, ["of_reference", "of_package", "of_own", "of_links"]),
+    ],
+    ids=["run", "take", "families"],
 )
 def test_a_search_that_failed_has_its_own_sentence(
-    steps: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    where: type, steps: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """`--fix` does not say that there is nothing to fix."""
     for step in steps:
-        monkeypatch.setattr(HintSearch, step, lambda self, *_: self.nothing)
+        monkeypatch.setattr(where, step, lambda self, *_: self.nothing)
     done = run(("grade", MISTAKES, "--fix", tmp_path / "fixed.urdf"))
     assert done.stderr.decode().splitlines()[-1] == "grader: --fix: nothing was written: the search for edits failed"
 
@@ -292,7 +299,7 @@ def test_what_is_missing_costs_no_other_hint(name: str, tmp_path: Path) -> None:
     ("place", "lost"),
     [
         ("grader.package.edits.candidates.package_names", ()),
-        ("grader.grading.hints.search.of_siblings", ("base-green",)),
+        ("grader.grading.hints.families.of_siblings", ("base-green",)),
         ("grader.grading.hints.search.missing_hints", ()),
     ],
 )

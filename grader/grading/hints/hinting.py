@@ -50,7 +50,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel, *, keep_edi
     results = {result.criterion.id: result for result in report.results}
     solution = report.rubric.solution
     trials = Trials(report.rubric, submission, results)
-    search = HintSearch(trials, _draft(solution), lambda: _package(solution)).run()
+    search = HintSearch(trials, _draft(solution), lambda: _package(solution), report.by_convention).run()
     costs = costs_of(results)
     shown = {name: found for found in reversed(search.found) for name in found.gains}
     entries = {id(found): _entry(found, shown, results, costs) for found in search.found}

@@ -17,11 +17,9 @@ def missing_hints(
     difference: RobotDifference | None,
     criteria: Mapping[str, Criterion],
     lost: Mapping[str, Decimal],
-    *,
-    is_readable: bool,
 ) -> dict[str, FoundHint]:
     """Return a hint in words for each missing link with its joint, by the costliest criterion that it costs."""
-    if difference is None or not is_readable or difference.draft is difference.reference:
+    if difference is None or difference.draft is difference.reference:
         return {}
     if 2 * sum(map(difference.draft.robot.has_link, difference.names)) < len(difference.names):
         return {}  # another robot, or one that is hardly begun

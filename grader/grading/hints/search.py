@@ -4,58 +4,56 @@ A `Piece` is what one mistake needs, with its words; a `Proposal` is one way to 
 proves becomes a `FoundHint`, and in a report a `Hint`. All of them together are the `Fix`.
 """
 
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import suppress
 from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.edits import Proposal
 from grader.grading.criterion import Criterion
+from grader.grading.hints.families import Families
 from grader.grading.hints.missing import missing_hints
-from grader.grading.hints.targets import is_another, leaves_others, links_of, own_chain
+from grader.grading.hints.targets import leaves_others
 from grader.grading.hints.trials import FoundHint, NoTrialsLeft, Results, Trials, costs_of, gains_of
-from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
-from grader.robot.edits.groups import whole_elements, whole_links
-from grader.robot.edits.pieces import REFERENCE, STRUCTURE, Piece
-from grader.robot.edits.undone import undone_proposals
-from grader.robot.edits.variants import in_another_unit, of_own, of_siblings
+from grader.robot.edits.pieces import REFERENCE, STRUCTURE
 from grader.source import Edits
-from grader.submission.raw_xacro import raw_xacro_proposals
-from grader.submission.urdf import Read
 
 if TYPE_CHECKING:
     from grader.package.package import Package
 
 _RESERVE = 20  # gradings for proofs
+_AROUND = " ,\r\n"  # of a text that is added
+_MAX_PARTS = 5  # edits of a hint that are left out one by one
 
 
 class _Tried(NamedTuple):
     proposal: Proposal
     passes: frozenset[str]
+    is_assumed: bool  # they may pass by what is undone, and not by the edit: others come first
 
 
 class HintSearch:
     """The search for one submission: `found` are proven edits that fit together, `edits` are those of all."""
 
     def __init__(
-        self, trials: Trials, reference: Draft | None, package: "Callable[[], Package | None]" = lambda: None
+        self,
+        trials: Trials,
+        reference: Draft | None,
+        package: "Callable[[], Package | None]" = lambda: None,
+        told: Collection[str] = (),
     ) -> None:
-        """`reference` and `package` are the robot and the package of the rubric's reference solution."""
-        self.trials, self._package = trials, package
+        """`reference` and `package` are the robot and the package of the rubric's reference solution.
+
+        No edit is searched for the criteria that are `told`.
+        """
+        self.trials, self._families = trials, Families(trials, reference, package)
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
-        urdf = trials.submission.urdf
-        self._reading = urdf.loaded if isinstance(urdf, Read) else None
-        self._draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
-        both = (
-            self._draft is not None
-            and not is_another(self._draft.robot, trials.rubric.links)
-            and (reference or self._draft)
-        )
-        self._difference = RobotDifference(self._draft, both) if self._draft is not None and both else None
         self.found: list[FoundHint] = []
         self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing, or two edits
-        self._refused, self._told = set[Edits](), set[Edits]()  # after all hints so far; those that look equally good
+        self._refused = set[Edits]()  # after all hints so far
+        self._told = {*told}  # also criteria for which two edits are told that cannot be told apart
+        self._taken: dict[str, Edits] = {}  # the edits after which a family was tried last
         self.results: Results = trials.results  # with all edits
         self._after: Results = self.results
         self.is_complete = self._is_cut = False
@@ -69,17 +67,19 @@ class HintSearch:
         """Search until nothing more is found, or the budget is spent."""
         with suppress(NoTrialsLeft):
             if self.trials.left:
-                for family in (self._of_reference, self._of_package, self._of_own, self._of_links, self._of_reference):
+                all_ = self._families
+                families = (all_.of_reference, all_.of_package, all_.of_own, all_.of_links)
+                for family in (*families, all_.of_reference, all_.of_package):
                     self._take(family)
-                self.is_complete = not self._is_cut
+                self.is_complete = not self._is_cut or not self._lost
         self.trials.left = max(self.trials.left, 1 + self.trials.submission.cost)  # for the last one
         with self.trials.isolated():
             self._verify()
         with self.trials.isolated():
             known = {name for found in self.found for name in found.gains} | self.missing.keys()
             lost = {name: points for name, points in costs_of(self.trials.results).items() if name not in known}
-            is_readable = self._reading is not None and self._reading.root is not None
-            self.missing |= missing_hints(self._difference, self._criteria, lost, is_readable=is_readable)
+            if self._families.is_whole:
+                self.missing |= missing_hints(self._families.difference, self._criteria, lost)
         return self
 
     def _verify(self) -> None:
@@ -89,20 +89,27 @@ class HintSearch:
 
     @property
     def _lost(self) -> list[str]:
-        return [name for name, result in self.results.items() if result.is_lost]
+        return [name for name, result in self.results.items() if result.is_lost and name not in self._told]
 
     def _take(self, family: Callable[[list[Criterion]], Iterable[Proposal]]) -> None:
-        """Try the edits of a family, and take those that are proven, those that gain most first."""
+        """Try the edits of a family, each once, and take those that are proven, those that gain most first."""
         lost, before = self._lost, self.edits
+        if self._taken.get(family.__name__) == before:
+            return
+        self._taken[family.__name__] = before
         tried: list[_Tried] = []
+        seen: set[Edits] = set()
         with self.trials.isolated():
             for proposal in family([self._criteria[name] for name in lost]) if lost else ():
+                if proposal.edits in seen:
+                    continue
+                seen.add(proposal.edits)
                 if self.trials.left < _RESERVE:
                     self._is_cut = True
                     break
                 results = self.trials.graded((*before, *proposal.edits), lost)
                 passes = frozenset(name for name, result in results.items() if result.outcome.status == "passed")
-                tried += [_Tried(proposal, passes)] * bool(passes)
+                tried += [_Tried(proposal, passes, self.trials.is_assumed)] * bool(passes)
         while best := self._best(tried):
             if not self._prove(best, tried):
                 self._refused.add(best.proposal.edits)
@@ -112,49 +119,71 @@ class HintSearch:
         left = (it for it in tried if it.passes & lost and it.proposal.edits not in self._refused)
         return min(left, key=lambda it: self._order(it, lost), default=None)
 
-    def _order(self, one: _Tried, lost: Collection[str]) -> tuple[Decimal, int, int, int]:
+    def _order(self, one: _Tried, lost: Collection[str]) -> tuple[bool, Decimal, int, int, int]:
         gain = sum((self._criteria[name].points for name in one.passes if name in lost), Decimal(0))
-        return -gain, one.proposal.rank, one.proposal.way, one.proposal.size
+        return one.is_assumed, -gain, one.proposal.rank, one.proposal.way, one.proposal.size
 
     def _prove(self, best: _Tried, tried: Iterable[_Tried]) -> bool:
         """Add an edit if it gains the points alone, or after the edits before it, and loses nothing of theirs."""
         edits = tuple(edit for edit in best.proposal.edits if edit not in self.edits)
-        best = best._replace(proposal=best.proposal._replace(edits=edits))
         lost = set(self._lost)
         wanted = best.passes & lost
-        alone = self._gains((), best.proposal.edits, self.trials.results) if self.found else {}
-        together = self._gains(self.edits, best.proposal.edits, self.results)
+        together = self._gains(self.edits, edits, self.results)
+        if together and best.proposal.rank in (REFERENCE, STRUCTURE) and 1 < len(edits) <= _MAX_PARTS:
+            edits, together = self._needed(edits, together)
+        after, best = self._after, best._replace(proposal=best.proposal._replace(edits=edits))
+        alone = self._gains((), edits, self.trials.results) if self.found else {}
         is_late = bool(self.found) and not wanted & alone.keys()
         gains = alone if self.found and not is_late else together
         if not together or any(self._after[name].outcome.status != "passed" for name in gains):
             return False
-        if not wanted & gains.keys() or (self._draft is not None and self._is_half(best)):
+        if not wanted & gains.keys() or self._is_half(best, after):
             return False
         known = {name for found in self.found for name in found.gains}
         gains = {name: points for name, points in gains.items() if name not in known} or gains
-        others = [it for it in tried if it.passes >= wanted and it.proposal.places.isdisjoint(best.proposal.places)]
-        equal = [it for it in others if self._order(it, lost) == self._order(best, lost)]
-        paths = [edit.path for it in (best, *equal[:1]) for edit in it.proposal.edits]
-        if equal and all(path.endswith((".urdf", ".xacro")) for path in paths):
+        equal = self._equal_to(best, together, wanted, tried)
+        is_of_robot = all(path.endswith((".urdf", ".xacro")) for path in {edit.path for edit in best.proposal.edits})
+        if equal is not None and is_of_robot:
             name = max((it for it in self._criteria if it in wanted), key=lambda name: self._criteria[name].points)
-            self.missing[name] = FoundHint(best.proposal, {}, "one of several", alternative=equal[0].proposal)
-            self._told |= {best.proposal.edits, *(it.proposal.edits for it in equal)}
-            self._refused |= self._told
+            self.missing[name] = FoundHint(best.proposal, {}, "one of several", alternative=equal.proposal)
+            self._told |= wanted
             return False
-        is_tie = any(self._order(it, lost) <= self._order(best, lost) for it in others)
-        self.found.append(FoundHint(best.proposal, gains, "one of several" if is_tie else "preferred", is_late))
-        self.results = self._after
-        self._refused = {*self._told}
+        self.found.append(FoundHint(best.proposal, gains, "one of several" if equal else "preferred", is_late))
+        self.results = after
+        self._refused = set()
         return True
 
-    def _is_half(self, best: _Tried) -> bool:
+    def _needed(self, edits: Edits, gains: dict[str, Decimal]) -> tuple[Edits, dict[str, Decimal]]:
+        """Leave out changes of values without which the others gain as much, and return what the rest gains."""
+        after = self._after
+        for edit in [it for it in edits if it.old and it.new]:
+            rest = tuple(it for it in edits if it is not edit)
+            left = self._gains(self.edits, rest, self.results) if rest else {}
+            if gains.keys() <= left.keys():
+                edits, gains, after = rest, left, self._after
+        self._after = after
+        return edits, gains
+
+    def _equal_to(
+        self, best: _Tried, gains: Mapping[str, Decimal], wanted: frozenset[str], tried: Iterable[_Tried]
+    ) -> _Tried | None:
+        """Return another edit that gains as much, at other places, and loses nothing either."""
+        lost, known = set(self._lost), {best.proposal.edits, *self._refused}
+        added = {edit.new.strip(_AROUND) for edit in best.proposal.edits if not edit.old}  # also in the next line
+        others = (it for it in tried if it.passes >= wanted and it.proposal.edits not in known)
+        others = (it for it in others if not added.issuperset(edit.new.strip(_AROUND) for edit in it.proposal.edits))
+        equal = (it for it in others if self._order(it, lost) == self._order(best, lost))
+        apart = (it for it in equal if it.proposal.places.isdisjoint(best.proposal.places))
+        proven = (it for it in apart if gains.keys() <= self._gains(self.edits, it.proposal.edits, self.results).keys())
+        return next(proven, None)
+
+    def _is_half(self, best: _Tried, after: Results) -> bool:
         """Return whether an edit leaves what it should correct as well: in another call of a macro, or of its link."""
-        assert self._draft is not None
-        lost = [self._criteria[name] for name, result in self._after.items() if result.is_lost]
+        lost = [self._criteria[name] for name, result in after.items() if result.is_lost]
         if leaves_others(best.proposal.shared, [self._criteria[name] for name in best.passes], lost):
             return True
         is_own = best.proposal.rank not in (REFERENCE, STRUCTURE) and bool(best.proposal.link)
-        chains = (own_chain(it.arguments.get("link"), self._draft.robot, self._is_known) for it in lost if is_own)
+        chains = (self._families.chain(it.arguments.get("link")) for it in lost if is_own)
         return any(best.proposal.link in chain for chain in chains)
 
     def _gains(self, before: Edits, edits: Edits, against: Results) -> dict[str, Decimal]:
@@ -162,57 +191,3 @@ class HintSearch:
         after = self.trials.graded((*before, *edits), against)
         self._after = after or self._after
         return gains_of(against, after)
-
-    def _proposals(self, pieces: Iterable[Piece], links: Collection[str] | None = None) -> Iterator[Proposal]:
-        """Yield the edits of the text that pieces of these links stand for."""
-        assert self._draft is not None
-        for piece in pieces:
-            if links is None or piece.link in links or not self._is_known(piece.link):
-                shared = self._draft.shared(piece.sets)
-                for way, edits in enumerate(self._draft.ways(piece.sets)):
-                    if edits or piece.edits:
-                        yield Proposal((*edits, *piece.edits), piece.cause, piece.link, piece.rank, way, shared)
-
-    def _is_known(self, link: str) -> bool:
-        """Return whether the reference has a link: another one may be any of them."""
-        return self._difference is not None and self._difference.reference.robot.has_link(link)
-
-    def _links(self, lost: Iterable[Criterion]) -> list[str] | None:
-        """Return the links on which criteria depend; None if all may."""
-        assert self._difference is not None
-        return links_of(lost, self._difference.draft.robot, self._difference.reference.robot)
-
-    def _of_reference(self, lost: list[Criterion]) -> Iterator[Proposal]:
-        """Yield what undoes a slip, then what differs from the other side of the robot, and from the reference."""
-        subjects = {criterion.check.subject for criterion in lost}
-        if self._reading is not None and self._draft is not None and "urdf" in subjects:
-            yield from undone_proposals(self._reading)
-            yield from raw_xacro_proposals(self.trials.submission)
-        if self._difference is not None and self._draft is not None and subjects & {"urdf", "robot"}:
-            yield from self._draft.corrections(self._difference.names)
-            links = self._links(lost)
-            yield from self._proposals(in_another_unit(self._difference))
-            yield from self._proposals(of_siblings(self._difference, links or ()))
-            yield from self._proposals(self._difference.pieces, links)
-
-    def _of_links(self, lost: list[Criterion]) -> Iterator[Proposal]:
-        """Yield all values of the reference of a link and its joint."""
-        if self._difference is not None and any(criterion.check.subject == "robot" for criterion in lost):
-            links = self._links(lost)
-            yield from self._proposals(whole_links(self._difference), links)
-            yield from self._proposals(whole_elements(self._difference), links)
-
-    def _of_own(self, lost: list[Criterion]) -> Iterator[Proposal]:
-        """Yield the student's own numbers with another sign, order or unit."""
-        if self._difference is not None:
-            links = self._links([criterion for criterion in lost if criterion.check.subject == "robot"])
-            yield from self._proposals(of_own(self._difference, links or ()))
-
-    def _of_package(self, lost: list[Criterion]) -> Iterator[Proposal]:
-        own = [criterion for criterion in lost if criterion.check.subject not in ("urdf", "robot")]
-        if own:
-            from grader.package.edits.candidates import package_proposals  # late: a robot on its own needs none
-
-            wanted = [(criterion.check.about.looks_at, criterion.arguments) for criterion in own]
-            package = self.trials.submission.package
-            yield from package_proposals(package, self._package(), wanted, self.trials.isolated)

@@ -54,6 +54,7 @@ class Trials:
         self.results = {name: result for name, result in results.items() if result.criterion.part in parts}
         self.left = 0 if submission.is_costly else _MAX_GRADINGS
         self.faults: list[str] = []  # the types of exceptions
+        self.is_assumed = False  # whether the last one is read with words undone, and the submission is not
 
     @contextmanager
     def isolated(self) -> Iterator[None]:
@@ -77,6 +78,7 @@ class Trials:
         edited = self._edited(edits, whole=whole)
         if edited is None or _has_new_problems(self.submission, edited):
             return {}
+        self.is_assumed = _is_assumed(edited) and not _is_assumed(self.submission)
         found: dict[str, Result] = {}
         for result in decide(self.rubric, edited, wanted):
             name = result.criterion.id
@@ -109,6 +111,12 @@ def _has_new_problems(before: Submission, after: Submission) -> bool:
         return False
     known = {problem.kind for problem in before.urdf.loaded.problems if problem.kind.effect in _HARMFUL}
     return any(it.kind not in known for it in after.urdf.loaded.problems if it.kind.effect in _HARMFUL)
+
+
+def _is_assumed(submission: Submission) -> bool:
+    """Return whether ROS 2 rejects the URDF, and it is read with words undone: criteria may pass by them."""
+    reading = submission.urdf.loaded if isinstance(submission.urdf, Read) else None
+    return reading is not None and reading.verdict == "rejected" and reading.is_meant
 
 
 def _is_of_robot(path: str, submission: Submission) -> bool:

@@ -107,11 +107,12 @@ def _change(edit: Edit, submission: Submission) -> str:
 
 
 def _insertion(edit: Edit, submission: Submission) -> str:
-    """Return the line before, after or in which a text is added."""
+    """Return the line before, after or in which a text is added, or at the end of which."""
     line, at = _line(edit, submission), _at(edit, submission.path)
     if edit.new.endswith("\n") or not line[: edit.column - 1].strip():
         return f"before {at}"
-    return f"{'in' if line[edit.column - 1 :].strip() else 'after'} {at}"
+    end = "after" if "\n" in edit.new else "at the end of"
+    return f"{'in' if line[edit.column - 1 :].strip() else end} {at}"
 
 
 def _where(edit: Edit, submission: Submission) -> str:
@@ -131,5 +132,5 @@ def _quote(text: str) -> str:
     """Return a text of the file between backticks, in one line."""
     line = " ".join(text.split()).replace("> <", "><")
     if not line:
-        return ""
+        return "a space" if text else ""
     return f"`{line}`" if len(line) <= _MAX_TEXT else f"`{line[: _MAX_TEXT - 3]}...`"

@@ -106,8 +106,8 @@ def _is_named(path: str, name: str, kind: str) -> bool:
 
 
 def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> Iterator[Proposal]:
-    """Yield edits that give one of these files a name: the one with the most similar name first."""
-    spare = {posixpath.basename(it): it for it in files}
+    """Yield edits that give one of these files a name: the one with the most similar name first; xacro stays xacro."""
+    spare = {posixpath.basename(it): it for it in files if it.endswith(".xacro") <= name.endswith(".xacro")}
     for other in dict.fromkeys([*filter(None, [closest(name, spare)]), *[*spare][:_MAX_NAMES]]):
         new = posixpath.join(posixpath.dirname(spare[other]), name)
         yield change([task.renamed(spare[other], new)], f"the name of {WHAT.get(kind, 'a file')}")

@@ -14,6 +14,7 @@ from grader.package.edits.python_file import PythonFile
 from grader.package.edits.task import change
 from grader.source import Source
 from grader.static_python.imports import USUAL_NAMES
+from grader.static_python.parse import SyntaxFault
 
 _WORD = re.compile(r"[^\W\d]\w*")
 _MAX_WORDS, _MAX_SUSPECTS = 8, 60
@@ -88,6 +89,10 @@ def other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
 
 def undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits that import or correct names that are undefined, or not as they are used; and missing commas."""
+    if isinstance(file.parsed, SyntaxFault):
+        start = file.source.offset(file.parsed.location.line, 1)
+        end = start + len(file.text[start:].partition("\n")[0].rstrip())
+        yield change([file.source.edit(end, end, ",")], "a syntax error", what)
     names = [node for node in file.nodes if isinstance(node, ast.Name)]
     used = {node.id for node in names if isinstance(node.ctx, ast.Load)}
     yield change(file.with_imports(sorted(used)), "the imports", what)

@@ -1,5 +1,6 @@
 """The difference between a robot and the reference's, cut into pieces: each is an edit that may undo a mistake."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
@@ -48,7 +49,13 @@ class RobotDifference(PieceMaker):
         return unique([*found, *self._materials(), *self._joint_names()])
 
     def _materials(self) -> Iterator[Piece]:
-        """Give what a link shows the colour of the reference, where no material of the robot has it."""
+        """Name a material as links use it, or give what a link shows the reference's colour if no material has it."""
+        own = {it.get("name") or "": it for it in self.draft.root.iterchildren("material")}
+        uses = Counter(it.get("name") or "" for it in self.draft.root.iterfind("link//material"))
+        for name in sorted(own.keys() - uses.keys()):
+            meant = near(name, [it for it, number in uses.items() if number > 1 and it not in own], "material")
+            if meant is not None:
+                yield self.piece(own[name], "the name of {}", sets=(Set(own[name], "", "name", meant),))
         for used in self.draft.root.iter("material"):
             link = self.reference.link(self.draft.link_of(used))
             names = [it.get("name") or "" for it in link.iter("material")] if link is not None else []
@@ -56,7 +63,7 @@ class RobotDifference(PieceMaker):
             colour = child_of(like, "color") if like is not None else None
             if like is None or colour is None:
                 continue
-            if not any(it.get("name") == used.get("name") for it in self.draft.root.iterchildren("material")):
+            if (used.get("name") or "") not in own:
                 yield self.of_sets([Set(used, "color", "rgba", colour.get("rgba") or "")])
             elif (
                 self.draft.material(names[0]) is None
@@ -173,9 +180,9 @@ class RobotDifference(PieceMaker):
         """Add an element to another one: values of an origin or axis, another shape, or the element as it is."""
         tag, own = str(element.tag), child_of(parent, str(element.tag))
         if tag in ("origin", "axis"):  # one with default values only does not count
-            values = {str(key): str(value) for key, value in element.attrib.items()}
+            values = {str(key): normal(tag, str(key), str(value)) for key, value in element.attrib.items()}
             mine = {name: own.get(name) if own is not None else None for name in values}
-            off = [name for name, value in values.items() if normal(tag, name, mine[name]) != normal(tag, name, value)]
+            off = [name for name, value in values.items() if normal(tag, name, mine[name]) != value]
             yield from self.each([Set(parent, tag, name, values[name]) for name in off])
             return
         shape = next((it for it in parent if parent.tag == "geometry" and it.tag in CHILDREN["geometry"]), None)

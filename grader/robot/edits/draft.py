@@ -13,6 +13,7 @@ from grader.edits import (
     without_element,
 )
 from grader.robot.edits.elements import RobotElements, Set
+from grader.robot.edits.numbers import values_of
 from grader.source import Edits
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import PARTS
@@ -29,8 +30,13 @@ class Draft(RobotElements):
         """The source if xacro expanded it: an element is not written there as it is read."""
         return self.source if self.source.is_expanded else None
 
+    @property
+    def is_refused(self) -> bool:
+        """Whether xacro refuses something, so that elements may be missing for that."""
+        return self._expanded is not None and bool(self._expanded.is_refused)
+
     def corrections(self, names: Sequence[str]) -> list[Proposal]:
-        """Return edits that may correct what xacro refuses; `names` are those of a reference."""
+        """Return edits that may correct what xacro refuses; `names` are those that may be meant."""
         found: list[Proposal] = self._expanded.corrections(names) if self._expanded is not None else []
         return found
 
@@ -78,8 +84,25 @@ class Draft(RobotElements):
         rest = tuple(edit for edits in added for edit in edits)
         return [
             tuple(edit for edit in dict.fromkeys((*edits, *rest)) if edit.old != edit.new)
-            for edits in found[:_MAX_WAYS]
+            for edits in self._exchanged(sets, found)[:_MAX_WAYS]
         ]
+
+    def _exchanged(self, sets: Collection[Set], ways: list[Edits]) -> list[Edits]:
+        """Return the ways to set values: two that are exchanged get the text of each other.
+
+        If names give both values, they may also be defined the wrong way round.
+        """
+        element = next((one.element for one in sets), None)
+        if element is None or len(sets) != 2 or any(one.element is not element for one in sets):
+            return ways
+        source, start = self.source.element(self._tags[element])
+        pair = [markup.attribute(source.text, start, one.attribute) for one in sets]
+        texts = [source.text[it.value_start : it.value_end] for it in reversed(pair) if it is not None]
+        wanted = [values_of(element.get(one.attribute)) for one in sets][::-1]
+        if len(texts) != 2 or not all(wanted) or [values_of(one.value) for one in sets] != wanted:
+            return ways
+        edits = tuple(with_attribute(source, start, it.attribute, text) for it, text in zip(sets, texts, strict=True))
+        return [*ways[:1], edits] if all("$" in text for text in texts) else [edits]
 
     def _ways_of(self, element: Element, attribute: str, value: str, others: Mapping[Element, str]) -> list[Edits]:
         """Return the ways to give an attribute another text, and elements that come from the same text others."""

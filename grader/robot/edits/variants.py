@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator
+from itertools import combinations
 from math import inf
 
 from grader.robot.edits.difference import RobotDifference
@@ -30,21 +31,22 @@ def _parts(draft: Draft, link: str) -> Iterator[tuple[str, Element]]:
 
 
 def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
-    """Yield the numbers of the link at the other side, mirrored, where the student builds it unlike the reference."""
+    """Yield the numbers of the link at the other side, mirrored, where the student builds both unlike the reference."""
     for link in links:
         other = _WORD.sub(lambda word: _SIDES.get(word[0], word[0]), link)
         theirs = dict(reversed([*_parts(difference.draft, other)])) if other != link else {}
         like = dict(reversed([*_parts(difference.reference, other)])) if theirs else {}
+        mine = dict(reversed([*_parts(difference.reference, link)])) if theirs else {}
         for path, element in _parts(difference.draft, link):
             for name, known in TAGS[str(element.tag)].attributes.items() if path in theirs else ():
                 text, tag = theirs[path].get(name), str(element.tag)
                 given = like[path].get(name) if path in like else None
                 values = values_of(text)
                 if len(values) == len(known.parts) and normal(tag, name, text) != normal(tag, name, given):
-                    own = normal(tag, name, element.get(name))
-                    for mirrored in _mirrored(values):
-                        if normal(tag, name, format_numbers(mirrored)) != own:
-                            yield difference.of_sets([Set(element, "", name, format_numbers(mirrored))], SIBLING)
+                    others = {normal(tag, name, it.get(name)) for it in (element, mine.get(path, element))}
+                    for mirrored in map(format_numbers, _mirrored(values)):
+                        if normal(tag, name, mirrored) not in others:
+                            yield difference.of_sets([Set(element, "", name, mirrored)], SIBLING)
 
 
 def _mirrored(values: Values) -> Iterator[Values]:
@@ -85,13 +87,20 @@ def _of_number(difference: RobotDifference, element: Element, name: str) -> Iter
     for values in () if defined else plausible(unit, values_of(element.get(name))):
         if min(values) > least:
             yield difference.of_sets([Set(element, "", name, format_numbers(values))], OWN)
+    coordinates = values_of(element.get(name)) if element.tag == "origin" else ()
     for text, edits_with in defined:
-        for (value,) in plausible(unit, values_of(text)):
+        (old,) = values_of(text)
+        for (value,) in plausible(unit, (old,)):
+            is_side = abs(old) == 1.0 and value != -old  # 1 and -1 are the sides
+            is_length = old > 0.0 > value and abs(old) != 1.0 and old not in coordinates
             edits = edits_with(format_number(value))
-            is_length = values_of(text)[0] > 0.0 > value and abs(value) != 1.0  # 1 and -1 are the sides
-            if edits and value > least and not is_length:
+            if edits and value > least and not is_length and not is_side:
                 cause = f"a number from which the {name} of {{}} is computed"
                 yield difference.piece(element, cause, edits, rank=OWN)
+    lengths = [it for it in defined if abs(values_of(it[0])[0]) != 1.0]
+    for (one, with_one), (other, with_other) in combinations(lengths, 2):
+        edits = (*with_one(other), *with_other(one)) if one != other else ()
+        yield difference.piece(element, f"the numbers from which the {name} of {{}} is computed", edits, rank=OWN)
 
 
 def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:

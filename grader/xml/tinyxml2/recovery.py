@@ -20,8 +20,8 @@ _ATTRIBUTE = re.compile(
     r"""
     (?<![\w:.-])([A-Za-z_][\w:.-]*+)\s*+=\s*+(?:
         "([^"]*)"? | '([^']*)'?    # link="base", or link="base at the end of the tag
-      | [“”„]([^“”„]*)[“”„]
-      | ([^\s"'“”=]+)              # link=base
+      | [“”„‘’‚]([^“”„‘’‚]*)[“”„‘’‚]
+      | ([^\s"'“”„‘’‚=]+)           # link=base
     )
     """,
     re.VERBOSE,
@@ -195,9 +195,12 @@ class Recovery:
     def _close_before(self, offset: int) -> None:
         """Note that the innermost open tag should be closed before an offset, in a line of its own if it has one."""
         at, opened = len(self._text[:offset].rstrip()), self._open[-1]
+        _, end, new = self.changes[-1] if self.changes else (0, 0, " ")
+        is_replaced = not new and not _OTHER.sub("", self._text[end:offset]).strip()  # a wrong end tag is there
+        at = end if is_replaced else at
         indent = indentation(self._text, opened.offset)
         newline = "\r\n" if "\r\n" in self._text else "\n"
-        before = f"{newline}{indent}" if "\n" in self._text[opened.offset : at] else ""
+        before = f"{newline}{indent}" if "\n" in self._text[opened.offset : at] and not is_replaced else ""
         self._change(at, at, f"{before}</{opened.name}>")
 
     def _change(self, start: int, end: int, new: str) -> None:

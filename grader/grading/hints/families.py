@@ -1,0 +1,104 @@
+"""The families of edits that are tried: of the reference, of the package, and of the student's own numbers."""
+
+from collections.abc import Callable, Collection, Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from grader.edits import Proposal
+from grader.grading.criterion import Criterion
+from grader.grading.hints.targets import is_another, links_of, own_chain
+from grader.grading.hints.trials import Trials
+from grader.robot.edits.difference import RobotDifference
+from grader.robot.edits.draft import Draft
+from grader.robot.edits.groups import whole_elements, whole_links
+from grader.robot.edits.pieces import Piece
+from grader.robot.edits.undone import undone_proposals
+from grader.robot.edits.variants import in_another_unit, of_own, of_siblings
+from grader.submission.raw_xacro import raw_xacro_proposals
+from grader.submission.urdf import Read
+from grader.xml.urdf_format import JOINT_TYPES
+
+if TYPE_CHECKING:
+    from grader.package.package import Package
+
+
+class Families:
+    """Makes the edits of one submission, whose robot is `draft`; `difference` is that to the reference's."""
+
+    def __init__(self, trials: Trials, reference: Draft | None, package: "Callable[[], Package | None]") -> None:
+        """`reference` and `package` are the robot and the package of the rubric's reference solution."""
+        self._trials, self._package = trials, package
+        urdf = trials.submission.urdf
+        self._reading = urdf.loaded if isinstance(urdf, Read) else None
+        self.draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
+        both = (
+            self.draft is not None
+            and not is_another(self.draft.robot, trials.rubric.links)
+            and (reference or self.draft)
+        )
+        self.difference = RobotDifference(self.draft, both) if self.draft is not None and both else None
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the robot is read from well-formed XML, of which xacro refuses nothing."""
+        is_read = self._reading is not None and self._reading.root is not None
+        return is_read and self.draft is not None and not self.draft.is_refused
+
+    def of_reference(self, lost: list[Criterion]) -> Iterator[Proposal]:
+        """Yield what undoes a slip, then what differs from the other side of the robot, and from the reference."""
+        subjects = {criterion.check.subject for criterion in lost}
+        if self._reading is not None and self.draft is not None and "urdf" in subjects:
+            yield from undone_proposals(self._reading)
+            yield from raw_xacro_proposals(self._trials.submission)
+        if self.difference is not None and self.draft is not None and subjects & {"urdf", "robot"}:
+            yield from self.draft.corrections([*self.difference.names, *JOINT_TYPES])
+            links = self._links(lost)
+            yield from self._proposals(in_another_unit(self.difference))
+            yield from self._proposals(of_siblings(self.difference, links or ()))
+            yield from self._proposals(self.difference.pieces, links)
+
+    def of_links(self, lost: list[Criterion]) -> Iterator[Proposal]:
+        """Yield all values of the reference of a link and its joint."""
+        if self.difference is not None and any(criterion.check.subject == "robot" for criterion in lost):
+            links = self._links(lost)
+            yield from self._proposals(whole_links(self.difference), links)
+            yield from self._proposals(whole_elements(self.difference), links)
+
+    def of_own(self, lost: list[Criterion]) -> Iterator[Proposal]:
+        """Yield the student's own numbers with another sign, order or unit."""
+        if self.difference is not None:
+            links = self._links([criterion for criterion in lost if criterion.check.subject == "robot"])
+            yield from self._proposals(of_own(self.difference, links or ()))
+
+    def of_package(self, lost: list[Criterion]) -> Iterator[Proposal]:
+        """Yield the edits of the files of a package."""
+        own = [criterion for criterion in lost if criterion.check.subject not in ("urdf", "robot")]
+        if own:
+            from grader.package.edits.candidates import package_proposals  # late: a robot on its own needs none
+
+            wanted = [(criterion.check.about.looks_at, criterion.arguments) for criterion in own]
+            package = self._trials.submission.package
+            yield from package_proposals(package, self._package(), wanted, self._trials.isolated)
+
+    def _proposals(self, pieces: Iterable[Piece], links: Collection[str] | None = None) -> Iterator[Proposal]:
+        """Yield the edits of the text that pieces of these links stand for."""
+        assert self.draft is not None
+        for piece in pieces:
+            if links is None or piece.link in links or not self._is_known(piece.link):
+                shared = self.draft.shared(piece.sets)
+                for way, edits in enumerate(self.draft.ways(piece.sets)):
+                    if edits or piece.edits:
+                        yield Proposal((*edits, *piece.edits), piece.cause, piece.link, piece.rank, way, shared)
+
+    def chain(self, link: object) -> Iterator[str]:
+        """Yield a link, and those above it that only the student's robot has."""
+        if self.draft is not None:
+            yield from own_chain(link, self.draft.robot, self._is_known)
+
+    def _is_known(self, link: str) -> bool:
+        """Return whether the reference has a link: another one may be any of them."""
+        return self.difference is not None and self.difference.reference.robot.has_link(link)
+
+    def _links(self, lost: Iterable[Criterion]) -> list[str] | None:
+        """Return the links on which criteria depend; None if all may."""
+        assert self.difference is not None
+        return links_of(lost, self.difference.draft.robot, self.difference.reference.robot)
