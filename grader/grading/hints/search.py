@@ -135,7 +135,7 @@ class HintSearch:
         alone = self._gains((), edits, self.trials.results) if self.found else {}
         is_late = bool(self.found) and not wanted & alone.keys()
         gains = alone if self.found and not is_late else together
-        if not together or any(self._after[name].outcome.status != "passed" for name in gains):
+        if not together or any(after[name].outcome.status != "passed" for name in gains):
             return False
         if not wanted & gains.keys() or self._is_half(best, after):
             return False
