@@ -314,14 +314,15 @@ def test_the_gitlab_job(tmp_path: Path, sample: str, code: int | None) -> None:
 
 
 def test_a_job_reports_undecided_criteria(job: Job, tmp_path: Path) -> None:
-    """An annotation and the first line of the summary name the criterion: the base shows a mesh instead of a box."""
+    """An annotation and the first line of the summary name the criteria: the base shows a mesh instead of a box."""
     [urdf] = (tmp_path / "work").rglob("*.urdf")
     text = urdf.read_text(encoding="utf-8")
     urdf.write_text(
         text.replace('<box size="0.6 0.4 0.2"/>', '<mesh filename="package://my_robot/base.stl"/>'), encoding="utf-8"
     )
     done = job.grade()
-    assert "Could not be decided (10 points): base-on-ground, lidar-on-top, left-wheel-clear" in done.stderr
+    assert "::warning title=base-on-ground::" in done.stderr
+    assert "The same holds for lidar-on-top, left-wheel-clear and right-wheel-clear (4 points)." in done.stderr
     assert (
         "need manual grading; could not be decided: base-on-ground, lidar-on-top, left-wheel-clear"
         in job.runner.summary.replace("\\", "")

@@ -27,7 +27,7 @@ SECTION = PAGE.partition("## From download to published grades\n")[2].partition(
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder with the class that the page generates."""
     folder = tmp_path_factory.mktemp("walk-through")
-    generate = re.search(r"`python (benchmarks/class_generator.py [^`]+)`", SECTION)
+    generate = re.search(r"`python CHECKOUT/(benchmarks/class_generator.py [^`]+)`", SECTION)
     assert generate is not None
     script, *options = shlex.split(generate[1])
     subprocess.run([sys.executable, ROOT / script, *options], check=True, cwd=folder, timeout=HANG_TIMEOUT)
