@@ -206,7 +206,7 @@ def test_an_edit_changes_one_attribute_and_nothing_else(seed: int, which: int, n
         for path, text in before.items():
             edits = sorted((edit for edit in way if edit.path == path), key=lambda edit: (edit.line, edit.column))
             assert len(now[path]) - len(text) == sum(len(edit.new) - len(edit.old) for edit in edits)
-            if edits:
+            if edits and not path.endswith(".yaml"):
                 changed = set(values(now[path])) ^ set(values(text))
                 assert len({(element, attribute) for element, attribute, _ in changed}) <= len(edits)
 

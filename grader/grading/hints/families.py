@@ -89,10 +89,9 @@ class Families:
                     if edits or piece.edits:
                         yield Proposal((*edits, *piece.edits), piece.cause, piece.link, piece.rank, way, shared)
 
-    def chain(self, link: object) -> Iterator[str]:
-        """Yield a link, and those above it that only the student's robot has."""
-        if self.draft is not None:
-            yield from own_chain(link, self.draft.robot, self._is_known)
+    def chain(self, link: object) -> Iterable[str]:
+        """Return a link, and those above it that only the student's robot has."""
+        return own_chain(link, self.draft.robot, self._is_known) if self.draft is not None else ()
 
     def _is_known(self, link: str) -> bool:
         """Return whether the reference has a link: another one may be any of them."""
