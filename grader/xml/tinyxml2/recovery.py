@@ -138,7 +138,7 @@ class Recovery:
         is_slash_missing = tag.form == "open" and not tag.attributes and self._open and self._open[-1].name == tag.name
         if is_slash_missing and not self._is_before_child(tag, end):
             self._assume(f"<{short(tag.name)}> is read as </{short(tag.name)}>", start)
-            self._change(start, end, f"</{tag.name}>")
+            self._change(start, start + len(self._text[start:end].rstrip()), f"</{tag.name}>")
             return tag._replace(form="close"), end
         return tag, end
 
