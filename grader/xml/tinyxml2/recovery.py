@@ -204,6 +204,10 @@ class Recovery:
         self._change(at, at, f"{before}</{opened.name}>")
 
     def _change(self, start: int, end: int, new: str) -> None:
+        for at, (first, last, text) in enumerate(self.changes):
+            if first == start < end < last and text.startswith(self._text[start:end]):
+                self.changes[at] = first, last, f"{new}{text[end - start :]}"  # the name in a tag that was corrected
+                return
         if self.changes and self.changes[-1][:2] == (start, end) and start < end:
             self.changes.pop()  # a tag that was respelt is replaced after all
         if self.changes and self.changes[-1][1] == start == end:
