@@ -129,7 +129,7 @@ class Recovery:
             tag, end = ReadTag(found["name"], form, attributes, start), found.end()
             corrected = _corrected(tag, rest)
             self.is_lossy |= "=" in rest and "=" not in corrected and tag.form != "close"
-            self._change(start, start + len(found[0].rstrip()), corrected)
+            self._change(start, found.end(), corrected)
             if tag.form != "close":
                 what = f"with {enumerated(list(map(short, attributes)))}" if attributes else "without attributes"
                 self._assume(
@@ -138,7 +138,7 @@ class Recovery:
         is_slash_missing = tag.form == "open" and not tag.attributes and self._open and self._open[-1].name == tag.name
         if is_slash_missing and not self._is_before_child(tag, end):
             self._assume(f"<{short(tag.name)}> is read as </{short(tag.name)}>", start)
-            self._change(start, start + len(self._text[start:end].rstrip()), f"</{tag.name}>")
+            self._change(start, end, f"</{tag.name}>")
             return tag._replace(form="close"), end
         return tag, end
 
@@ -204,6 +204,8 @@ class Recovery:
         self._change(at, at, f"{before}</{opened.name}>")
 
     def _change(self, start: int, end: int, new: str) -> None:
+        """Note a change; white space at its end stays."""
+        end = start + len(self._text[start:end].rstrip())
         for at, (first, last, text) in enumerate(self.changes):
             if first == start < end < last and text.startswith(self._text[start:end]):
                 self.changes[at] = first, last, f"{new}{text[end - start :]}"  # the name in a tag that was corrected
