@@ -86,7 +86,7 @@ def syntax(data: bytes) -> None:
     recovery = Recovery(source.text)
     recovery.run()
     edits = tuple(source.edit(*change) for change in recovery.changes)
-    assert edited(source.text, source.path, edits) is not None
+    assert recovery.is_lossy or edited(source.text, source.path, edits) is not None
 
 
 def xacro(data: bytes) -> None:

@@ -72,7 +72,7 @@ class Recovery:
         self._offsets: list[int] = []
         self._assumed: list[NoteDifference] = []
         self.changes: list[tuple[int, int, str]] = []  # with which the text is what is read: from offset to offset
-        self.is_lossy = False  # whether a text in a tag has no place in what is read
+        self.is_lossy = False  # whether a text in a tag has no place in what is read, or two changes are at one place
         self._end_of_tag = 0
         self._open: list[ReadTag] = []
 
@@ -206,14 +206,12 @@ class Recovery:
     def _change(self, start: int, end: int, new: str) -> None:
         """Note a change; white space at its end stays."""
         end = start + len(self._text[start:end].rstrip())
-        for at, (first, last, text) in enumerate(self.changes):
-            if first == start < end < last and text.startswith(self._text[start:end]):
-                self.changes[at] = first, last, f"{new}{text[end - start :]}"  # the name in a tag that was corrected
-                return
         if self.changes and self.changes[-1][:2] == (start, end) and start < end:
             self.changes.pop()  # a tag that was respelt is replaced after all
         if self.changes and self.changes[-1][1] == start == end:
             start, end, new = *self.changes[-1][:2], self.changes.pop()[2] + new
+        spans = [(first, last) for first, last, _ in self.changes]
+        self.is_lossy |= any((first < end and start < last) or first == start for first, last in spans)
         self.changes.append((start, end, new))
 
 
