@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _RESERVE = 20  # gradings for proofs
 _AROUND = " ,\r\n"  # of a text that is added
-_MAX_PARTS = 5  # edits of a hint that are left out one by one
+_MAX_PARTS = 5  # edits of a hint of which each is tried without
 
 
 class _Tried(NamedTuple):

@@ -210,8 +210,7 @@ class Recovery:
             self.changes.pop()  # a tag that was respelt is replaced after all
         if self.changes and self.changes[-1][1] == start == end:
             start, end, new = *self.changes[-1][:2], self.changes.pop()[2] + new
-        spans = [(first, last) for first, last, _ in self.changes]
-        self.is_lossy |= any((first < end and start < last) or first == start for first, last in spans)
+        self.is_lossy |= any((first < end and start < last) or first == start for first, last, _ in self.changes)
         self.changes.append((start, end, new))
 
 
