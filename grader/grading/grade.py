@@ -147,7 +147,7 @@ def _note_on_unread(submission: Submission, evidence: Sequence[EvidenceResult]) 
 def _by_convention(
     rubric: Rubric, submission: Submission, results: Sequence[Result]
 ) -> tuple[tuple[str, ...], frozenset[str]]:
-    """Return a note on frames of the whole robot that are turned or moved alike, and the criteria that it explains.
+    """Return a note on frames of the whole robot that are rotated or moved alike, and the criteria that it explains.
 
     The points stay: the lab says where its frames are. The note says that they are lost by one decision, not by many
     mistakes.
