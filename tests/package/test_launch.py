@@ -262,7 +262,7 @@ def test_changed_files(sample: str, changes: list[tuple[int, int, bytes]]) -> No
     for at_location, length, piece in changes:
         at = at_location % (len(data) + 1)
         data = data[:at] + piece + data[at + length :]
-    with limited_work(30_000):
+    with limited_work(60_000):
         assert is_well_formed(read(data, sample, {**INNER, f"{FOLDER}/{sample}": data}))
 
 
@@ -273,7 +273,7 @@ def test_changed_files(sample: str, changes: list[tuple[int, int, bytes]]) -> No
 )
 def test_random_files(data: bytes, ending: str) -> None:
     """Any bytes are evaluated without an exception."""
-    with limited_work(2_000):
+    with limited_work(20_000):
         assert is_well_formed(read(data, f"x.launch{ending}"))
 
 
