@@ -1,9 +1,12 @@
 """Hints never cost a point: over random robots with random mistakes, and over random edits of random texts."""
 
+from collections.abc import Mapping
+
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from grader.grading.report import Result
 from grader.mutation.mutants import mutants
 from grader.submission.editing import edited_files
 from grader.submission.opening import read_submission
@@ -13,6 +16,10 @@ from tests.rewriting import parse, rewritings
 
 REFERENCE = parse(BASES["reference"].text.encode())
 PATH = "my_robot.urdf"
+
+
+def _passed(results: Mapping[str, Result]) -> set[str]:
+    return {name for name, result in results.items() if result.outcome.status == "passed"}
 
 
 @st.composite
@@ -37,16 +44,16 @@ def test_hints_gain_what_they_promise_and_lose_nothing(data: bytes) -> None:
     search = search_for(submission, before)
     for index, found in enumerate([*search.found, None]):
         earlier = search.found[:index] if found is None or found.is_late else []
-        edits = tuple(edit for it in (*earlier, found) if it is not None for edit in it.edits)
+        needed = tuple(edit for it in earlier for edit in it.edits)
+        edits = (*needed, *(found.edits if found is not None else ()))
         gains = found.gains if found is not None else {}
         files = edited_files(submission, edits) or {}
         assert files == ({PATH: applied(data, edits)} if edits else {})
+        without = graded(with_edits(submission, needed)) if found is not None and needed else before
         after = graded(with_edits(submission, edits))
-        passed = {name for name, result in after.items() if result.outcome.status == "passed"}
-        had = {name for name, result in before.items() if result.outcome.status == "passed"}
-        assert had <= passed
+        assert _passed(before) <= _passed(after)
         assert all(after[name].points >= before[name].points for name in before)
         known = {name for it in search.found[:index] for name in it.gains}  # promised by hints before it
         if gains:
-            assert passed - had - known == set(gains) - known
-            assert gains == {name: after[name].points - before[name].points for name in gains}
+            assert _passed(after) - _passed(without) - known == set(gains) - known
+            assert gains == {name: after[name].points - without[name].points for name in gains}
