@@ -20,11 +20,11 @@ from grader.grading.report import Report
 from grader.report.details import answer_lines, counts_lines
 from grader.report.pages.review import NO_ANSWER, OpenedItem
 from grader.submission.submission import Submission
-from grader.text import counted, cut, printable, printable_path, shell_quoted
+from grader.text import counted, cut, format_points, printable, printable_path, shell_quoted
 from grader.usecases.review_session import ReviewSession
 from grader.usecases.writing import save
 
-SHEET_COLUMNS = ("criterion", "answer", "points", "comment", "text", "students")
+SHEET_COLUMNS = ("criterion", "answer", "points", "maximum", "comment", "text", "students")
 _PRIVATE = 0o600
 _MAX_TEXT = 30_000  # characters; a cell of Excel has at most 32,767
 
@@ -79,7 +79,10 @@ def write_sheet(session: ReviewSession, file: Path) -> str:
     items = [session.item_at(at) for at in session.listed]
     by_student = sorted(items, key=lambda item: item.members[0].student.key)  # a submission is read once
     texts = {item.place: _text(session.book, item) for item in by_student}
-    rows = [(*item.place, "", "", texts[item.place], _students(item)) for item in items]
+    rows = [
+        (*item.place, "", format_points(item.criterion.maximum), "", texts[item.place], _students(item))
+        for item in items
+    ]
     save(file, write_table(SHEET_COLUMNS, rows), session.book.settings.roots(session.folder), _PRIVATE)
     command = f"grader mark --import {shell_quoted(file)} --gradebook {shell_quoted(session.folder)}"
     return f"{counted(len(items), 'item')} written for {session.left} marks; fill in the points, then: {command}\n"
