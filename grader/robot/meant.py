@@ -99,16 +99,19 @@ def _references(root: Element, robot: Robot) -> Iterator[Word]:
         if (meant := defined.get(element.get("name") or "")) is not None:
             yield _with_value(element, "name", meant, "the link")
     children = {joint.child for joint in robot.joints}
+    misspelt = {name for name in unknown if name not in defined.values()}
+    if sum(uses[name] for name in misspelt) > _MAX_ROUNDS * _MAX_WORDS:
+        misspelt = set()
     for joint in root.iterchildren("joint"):
-        kind = near(joint.get("type") or "", JOINT_TYPES)
-        if kind is not None and joint.get("type") not in JOINT_TYPES:
+        kind = near(joint.get("type") or "", JOINT_TYPES) if joint.get("type") not in JOINT_TYPES else None
+        if kind is not None:
             yield _with_value(joint, "type", kind, "the joint type")
-        ends = {role: end for role in ("parent", "child") if (end := joint.find(role)) is not None and end.get("link")}
+        ends = {role: end for role in ("parent", "child") if (end := joint.find(role)) is not None}
         for role, end in ends.items():
-            name = end.get("link") or ""
+            if (name := end.get("link") or "") not in misspelt:
+                continue
             others = {other.get("link") for other in ends.values()} | (children if role == "child" else set())
-            known = [link for link in links if link not in others] if name in unknown else []
-            meant = near(name, known, "link") if name not in defined.values() else None
+            meant = near(name, [link for link in links if link not in others], "link")
             if meant is not None:
                 children.add(meant if role == "child" else "")
                 yield _with_value(end, "link", meant, "the link")
