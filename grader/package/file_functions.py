@@ -176,9 +176,9 @@ class _PackageFolder:
             )
         real = self.real(path)
         if real is None:
-            raise ExpressionFails(f"there is no file {str(path)!r}", FileNotFoundError)
+            raise ExpressionFails(f"there is no file {str(path)!r}")
         if real in self.listing.folders:
-            raise ExpressionFails(f"{str(path)!r} is a folder, not a file", IsADirectoryError)
+            raise ExpressionFails(f"{str(path)!r} is a folder, not a file")
         try:
             text = self.listing.files[real].read(_MAX_READ).decode()
         except (InputError, UnicodeDecodeError):
@@ -197,5 +197,5 @@ class _PackageFolder:
         if real in self.listing.folders:
             return list(self.listing.names(real or ""))
         if real is None:
-            raise ExpressionFails(f"there is no folder {str(path)!r}", FileNotFoundError)
-        raise ExpressionFails(f"{str(path)!r} is a file, not a folder", NotADirectoryError)
+            raise ExpressionFails(f"there is no folder {str(path)!r}")
+        raise ExpressionFails(f"{str(path)!r} is a file, not a folder")

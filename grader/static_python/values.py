@@ -34,10 +34,6 @@ class EvaluationSignal(Exception):
 class ExpressionFails(EvaluationSignal):
     """Python certainly raises an error for this expression; the text is a sentence without its end."""
 
-    def __init__(self, message: str, kind: type[BaseException] = TypeError) -> None:
-        super().__init__(message)
-        self.kind = kind
-
 
 class Undetermined(EvaluationSignal):
     """The value of an expression cannot be determined statically; the text says why, and `at` where, if it is known."""
@@ -140,7 +136,7 @@ class Scope(Record):
             if name in scope.names:
                 return scope.names[name]
             if name in scope.local:
-                raise ExpressionFails(f"the name {name!r} is used before it has a value", UnboundLocalError)
+                raise ExpressionFails(f"the name {name!r} is used before it has a value")
             scope = scope.outer
         raise KeyError(name)
 
@@ -150,16 +146,13 @@ class PlainFunction:
 
     `kind` is "plain" for one whose arguments are wholly known; "holds" for one that only passes on what a list
     contains, known or not; "applies" for such a one that calls functions, by the one that it is given first; "path" for
-    one whose result may begin with the stand-in of a folder, "text" for one that may contain it. `own` is Python's own
-    function, where `run` stands for one.
+    one whose result may begin with the stand-in of a folder, "text" for one that may contain it.
     """
 
-    __slots__ = ("kind", "name", "own", "run")
+    __slots__ = ("kind", "name", "run")
 
-    def __init__(
-        self, name: str, run: Callable[..., Value], kind: str = "plain", own: Callable[..., Value] | None = None
-    ) -> None:
-        self.name, self.run, self.kind, self.own = name, run, kind, own
+    def __init__(self, name: str, run: Callable[..., Value], kind: str = "plain") -> None:
+        self.name, self.run, self.kind = name, run, kind
 
 
 class Namespace:

@@ -38,19 +38,19 @@ def bind(cls: LaunchClass, call: Call) -> None:
     if len(call.args) > len(positional) and not cls.rest:
         names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)
         hint = "put [ ] around them" if cls.short in _OF_ONE_LIST else f"write {names[:100]}"
-        raise ExpressionFails(f"{cls.short} takes {len(positional)} argument without a name: {hint}", kind=TypeError)
+        raise ExpressionFails(f"{cls.short} takes {len(positional)} argument without a name: {hint}")
     given = dict(zip(positional, call.args, strict=False))
     if twice := given.keys() & call.kwargs.keys():
-        raise ExpressionFails(f"{cls.short} is given {min(twice)!r} twice", kind=TypeError)
+        raise ExpressionFails(f"{cls.short} is given {min(twice)!r} twice")
     for name in (name for name in call.kwargs if name not in cls.parameters):
         message = f"{cls.short} has no argument {name!r}{did_you_mean(name, cls.parameters)}"
-        raise ExpressionFails(message, kind=TypeError)
+        raise ExpressionFails(message)
     kwargs = {**given, **call.kwargs}.items()
     call.args = call.args[len(positional) :]
     call.kwargs = {name: list(iterate(value)) if isinstance(value, Items) else value for name, value in kwargs}
     missing = [name for name, it in cls.parameters.items() if it.is_required and name not in call.kwargs]
     if missing:
-        raise ExpressionFails(f"{cls.short} needs the argument {missing[0]}=...", kind=TypeError)
+        raise ExpressionFails(f"{cls.short} needs the argument {missing[0]}=...")
 
 
 def check(cls: LaunchClass, call: Call) -> Unknown | None:
@@ -63,13 +63,13 @@ def check(cls: LaunchClass, call: Call) -> Unknown | None:
         try:
             if own is not None and not (value is None and optional) and (wanted := own(value)):
                 tail = "" if wanted.startswith("has a value") else f", not {kind_of(value)}"
-                raise ExpressionFails(f"{name} of {cls.short} {wanted}{tail}", kind=TypeError)
+                raise ExpressionFails(f"{name} of {cls.short} {wanted}{tail}")
         except Undetermined as error:
             doubt = doubt or Unknown(str(error), call.at)
     special = _SPECIAL.get(cls.short)
     try:
         if special is not None and (message := special(call)):
-            raise ExpressionFails(f"{cls.short}: {message}", kind=ValueError)
+            raise ExpressionFails(f"{cls.short}: {message}")
     except Undetermined as error:
         doubt = doubt or Unknown(str(error), call.at)
     return doubt

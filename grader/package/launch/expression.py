@@ -37,7 +37,7 @@ def _find(name: str) -> Value:
         return Namespace("math", MATH.__getitem__)
     if hasattr(builtins, name) or name.startswith("__"):
         return _unknown(name)
-    raise ExpressionFails(f"the name {name!r} is not defined", NameError)
+    raise ExpressionFails(f"the name {name!r} is not defined")
 
 
 def _unknown(name: str) -> Value:

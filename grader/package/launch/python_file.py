@@ -120,7 +120,7 @@ class PythonLaunchFile:
         try:
             return condition(text, call.at) == call.owner.name.endswith("IfCondition")
         except LaunchFails as error:
-            raise ExpressionFails(str(error), ValueError) from None
+            raise ExpressionFails(str(error)) from None
 
     def _package(self, evaluation: Evaluation, call: Call) -> str:
         name = known(call.argument(0, "package_name", "package"))

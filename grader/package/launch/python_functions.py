@@ -61,7 +61,7 @@ def _construct(cls: LaunchClass, evaluation: Evaluation, call: Call) -> Value:
 
 
 def _fail(message: str, *_: object) -> Value:
-    raise ExpressionFails(message, AttributeError)
+    raise ExpressionFails(message)
 
 
 def known_call(value: Value) -> Value:
@@ -87,7 +87,7 @@ def safe_load(evaluation: Evaluation, call: Call) -> Value:
     try:
         return evaluation.budget.checked(yaml.safe_load(text))
     except (yaml.YAMLError, ValueError, RecursionError):
-        raise ExpressionFails("this text is not YAML", ValueError) from None
+        raise ExpressionFails("this text is not YAML") from None
 
 
 def variable(_: Evaluation, call: Call) -> Value:
