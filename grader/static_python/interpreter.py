@@ -194,4 +194,4 @@ class Interpreter(FileExpressions):
         kind = getattr(builtins, raised.id, None) if isinstance(raised, ast.Name) else None
         if isinstance(kind, type) and issubclass(kind, Exception):
             self.error(f"the file raises {kind.__name__} here", self.at)
-        raise EvaluationStopped("what follows this error is not evaluated", self.at)
+        raise EvaluationStopped("which error is raised here is not evaluated", self.at)

@@ -10,7 +10,6 @@ from grader.package.launch.model import (
     Findings,
     LaunchFails,
     NotEvaluated,
-    Resolved,
     StartedNode,
 )
 from grader.package.launch.node_files import attempt, find_configuration, find_description, inner_value, words_of
@@ -22,20 +21,16 @@ from grader.static_python.values import Call, Unknown, Value
 
 _RVIZ = "rviz2"
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")
+_STARTS = re.compile(rf"ros2\s+(run|launch)|rviz2|{PART_UNKNOWN}")
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-_NAMESPACE = re.compile(r"/|(/[A-Za-z_][A-Za-z0-9_]*)+")
+_NAMESPACE = re.compile(r"|/|/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 
 
-def absolute_namespace(before: Resolved, pushed: str, at: Position) -> str:
-    """Return a namespace below another. Raises LaunchSignal."""
-    if not isinstance(before, str) or "<" in pushed:  # of the stand-in for a folder
-        raise NotEvaluated("the namespace is not evaluated", at)
-    full = pushed if pushed.startswith("/") or not before else f"{before if before != '/' else ''}/{pushed}"
-    absolute = full if full.startswith("/") else f"/{full}"
-    absolute = absolute.rstrip("/") if absolute != "/" and full.rstrip("/") else absolute
-    if _NAMESPACE.fullmatch(absolute) is None:
-        raise LaunchFails(f"the namespace {absolute!r} is not valid", at)
-    return absolute
+def check_namespace(value: Value, context: Context, at: Position) -> None:
+    """Raise NotEvaluated for a namespace that may not be valid, or stands below one that the file itself sets."""
+    text = known_text(value, context, at)
+    if _NAMESPACE.fullmatch(text) is None or isinstance(context.arguments.get("ros_namespace"), str):
+        raise NotEvaluated(f"whether the namespace {text!r} is valid is not evaluated", at)
 
 
 def evaluate_process(call: Call, context: Context) -> None:
@@ -59,11 +54,10 @@ def evaluate_node(call: Call, context: Context) -> None:
     name, namespace = call.kwargs.get("name"), call.kwargs.get("namespace")
     if name is not None and _NAME.fullmatch(text := known_text(name, context, call.at)) is None:
         raise LaunchFails(f"the name of the node, {text!r}, is not valid: use letters, digits and _", call.at)
-    before = context.arguments.get("ros_namespace", "")
-    if namespace is not None:
-        absolute_namespace(before, known_text(namespace, context, call.at), call.at)
-    if call.kwargs.get("ros_arguments") is not None and not isinstance(call.kwargs["ros_arguments"], list):
-        raise LaunchFails("ros_arguments has to be a list: put [ ] around it", call.at)
+    if namespace is not None or "ros_namespace" in context.arguments:
+        check_namespace(namespace or "", context, call.at)
+    if call.kwargs.get("ros_arguments") is not None:
+        raise NotEvaluated("ros_arguments are not evaluated", call.at)
     package = call.kwargs.get("package")
     if package is not None:
         text = known_text(package, context, call.at)
@@ -79,42 +73,11 @@ def evaluate_node(call: Call, context: Context) -> None:
 
 def start_node(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
     """Add the node that a Node action starts, and the files that it is given."""
-    own = call.kwargs.get("package")
-    if own is None:
-        words = words_of(
-            [call.kwargs["executable"], *(items_in(call.kwargs.get("arguments") or []) or [])], context, call.at
-        )
-        if words[0] == _RVIZ:
-            _start(findings, _RVIZ, _RVIZ, call, context, when)
-            return
-    package, executable = attempt(own, context, call.at), attempt(call.kwargs["executable"], context, call.at)
-    if isinstance(package, str) and isinstance(executable, str) and own is not None:
-        _start(findings, package, executable, call, context, when)
+    package, executable = (attempt(call.kwargs.get(name), context, call.at) for name in ("package", "executable"))
+    if not isinstance(package, str) or not isinstance(executable, str):
+        unknown = next((it.reason for it in (package, executable) if isinstance(it, Unknown)), "")
+        findings.add_unknown(f"the program of a node is not evaluated: {unknown}".removesuffix(": "), call.at)
         return
-    unknown = executable if own is not None and isinstance(package, str) else package
-    reason = (
-        "a node without a package is a program of the machine"
-        if own is None
-        else "the program of a node is not evaluated"
-    )
-    findings.add_unknown(unknown.reason if own is not None and isinstance(unknown, Unknown) else reason, call.at)
-
-
-def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
-    """Add the node that a command starts: ros2 run, or rviz2."""
-    words = words_of(call.kwargs["cmd"], context, call.at)
-    if call.kwargs.get("shell") is True:
-        words = " ".join(words).split()
-    match words:
-        case ["ros2", "run", package, executable, *rest]:
-            _start(findings, package, executable, _as_node(call, rest), context, when)
-        case ["rviz2" as executable, *rest]:
-            _start(findings, executable, executable, _as_node(call, rest), context, when)
-        case ["ros2", "launch", *_] if when is not False:
-            findings.add_unknown("it starts another ros2 launch", call.at)
-
-
-def _start(findings: Findings, package: str, executable: str, call: Call, context: Context, when: bool | None) -> None:
     prefix = _frame_prefix(call, context) if executable == STATE_PUBLISHER else ""
     findings.nodes.append(StartedNode(package, executable, when, findings.locate(call.at), prefix))
     if when is not False and executable == STATE_PUBLISHER:
@@ -123,11 +86,11 @@ def _start(findings: Findings, package: str, executable: str, call: Call, contex
         find_configuration(findings, call, context)
 
 
-def _as_node(call: Call, words: list[str]) -> Call:
-    """Return a command as the Node action that starts the same."""
-    unknown = Unknown("a part of the command is known only at run time", call.at)
-    arguments: list[Value] = [unknown if word == PART_UNKNOWN else word for word in words]
-    return Call(call.name, [], {"arguments": arguments}, call.at)
+def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
+    """Add that a command starts nodes, if it does."""
+    words = " ".join(words_of(call.kwargs["cmd"], context, call.at))
+    if when is not False and _STARTS.search(words):
+        findings.add_unknown("the nodes that a command starts are not evaluated", call.at)
 
 
 def _frame_prefix(call: Call, context: Context) -> str | None:

@@ -10,9 +10,8 @@ import yaml
 
 from grader.package.launch.api import LaunchClass, class_named, exports
 from grader.package.launch.arguments import bind, check
-from grader.package.launch.model import not_evaluated
+from grader.package.launch.model import UnknownText, not_evaluated
 from grader.package.launch.places import HOME, WORKING_FOLDER
-from grader.package.launch.value_types import UnknownText, gives_text
 from grader.static_python.calls import Calls
 from grader.static_python.evaluation import Evaluation, record
 from grader.static_python.knowledge import known, path_text
@@ -40,8 +39,6 @@ class LaunchFunctions(dict[str, Any]):
 def _function_of(name: str) -> _Run | None:
     """Return the constructor of a class of launch, or one that fails: of a name that is not there."""
     owner, _, own = name.rpartition(".")
-    if gives_text(owner) and gives_text(name):
-        return record
     names, cls = exports().get(owner), class_named(owner)
     if names is not None and own in names:
         made = class_named(names[own])
@@ -62,13 +59,6 @@ def _construct(cls: LaunchClass, evaluation: Evaluation, call: Call) -> Value:
 
 def _fail(message: str, *_: object) -> Value:
     raise ExpressionFails(message)
-
-
-def known_call(value: Value) -> Value:
-    """Return a value that is known at its surface. Raises Undetermined."""
-    if isinstance(value, Unknown):
-        raise Undetermined(value.reason, value.at)
-    return value
 
 
 def add_action(evaluation: Evaluation, call: Call) -> Value:
@@ -112,9 +102,3 @@ def expand_user(_: Evaluation, call: Call) -> Value:
     """Return a path with the home folder in place of ~."""
     text = path_text(known(call.args[0])) if call.args else None
     return re.sub("^~", HOME, text) if text is not None else Unknown("a path is not evaluated", call.at)
-
-
-def expand_variables(_: Evaluation, call: Call) -> Value:
-    """Return a path that contains no variable; what others are is not known."""
-    text = path_text(known(call.args[0])) if call.args else None
-    return text if text is not None and "$" not in text else Unknown("the environment is not evaluated", call.at)

@@ -6,15 +6,10 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.package.launch.api import ENTITY, SUBSTITUTION, class_named, is_a
+from grader.package.launch.model import UnknownText
 from grader.static_python.knowledge import iterate
 from grader.static_python.values import Call, Function, Items, QualifiedName, Undetermined, Unknown, Value
 
-# Calls of Python functions that are not evaluated, but certainly give a text.
-TEXT_CALLS = frozenset(
-    {"builtins.open.read", "xacro.process_file.toxml", "xacro.process_file.toprettyxml", "xacro.process.toxml",
-     "xacro.parse.toxml", "xacro.parse.toprettyxml", "xacro.process"}
-)  # fmt: skip
-TEXT_METHODS = ("replace", "strip", "lstrip", "rstrip", "expandtabs", "decode")
 SCALARS = (bool, int, float, str)
 TYPED = ("launch_ros.parameter_descriptions.ParameterValue", "launch_ros.parameter_descriptions.Parameter")
 FILE = "launch_ros.parameter_descriptions.ParameterFile"
@@ -31,20 +26,6 @@ _NAMES = {
 }
 
 
-class UnknownText(Unknown):
-    """A value that is not known, but certainly is a text."""
-
-    __slots__ = ()
-
-
-def gives_text(name: str) -> bool:
-    """Return whether a function that is not evaluated, or a method of what it gives, certainly gives a text."""
-    owner, _, method = name.rpartition(".")
-    while method in TEXT_METHODS and name not in TEXT_CALLS:
-        name, (owner, _, method) = owner, owner.rpartition(".")
-    return name in TEXT_CALLS or method == "perform"
-
-
 def is_text(value: Value) -> bool:
     """Return whether a value is a string or a substitution. Raises Undetermined."""
     match value:
@@ -56,9 +37,9 @@ def is_text(value: Value) -> bool:
             raise Undetermined(f"the value of {value.name}")
         case Call() if class_named(value.name) is not None:
             return is_a(value.name, SUBSTITUTION)
-        case Call() if not gives_text(value.name):
+        case Call():
             raise Undetermined(f"the result of {value.name}")
-    return isinstance(value, str | Call | UnknownText)
+    return isinstance(value, str)
 
 
 def is_entity(call: Call) -> bool:
