@@ -68,10 +68,12 @@ class Interpreter(FileExpressions):
 
         With `args` None, the arguments are unknown, and no error or doubt in the call counts: it may never happen.
         """
-        unknown = {py.UNKNOWN_KEYS: py.Unknown("an event is known only at run time", at)} if args is None else {}
+        given = function.parameters
+        count = len([*given.posonlyargs, *given.args]) - len(given.defaults)
+        event: list[py.Value] = [py.Unknown("an event is known only at run time", at)] * count
         recorded, doubt = list(self.errors), self.doubt
         try:
-            return self.call_function(function, py.Call("", list(args or ()), unknown, at))
+            return self.call_function(function, py.Call("", event if args is None else list(args), {}, at))
         except (EvaluationStopped, OutOfBudget, RecursionError) as error:
             return self._stop(error, at)
         except (py.ExpressionFails, py.Undetermined) as error:
@@ -153,6 +155,8 @@ class Interpreter(FileExpressions):
         finally:
             if isinstance(value, StringIO):
                 value.close()
+            else:
+                value.method_calls.append(py.Call(f"{value.name}.__exit__", [], {}, self.at, value))
 
     def _on_annassign(self, node: ast.AnnAssign, scope: py.Scope) -> None:
         if node.value is not None:

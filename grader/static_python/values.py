@@ -16,7 +16,6 @@ Value = Any
 MAX_TEXT = 100_000  # characters
 MAX_PARTS = 20_000  # of a value, with all that it contains
 MAX_BITS = 4_096  # of an integer
-UNKNOWN_KEYS = "**"  # among keyword arguments, the entry that stands for keys that are not known
 _MAX_MESSAGE = 1_000  # characters
 _EMPTY: dict[str, str] = {}
 VIEWS: tuple[Any, ...] = (type(_EMPTY.keys()), type(_EMPTY.values()), type(_EMPTY.items()))

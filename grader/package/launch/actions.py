@@ -5,14 +5,14 @@ from dataclasses import replace
 
 from grader.package.launch.api import SOURCE, is_a
 from grader.package.launch.known_files import start_known_file
-from grader.package.launch.model import Context, LaunchFails, LaunchSignal, NotEvaluated, Resolved
+from grader.package.launch.model import ANY, Context, LaunchFails, LaunchSignal, NotEvaluated, Resolved
 from grader.package.launch.nodes import check_namespace, evaluate_node, evaluate_process, start_node, start_process
 from grader.package.launch.parameters import evaluate_dict
 from grader.package.launch.substitutions import known_text, resolve
 from grader.package.launch.value_types import items_in, kind_of
 from grader.package.launch.visitor import PROCESSES, ActionVisitor
 from grader.static_python.parse import Position
-from grader.static_python.values import UNKNOWN_KEYS, Call, Function, QualifiedName, Undetermined, Unknown, Value
+from grader.static_python.values import Call, Function, QualifiedName, Undetermined, Unknown, Value
 
 CIRCULAR_INCLUDE = "it includes itself"
 # By which packages, programs and files are found.
@@ -161,7 +161,7 @@ def _include(visitor: ActionVisitor, call: Call, context: Context, when: bool | 
         visitor.findings.refer("include", path, call)
     context.arguments.update(inner.arguments)  # an included file shares its arguments with the actions that follow
     if reason:
-        context.arguments[UNKNOWN_KEYS] = Unknown(reason, call.at)
+        context.arguments[ANY] = Unknown(reason, call.at)
 
 
 def _launch_arguments(given: Value, context: Context, at: Position) -> dict[str, Resolved]:

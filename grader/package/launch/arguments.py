@@ -1,9 +1,12 @@
-"""What the constructors of launch's classes require of their arguments, as they check it themselves."""
+"""The constructors of launch's classes, and what they require of their arguments, as they check it themselves."""
 
 from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
 
 from grader.names import did_you_mean
-from grader.package.launch.api import PROCESS, SOURCE, LaunchClass, is_a
+from grader.package.launch.api import PROCESS, SOURCE, LaunchClass, class_named, exports, is_a
+from grader.package.launch.model import not_evaluated
 from grader.package.launch.substitutions import PERFORMS
 from grader.package.launch.value_types import (
     CHECKS,
@@ -14,15 +17,16 @@ from grader.package.launch.value_types import (
     wrong_text,
     wrong_typed,
 )
+from grader.static_python.evaluation import Evaluation, record
 from grader.static_python.knowledge import iterate, known
 from grader.static_python.values import (
-    UNKNOWN_KEYS,
     Call,
     ExpressionFails,
     Function,
     Items,
     Undetermined,
     Unknown,
+    Value,
 )
 
 _ACTIONS = (
@@ -52,8 +56,6 @@ _OF_ONE_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
 def bind(cls: LaunchClass, call: Call) -> None:
     """Give the arguments of a constructor their names. Raises ExpressionFails as Python does, and Undetermined."""
     positional = [name for name, it in cls.parameters.items() if it.is_positional]
-    if UNKNOWN_KEYS in call.kwargs:
-        raise Undetermined(f"the arguments of {cls.short}, which ** unpacks,")
     if len(call.args) > len(positional) and not cls.rest:
         names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)
         hint = "put [ ] around them" if cls.short in _OF_ONE_LIST else f"write {names[:100]}"
@@ -160,3 +162,40 @@ _SPECIAL: Mapping[str, Callable[[Call], str]] = {
     "LaunchDescription": _description, "TextSubstitution": _text_substitution, "ParameterValue": wrong_typed,
     "GroupAction": _group, "TimerAction": _timer, **dict.fromkeys(("OnProcessExit", "OnProcessStart"), _event_handler),
 }  # fmt: skip
+
+
+class LaunchFunctions(dict[str, Any]):
+    """The functions by full name, with every class of launch and its methods."""
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """Return a function; None for one that is not evaluated."""
+        found = super().get(name)
+        return found if found is not None else _function_of(name) or default
+
+    def __contains__(self, name: object) -> bool:
+        return self.get(str(name)) is not None
+
+
+def _function_of(name: str) -> "Callable[[Evaluation, Call], Value] | None":
+    """Return the constructor of a class of launch, or one that fails: of a name that is not there."""
+    owner, _, own = name.rpartition(".")
+    names, cls = exports().get(owner), class_named(owner)
+    if names is not None and own in names:
+        made = class_named(names[own])
+        return partial(_construct, made) if made is not None else None
+    if names is not None or (cls is not None and own not in cls.methods and not own.startswith("_")):
+        return partial(_fail, f"{cls.short if cls is not None else owner} has no {own!r}")
+    return None
+
+
+def _construct(cls: LaunchClass, evaluation: Evaluation, call: Call) -> Value:
+    call.name = cls.name
+    bind(cls, call)
+    doubt = check(cls, call)
+    if doubt is not None:
+        evaluation.doubted(Unknown(not_evaluated(doubt.reason), doubt.at))
+    return record(evaluation, call)
+
+
+def _fail(message: str, *_: object) -> Value:
+    raise ExpressionFails(message)

@@ -37,16 +37,6 @@ _ARGUMENTS = {
     "file": "launch_description_source", "args": "arguments",
 }  # fmt: skip
 _RAW = ("shell", "emulate_tty", "scoped")
-# Elements and attributes that only ROS 1 has, and what replaces them.
-_ROS1_TAGS = {
-    "param": "a <param> belongs in its <node>", "rosparam": "write <param from=.../> in the <node>",
-    "remap": "a <remap> belongs in its <node>", "machine": "", "test": "", "env": "write <set_env>",
-}  # fmt: skip
-_ROS1_ATTRIBUTES: dict[str, dict[str, str]] = {
-    "node": {"type": "exec", "package": "pkg", "executable": "exec", "ns": "namespace", "required": ""},
-    "arg": {"value": "default", "default_value": "default", "doc": "description"},
-    "param": {"command": "value", "textfile": "value"}, "group": {"ns": ""}, "include": {"ns": "", "pass_all_args": ""},
-}  # fmt: skip
 
 
 def actions_of(parent: Entity, findings: Findings) -> list[Value]:
@@ -67,9 +57,6 @@ def _action(entity: Entity, findings: Findings) -> Call:
     if kind not in _ACTIONS:
         if kind in front_end("action"):
             raise NotEvaluated(f"the action {kind} is not evaluated", entity.at)
-        if kind in _ROS1_TAGS:
-            hint = f": {_ROS1_TAGS[kind]}".removesuffix(": ")
-            raise LaunchFails(f"<{kind}> in this place is from ROS 1 and not accepted by ROS 2{hint}", entity.at)
         raise LaunchFails(f"there is no action {kind!r}{did_you_mean(kind, _ACTIONS)}", entity.at)
     given = _attributes(entity, f"if unless {_ACTIONS[kind]}")
     condition = _condition(given, entity)
@@ -100,11 +87,7 @@ def _attributes(entity: Entity, known: str) -> dict[str, Any]:
             raise LaunchFails(f"<{entity.kind}> contains no <{name}>{did_you_mean(name, lists)}", entity.at)
     for name in entity.attributes:
         if name not in names or name in lists or name == "children":
-            right = _ROS1_ATTRIBUTES.get(entity.kind, {}).get(name)
-            hint = (
-                did_you_mean(name, names) if right is None else f" in ROS 2; write {right!r}" if right else " in ROS 2"
-            )
-            raise LaunchFails(f"<{entity.kind}> has no attribute {name!r}{hint}", entity.at)
+            raise LaunchFails(f"<{entity.kind}> has no attribute {name!r}{did_you_mean(name, names)}", entity.at)
     missing = [name for name, word in names.items() if "!" in word and name not in {*entity.attributes, *entity.nested}]
     if missing:
         raise LaunchFails(f"<{entity.kind}> needs the attribute {missing[0]!r}", entity.at)

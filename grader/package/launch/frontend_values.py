@@ -26,8 +26,6 @@ _ARGUMENTS = {
     "eval": "expression [python_modules]",
     "dirname": "",
 }
-# The substitutions of ROS 1 and their names in ROS 2.
-_ROS1 = {"find": "find-pkg-share", "arg": "var", "optenv": "env"}
 _ON_STDERR = (["fail"], ["ignore"], ["warn"], ["capture"])
 
 
@@ -104,9 +102,6 @@ class _ValueParser:
 
     def call(self, name: str, values: list[list[Value]]) -> Call:
         """Return a substitution as the call that it is in Python. Raises LaunchFails."""
-        if name in _ROS1:
-            right = _ROS1[name]
-            raise LaunchFails(f"$({name} ...) is a substitution of ROS 1; in ROS 2 write $({right} ...)", self.at)
         if name == "command" and len(values) > 1 and values[1] not in _ON_STDERR:
             raise LaunchFails("$(command ...) needs quotes around its command: $(command 'xacro ...')", self.at)
         if name not in _ARGUMENTS:

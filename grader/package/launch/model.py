@@ -9,6 +9,7 @@ from grader.static_python.parse import Position
 from grader.static_python.values import Call, Unknown, Value
 
 _MAX_STEPS = 50_000
+ANY = "**"
 STATE_PUBLISHER = "robot_state_publisher"
 Purpose = Literal["urdf", "rviz", "include", "read"]
 
@@ -63,12 +64,11 @@ def not_evaluated(reason: str) -> str:
 
 @dataclass(slots=True)
 class Surroundings:
-    """What a launch file finds around it. `texts` has the paths of the files that it has read, by their texts."""
+    """What a launch file finds around it."""
 
     read: Callable[[str], str | None]  # the text of an installed file; None where it is not installed or is no text
     is_installed: Callable[[str], bool]  # whether a package certainly is on the machine
     has_program: Callable[[str, str], bool | None]  # whether a package has a program; None where this is not known
-    texts: dict[str, str] = field(default_factory=dict)
     steps_left: int = _MAX_STEPS
 
 
@@ -76,7 +76,7 @@ class Surroundings:
 class Context:
     """The path of the installed launch file, and what launch knows when it executes an action.
 
-    `arguments` are the launch configurations; one with the name UNKNOWN_KEYS stands for any other one.
+    `arguments` are the launch configurations; one with the name ANY stands for any other one.
     """
 
     path: str

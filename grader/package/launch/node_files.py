@@ -14,17 +14,9 @@ from grader.package.launch.model import (
 )
 from grader.package.launch.parameters import tables_in
 from grader.package.launch.substitutions import resolve
-from grader.package.launch.value_types import TYPED
+from grader.package.launch.value_types import OPENED, TYPED
 from grader.static_python.parse import Position
 from grader.static_python.values import Call, Unknown, Value
-
-# The errors where robot_description is given a call whose last method is missing.
-_UNFINISHED = {
-    "xacro.process_file": (
-        "robot_description is given a document, not its text: add .toxml() to xacro.process_file(...)"
-    ),
-    "builtins.open": "robot_description is given an open file, not its contents: add .read() to open(...)",
-}
 
 
 def attempt(value: Value, context: Context, at: Position) -> Resolved:
@@ -78,40 +70,27 @@ def _has_dict(table: dict[Any, Value]) -> bool:
 
 def _refer_description(findings: Findings, value: Value, call: Call, context: Context) -> None:
     value = inner_value(value)
-    if isinstance(value, Call) and value.name in _UNFINISHED:
-        findings.refer("urdf", None, call, value, wrong=_UNFINISHED[value.name])
+    if isinstance(value, Call) and value.name in OPENED:
+        findings.refer("urdf", None, call, value, wrong=f"robot_description is given {OPENED[value.name]}")
         return
     if isinstance(value, list | tuple) and not any(isinstance(it, Call) for it in value):
         findings.add_doubt("a robot_description that is a list is not evaluated", call.at)
         findings.refer("urdf", Unknown("robot_description is a list", call.at), call)
         return
     found = attempt(value, context, call.at)
-    match _origin(found, context, call.at) if isinstance(found, str) else found:
+    match found:
         case Contents(path=path, by=by) if by != "xacro" and path.endswith(".xacro"):
             name = path.rpartition("/")[2]
             message = f"{name} is read without xacro; if it uses xacro, write Command(['xacro ', ...])"
             findings.references.append(NamedFile("urdf", path, findings.locate(call.at), message, sure=False, by=by))
+        case str() if "<robot" in found or not found.strip():
+            reason = "a robot that the launch file contains is not evaluated"
+            findings.refer("urdf", Unknown(reason, call.at), call, value)
         case str():
             message = "robot_description is given the path of the URDF, not its contents: read the file first"
             findings.refer("urdf", None, call, value, wrong=message)
         case Contents() | Unknown() as description:
             findings.refer("urdf", description, call, value)
-
-
-def _origin(text: str, context: Context, at: Position) -> Resolved:
-    """Return the file that a text was read from; a text that is no robot is returned as it is."""
-    texts = context.around.texts
-    if text in texts:
-        return Contents(texts[text], "open")
-    files = [path for read, path in texts.items() if "<robot" in read]
-    part = Unknown("robot_description is given a part of the text of a file, which is not evaluated", at)
-    if "<robot" in text:
-        return (
-            Contents(files[0], "open")
-            if len(files) == 1
-            else Unknown("a robot that the launch file contains is not evaluated", at)
-        )
-    return part if not text or any(text in read for read in texts) else text
 
 
 def find_configuration(findings: Findings, call: Call, context: Context) -> None:

@@ -1,23 +1,24 @@
 """Launch files in Python, evaluated without running them: what they create, and what the functions they call give."""
 
 import posixpath
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from io import StringIO
 from pathlib import PurePosixPath
 
 from grader.package.launch.api import DESCRIPTION, SUBSTITUTION, class_named, exports, is_a
-from grader.package.launch.model import Contents, Context, FileText, LaunchFails, LaunchSignal
-from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
-from grader.package.launch.python_functions import (
-    LaunchFunctions,
-    add_action,
-    expand_user,
-    join_paths,
-    safe_load,
-    variable,
+from grader.package.launch.arguments import LaunchFunctions
+from grader.package.launch.model import (
+    Contents,
+    Context,
+    FileText,
+    LaunchFails,
+    LaunchSignal,
+    UnknownText,
 )
+from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.launch.substitutions import resolve
+from grader.static_python.calls import Calls
 from grader.static_python.evaluation import Evaluation, EvaluationStopped, FunctionTable, record
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.knowledge import known, path_text
@@ -63,7 +64,7 @@ class PythonLaunchFile:
             {
                 **standard_functions(WORKING_FOLDER),
                 **dict.fromkeys(_RECORDED, record),
-                **dict.fromkeys(adds, add_action),
+                **dict.fromkeys(adds, _add_action),
                 **dict.fromkeys(performs, self._perform),
                 **dict.fromkeys((f"{it}.get_package_share_directory" for it in _AMENT_INDEX), self._share),
                 **dict.fromkeys((f"{it}.get_package_share_path" for it in _AMENT_INDEX), self._share_path),
@@ -73,10 +74,9 @@ class PythonLaunchFile:
                 **dict.fromkeys(("os.path.exists", "os.path.isfile", "pathlib.Path.exists"), self._exists),
                 **dict.fromkeys(("xacro.process_file", "xacro.process", "xacro.parse"), self._xacro),
                 **dict.fromkeys(("builtins.open.read", *_TEXTS), self._text),
-                **dict.fromkeys(("yaml.safe_load", "yaml.load"), safe_load),
-                **dict.fromkeys(("os.environ.__getitem__", "os.environ.get", "os.getenv"), variable),
-                "os.path.join": join_paths,
-                "os.path.expanduser": expand_user,
+                **dict.fromkeys(("os.environ.__getitem__", "os.environ.get", "os.getenv"), _variable),
+                "os.path.join": _join_paths,
+                "os.path.expanduser": _expand_user,
                 "pathlib.Path.home": lambda *_: PurePosixPath(HOME),
             }
         )
@@ -88,19 +88,19 @@ class PythonLaunchFile:
         except LaunchSignal as signal:
             kind = ExpressionFails if isinstance(signal, LaunchFails) else Undetermined
             raise kind(str(signal)) from None
-        return self._text_of(found, call) if isinstance(found, Contents) else found
+        reason = "the content of a file is not evaluated"
+        return FileText(reason=reason, at=call.at, contents=found) if isinstance(found, Contents) else found
 
-    def _text_of(self, contents: Contents, call: Call) -> Value:
-        text = self.context.around.read(contents.path) if contents.by != "xacro" else None
-        reason = f"the text of {posixpath.basename(contents.path)} is not evaluated"
-        return text if text is not None else FileText(reason=reason, at=call.at, contents=contents)
-
-    def _text(self, _: Evaluation, call: Call) -> Value:
-        """Return the text of a file that is read or expanded."""
+    def _text(self, evaluation: Evaluation, call: Call) -> Value:
+        """Return the text of a file that is expanded, or read for the first time."""
         opened = call.owner
-        if opened is None or (call.name == "builtins.open.read" and call.args):
+        if opened is None or call.args:
             raise Undetermined("a part of the text of a file is not evaluated")
-        return FileText(reason="the text of a file is not evaluated", at=opened.at, contents=_contents(opened))
+        if call.name.endswith(".read"):
+            if any(not before.name.endswith("__enter__") for before in opened.method_calls):
+                raise Undetermined("a file that is closed or read once more is not evaluated")
+            record(evaluation, call)
+        return FileText(reason="the content of a file is not evaluated", at=opened.at, contents=_contents(opened))
 
     def _package(self, evaluation: Evaluation, call: Call) -> str:
         name = known(call.argument(0, "package_name", "package"))
@@ -127,23 +127,14 @@ class PythonLaunchFile:
         if mode not in (None, "r", "rt") or not is_utf8 or others or len(call.args) > 2:
             raise EvaluationStopped("this use of open is not evaluated", call.at)
         self.reads.append((Contents(path, "open"), call.at))
-        text = self.context.around.read(path)
-        if text is None:
-            call.name, call.args, call.kwargs = "builtins.open", [path], {}
-            return record(evaluation, call)
-        self.context.around.texts.setdefault(text, path)
-        return StringIO(text)
+        call.name, call.args, call.kwargs = "builtins.open", [path], {}
+        return record(evaluation, call)
 
     def _open_path(self, evaluation: Evaluation, call: Call) -> Value:
-        is_read = call.name.endswith("read_text")
-        found = self._open(
-            evaluation, Call("", [call.args[0], *(["r"] if is_read else []), *call.args[1:]], call.kwargs, call.at)
-        )
-        if not is_read:
-            return found
-        if isinstance(found, StringIO):
-            return found.read()
-        return self._text(evaluation, Call("builtins.open.read", [], {}, call.at, found))
+        if not call.name.endswith("read_text"):
+            return self._open(evaluation, call)
+        opened = self._open(evaluation, Call("", [call.args[0], "r", *call.args[1:]], call.kwargs, call.at))
+        return self._text(evaluation, Call("builtins.open.read", [], {}, call.at, opened))
 
     def _exists(self, _: Evaluation, call: Call) -> Value:
         path = path_text(known(call.args[0])) or ""
@@ -154,9 +145,7 @@ class PythonLaunchFile:
         given = call.argument(0, "input_file_name")
         if isinstance(given, Call) and not given.name.startswith("builtins.open"):
             raise ExpressionFails(f"{call.name} takes a path, not a substitution: use Command(['xacro ', ...])")
-        if isinstance(given, StringIO):
-            given = self.context.around.texts.get(given.getvalue())
-        elif isinstance(given, Call):
+        if isinstance(given, Call):
             given = given.args[0] if given.args else None
         path = path_text(known(given))
         if path is None:
@@ -174,3 +163,34 @@ def _contents(call: Call) -> Contents:
     pairs = given.items() if isinstance(given, dict) else ()
     arguments = tuple((str(name), value if isinstance(value, str) else None) for name, value in pairs)
     return Contents(call.args[0], "xacro" if call.name.startswith("xacro.") else "open", arguments)
+
+
+def _add_action(evaluation: Evaluation, call: Call) -> Value:
+    """Record an action that is added to a description."""
+    if len(call.args) + len(call.kwargs) != 1:
+        raise ExpressionFails(f"{call.name.rpartition('.')[2]} takes one action")
+    record(evaluation, call)
+
+
+def _variable(_: Evaluation, call: Call) -> Value:
+    """Return a variable of the environment: whether it is set is not known."""
+    name, default = known(call.argument(0, "key")), known(call.argument(1, "default"))
+    if name == "HOME":
+        return HOME
+    reason = "the environment is not evaluated"
+    if call.name.endswith("__getitem__"):
+        raise Undetermined(reason)
+    return (UnknownText if isinstance(default, str) else Unknown)(reason, call.at)
+
+
+def _join_paths(evaluation: Calls, call: Call) -> Value:
+    """Return what os.path.join returns; it fails for substitutions."""
+    if any(isinstance(value, Call) and class_named(value.name) is not None for value in call.args):
+        raise ExpressionFails("os.path.join takes strings, not substitutions: use PathJoinSubstitution([...])")
+    return evaluation.call_value(standard_functions(WORKING_FOLDER)["os.path.join"], call)
+
+
+def _expand_user(_: Evaluation, call: Call) -> Value:
+    """Return a path with the home folder in place of ~."""
+    text = path_text(known(call.args[0])) if call.args else None
+    return re.sub("^~", HOME, text) if text is not None else Unknown("a path is not evaluated", call.at)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import yaml
 
 from grader.package.launch.commands import command_output
-from grader.package.launch.model import Contents, Context, FileText, LaunchFails, NotEvaluated, Resolved
+from grader.package.launch.model import ANY, Contents, Context, FileText, LaunchFails, NotEvaluated, Resolved
 from grader.package.launch.places import HOME, SHARE
 from grader.static_python.budget import Budget, OutOfBudget
 from grader.static_python.builtins import BUILTINS, MATH
@@ -17,7 +17,6 @@ from grader.static_python.knowledge import str_of
 from grader.static_python.parse import Position
 from grader.static_python.values import (
     MAX_TEXT,
-    UNKNOWN_KEYS,
     Call,
     ExpressionFails,
     Namespace,
@@ -104,7 +103,7 @@ class _Substitution:
         if name in arguments:
             return arguments[name]
         default = self.call.kwargs.get("default")
-        if UNKNOWN_KEYS in arguments:
+        if ANY in arguments:
             raise NotEvaluated(
                 f"whether {name!r} is declared in a file that is not submitted is not evaluated", self.call.at
             )

@@ -1,7 +1,6 @@
 """The values that launch and launch_ros take as texts and as parameters of nodes, and what is wrong with others."""
 
 from collections.abc import Callable, Mapping
-from io import StringIO
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -13,6 +12,11 @@ from grader.static_python.values import Call, Function, Items, QualifiedName, Un
 SCALARS = (bool, int, float, str)
 TYPED = ("launch_ros.parameter_descriptions.ParameterValue", "launch_ros.parameter_descriptions.Parameter")
 FILE = "launch_ros.parameter_descriptions.ParameterFile"
+# What is no text yet: the calls that give it, and what is missing.
+OPENED = {
+    "builtins.open": "an open file: add .read()", "xacro.process_file": "a document, not its text: add .toxml()",
+    "xacro.parse": "a document, not its text: add .toxml()",
+}  # fmt: skip
 _EMPTY: dict[str, str] = {}
 _VIEWS = (type(_EMPTY.keys()), type(_EMPTY.values()), type(_EMPTY.items()))
 _COLLECTIONS: Any = (list, tuple, dict, set, frozenset, *_VIEWS)
@@ -37,7 +41,7 @@ def is_text(value: Value) -> bool:
             raise Undetermined(f"the value of {value.name}")
         case Call() if class_named(value.name) is not None:
             return is_a(value.name, SUBSTITUTION)
-        case Call():
+        case Call() if value.name not in OPENED:
             raise Undetermined(f"the result of {value.name}")
     return isinstance(value, str)
 
@@ -72,9 +76,7 @@ def wrong_text(value: Value) -> str:
 def kind_of(value: Value) -> str:
     """Return what a value is, in words."""
     if isinstance(value, Call):
-        return f"{value.name.rpartition('.')[2]}(...)"
-    if isinstance(value, StringIO):
-        return "an open file: add .read()"
+        return OPENED.get(value.name, f"{value.name.rpartition('.')[2]}(...)")
     if isinstance(value, PurePosixPath):
         return "a path: write str(...) around it"
     return _NAMES.get(type(value), f"a {type(value).__name__}")
