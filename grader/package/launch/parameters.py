@@ -6,7 +6,7 @@ from typing import Any
 
 import yaml
 
-from grader.package.launch.model import Contents, Context, LaunchFails, NotEvaluated
+from grader.package.launch.model import Contents, Context, LaunchFails, NotEvaluated, UnknownText
 from grader.package.launch.substitutions import boolean, resolve
 from grader.package.launch.value_types import FILE, SCALARS, TYPED, kind_of, type_of
 from grader.static_python.parse import Position
@@ -37,6 +37,8 @@ def evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> No
                 evaluate_dict(value, context, at)
             case Call() if value.name in TYPED:
                 _evaluate_typed(value, context)
+            case UnknownText():
+                resolve(value, context, at)
             case list() | tuple() | range():
                 _evaluate_list(shown, list(value), context, at)
             case Call() | Unknown():
@@ -90,7 +92,9 @@ def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> No
 
 def _evaluate_typed(call: Call, context: Context) -> None:
     value = call.kwargs["value"]
-    if isinstance(value, SCALARS) or (
+    if isinstance(value, UnknownText):
+        resolve(value, context, call.at)
+    if isinstance(value, (*SCALARS, UnknownText)) or (
         isinstance(value, list | tuple) and not any(isinstance(it, Call) for it in value)
     ):
         return

@@ -137,6 +137,8 @@ def wrong_parameter(value: Value) -> str:
 def wrong_typed(call: Call) -> str:
     """Return what is wrong with the value of ParameterValue, or nothing. Raises Undetermined."""
     value, kind = call.kwargs["value"], type_of(call)
+    if isinstance(value, UnknownText):
+        return "" if kind in (None, str) else "the value is a text"
     if isinstance(value, SCALARS):
         return "" if kind is None or isinstance(value, kind) else f"the value is {kind_of(value)}, not {kind.__name__}"
     if isinstance(value, list | tuple) and not any(isinstance(it, Call | Unknown) for it in value):
