@@ -12,9 +12,18 @@ from grader.errors import InputError
 from grader.files.names import ignored_part
 from grader.package.globbing import PackageListing, SearchError
 from grader.package.python_packages import below, find_packages
-from grader.static_python.evaluation import Evaluation, EvaluationStopped, FunctionTable
+from grader.static_python.evaluation import Evaluation, EvaluationStopped
 from grader.static_python.knowledge import known, path_text
-from grader.static_python.values import Call, ExpressionFails, Items, PlainFunction, Undetermined, Unknown, Value
+from grader.static_python.values import (
+    Call,
+    ExpressionFails,
+    FunctionTable,
+    Items,
+    PlainFunction,
+    Undetermined,
+    Unknown,
+    Value,
+)
 
 _OUTSIDE = "it reads files outside of the package"
 _GLOB_OPTIONS = {"pathname", "root_dir", "recursive", "include_hidden"}

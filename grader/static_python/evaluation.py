@@ -2,15 +2,15 @@
 
 import ast
 import builtins
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
 from grader.static_python import values as py
 from grader.static_python.budget import Budget
 from grader.static_python.builtins import BUILTINS, truth
 from grader.static_python.expressions import Expressions
-from grader.static_python.imports import PYTHON_3_12, USUAL_NAMES
 from grader.static_python.knowledge import reason_of
+from grader.static_python.library import PYTHON_3_12, USUAL_NAMES
 from grader.static_python.parse import START, Position, position_of
 
 
@@ -29,9 +29,6 @@ class EvaluationStopped(py.EvaluationSignal):
         self.at = at
 
 
-# The functions that are evaluated, by their full names; each of the second kind takes its call.
-FunctionTable = Mapping[str, "py.PlainFunction | Callable[[Evaluation, py.Call], py.Value]"]
-
 NOT_EVALUATED = "is not evaluated"
 FAILED = "Python raises an error before"  # the reason of a value that would follow
 # All parts of such an expression are evaluated before the expression itself; such a part may change something.
@@ -49,7 +46,7 @@ class Evaluation(Expressions):
     the evaluation stops there.
     """
 
-    def __init__(self, functions: FunctionTable, names: Mapping[str, py.Value], budget: Budget) -> None:
+    def __init__(self, functions: py.FunctionTable, names: Mapping[str, py.Value], budget: Budget) -> None:
         """`functions` has every function that is evaluated; `names` are bound from the beginning, such as __file__."""
         super().__init__(self._builtin, budget)
         self.functions = functions

@@ -11,8 +11,8 @@ from grader.static_python import values as py
 from grader.static_python.calls import Calls
 from grader.static_python.evaluation import NOT_EVALUATED, EvaluationStopped
 from grader.static_python.expressions import kinds_of
-from grader.static_python.imports import CONSTANTS, attribute_error
 from grader.static_python.knowledge import call_plain, iterate, known, refuse, str_of
+from grader.static_python.library import CONSTANTS, attribute_error
 from grader.static_python.operators import has_attribute, operate
 from grader.static_python.parse import Position, position_of
 
@@ -66,13 +66,6 @@ class FileExpressions(Calls):
             except py.Undetermined as error:
                 raise EvaluationStopped(str(error), error.at or position_of(node)) from None
         return values
-
-    def _of_binop(self, node: ast.BinOp, scope: py.Scope) -> py.Value:
-        left, right = self.evaluate(node.left, scope), self.evaluate(node.right, scope)
-        if isinstance(left, py.Call) and isinstance(node.op, ast.Div) and f"{left.name}.__truediv__" in self.functions:
-            made = py.Call(f"{left.name}.__truediv__", [left, right], {}, position_of(node))
-            return self.call_value(py.QualifiedName(made.name), made)
-        return operate(node.op, left, right, self.budget)
 
     def _of_dict(self, node: ast.Dict, scope: py.Scope) -> py.Value:
         table: dict[Any, py.Value] = {}

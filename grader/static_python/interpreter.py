@@ -12,10 +12,10 @@ from io import StringIO
 from grader.static_python import values as py
 from grader.static_python.budget import Budget, OutOfBudget
 from grader.static_python.builtins import truth
-from grader.static_python.evaluation import EvaluationStopped, FunctionTable
+from grader.static_python.evaluation import EvaluationStopped
 from grader.static_python.file_expressions import FileExpressions
-from grader.static_python.imports import UNCERTAIN, USUAL_NAMES, import_error, imported_names
 from grader.static_python.knowledge import iterate
+from grader.static_python.library import UNCERTAIN, USUAL_NAMES, import_error, imported_names
 from grader.static_python.parse import Code, Position, bound_in, own_nodes, position_of
 
 _STEPS = 100_000  # what the evaluation of one file may use
@@ -37,7 +37,7 @@ class Interpreter(FileExpressions):
 
     def __init__(
         self,
-        functions: FunctionTable,
+        functions: py.FunctionTable,
         names: Mapping[str, py.Value],
         *,
         stand_ins: Collection[str] = (),

@@ -1,7 +1,7 @@
 """The values of Python expressions: Python's own, and stand-ins for functions, iterators and what is not evaluated."""
 
 import ast
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 from io import StringIO
 from pathlib import PurePosixPath
@@ -152,6 +152,10 @@ class PlainFunction:
 
     def __init__(self, name: str, run: Callable[..., Value], kind: str = "plain") -> None:
         self.name, self.run, self.kind = name, run, kind
+
+
+# The functions that are evaluated, by their full names; each of the second kind takes the evaluation and its call.
+FunctionTable = Mapping[str, "PlainFunction | Callable[[Any, Call], Value]"]
 
 
 class Namespace:

@@ -76,11 +76,15 @@ def _attributes(entity: Entity, known: str) -> dict[str, Any]:
     if entity.is_yaml and entity.has_actions != ("children" in known):
         what = "needs the key children" if "children" in known else "has no list of actions"
         raise LaunchFails(f"{entity.kind} {what}", entity.at)
-    names = {word.partition(":")[0].strip("-![]"): word for word in known.split()}
+    names = {word.partition(":")[0].strip("-![]"): word for word in f"{known} -<<".split()}
     lists = {name for name, word in names.items() if word.endswith("[]")}
     inner = [*entity.nested, *(it.kind for it in entity.actions)]
     for name in [*inner, *entity.attributes]:
-        if names.get(name, "").startswith("-") or (name.removesuffix("-sep") in names and name not in names):
+        if (
+            name == "<<"
+            or names.get(name, "").startswith("-")
+            or (name.removesuffix("-sep") in names and name not in names)
+        ):
             raise NotEvaluated(f"{name} of <{entity.kind}> is not evaluated", entity.at)
     for name in inner if "children" not in names else ():
         if name not in lists:
@@ -183,11 +187,10 @@ def _parameter(entity: Entity) -> Value:
         raise LaunchFails("a <param> needs a value", entity.at)
     if kind is not None and kind not in _VALUE_TYPES:
         raise LaunchFails(f"a <param> has the type {kind!r}, which is none of {', '.join(_VALUE_TYPES)}", entity.at)
+    if kind not in (None, "str", "yaml"):
+        raise NotEvaluated(f"a <param> of the type {kind} is not evaluated", entity.at)
     value = entity.attributes["value"] if not entity.is_yaml and kind == "str" else given["value"]
     kwargs: dict[str, Value] = {"value": parse_if_text(value, entity.at)}
-    if kind is not None and kind != "yaml":
-        kwargs["value_type"] = Call(f"builtins.{kind}", [], {}, entity.at)
-        if kind in ("int", "float", "bool") and not entity.is_yaml:
-            typed = typed_text(entity.attributes["value"], {"int": int, "float": float, "bool": bool}[kind], entity.at)
-            kwargs["value"] = parse_if_text(typed, entity.at)
+    if kind == "str":
+        kwargs["value_type"] = Call("builtins.str", [], {}, entity.at)
     return {name: _checked(Call(TYPED[0], [], kwargs, entity.at))}

@@ -99,9 +99,8 @@ def start_process(findings: Findings, call: Call, context: Context, when: bool |
 def _frame_prefix(call: Call, context: Context) -> str | None:
     """Return the parameter frame_prefix of a node."""
     given = [table["frame_prefix"] for table in tables_in(call.kwargs.get("parameters")) if "frame_prefix" in table]
-    for name in ("arguments", "ros_arguments"):
-        words = _words_of(call.kwargs.get(name), context, call.at)
-        given += [word.partition(":=")[2] for word in words if word.startswith("frame_prefix:=")]
+    words = _words_of(call.kwargs.get("arguments"), context, call.at)
+    given += [word.partition(":=")[2] for word in words if word.startswith("frame_prefix:=")]
     found = _attempt(_inner_value(given[-1]), context, call.at) if given else ""
     return found if isinstance(found, str) and PART_UNKNOWN not in found else None
 

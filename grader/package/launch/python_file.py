@@ -19,12 +19,12 @@ from grader.package.launch.model import (
 from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.launch.substitutions import resolve
 from grader.static_python.calls import Calls
-from grader.static_python.evaluation import Evaluation, EvaluationStopped, FunctionTable, record
+from grader.static_python.evaluation import Evaluation, EvaluationStopped, record
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.knowledge import known, path_text
 from grader.static_python.library import standard_functions
 from grader.static_python.parse import Code, Position
-from grader.static_python.values import Call, ExpressionFails, Function, Undetermined, Unknown, Value
+from grader.static_python.values import Call, ExpressionFails, Function, FunctionTable, Undetermined, Unknown, Value
 
 _MODULE = "python_launch_file"  # the __name__ of a launch file
 _AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")

@@ -7,7 +7,7 @@ from typing import Any
 from grader.package.launch.api import ENTITY, SUBSTITUTION, class_named, is_a
 from grader.package.launch.model import UnknownText
 from grader.static_python.knowledge import iterate
-from grader.static_python.values import Call, Function, Items, QualifiedName, Undetermined, Unknown, Value
+from grader.static_python.values import VIEWS, Call, Function, Items, QualifiedName, Undetermined, Unknown, Value
 
 SCALARS = (bool, int, float, str)
 TYPED = ("launch_ros.parameter_descriptions.ParameterValue", "launch_ros.parameter_descriptions.Parameter")
@@ -17,9 +17,7 @@ OPENED = {
     "builtins.open": "an open file: add .read()", "xacro.process_file": "a document, not its text: add .toxml()",
     "xacro.parse": "a document, not its text: add .toxml()",
 }  # fmt: skip
-_EMPTY: dict[str, str] = {}
-_VIEWS = (type(_EMPTY.keys()), type(_EMPTY.values()), type(_EMPTY.items()))
-_COLLECTIONS: Any = (list, tuple, dict, set, frozenset, *_VIEWS)
+_COLLECTIONS: Any = (list, tuple, dict, set, frozenset, *VIEWS)
 _NAMES = {
     type(None): "None",
     bool: "a boolean",
