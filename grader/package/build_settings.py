@@ -8,12 +8,12 @@ from configparser import ConfigParser, Error
 from grader.errors import InputError
 from grader.package.globbing import PackageListing
 from grader.static_python.knowledge import unknown_in
-from grader.static_python.values import UNKNOWN_KEYS, Unknown, Value
+from grader.static_python.values import Unknown, Value
 from grader.text import enumerated
 
 # The arguments that name the Python packages; without one, setuptools searches for packages, but not in the folders
 # below, those of `FlatLayoutPackageFinder.DEFAULT_EXCLUDE`.
-_PACKAGES = ("packages", "py_modules", "ext_modules", "package_dir", UNKNOWN_KEYS)
+_PACKAGES = ("packages", "py_modules", "ext_modules", "package_dir")
 _NO_PACKAGES = frozenset(
     {"ci", "bin", "debian", "doc", "docs", "documentation", "manpages", "news", "newsfragments", "changelog", "test",
      "tests", "unit_test", "unit_tests", "example", "examples", "scripts", "tools", "util", "utils", "python", "build",
@@ -54,9 +54,7 @@ def argument_findings(
 ) -> Iterator[Finding]:
     """Yield what is wrong with the arguments of setup() besides data_files, and what of them is not evaluated."""
     for name, value in kwargs.items():
-        if name == UNKNOWN_KEYS:
-            yield unknown("unpacked arguments of setup() are not evaluated")
-        elif name not in (*_CHECKED, *_REQUIREMENTS) and not _is_usual(name, value):
+        if name not in (*_CHECKED, *_REQUIREMENTS) and not _is_usual(name, value):
             yield unknown_in(value) or unknown(f"this value of {name} in setup() is not evaluated")
     for check in (_version, _entry_points, _requirements):
         yield from check(kwargs, unknown)

@@ -12,9 +12,18 @@ from grader.errors import InputError
 from grader.files.names import ignored_part
 from grader.package.globbing import PackageListing, SearchError
 from grader.package.python_packages import below, find_packages
-from grader.static_python.evaluation import Evaluation, EvaluationStopped, FunctionTable
+from grader.static_python.evaluation import Evaluation, EvaluationStopped
 from grader.static_python.knowledge import known, path_text
-from grader.static_python.values import Call, ExpressionFails, Items, PlainFunction, Undetermined, Unknown, Value
+from grader.static_python.values import (
+    Call,
+    ExpressionFails,
+    FunctionTable,
+    Items,
+    PlainFunction,
+    Undetermined,
+    Unknown,
+    Value,
+)
 
 _OUTSIDE = "it reads files outside of the package"
 _GLOB_OPTIONS = {"pathname", "root_dir", "recursive", "include_hidden"}
@@ -176,9 +185,9 @@ class _PackageFolder:
             )
         real = self.real(path)
         if real is None:
-            raise ExpressionFails(f"there is no file {str(path)!r}", FileNotFoundError)
+            raise ExpressionFails(f"there is no file {str(path)!r}")
         if real in self.listing.folders:
-            raise ExpressionFails(f"{str(path)!r} is a folder, not a file", IsADirectoryError)
+            raise ExpressionFails(f"{str(path)!r} is a folder, not a file")
         try:
             text = self.listing.files[real].read(_MAX_READ).decode()
         except (InputError, UnicodeDecodeError):
@@ -197,5 +206,5 @@ class _PackageFolder:
         if real in self.listing.folders:
             return list(self.listing.names(real or ""))
         if real is None:
-            raise ExpressionFails(f"there is no folder {str(path)!r}", FileNotFoundError)
-        raise ExpressionFails(f"{str(path)!r} is a file, not a folder", NotADirectoryError)
+            raise ExpressionFails(f"there is no folder {str(path)!r}")
+        raise ExpressionFails(f"{str(path)!r} is a file, not a folder")

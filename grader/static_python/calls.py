@@ -42,12 +42,9 @@ class Calls(Evaluation):
         return py.Function(parameters, scope, defaults, body, at, local)
 
     def unpack(self, kwargs: dict[str, py.Value], value: py.Value, node: ast.expr) -> None:
-        """Add the arguments that ** unpacks; of an unknown dict, that any argument may be given."""
+        """Add the arguments that ** unpacks."""
         if not isinstance(value, dict):
-            kwargs[py.UNKNOWN_KEYS] = py.Unknown(
-                reason_of(value) or f"this use of ** {NOT_EVALUATED}", position_of(node)
-            )
-            return
+            raise EvaluationStopped(reason_of(value) or f"this use of ** {NOT_EVALUATED}", position_of(node))
         for key, item in value.items():
             if not isinstance(key, str) or key in kwargs:
                 raise py.ExpressionFails(f"TypeError: ** unpacks the key {key!r}, which is no text or given twice")
@@ -88,7 +85,6 @@ class Calls(Evaluation):
     def _plain(self, function: py.PlainFunction, made: py.Call) -> py.Value:
         """Return the value of Python's own function; stop where it would call others, or use up an iterator."""
         try:
-            known(made.kwargs.get(py.UNKNOWN_KEYS))
             return call(function, made.args, made.kwargs, self.budget, partial(self._apply, made.at))
         except py.Undetermined as error:
             given = (*made.args, *made.kwargs.values())
@@ -159,20 +155,14 @@ class Calls(Evaluation):
         parameters = function.parameters
         positional = [parameter.arg for parameter in (*parameters.posonlyargs, *parameters.args)]
         names = {*positional, *(parameter.arg for parameter in parameters.kwonlyargs)}
-        unpacked = made.kwargs.get(py.UNKNOWN_KEYS)  # represents any argument
         given = dict(zip(positional, made.args, strict=False))
         others = {name: value for name, value in made.kwargs.items() if name not in names or name in given}
         missing = sorted(names - given.keys() - made.kwargs.keys() - function.defaults.keys())
-        if unpacked is not None:
-            self.doubted(unpacked)
-        elif (
-            missing or (len(made.args) > len(positional) and not parameters.vararg) or (others and not parameters.kwarg)
-        ):
+        if missing or (len(made.args) > len(positional) and not parameters.vararg) or (others and not parameters.kwarg):
             what = f"the argument {missing[0]!r} is missing" if missing else "there is one argument too many"
             self.error(f"{what} in this call", made.at)
-        bound = dict.fromkeys(names, unpacked or py.Unknown("an argument is missing", made.at))
-        bound |= function.defaults if unpacked is None else {}
-        bound |= given | {name: value for name, value in made.kwargs.items() if name in names}
+        bound = {**dict.fromkeys(names, py.Unknown("an argument is missing", made.at)), **function.defaults, **given}
+        bound |= {name: value for name, value in made.kwargs.items() if name in names}
         if parameters.vararg:
             bound[parameters.vararg.arg] = tuple(made.args[len(positional) :])
         if parameters.kwarg:

@@ -2,15 +2,15 @@
 
 import ast
 import builtins
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
 from grader.static_python import values as py
 from grader.static_python.budget import Budget
 from grader.static_python.builtins import BUILTINS, truth
 from grader.static_python.expressions import Expressions
-from grader.static_python.imports import PYTHON_3_12, USUAL_NAMES
 from grader.static_python.knowledge import reason_of
+from grader.static_python.library import PYTHON_3_12, USUAL_NAMES
 from grader.static_python.parse import START, Position, position_of
 
 
@@ -21,18 +21,6 @@ class PythonError(NamedTuple):
     at: Position
 
 
-class RaisedFlow(py.EvaluationSignal):
-    """An error for which a handler is searched; `kind` decides which handler catches it."""
-
-    def __init__(self, error: PythonError, kind: type[BaseException]) -> None:
-        super().__init__(error.message)
-        self.error, self.kind = error, kind
-
-
-class ExitFlow(py.EvaluationSignal):
-    """The end of the program, by sys.exit or by an error that nothing catches."""
-
-
 class EvaluationStopped(py.EvaluationSignal):
     """The evaluation ends here: nothing that follows can be determined."""
 
@@ -40,9 +28,6 @@ class EvaluationStopped(py.EvaluationSignal):
         super().__init__(reason)
         self.at = at
 
-
-# The functions that are evaluated, by their full names; each of the second kind takes its call.
-FunctionTable = Mapping[str, "py.PlainFunction | Callable[[Evaluation, py.Call], py.Value]"]
 
 NOT_EVALUATED = "is not evaluated"
 FAILED = "Python raises an error before"  # the reason of a value that would follow
@@ -61,7 +46,7 @@ class Evaluation(Expressions):
     the evaluation stops there.
     """
 
-    def __init__(self, functions: FunctionTable, names: Mapping[str, py.Value], budget: Budget) -> None:
+    def __init__(self, functions: py.FunctionTable, names: Mapping[str, py.Value], budget: Budget) -> None:
         """`functions` has every function that is evaluated; `names` are bound from the beginning, such as __file__."""
         super().__init__(self._builtin, budget)
         self.functions = functions
@@ -71,21 +56,15 @@ class Evaluation(Expressions):
         self.errors: list[PythonError] = []
         self.calls: list[py.Call] = []  # what is recorded, in order
         self.doubt: py.Unknown | None = None  # the first that may have failed, or stopped the evaluation
-        self.handlers = 0  # how many blocks around this place catch errors
-        self.has_lazy_annotations = False  # whether annotations are not evaluated
         self.at = START  # the statement that is evaluated
 
     def doubted(self, unknown: py.Unknown) -> py.Unknown:
         """Keep that an error may have been raised here, and return the unknown value."""
-        if self.handlers:
-            raise EvaluationStopped(f"an error may be caught: {unknown.reason}", unknown.at)
         self.doubt = self.doubt or unknown
         return unknown
 
-    def error(self, message: str, at: Position, kind: type[BaseException] = TypeError) -> None:
-        """Record once an error that certainly stops Python; `kind` decides what catches it."""
-        if self.handlers:
-            raise RaisedFlow(PythonError(message, at), kind)
+    def error(self, message: str, at: Position) -> None:
+        """Record once an error that certainly stops Python."""
         if len(self.errors) < _MAX_ERRORS and all(message != error.message for error in self.errors):
             self.errors.append(PythonError(message, at))
 
@@ -102,7 +81,7 @@ class Evaluation(Expressions):
                 raise EvaluationStopped(unknown.reason, unknown.at) from None
             return self.doubted(unknown)
         except py.ExpressionFails as error:
-            self.error(str(error), position_of(node), error.kind)
+            self.error(str(error), position_of(node))
             return py.Unknown(FAILED, position_of(node))
 
     def _of_name(self, node: ast.Name, scope: py.Scope) -> py.Value:
@@ -115,7 +94,7 @@ class Evaluation(Expressions):
             return self._builtin(node.id)
         if node.id.startswith("__"):
             raise py.Undetermined(f"the name {node.id!r} {NOT_EVALUATED}")
-        self.error(f"the name {node.id!r} is not defined or imported", position_of(node), NameError)
+        self.error(f"the name {node.id!r} is not defined or imported", position_of(node))
         return py.QualifiedName(USUAL_NAMES.get(node.id, f"?.{node.id}"))
 
     def _builtin(self, name: str) -> py.Value:

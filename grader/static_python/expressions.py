@@ -203,7 +203,7 @@ class Expressions:
         values = list(iterate(value))
         if len(values) != len(targets):
             message = f"ValueError: cannot unpack {len(values)} values into {len(targets)} names"
-            raise ExpressionFails(message, ValueError)
+            raise ExpressionFails(message)
         for inner, item in zip(targets, values, strict=True):
             self.bind(inner, item, scope)
 

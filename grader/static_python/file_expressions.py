@@ -1,7 +1,9 @@
-"""The expressions of a file, besides those that xacro has as well."""
+"""The expressions and assignments of a file, besides what xacro has as well."""
 
 import ast
 from collections.abc import Sequence
+from copy import copy
+from operator import setitem
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -9,16 +11,16 @@ from grader.static_python import values as py
 from grader.static_python.calls import Calls
 from grader.static_python.evaluation import NOT_EVALUATED, EvaluationStopped
 from grader.static_python.expressions import kinds_of
-from grader.static_python.imports import CONSTANTS, attribute_error
 from grader.static_python.knowledge import call_plain, iterate, known, refuse, str_of
+from grader.static_python.library import CONSTANTS, attribute_error
 from grader.static_python.operators import has_attribute, operate
-from grader.static_python.parse import position_of
+from grader.static_python.parse import Position, position_of
 
 _PARTS = ("name", "stem", "suffix", "parent", "parents", "parts")  # of a path
 
 
 class FileExpressions(Calls):
-    """Adds attributes, literals and comprehensions, as a file may have them."""
+    """Adds attributes, literals, comprehensions and assignments, as a file may have them."""
 
     def _of_attribute(self, node: ast.Attribute, scope: py.Scope) -> py.Value:
         owner, name = self.evaluate(node.value, scope), node.attr
@@ -27,19 +29,19 @@ class FileExpressions(Calls):
                 return py.QualifiedName(f"glob.{name}")
             case py.QualifiedName(name="glob.glob") if name in ("glob", "iglob"):
                 message = f"glob is a function here, so glob.{name} is not defined: write glob(...)"
-                self.error(message, position_of(node), AttributeError)
+                self.error(message, position_of(node))
                 return owner
             case py.QualifiedName(name=module):
                 full = f"{module}.{name}"
                 error = attribute_error(module, name) if full not in self.functions else None
                 if error is not None:
-                    raise py.ExpressionFails(error, AttributeError)
+                    raise py.ExpressionFails(error)
                 return CONSTANTS.get(full, py.QualifiedName(full))
             case PurePosixPath() if name in _PARTS:
                 value = getattr(owner, name)
                 return self.budget.checked(list(value) if name == "parents" else value, "path")
         if isinstance(owner, py.PLAIN) and not has_attribute(owner, name):
-            raise py.ExpressionFails(f"{type(owner).__name__!r} has no attribute {name!r}", AttributeError)
+            raise py.ExpressionFails(f"{type(owner).__name__!r} has no attribute {name!r}")
         return py.BoundMethod(owner, name)
 
     def item(self, owner: py.Value, key: py.Value, node: ast.expr) -> py.Value:
@@ -64,13 +66,6 @@ class FileExpressions(Calls):
             except py.Undetermined as error:
                 raise EvaluationStopped(str(error), error.at or position_of(node)) from None
         return values
-
-    def _of_binop(self, node: ast.BinOp, scope: py.Scope) -> py.Value:
-        left, right = self.evaluate(node.left, scope), self.evaluate(node.right, scope)
-        if isinstance(left, py.Call) and isinstance(node.op, ast.Div) and f"{left.name}.__truediv__" in self.functions:
-            made = py.Call(f"{left.name}.__truediv__", [left, right], {}, position_of(node))
-            return self.call_value(py.QualifiedName(made.name), made)
-        return operate(node.op, left, right, self.budget)
 
     def _of_dict(self, node: ast.Dict, scope: py.Scope) -> py.Value:
         table: dict[Any, py.Value] = {}
@@ -110,6 +105,52 @@ class FileExpressions(Calls):
 
     def _of_lambda(self, node: ast.Lambda, scope: py.Scope) -> py.Value:
         return self.function(node.args, scope, position_of(node), lambda inner: self.evaluate(node.body, inner))
+
+    def bind(self, target: ast.expr, value: py.Value, scope: py.Scope) -> None:
+        """Bind the names of a target to a value, or change an item."""
+        match target:
+            case ast.Subscript(value=owner, slice=key):
+                self._store(self.evaluate(owner, scope), known(self.key(key, scope)), value, position_of(target))
+            case ast.Attribute(value=owner, attr=name):
+                changed = self.evaluate(owner, scope)
+                if isinstance(changed, py.PLAIN):
+                    raise py.ExpressionFails(f"{type(changed).__name__!r} has no attribute {name!r}")
+                raise EvaluationStopped(f"a change of the attribute {name} is not evaluated", position_of(target))
+            case _:
+                super().bind(target, value, scope)
+
+    def _store(self, owner: py.Value, key: py.Value, value: py.Value, at: Position) -> None:
+        """Set an item of a list or dict."""
+        if isinstance(owner, py.QualifiedName | py.Call):
+            made = py.Call(f"{owner.name}.__setitem__", [key, value], {}, at)
+            self.call_value(py.QualifiedName(made.name), made)
+            return
+        if not isinstance(owner, py.PLAIN) or isinstance(key, slice):
+            refuse(owner, "this assignment to an item is not supported")
+        call_plain(setitem, owner, key, value)
+        self.budget.charge(len(owner))
+
+    def _on_assign(self, node: ast.Assign, scope: py.Scope) -> None:
+        value = self.evaluate(node.value, scope)
+        for target in node.targets:
+            self.bind(target, value, scope)
+
+    def _on_augassign(self, node: ast.AugAssign, scope: py.Scope) -> None:
+        target = node.target
+        if any(isinstance(part, ast.Call | ast.NamedExpr) for part in ast.walk(target)):
+            raise py.Undetermined("this target is not supported")
+        load = copy(target)
+        load.ctx = ast.Load()
+        before, value = self.evaluate(load, scope), self.evaluate(node.value, scope)
+        if not isinstance(before, py.PLAIN):
+            refuse(before, "this value is not supported")
+        if isinstance(before, list) and isinstance(node.op, ast.Add):
+            before.extend(list(iterate(value)))
+            self.budget.measure(before, "holds")
+        elif isinstance(before, list | dict):
+            raise py.Undetermined("this operator is not supported")
+        else:
+            self.bind(target, operate(node.op, before, value, self.budget), scope)
 
 
 FileExpressions.KINDS = kinds_of(FileExpressions)

@@ -1,4 +1,7 @@
-"""Evaluate a whole Python file without running it: its blocks, functions, branches, loops and error handlers."""
+"""Evaluate a whole Python file without running it: its functions, branches, loops, assignments and imports.
+
+A statement of any other kind, such as `try` or `while`, ends the evaluation: what follows is not known.
+"""
 
 import ast
 import builtins
@@ -9,20 +12,32 @@ from io import StringIO
 from grader.static_python import values as py
 from grader.static_python.budget import Budget, OutOfBudget
 from grader.static_python.builtins import truth
-from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable, RaisedFlow
+from grader.static_python.evaluation import EvaluationStopped
+from grader.static_python.file_expressions import FileExpressions
 from grader.static_python.knowledge import iterate
+from grader.static_python.library import UNCERTAIN, USUAL_NAMES, import_error, imported_names
 from grader.static_python.parse import Code, Position, bound_in, own_nodes, position_of
-from grader.static_python.statements import LoopFlow, ReturnFlow, Statements
 
 _STEPS = 100_000  # what the evaluation of one file may use
+_IN_ANNOTATIONS = (
+    ast.Attribute, ast.Subscript, ast.Constant, ast.BinOp, ast.BitOr, ast.Tuple, ast.List, ast.expr_context, ast.Index,
+)  # fmt: skip
 
 
-class Interpreter(Statements):
-    """Adds the statements that have blocks."""
+class _ReturnFlow(py.EvaluationSignal):
+    """A return statement, with its value."""
+
+    def __init__(self, value: py.Value) -> None:
+        super().__init__()
+        self.value = value
+
+
+class Interpreter(FileExpressions):
+    """Adds the statements of a file to its expressions."""
 
     def __init__(
         self,
-        functions: FunctionTable,
+        functions: py.FunctionTable,
         names: Mapping[str, py.Value],
         *,
         stand_ins: Collection[str] = (),
@@ -46,10 +61,6 @@ class Interpreter(Statements):
             self._block(code.tree.body, self.module)
         except (EvaluationStopped, OutOfBudget, RecursionError) as error:
             self._stop(error)
-        except (ReturnFlow, LoopFlow, ExitFlow):  # also a break outside of a loop, which ast accepts
-            pass
-        except RaisedFlow as error:
-            self.errors.append(error.error)
         return self.module
 
     def call_from_outside(self, function: py.Function, at: Position, args: Sequence[py.Value] | None = ()) -> py.Value:
@@ -57,29 +68,39 @@ class Interpreter(Statements):
 
         With `args` None, the arguments are unknown, and no error or doubt in the call counts: it may never happen.
         """
-        unknown = {py.UNKNOWN_KEYS: py.Unknown("an event is known only at run time", at)} if args is None else {}
+        given = function.parameters
+        count = len([*given.posonlyargs, *given.args]) - len(given.defaults)
+        event: list[py.Value] = [py.Unknown("an event is known only at run time", at)] * count
         recorded, doubt = list(self.errors), self.doubt
         try:
-            return self.call_function(function, py.Call("", list(args or ()), unknown, at))
+            return self.call_function(function, py.Call("", event if args is None else list(args), {}, at))
         except (EvaluationStopped, OutOfBudget, RecursionError) as error:
             return self._stop(error, at)
-        except (ExitFlow, LoopFlow, py.ExpressionFails, py.Undetermined, RaisedFlow):
-            return self.doubted(py.Unknown("the file exits here", at))
+        except (py.ExpressionFails, py.Undetermined) as error:
+            return self.doubted(py.Unknown(str(error), at))
         finally:
             if args is None:
                 self.errors, self.doubt = recorded, doubt
 
     def _stop(self, error: Exception, at: Position | None = None) -> py.Unknown:
-        self.handlers = 0
         is_deep = isinstance(error, RecursionError)
         reason = "the file is too deeply nested, which is not evaluated" if is_deep else str(error)
         return self.doubted(py.Unknown(reason, getattr(error, "at", None) or at or self.at))
 
     def _block(self, body: list[ast.stmt], scope: py.Scope) -> None:
-        for statement in body:
+        for node in body:
             self.budget.charge(1)
-            self.at = position_of(statement)
-            self.statement(statement, scope)
+            self.at = position_of(node)
+            kind = getattr(self, f"_on_{type(node).__name__.lower()}", None)
+            if kind is None:
+                raise EvaluationStopped(f"a statement of the kind {type(node).__name__} is not evaluated", self.at)
+            try:
+                kind(node, scope)
+            except py.ExpressionFails as error:  # of the statement itself, such as an assignment
+                self.error(str(error), position_of(node))
+            except py.Undetermined as error:
+                reason = f"this statement is not evaluated: {error}"
+                raise EvaluationStopped(reason, error.at or position_of(node)) from None
 
     def _on_functiondef(self, node: ast.FunctionDef, scope: py.Scope) -> None:
         at = position_of(node)
@@ -89,7 +110,7 @@ class Interpreter(Statements):
         every = (*parameters.posonlyargs, *parameters.args, *parameters.kwonlyargs, parameters.vararg, parameters.kwarg)
         function: py.Value = self.function(parameters, scope, at, partial(self._function_body, node), bound_in(node))
         for annotation in (*(parameter.annotation for parameter in every if parameter), node.returns):
-            self.annotation(annotation, scope)
+            self._annotation(annotation, scope)
         scope.names[node.name] = function
 
     def _function_body(self, node: ast.FunctionDef, scope: py.Scope) -> py.Value:
@@ -97,101 +118,84 @@ class Interpreter(Statements):
             raise EvaluationStopped("a generator function is not evaluated", position_of(node))
         try:
             self._block(node.body, scope)
-        except ReturnFlow as flow:
+        except _ReturnFlow as flow:
             return flow.value
         return None
+
+    def _on_return(self, node: ast.Return, scope: py.Scope) -> None:
+        raise _ReturnFlow(self.evaluate(node.value, scope) if node.value is not None else None)
+
+    def _annotation(self, node: ast.expr | None, scope: py.Scope) -> None:
+        """Find the names of an annotation, and stop where it calls something."""
+        for part in ast.walk(node) if node is not None else ():
+            if isinstance(part, ast.Name):
+                self._of_name(part, scope)
+            elif not isinstance(part, _IN_ANNOTATIONS):
+                raise EvaluationStopped("this annotation is not evaluated", self.at)
 
     def _on_if(self, node: ast.If, scope: py.Scope) -> None:
         self._block(node.body if truth(self.evaluate(node.test, scope)) else node.orelse, scope)
 
-    def _on_while(self, node: ast.While, scope: py.Scope) -> None:
-        while truth(self.evaluate(node.test, scope)):
-            if not self._round(node.body, scope):
-                return
-        self._block(node.orelse, scope)
-
     def _on_for(self, node: ast.For, scope: py.Scope) -> None:
-        items = iterate(self.evaluate(node.iter, scope))
-        for item in items:
+        for item in iterate(self.evaluate(node.iter, scope)):
             self.bind(node.target, item, scope)
-            if not self._round(node.body, scope):
-                return
+            self._block(node.body, scope)
         self._block(node.orelse, scope)
-
-    def _round(self, body: list[ast.stmt], scope: py.Scope) -> bool:
-        """Evaluate one round of a loop; return whether the loop goes on."""
-        try:
-            self._block(body, scope)
-        except LoopFlow as flow:
-            return not flow.is_break
-        return True
 
     def _on_with(self, node: ast.With, scope: py.Scope) -> None:
-        entered: list[py.Value] = []
-        for item in node.items:
-            value = self.evaluate(item.context_expr, scope)
-            at = position_of(item.context_expr)
-            if isinstance(value, py.Call):
-                self.call_value(py.BoundMethod(value, "__enter__"), py.Call("", [], {}, at))
-            elif not isinstance(value, StringIO):
-                raise EvaluationStopped("this use of with is not evaluated", at)
-            entered.append(value)
-            if item.optional_vars is not None:
-                self.bind(item.optional_vars, value, scope)
+        value, target = self.evaluate(node.items[0].context_expr, scope), node.items[0].optional_vars
+        if isinstance(value, py.Call):
+            self.call_value(py.BoundMethod(value, "__enter__"), py.Call("", [], {}, self.at))
+        if len(node.items) > 1 or not isinstance(value, py.Call | StringIO):
+            raise EvaluationStopped("this use of with is not evaluated", self.at)
+        if target is not None:
+            self.bind(target, value, scope)
         try:
             self._block(node.body, scope)
         finally:
-            for value in entered:
-                if isinstance(value, StringIO):
-                    value.close()
+            if isinstance(value, StringIO):
+                value.close()
+            else:
+                value.method_calls.append(py.Call(f"{value.name}.__exit__", [], {}, self.at, value))
 
-    def _on_try(self, node: ast.Try, scope: py.Scope) -> None:
-        """Evaluate a block; an error in it is certain, because the evaluation stops where one is only possible."""
-        leaving = (part for it in node.finalbody for part in ast.walk(it))
-        if any(isinstance(part, ast.Return | ast.Break | ast.Continue) for part in leaving):
-            raise EvaluationStopped("leaving a finally block is not evaluated", position_of(node))
-        try:
-            self._guarded(node, scope)
-        except (RaisedFlow, ReturnFlow, LoopFlow, ExitFlow):
-            self._block(node.finalbody, scope)
-            raise
-        self._block(node.finalbody, scope)
+    def _on_annassign(self, node: ast.AnnAssign, scope: py.Scope) -> None:
+        if node.value is not None:
+            self.bind(node.target, self.evaluate(node.value, scope), scope)
+        if scope is self.module:
+            self._annotation(node.annotation, scope)
 
-    def _guarded(self, node: ast.Try, scope: py.Scope) -> None:
-        before = self.handlers
-        self.handlers += bool(node.handlers)
-        try:
-            self._block(node.body, scope)
-        except RaisedFlow as raised:
-            self.handlers = before
-            self._handle(node, raised, scope)
-            return
-        finally:
-            self.handlers = before
-        self._block(node.orelse, scope)
+    def _on_expr(self, node: ast.Expr, scope: py.Scope) -> None:
+        self.evaluate(node.value, scope)
 
-    def _handle(self, node: ast.Try, raised: RaisedFlow, scope: py.Scope) -> None:
-        """Evaluate the first handler that catches an error; raise it again where none does."""
-        for handler in node.handlers:
-            catches = _catches(handler.type, raised.kind)
-            if catches is None:
-                raise EvaluationStopped("whether an error is caught here is not evaluated", position_of(handler))
-            if catches:
-                if handler.name is not None:
-                    scope.names[handler.name] = py.Unknown("the error is not evaluated", position_of(handler))
-                self._block(handler.body, scope)
-                if handler.name is not None:
-                    scope.names.pop(handler.name, None)
-                return
-        self.error(raised.error.message, raised.error.at, raised.kind)
+    def _on_pass(self, node: ast.Pass, scope: py.Scope) -> None:
+        pass
 
+    def _on_import(self, node: ast.Import | ast.ImportFrom, scope: py.Scope) -> None:
+        module = "" if isinstance(node, ast.Import) else "." * node.level + (node.module or "")
+        for alias in node.names:
+            if (module or alias.name).split(".")[0] in self.local_modules:
+                raise EvaluationStopped(f"the file's own module {module or alias.name} is not evaluated", self.at)
+            error = import_error(module, alias.name, self.exports)
+            bound = imported_names(module, alias, self.exports)
+            if error == UNCERTAIN:
+                reason = f"whether {module or alias.name} is installed is not known; it is not evaluated"
+                self.doubted(py.Unknown(reason, self.at))
+            elif error is not None:
+                self.error(error, self.at)
+                bound = dict.fromkeys(bound, py.QualifiedName(USUAL_NAMES.get(alias.name, f"?.{alias.name}")))
+            if bound.pop("*", None) is not None:
+                raise EvaluationStopped(f"the names of {module} are not evaluated", self.at)
+            scope.names.update(bound)
 
-def _catches(kinds: ast.expr | None, raised: type[BaseException]) -> bool | None:
-    """Return whether `except kinds:` catches an error; None where this is unknown."""
-    if kinds is None:
-        return True
-    parts = kinds.elts if isinstance(kinds, ast.Tuple) else [kinds]
-    types = [getattr(builtins, part.id, None) if isinstance(part, ast.Name) else None for part in parts]
-    if any(isinstance(kind, type) and issubclass(raised, kind) for kind in types):
-        return True
-    return None if None in types else False
+    _on_importfrom = _on_import
+
+    def _on_assert(self, node: ast.Assert, scope: py.Scope) -> None:
+        if not truth(self.evaluate(node.test, scope)):
+            self.error("this assertion fails", self.at)
+
+    def _on_raise(self, node: ast.Raise, _: py.Scope) -> None:
+        raised = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
+        kind = getattr(builtins, raised.id, None) if isinstance(raised, ast.Name) else None
+        if isinstance(kind, type) and issubclass(kind, Exception):
+            self.error(f"the file raises {kind.__name__} here", self.at)
+        raise EvaluationStopped("which error is raised here is not evaluated", self.at)

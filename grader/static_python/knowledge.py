@@ -38,7 +38,7 @@ def call_plain(function: Callable[..., Value], *args: Value, **kwargs: Value) ->
         if not has_text([*args, *kwargs.values()]):
             raise Undetermined("this use of a function, a namespace or an iterator is not supported") from None
         message = error.args[0] if isinstance(error, KeyError) and error.args else error
-        raise ExpressionFails(f"{type(error).__name__}: {message}", type(error)) from None
+        raise ExpressionFails(f"{type(error).__name__}: {message}") from None
 
 
 def iterate(value: Value) -> Iterator[Value]:

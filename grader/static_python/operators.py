@@ -34,7 +34,7 @@ def attribute(owner: py.Value, name: str, budget: Budget) -> py.Value:
     if isinstance(owner, py.DottedDict) and name in owner:
         return owner[name]
     if isinstance(owner, py.PLAIN):
-        raise py.ExpressionFails(f"{type(owner).__name__!r} has no attribute {name!r}", AttributeError)
+        raise py.ExpressionFails(f"{type(owner).__name__!r} has no attribute {name!r}")
     raise py.Undetermined(f"the attribute {name} of this value is not supported")
 
 
@@ -57,7 +57,7 @@ def method(owner: py.Value, name: str, budget: Budget) -> py.PlainFunction | Non
             budget.charge(budget.measure(owner, kind), sum(search_cost(owner, value) for value in args))
         return call_plain(run, owner, *args, **kwargs)
 
-    return py.PlainFunction(name, charged, kind, getattr(owner, name))
+    return py.PlainFunction(name, charged, kind)
 
 
 def search_cost(text: py.Value, part: py.Value) -> int:

@@ -1,7 +1,7 @@
 """The values of Python expressions: Python's own, and stand-ins for functions, iterators and what is not evaluated."""
 
 import ast
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 from io import StringIO
 from pathlib import PurePosixPath
@@ -16,7 +16,6 @@ Value = Any
 MAX_TEXT = 100_000  # characters
 MAX_PARTS = 20_000  # of a value, with all that it contains
 MAX_BITS = 4_096  # of an integer
-UNKNOWN_KEYS = "**"  # among keyword arguments, the entry that stands for keys that are not known
 _MAX_MESSAGE = 1_000  # characters
 _EMPTY: dict[str, str] = {}
 VIEWS: tuple[Any, ...] = (type(_EMPTY.keys()), type(_EMPTY.values()), type(_EMPTY.items()))
@@ -33,10 +32,6 @@ class EvaluationSignal(Exception):
 
 class ExpressionFails(EvaluationSignal):
     """Python certainly raises an error for this expression; the text is a sentence without its end."""
-
-    def __init__(self, message: str, kind: type[BaseException] = TypeError) -> None:
-        super().__init__(message)
-        self.kind = kind
 
 
 class Undetermined(EvaluationSignal):
@@ -140,7 +135,7 @@ class Scope(Record):
             if name in scope.names:
                 return scope.names[name]
             if name in scope.local:
-                raise ExpressionFails(f"the name {name!r} is used before it has a value", UnboundLocalError)
+                raise ExpressionFails(f"the name {name!r} is used before it has a value")
             scope = scope.outer
         raise KeyError(name)
 
@@ -150,16 +145,17 @@ class PlainFunction:
 
     `kind` is "plain" for one whose arguments are wholly known; "holds" for one that only passes on what a list
     contains, known or not; "applies" for such a one that calls functions, by the one that it is given first; "path" for
-    one whose result may begin with the stand-in of a folder, "text" for one that may contain it. `own` is Python's own
-    function, where `run` stands for one.
+    one whose result may begin with the stand-in of a folder, "text" for one that may contain it.
     """
 
-    __slots__ = ("kind", "name", "own", "run")
+    __slots__ = ("kind", "name", "run")
 
-    def __init__(
-        self, name: str, run: Callable[..., Value], kind: str = "plain", own: Callable[..., Value] | None = None
-    ) -> None:
-        self.name, self.run, self.kind, self.own = name, run, kind, own
+    def __init__(self, name: str, run: Callable[..., Value], kind: str = "plain") -> None:
+        self.name, self.run, self.kind = name, run, kind
+
+
+# The functions that are evaluated, by their full names; each of the second kind takes the evaluation and its call.
+FunctionTable = Mapping[str, "PlainFunction | Callable[[Any, Call], Value]"]
 
 
 class Namespace:

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from grader.source import Edit, Edits, Source
-from grader.static_python.imports import USUAL_NAMES
+from grader.static_python.library import USUAL_NAMES
 from grader.static_python.parse import Code, SyntaxFault, parse
 
 _STRING = re.compile(

@@ -13,7 +13,7 @@ from grader.names import closest
 from grader.package.edits.python_file import PythonFile
 from grader.package.edits.task import change
 from grader.source import Source
-from grader.static_python.imports import USUAL_NAMES
+from grader.static_python.library import USUAL_NAMES
 from grader.static_python.parse import SyntaxFault
 
 _WORD = re.compile(r"[^\W\d]\w*")

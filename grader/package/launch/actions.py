@@ -1,21 +1,22 @@
-"""What the actions of a launch description do as launch executes them: nodes, includes, groups, timers, events."""
+"""What the actions of a launch description do as launch executes them: nodes, includes, arguments, timers, events."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from grader.package.launch.api import ENTITY, SOURCE, is_a
-from grader.package.launch.conditions import both, holds
-from grader.package.launch.fields import launch_arguments
+from grader.package.launch.api import SOURCE, is_a
 from grader.package.launch.known_files import start_known_file
-from grader.package.launch.model import Context, LaunchFails, NotEvaluated
-from grader.package.launch.nodes import evaluate_node, evaluate_process, start_node, start_process
+from grader.package.launch.model import ANY, Context, LaunchFails, LaunchSignal, NotEvaluated, Resolved
+from grader.package.launch.nodes import check_namespace, evaluate_node, evaluate_process, start_node, start_process
+from grader.package.launch.parameters import evaluate_dict
 from grader.package.launch.substitutions import known_text, resolve
 from grader.package.launch.value_types import items_in, kind_of
 from grader.package.launch.visitor import PROCESSES, ActionVisitor
-from grader.static_python.values import UNKNOWN_KEYS, Call, Function, QualifiedName, Unknown
+from grader.static_python.parse import Position
+from grader.static_python.values import Call, Function, QualifiedName, Undetermined, Unknown, Value
 
 CIRCULAR_INCLUDE = "it includes itself"
-_HANDLER = "launch.event_handler.BaseEventHandler"
+# By which packages, programs and files are found.
+_SEARCHED = ("AMENT_PREFIX_PATH", "PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "HOME")
 
 
 def _description(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
@@ -25,52 +26,105 @@ def _description(visitor: ActionVisitor, call: Call, context: Context, when: boo
             visitor.visit_all([*method.args, *method.kwargs.values()], method, context, when)
 
 
+def _declare(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    del visitor
+    name, choices, default = (call.kwargs.get(it) for it in ("name", "choices", "default_value"))
+    if not isinstance(name, str):
+        raise NotEvaluated("the name of this launch argument is not evaluated", call.at)
+    if when is False:
+        return
+    is_given = name in context.given or (name in context.arguments and call.kwargs.get("condition") is not None)
+    if default is None and not is_given:
+        raise LaunchFails(f"the launch argument {name!r} has no default, and no value is given", call.at)
+    if name not in context.arguments:
+        _set(name, default, call, context, when)
+    value = context.arguments[name]
+    if choices is not None and when:
+        if not isinstance(value, str) or not isinstance(choices, list | tuple):
+            raise NotEvaluated(f"whether {name!r} is one of its choices is not evaluated", call.at)
+        if value not in choices:
+            raise LaunchFails(f"the value {value!r} of {name!r} is not one of its choices", call.at)
+
+
+def _assign(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    del visitor
+    if when is not False:
+        _set(known_text(call.kwargs["name"], context, call.at), call.kwargs["value"], call, context, when)
+
+
+def _set(name: str, value: Value, call: Call, context: Context, when: bool | None) -> None:
+    uncertain = Unknown(f"the launch argument {name!r} is set under a condition", call.at)
+    try:
+        context.arguments[name] = resolve(value, context, call.at) if when else uncertain
+    except LaunchSignal as signal:
+        context.arguments[name] = Unknown(str(signal), signal.at)
+        raise
+
+
+def _environment(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    del visitor
+    variable = known_text(call.kwargs["name"], context, call.at) if when is not False else "X"
+    if not variable or "=" in variable:
+        raise LaunchFails(f"an environment variable cannot be called {variable!r}", call.at)
+    if variable in _SEARCHED:
+        raise NotEvaluated(f"what is found with another {variable} is not evaluated", call.at)
+
+
+def _namespace(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    del visitor
+    if when is not False:
+        check_namespace(call.kwargs["namespace"], context, call.at)
+        context.arguments["ros_namespace"] = Unknown("the namespace is not evaluated", call.at)
+
+
+def _set_parameter(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    visitor.findings.sets_parameters = True
+    if when is not False:
+        evaluate_dict({"": call.kwargs["value"]}, context, call.at)
+
+
+def _nothing(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    """Do nothing: its arguments are evaluated."""
+
+
+def _shutdown(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    del context
+    if when is not False and not visitor.findings.is_silent:
+        raise NotEvaluated("what a shutdown stops is not evaluated", call.at)
+
+
 def _group(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     """Visit a group: what it sets ends with it, unless scoped is False."""
     own = call.kwargs.get("launch_configurations") or {}
-    is_scoped, inner = bool(call.kwargs.get("scoped", True)), context
+    is_scoped, inner = call.kwargs.get("scoped", True), context
+    if not isinstance(is_scoped, bool) or "forwarding" in call.kwargs:
+        raise NotEvaluated("what this group keeps is not evaluated", call.at)
     if is_scoped:
         inner = context.copy()
-        if not call.kwargs.get("forwarding", True):
-            inner.arguments, inner.environment = {}, {}
     for name, value in own.items() if when is not False else ():
         inner.arguments[known_text(name, context, call.at)] = resolve(value, context, call.at)
     visitor.visit_all(call.kwargs["actions"], call, inner, when)
 
 
 def _timer(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
-    period = call.kwargs["period"]
-    if not isinstance(period, str | float):
-        try:
-            float(known_text(period, context, call.at))
-        except ValueError:
-            raise NotEvaluated("a timer whose period is no number is not evaluated", call.at) from None
-    visitor.defer(call.kwargs["actions"], call, context, when, None)
+    if when:
+        visitor.later.append((call.kwargs["actions"], call, context, when))
+    else:
+        visitor.perhaps(call.kwargs["actions"], call, context, when)
 
 
 def _register(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     handler = call.kwargs["event_handler"]
-    if isinstance(handler, Unknown):
-        raise NotEvaluated(handler.reason, handler.at)
-    if not isinstance(handler, Call) or not is_a(handler.name, _HANDLER):
-        error = LaunchFails(f"expected an event handler, found {kind_of(handler)}", call.at)
-        visitor.add_of_form(error, context, when)
+    kind = handler.name.rpartition(".")[2] if isinstance(handler, Call) else ""
+    if kind not in ("OnProcessExit", "OnProcessStart"):
+        visitor.add_form(NotEvaluated("this event handler is not evaluated", call.at), when)
         return
-    target = handler.kwargs.get("target_action")
-    for name, value in handler.kwargs.items():
-        if (name.startswith("on_") or name == "entities") and not isinstance(value, QualifiedName | None):
-            actions = visitor.call_function(value, handler.at, None, context) if isinstance(value, Function) else value
-            is_certain = handler.name.endswith("OnProcessStart") and isinstance(target, Call) and value is actions
-            listed = actions if isinstance(actions, list | tuple) else [actions]
-            if is_certain:
-                visitor.defer(listed, handler, context, when, target)
-            elif actions is not None and not handler.name.endswith("OnProcessIO"):
-                loaded, visitor.is_loaded = (
-                    visitor.is_loaded,
-                    visitor.is_loaded and value is actions and not handler.name.endswith("OnShutdown"),
-                )
-                visitor.perhaps(listed, handler, context, when and None)
-                visitor.is_loaded = loaded
+    value = handler.kwargs.get("on_exit", handler.kwargs.get("on_start"))
+    actions = visitor.call_function(value, handler.at, None, context) if isinstance(value, Function) else value
+    if kind == "OnProcessStart" and value is actions and when is not False:
+        visitor.later.append((actions if isinstance(actions, list | tuple) else [actions], handler, context, None))
+    elif not isinstance(actions, QualifiedName | None):
+        visitor.perhaps(actions, handler, context, when)
 
 
 def _opaque_function(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
@@ -81,12 +135,10 @@ def _opaque_function(visitor: ActionVisitor, call: Call, context: Context, when:
         return
     arguments = (Call("launch.launch_context.LaunchContext", [], {}, call.at), *args)
     found = visitor.call_function(function, call.at, arguments if when else None, context)
-    loaded, visitor.is_loaded = visitor.is_loaded, False
     if isinstance(found, Unknown):
         visitor.findings.add(NotEvaluated(found.reason, found.at), when)
     elif found is not None:
         visitor.visit_all(found, call, context, when)
-    visitor.is_loaded = loaded
 
 
 def _include(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
@@ -95,7 +147,7 @@ def _include(visitor: ActionVisitor, call: Call, context: Context, when: bool | 
     source = call.kwargs["launch_description_source"]
     if isinstance(source, Call) and is_a(source.name, SOURCE):
         source = source.kwargs.get("launch_file_path", Unknown("this launch description is not evaluated", call.at))
-    given = launch_arguments(call.kwargs.get("launch_arguments"), context, call.at)
+    given = _launch_arguments(call.kwargs.get("launch_arguments"), context, call.at)
     path = known_text(source, context, call.at)
     arguments = {**context.arguments, **given}
     inner = replace(context, path=path, arguments=arguments, when=when, reads=[], given=frozenset(given))
@@ -109,51 +161,51 @@ def _include(visitor: ActionVisitor, call: Call, context: Context, when: bool | 
         visitor.findings.refer("include", path, call)
     context.arguments.update(inner.arguments)  # an included file shares its arguments with the actions that follow
     if reason:
-        context.arguments[UNKNOWN_KEYS] = Unknown(reason, call.at)
+        context.arguments[ANY] = Unknown(reason, call.at)
+
+
+def _launch_arguments(given: Value, context: Context, at: Position) -> dict[str, Resolved]:
+    """Return the launch arguments that an include passes on. Raises LaunchSignal."""
+    try:
+        pairs = items_in(given) if given is not None else []
+    except Undetermined as error:
+        raise NotEvaluated(str(error), at) from None
+    found: dict[str, Resolved] = {}
+    for pair in pairs or ():
+        if isinstance(pair, Unknown):
+            raise NotEvaluated(pair.reason, pair.at)
+        if not isinstance(pair, list | tuple | str) or len(pair) != 2:
+            raise LaunchFails("launch_arguments takes pairs of a name and a value", at)
+        for part in pair:
+            if not isinstance(part, str | Call | Unknown | list | tuple):
+                raise LaunchFails(f"the value of a launch argument is {kind_of(part)}, not a string", at)
+        found[known_text(pair[0], context, at)] = resolve(pair[1], context, at)
+    return found
 
 
 def _process(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     """Start a process, which an action can do once only."""
     before, visitor.executed[id(call)] = visitor.executed.get(id(call), False), when
-    start = start_node if "executable" in call.kwargs else start_process
+    start, evaluate = (start_node, evaluate_node) if "executable" in call.kwargs else (start_process, evaluate_process)
     start(visitor.findings, call, context, when)
     if when is not False and before is not False:
         message = f"the same {call.name.rpartition('.')[2]} is executed twice: make two of them"
         raise LaunchFails(message, call.at) if before and when else NotEvaluated(message, call.at)
     if when is not False:
-        (evaluate_node if "executable" in call.kwargs else evaluate_process)(call, context)
+        evaluate(call, context)
     on_exit = call.kwargs.get("on_exit")
     if isinstance(on_exit, list):
-        visitor.perhaps(on_exit, call, context, when and None)
+        visitor.perhaps(on_exit, call, context, when)
     elif not isinstance(on_exit, Function | Call | Unknown | QualifiedName | None):
         raise NotEvaluated("this value of on_exit is not evaluated", call.at)
-    if composed := call.kwargs.get("composable_node_descriptions"):
-        _load(
-            visitor,
-            Call(call.name, [], {"target_container": "", "composable_node_descriptions": composed}, call.at),
-            context,
-            when,
-        )
 
 
-def _load(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
-    """Evaluate the nodes that a container loads."""
-    visitor.findings.add_unknown("the nodes of a container are not supported", call.at)
-    target = call.kwargs["target_container"]
-    if when is not False and not (isinstance(target, Call) and is_a(target.name, ENTITY)):
-        resolve(target, context, call.at)
-    nodes = items_in(call.kwargs["composable_node_descriptions"])
-    if nodes is None:
-        raise LaunchFails("composable_node_descriptions has to be a list: put [ ] around it", call.at)
-    for node in nodes:
-        if not isinstance(node, Call) or not node.name.endswith("ComposableNode"):
-            raise NotEvaluated("this composable node is not evaluated", call.at)
-        visitor.evaluate_fields(node, context, both(when, holds(node, context)))
-
-
-# What each kind of action does, besides the evaluation of its arguments and what EFFECTS lists.
+# What each kind of action does, besides the evaluation of its arguments.
 KINDS: Mapping[str, Callable[[ActionVisitor, Call, Context, bool | None], None]] = {
-    **dict.fromkeys(PROCESSES, _process), **dict.fromkeys(("TimerAction", "ROSTimer"), _timer),
-    "IncludeLaunchDescription": _include, "LaunchDescription": _description, "GroupAction": _group,
-    "RegisterEventHandler": _register, "OpaqueFunction": _opaque_function, "LoadComposableNodes": _load,
+    **dict.fromkeys(PROCESSES, _process), "LogInfo": _nothing, "LaunchDescription": _description,
+    "DeclareLaunchArgument": _declare, "SetLaunchConfiguration": _assign, "GroupAction": _group,
+    **dict.fromkeys(("SetEnvironmentVariable", "AppendEnvironmentVariable"), _environment),
+    "IncludeLaunchDescription": _include, "OpaqueFunction": _opaque_function, "TimerAction": _timer,
+    "RegisterEventHandler": _register, **dict.fromkeys(("Shutdown", "EmitEvent"), _shutdown),
+    "PushROSNamespace": _namespace, "SetParameter": _set_parameter,
 }  # fmt: skip

@@ -1,12 +1,12 @@
-"""Commands and functions of a launch file that give the contents of a file: xacro, cat, open."""
+"""Commands of a launch file that give the contents of a file: xacro and cat."""
 
 import re
 import shlex
 from collections.abc import Sequence
 
-from grader.package.launch.model import Contents, Context, LaunchFails, NotEvaluated, Resolved
+from grader.package.launch.model import Contents, LaunchFails, NotEvaluated, Resolved
 from grader.static_python.parse import Position
-from grader.static_python.values import MAX_TEXT, Call, Unknown
+from grader.static_python.values import MAX_TEXT, Unknown
 
 PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
 
@@ -41,19 +41,3 @@ def _file_of(words: list[str]) -> Contents | None:
         return Contents(files[0], "cat") if words[1:] == files else None
     given = (word.split(":=", 1) for word in words[1:] if ":=" in word)
     return Contents(files[0], "xacro", tuple((name, None if PART_UNKNOWN in it else it) for name, it in given))
-
-
-def contents_of(call: Call, context: Context) -> Resolved:
-    """Return what a Python function reads, that is not evaluated further."""
-    while call.owner is not None:
-        call = call.owner
-    path = call.argument(0, "file", "input_file_name")
-    if not isinstance(path, str):
-        return path if isinstance(path, Unknown) else Unknown(f"the result of {call.name} is not evaluated", call.at)
-    given = call.kwargs.get("mappings")
-    pairs = given.items() if isinstance(given, dict) else ()
-    arguments = tuple((str(name), value if isinstance(value, str) else None) for name, value in pairs)
-    by = "xacro" if call.name.startswith("xacro.") else call.kwargs.get("by", "decode")
-    found = Contents(path, by, arguments)
-    context.reads.append((found, call.at))
-    return found

@@ -97,8 +97,8 @@ class _YamlReader:
         elif not isinstance(node.value, dict):
             entity.error = f"{kind} has no attributes: write them below it"
         else:
-            entity.has_actions = "children" in merge_keys(node)
-            for key, value in merge_keys(node).items():
+            entity.has_actions = "children" in node.value
+            for key, value in node.value.items():
                 if key == "children":
                     entity.actions = self.entries(value, depth)
                 elif value.items and isinstance(value.items[0].value, dict):
@@ -120,18 +120,6 @@ def _plain(node: YamlNode) -> Any:
     except (yaml.YAMLError, ValueError):
         return text
     return text if isinstance(found, dict | list) or (isinstance(found, str) and found != text) else found
-
-
-def merge_keys(node: YamlNode) -> dict[str, YamlNode]:
-    """Return a mapping with what `<<` merges into it."""
-    table = node.value if isinstance(node.value, dict) else {}
-    given = table.get("<<")
-    if given is None:
-        return table
-    found: dict[str, YamlNode] = {}
-    for other in reversed(given.items or [given]):
-        found |= other.value if isinstance(other.value, dict) else {}
-    return {key: value for key, value in {**found, **table}.items() if key != "<<"}
 
 
 def _position(node: YamlNode) -> Position:

@@ -7,47 +7,36 @@ from grader.names import did_you_mean
 from grader.package.launch.api import class_named, front_end
 from grader.package.launch.arguments import bind, check
 from grader.package.launch.frontend import Entity
-from grader.package.launch.frontend_attributes import TYPES, attributes_of
-from grader.package.launch.frontend_values import command_line, parse_if_text, parse_value, typed_text
-from grader.package.launch.model import Findings, LaunchFails
-from grader.package.launch.value_types import FILE, TYPED
-from grader.static_python.values import Call, ExpressionFails, Value
+from grader.package.launch.frontend_values import command_line, is_typed, parse_if_text, parse_value, typed_text
+from grader.package.launch.model import Findings, LaunchFails, LaunchSignal, NotEvaluated
+from grader.package.launch.value_types import TYPED
+from grader.static_python.values import Call, ExpressionFails, Unknown, Value
 
 _PROCESS = (
-    "cwd name on_exit launch-prefix output respawn respawn_max_retries:int respawn_delay:float sigkill_timeout:float"
-    " sigterm_timeout:float shell:bool emulate_tty:bool env[]"
+    "cwd name on_exit launch-prefix output respawn shell:bool emulate_tty:bool"
+    " -respawn_max_retries -respawn_delay -sigkill_timeout -sigterm_timeout -env"
 )
-_NODE = f"exec! pkg args ros_args node-name exec_name namespace remap[] param[] {_PROCESS}"
-# The attributes of each element: ! is required, : precedes a type that is not text, [] are elements in it.
+# The attributes of each element that is evaluated: ! is required, : precedes a type that is not text, [] are elements
+# in it; what launch accepts, but is not evaluated, begins with -.
 _ACTIONS: Mapping[str, str] = {
-    "append_env": "name! value! prepend:bool separator", "arg": "name! default description choice[]",
-    "executable": f"cmd! {_PROCESS}", "group": "scoped:bool forwarding:bool keep[] children", "include": "file! arg[]",
-    "log": "message!", "reset_env": "", "reset": "keep[]", "set_env": "name! value!", "let": "name! value!",
-    "shutdown": "reason", "timer": "period!:float cancel_on_shutdown:bool children", "unset_env": "name!",
-    "ros_timer": "period!:float children", "node": _NODE, "node_container": f"{_NODE} composable_node[]",
-    "load_composable_node": "target! composable_node![]", "push_ros_namespace": "namespace!",
-    "push-ros-namespace": "namespace!", "set_parameter": "name! value!", "set_parameters_from_file": "filename!",
-    "set_remap": "from! to!", "set_ros_log_dir": "new_log_dir!", "set_use_sim_time": "value!",
+    "arg": "name! default description choice[]", "executable": f"cmd! {_PROCESS}",
+    "group": "scoped:bool -forwarding -keep children", "include": "file! arg[]", "log": "message!",
+    "set_env": "name! value!", "let": "name! value!", "timer": "period!:float -cancel_on_shutdown children",
+    "node": f"exec! pkg args -ros_args -node-name -exec_name namespace remap[] param[] {_PROCESS}",
+    **dict.fromkeys(("push_ros_namespace", "push-ros-namespace"), "namespace!"), "set_parameter": "name! value!",
 }  # fmt: skip
 _NESTED: Mapping[str, str] = {
-    **dict.fromkeys(("env", "keep", "arg", "extra_arg"), "name! value!"), "choice": "value!", "remap": "from! to!",
-    "param": "name from value:any type:any allow_substs:bool param[]",
-    "composable_node": "pkg! plugin! name! if unless namespace param[] remap[] extra_arg[]",
+    "arg": "name! value!", "choice": "value!", "remap": "from! to!",
+    "param": "name from value:any type:any -allow_substs param[]",
 }  # fmt: skip
+_TYPES: Mapping[str, type | None] = {"float": float, "bool": bool, "any": None}
 _VALUE_TYPES = ("str", "bool", "float", "int", "list_of_str", "list_of_bool", "list_of_float", "list_of_int", "yaml")
 # The argument of the constructor, where it has another name than the attribute.
 _ARGUMENTS = {
     "pkg": "package", "exec": "executable", "default": "default_value", "message": "msg", "launch-prefix": "prefix",
-    "file": "launch_description_source", "args": "arguments", "ros_args": "ros_arguments", "target": "target_container",
-    "node-name": "node_name",
+    "file": "launch_description_source", "args": "arguments",
 }  # fmt: skip
-_AS_TEXT = {("arg", "name"), ("arg", "description")}  # without substitutions
-_RAW = ("shell", "emulate_tty", "scoped", "forwarding", "respawn_max_retries")
-# Elements and attributes that only ROS 1 has, and what replaces them.
-_ROS1_TAGS = {
-    "param": "a <param> belongs in its <node>", "rosparam": "write <param from=.../> in the <node>",
-    "remap": "a <remap> belongs in its <node>", "machine": "", "test": "", "env": "write <set_env>",
-}  # fmt: skip
+_RAW = ("shell", "emulate_tty", "scoped")
 
 
 def actions_of(parent: Entity, findings: Findings) -> list[Value]:
@@ -55,38 +44,81 @@ def actions_of(parent: Entity, findings: Findings) -> list[Value]:
     found: list[Value] = []
     for entity in parent.actions:
         try:
-            if entity.kind != "keep" or parent.kind != "group":
-                found.append(_action(entity, findings))
+            found.append(_action(entity, findings))
         except LaunchFails as error:
             findings.add_fault(str(error), error.at)
+        except LaunchSignal as signal:
+            found.append(Unknown(str(signal), signal.at))
     return found
 
 
 def _action(entity: Entity, findings: Findings) -> Call:
     kind = entity.kind
     if kind not in _ACTIONS:
-        if kind in _ROS1_TAGS:
-            hint = f": {_ROS1_TAGS[kind]}".removesuffix(": ")
-            raise LaunchFails(f"<{kind}> in this place is from ROS 1 and not accepted by ROS 2{hint}", entity.at)
+        if kind in front_end("action"):
+            raise NotEvaluated(f"the action {kind} is not evaluated", entity.at)
         raise LaunchFails(f"there is no action {kind!r}{did_you_mean(kind, _ACTIONS)}", entity.at)
-    given = attributes_of(entity, f"if unless {_ACTIONS[kind]}")
+    given = _attributes(entity, f"if unless {_ACTIONS[kind]}")
     condition = _condition(given, entity)
-    if kind == "set_remap":
-        given = {"src": given["from"], "dst": given["to"]}
     kwargs = {_ARGUMENTS.get(name, name): _value(entity, name, value) for name, value in given.items()}
     if condition is not None:
         kwargs["condition"] = condition
-    _add_elements(entity, kwargs, findings)
+    _add_elements(entity, kwargs)
+    if "children" in _ACTIONS[kind]:
+        kwargs["actions"] = actions_of(entity, findings)
     return _checked(Call(front_end("action")[kind], [], kwargs, entity.at))
 
 
+def _attributes(entity: Entity, known: str) -> dict[str, Any]:
+    """Return the attributes of an entity, of their types. Raises LaunchSignal."""
+    if entity.error:
+        raise LaunchFails(entity.error, entity.at)
+    if entity.is_yaml and entity.has_actions != ("children" in known):
+        what = "needs the key children" if "children" in known else "has no list of actions"
+        raise LaunchFails(f"{entity.kind} {what}", entity.at)
+    names = {word.partition(":")[0].strip("-![]"): word for word in f"{known} -<<".split()}
+    lists = {name for name, word in names.items() if word.endswith("[]")}
+    inner = [*entity.nested, *(it.kind for it in entity.actions)]
+    for name in [*inner, *entity.attributes]:
+        if (
+            name == "<<"
+            or names.get(name, "").startswith("-")
+            or (name.removesuffix("-sep") in names and name not in names)
+        ):
+            raise NotEvaluated(f"{name} of <{entity.kind}> is not evaluated", entity.at)
+    for name in inner if "children" not in names else ():
+        if name not in lists:
+            raise LaunchFails(f"<{entity.kind}> contains no <{name}>{did_you_mean(name, lists)}", entity.at)
+    for name in entity.attributes:
+        if name not in names or name in lists or name == "children":
+            raise LaunchFails(f"<{entity.kind}> has no attribute {name!r}{did_you_mean(name, names)}", entity.at)
+    missing = [name for name, word in names.items() if "!" in word and name not in {*entity.attributes, *entity.nested}]
+    if missing:
+        raise LaunchFails(f"<{entity.kind}> needs the attribute {missing[0]!r}", entity.at)
+    return {
+        name: _typed(entity, name, value, names[name].partition(":")[2]) for name, value in entity.attributes.items()
+    }
+
+
+def _typed(entity: Entity, name: str, value: Any, kind: str) -> Any:
+    wanted = _TYPES[kind] if kind else str
+    if not entity.is_yaml:
+        return value if wanted is str else typed_text(value, wanted, entity.at)
+    if not is_typed(value, wanted):
+        what = f"{name} of {entity.kind} is {value!r}, which YAML reads as {type(value).__name__}"
+        raise LaunchFails(f"{what}: {'put quotes around it' if wanted is str else f'write a {kind}'}", entity.at)
+    return value
+
+
 def _checked(call: Call) -> Call:
-    """Return a call whose arguments its constructor accepts. Raises LaunchFails."""
+    """Return a call whose arguments its constructor accepts. Raises LaunchSignal."""
     cls = class_named(call.name)
     try:
         if cls is not None:
             bind(cls, call)
-            check(cls, call)
+            doubt = check(cls, call)
+            if doubt is not None:
+                raise NotEvaluated(doubt.reason, doubt.at)
     except ExpressionFails as error:
         raise LaunchFails(str(error), call.at) from None
     return call
@@ -105,96 +137,46 @@ def _condition(given: dict[str, Any], entity: Entity) -> Call | None:
 
 
 def _value(entity: Entity, name: str, value: Any) -> Value:
-    if (entity.kind, name) in _AS_TEXT:
-        return value
-    if name in ("cmd", "args", "ros_args"):
+    if entity.kind == "arg" and name in ("name", "description"):
+        return value  # without substitutions
+    if name in ("cmd", "args"):
         return command_line(value, entity.at)
-    if name == "on_exit" and value != "shutdown":
-        raise LaunchFails(f"on_exit is 'shutdown', not {value!r}", entity.at)
-    if name in ("respawn_delay", "sigkill_timeout", "sigterm_timeout"):
-        if not isinstance(value, int | float) or value < 0:
-            raise LaunchFails(f"{name} is {value!r}, not a number of seconds", entity.at)
-        return str(value) if name != "respawn_delay" else value
-    return (
-        [Call(front_end("action")["shutdown"], [], {}, entity.at)]
-        if name == "on_exit"
-        else _parsed(entity, name, value)
-    )
-
-
-def _parsed(entity: Entity, name: str, value: Any) -> Value:
+    if name == "on_exit":
+        if value != "shutdown":
+            raise LaunchFails(f"on_exit is 'shutdown', not {value!r}", entity.at)
+        return [Call(front_end("action")["shutdown"], [], {}, entity.at)]
     if name == "respawn" or entity.kind == "set_parameter":
-        parts = parse_value(value, entity.at)
         text = "launch.substitutions.text_substitution.TextSubstitution"
+        parts = parse_value(value, entity.at)
         return [Call(text, [], {"text": it}, entity.at) if isinstance(it, str) else it for it in parts]
-    if name in ("period", "prepend", "cancel_on_shutdown"):
+    if name == "period":
         return parse_if_text(value, entity.at)
     return parse_value(value, entity.at) if isinstance(value, str) and name not in _RAW else value
 
 
-def _add_elements(entity: Entity, kwargs: dict[str, Value], findings: Findings) -> None:
+def _add_elements(entity: Entity, kwargs: dict[str, Value]) -> None:
     """Add the arguments that the elements in an entity stand for."""
-    nested = {
-        name: inner
-        for name, inner in entity.nested.items()
-        if f"{name}[]" in _ACTIONS[entity.kind].replace("!", "").split()
-    }
-    for name, inner in nested.items():
+    for name, inner in entity.nested.items() if "children" not in _ACTIONS[entity.kind] else ():
         match name:
             case "param":
                 kwargs["parameters"] = [_parameter(it) for it in inner]
             case "remap" | "arg":
                 pair = ("from", "to") if name == "remap" else ("name", "value")
-                found = [tuple(_pairs(it)[key] for key in pair) for it in inner]
+                given = [(it, _attributes(it, _NESTED[name])) for it in inner]
+                found = [tuple(parse_value(values[key], it.at) for key in pair) for it, values in given]
                 kwargs["remappings" if name == "remap" else "launch_arguments"] = found
-            case "env" | "keep":
-                table = {tuple(pair["name"]): pair["value"] for pair in map(_pairs, inner)}
-                kwargs["additional_env" if name == "env" else "launch_configurations"] = table
             case "choice":
-                kwargs["choices"] = [_choice(it) for it in inner]
-            case "composable_node":
-                kwargs["composable_node_descriptions"] = [_composable(it) for it in inner]
-    if "children" in _ACTIONS[entity.kind]:
-        kwargs["actions"] = actions_of(entity, findings)
-    if entity.kind == "load_composable_node":
-        kwargs.setdefault("composable_node_descriptions", [])
-
-
-def _choice(entity: Entity) -> str:
-    if not isinstance(entity.attributes.get("value"), str):
-        raise LaunchFails("<choice> needs the attribute 'value'", entity.at)
-    return str(entity.attributes["value"])
-
-
-def _pairs(entity: Entity) -> dict[str, list[Value]]:
-    given = attributes_of(entity, _NESTED[entity.kind])
-    return {name: parse_value(value, entity.at) for name, value in given.items()}
-
-
-def _composable(entity: Entity) -> Call:
-    given = attributes_of(entity, _NESTED[entity.kind])
-    condition = _condition(given, entity)
-    kwargs: dict[str, Value] = {
-        _ARGUMENTS.get(name, name): parse_value(value, entity.at) for name, value in given.items()
-    }
-    if condition is not None:
-        kwargs["condition"] = condition
-    kwargs["parameters"] = [_parameter(it) for it in entity.nested.get("param", [])]
-    return _checked(Call("launch_ros.descriptions.composable_node.ComposableNode", [], kwargs, entity.at))
+                kwargs["choices"] = [_attributes(it, _NESTED[name])["value"] for it in inner]
 
 
 def _parameter(entity: Entity) -> Value:
-    """Return an item of the parameters of a node. Raises LaunchFails."""
-    given = attributes_of(entity, _NESTED["param"])
-    if "from" in given and "name" in given:
+    """Return an item of the parameters of a node. Raises LaunchSignal."""
+    given = _attributes(entity, _NESTED["param"])
+    if ("from" in given) == ("name" in given):
         raise LaunchFails("a <param> has either name or from", entity.at)
     if "from" in given:
-        allow = given.get("allow_substs", False)
-        path = parse_value(str(given["from"]), entity.at)
-        return _checked(Call(FILE, [], {"param_file": path, "allow_substs": allow}, entity.at))
-    if "name" not in given or "allow_substs" in given:
-        raise LaunchFails("a <param> needs name, or from, which may have allow_substs", entity.at)
-    parts, inner = parse_value(given["name"], entity.at), entity.nested.get("param")
+        return parse_value(str(given["from"]), entity.at)
+    parts, inner, kind = parse_value(given["name"], entity.at), entity.nested.get("param"), given.get("type")
     name: Value = parts[0] if len(parts) == 1 and isinstance(parts[0], str) else tuple(parts)
     if inner:
         if "value" in given or "type" in given:
@@ -203,13 +185,12 @@ def _parameter(entity: Entity) -> Value:
         return {name: {key: value for table in tables if isinstance(table, dict) for key, value in table.items()}}
     if "value" not in given:
         raise LaunchFails("a <param> needs a value", entity.at)
-    kind = given.get("type")
     if kind is not None and kind not in _VALUE_TYPES:
         raise LaunchFails(f"a <param> has the type {kind!r}, which is none of {', '.join(_VALUE_TYPES)}", entity.at)
+    if kind not in (None, "str", "yaml"):
+        raise NotEvaluated(f"a <param> of the type {kind} is not evaluated", entity.at)
     value = entity.attributes["value"] if not entity.is_yaml and kind == "str" else given["value"]
     kwargs: dict[str, Value] = {"value": parse_if_text(value, entity.at)}
-    if kind is not None and kind != "yaml":
-        kwargs["value_type"] = Call(f"builtins.{kind}", [], {}, entity.at)
-        if kind in ("int", "float", "bool") and not entity.is_yaml:
-            kwargs["value"] = parse_if_text(typed_text(entity.attributes["value"], TYPES[kind], entity.at), entity.at)
+    if kind == "str":
+        kwargs["value_type"] = Call("builtins.str", [], {}, entity.at)
     return {name: _checked(Call(TYPED[0], [], kwargs, entity.at))}

@@ -9,24 +9,23 @@ import yaml
 
 from grader.names import closest
 from grader.package.launch.api import front_end
-from grader.package.launch.model import LaunchFails
+from grader.package.launch.model import LaunchFails, NotEvaluated
 from grader.static_python.parse import Position
 from grader.static_python.values import Call, Value
 
 _MAX_DEPTH = 40
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 _BEFORE_NEXT = {"": " '\"()", "'": " '()", '"': ' "()'}  # what ends a value, in no quotes and in each kind of quotes
-# The names of the arguments of each substitution; those in brackets may be missing.
+# The names of the arguments of each substitution that is evaluated; those in brackets may be missing.
 _ARGUMENTS = {
-    "var": "variable_name [default]", "env": "name [default_value]", "command": "command [on_stderr]",
-    "find-pkg-share": "package", "find-pkg-prefix": "package", "exec-in-pkg": "executable package", "find-exec": "name",
-    "anon": "name", "eval": "expression [python_modules]", "file-content": "path", "dirname": "", "filename": "",
-    "log_dir": "", "launch_log_dir": "", "not": "value", "and": "left right", "or": "left right",
-    "equals": "left right", "not-equals": "left right", "if": "condition if_value [else_value]",
-    "param": "name [default]",
-}  # fmt: skip
-# The substitutions of ROS 1 and their names in ROS 2.
-_ROS1 = {"find": "find-pkg-share", "arg": "var", "optenv": "env"}
+    "var": "variable_name [default]",
+    "env": "name [default_value]",
+    "command": "command [on_stderr]",
+    "find-pkg-share": "package",
+    "find-exec": "name",
+    "eval": "expression [python_modules]",
+    "dirname": "",
+}
 _ON_STDERR = (["fail"], ["ignore"], ["warn"], ["capture"])
 
 
@@ -103,12 +102,11 @@ class _ValueParser:
 
     def call(self, name: str, values: list[list[Value]]) -> Call:
         """Return a substitution as the call that it is in Python. Raises LaunchFails."""
-        if name in _ROS1:
-            right = _ROS1[name]
-            raise LaunchFails(f"$({name} ...) is a substitution of ROS 1; in ROS 2 write $({right} ...)", self.at)
         if name == "command" and len(values) > 1 and values[1] not in _ON_STDERR:
             raise LaunchFails("$(command ...) needs quotes around its command: $(command 'xacro ...')", self.at)
         if name not in _ARGUMENTS:
+            if name in front_end("substitution"):
+                raise NotEvaluated(f"the substitution $({name} ...) is not evaluated", self.at)
             similar = closest(name, _ARGUMENTS)
             raise LaunchFails(
                 f"there is no substitution $({name} ...){f'; did you mean $({similar} ...)?' if similar else ''}",

@@ -9,13 +9,14 @@ from grader.static_python.parse import Position
 from grader.static_python.values import Call, Unknown, Value
 
 _MAX_STEPS = 50_000
+ANY = "**"
 STATE_PUBLISHER = "robot_state_publisher"
 Purpose = Literal["urdf", "rviz", "include", "read"]
 
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """The contents of a file, read by open, cat or xacro; by decode, if open is told how to read what is no UTF-8.
+    """The contents of a file, read by open, cat or xacro.
 
     `arguments` are those of xacro; None for an unknown value.
     """
@@ -23,6 +24,18 @@ class Contents:
     path: str
     by: str
     arguments: tuple[tuple[str, str | None], ...] = ()
+
+
+class UnknownText(Unknown):
+    """A value that is not known, but certainly is a text."""
+
+    __slots__ = ()
+
+
+class FileText(UnknownText):
+    """The text of a file, as a Python function gives it."""
+
+    contents: Contents
 
 
 Resolved = str | Contents | Unknown
@@ -51,34 +64,31 @@ def not_evaluated(reason: str) -> str:
 
 @dataclass(slots=True)
 class Surroundings:
-    """What a launch file finds around it. `texts` has the paths of the files that it has read, by their texts."""
+    """What a launch file finds around it."""
 
     read: Callable[[str], str | None]  # the text of an installed file; None where it is not installed or is no text
     is_installed: Callable[[str], bool]  # whether a package certainly is on the machine
     has_program: Callable[[str, str], bool | None]  # whether a package has a program; None where this is not known
-    texts: dict[str, str] = field(default_factory=dict)
     steps_left: int = _MAX_STEPS
-    pushed: "list[Context]" = field(default_factory=list)
 
 
 @dataclass(slots=True)
 class Context:
     """The path of the installed launch file, and what launch knows when it executes an action.
 
-    `arguments` are the launch configurations; one with the name UNKNOWN_KEYS stands for any other one.
+    `arguments` are the launch configurations; one with the name ANY stands for any other one.
     """
 
     path: str
     around: Surroundings
     arguments: dict[str, Resolved] = field(default_factory=dict)
-    environment: dict[str, Resolved | None] = field(default_factory=dict)  # what the launch file sets; None: unset
     when: bool | None = True  # whether the file is launched at all
     given: frozenset[str] = frozenset()  # the launch arguments that the file is included with
     reads: list[tuple[Contents, Position]] = field(default_factory=list)  # that the current action needs
 
     def copy(self) -> "Context":
-        """Return a context whose launch configurations and environment change on their own."""
-        return replace(self, arguments=dict(self.arguments), environment=dict(self.environment))
+        """Return a context whose launch configurations change on their own."""
+        return replace(self, arguments=dict(self.arguments))
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,6 +210,4 @@ def _position(value: Value, call: Call) -> Position:
     """Return the position of the call that gives a value; of open(path).read() that of open."""
     if isinstance(value, list | tuple):
         value = next((part for part in value if isinstance(part, Call)), None)
-    while isinstance(value, Call) and value.owner is not None:
-        value = value.owner
-    return value.at if isinstance(value, Call) else call.at
+    return value.at if isinstance(value, Call | FileText) else call.at

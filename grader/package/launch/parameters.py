@@ -6,9 +6,8 @@ from typing import Any
 
 import yaml
 
-from grader.package.launch.model import Contents, Context, LaunchFails, NotEvaluated
-from grader.package.launch.substitutions import resolve
-from grader.package.launch.truth import boolean
+from grader.package.launch.model import Contents, Context, LaunchFails, NotEvaluated, UnknownText
+from grader.package.launch.substitutions import boolean, resolve
 from grader.package.launch.value_types import FILE, SCALARS, TYPED, kind_of, type_of
 from grader.static_python.parse import Position
 from grader.static_python.values import Call, Undetermined, Unknown, Value
@@ -22,22 +21,10 @@ def evaluate_parameters(parameters: list[Value], context: Context, at: Position)
     for item in parameters:
         if isinstance(item, dict):
             evaluate_dict(item, context, at)
-        elif isinstance(item, Call) and item.name in TYPED:
-            resolve(item.kwargs["name"], context, item.at)
-            _evaluate_typed(item, context)
-        elif isinstance(item, Call) and item.name == FILE:
-            _evaluate_file(item, context)
+        elif isinstance(item, Call) and item.name in (*TYPED, FILE):
+            raise NotEvaluated("a parameter of this kind is not evaluated", item.at)
         elif not isinstance(item, PurePosixPath):
             resolve(item, context, at)
-
-
-def _evaluate_file(call: Call, context: Context) -> None:
-    path = call.kwargs["param_file"]
-    found = str(path) if isinstance(path, PurePosixPath) else resolve(path, context, call.at)
-    if call.kwargs.get("allow_substs", False) is not False:
-        text = context.around.read(found) if isinstance(found, str) else None
-        if text is None or "$(" in text:
-            raise NotEvaluated("the substitutions in a file of parameters are not evaluated", call.at)
 
 
 def evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> None:
@@ -50,6 +37,8 @@ def evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> No
                 evaluate_dict(value, context, at)
             case Call() if value.name in TYPED:
                 _evaluate_typed(value, context)
+            case UnknownText():
+                resolve(value, context, at)
             case list() | tuple() | range():
                 _evaluate_list(shown, list(value), context, at)
             case Call() | Unknown():
@@ -58,13 +47,12 @@ def evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> No
 
 def _evaluate_list(name: str, items: list[Value], context: Context, at: Position) -> None:
     kinds = {type(item) for item in items if isinstance(item, SCALARS)}
-    has_texts = any(isinstance(item, Call) for item in items)
-    if has_texts and kinds <= {str} and all(isinstance(item, str | Call | Unknown) for item in items):
+    if any(isinstance(item, Call) for item in items) and all(isinstance(it, str | Call | Unknown) for it in items):
         _read_as_yaml(name, items, context, at)
-    elif not (items and len(kinds) == 1 and all(isinstance(item, SCALARS) for item in items)) and kinds != {int, float}:
-        values = [it if isinstance(it, SCALARS) else _yaml_of(name, it, context, at) for it in items]
-        if not _is_uniform(values):
-            raise LaunchFails(f"the parameter {name!r} is a list of values of different types, or empty", at)
+    elif not items or not all(isinstance(item, SCALARS) for item in items):
+        raise NotEvaluated(f"the value of the parameter {name!r} is not evaluated", at)
+    elif len(kinds) > 1 and kinds != {int, float}:
+        raise LaunchFails(f"the parameter {name!r} is a list of values of different types", at)
 
 
 def _is_uniform(values: list[Any]) -> bool:
@@ -104,7 +92,9 @@ def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> No
 
 def _evaluate_typed(call: Call, context: Context) -> None:
     value = call.kwargs["value"]
-    if isinstance(value, SCALARS) or (
+    if isinstance(value, UnknownText):
+        resolve(value, context, call.at)
+    if isinstance(value, (*SCALARS, UnknownText)) or (
         isinstance(value, list | tuple) and not any(isinstance(it, Call) for it in value)
     ):
         return

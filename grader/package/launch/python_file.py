@@ -1,41 +1,35 @@
 """Launch files in Python, evaluated without running them: what they create, and what the functions they call give."""
 
 import posixpath
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from io import StringIO
 from pathlib import PurePosixPath
 
-from grader.package.launch.api import CONDITION, DESCRIPTION, SUBSTITUTION, class_named, exports, is_a
-from grader.package.launch.model import Contents, Context, LaunchFails, LaunchSignal
-from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
-from grader.package.launch.python_functions import (
-    LaunchFunctions,
-    add_action,
-    expand_user,
-    expand_variables,
-    join_paths,
-    known_call,
-    safe_load,
-    variable,
+from grader.package.launch.api import DESCRIPTION, SUBSTITUTION, class_named, exports, is_a
+from grader.package.launch.arguments import LaunchFunctions
+from grader.package.launch.model import (
+    Contents,
+    Context,
+    FileText,
+    LaunchFails,
+    LaunchSignal,
+    UnknownText,
 )
+from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.launch.substitutions import resolve
-from grader.package.launch.truth import condition
-from grader.static_python.evaluation import Evaluation, FunctionTable, record
+from grader.static_python.calls import Calls
+from grader.static_python.evaluation import Evaluation, EvaluationStopped, record
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.knowledge import known, path_text
 from grader.static_python.library import standard_functions
 from grader.static_python.parse import Code, Position
-from grader.static_python.values import Call, ExpressionFails, Function, Undetermined, Unknown, Value
+from grader.static_python.values import Call, ExpressionFails, Function, FunctionTable, Undetermined, Unknown, Value
 
 _MODULE = "python_launch_file"  # the __name__ of a launch file
 _AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
-_RECORDED = (
-    "builtins.open.read", "builtins.open.close", "builtins.open.__enter__", "xacro.process_file.toxml",
-    "xacro.process_file.toprettyxml", "xacro.process_doc", "xacro.parse.toxml", "xacro.parse.toprettyxml",
-    "typing.List.__getitem__", "launch.logging.get_logger",
-    *(f"launch.logging.get_logger.{name}" for name in ("debug", "info", "warning", "error")),
-)  # fmt: skip
+_RECORDED = ("builtins.open.close", "builtins.open.__enter__", "xacro.process_doc")
+_TEXTS = [f"{name}.{method}" for name in ("xacro.process_file", "xacro.parse") for method in ("toxml", "toprettyxml")]
 
 
 @dataclass(slots=True)
@@ -63,64 +57,50 @@ class PythonLaunchFile:
             self.context = before
 
     def _functions(self) -> FunctionTable:
-        find = [
-            f"launch_ros.substitutions.find_package.{name}"
-            for name in ("FindPackageShare.find", "FindPackagePrefix.find")
-        ]
         adds = [f"{DESCRIPTION}.{name}" for name in ("add_action", "add_entity")]
+        classes = {full for names in exports().values() for full in names.values() if full}
+        performs = [f"{full}.perform" for full in sorted(classes) if is_a(full, SUBSTITUTION)]
         return LaunchFunctions(
             {
                 **standard_functions(WORKING_FOLDER),
                 **dict.fromkeys(_RECORDED, record),
-                **dict.fromkeys(adds, add_action),
-                **dict.fromkeys(_methods("perform", SUBSTITUTION), self._perform),
-                **dict.fromkeys(_methods("evaluate", CONDITION), self._evaluate),
-                "launch.launch_context.LaunchContext.perform_substitution": self._perform_argument,
-                "launch.utilities.perform_substitutions": self._perform_argument,
-                **dict.fromkeys([find[0], *(f"{it}.get_package_share_directory" for it in _AMENT_INDEX)], self._share),
+                **dict.fromkeys(adds, _add_action),
+                **dict.fromkeys(performs, self._perform),
+                **dict.fromkeys((f"{it}.get_package_share_directory" for it in _AMENT_INDEX), self._share),
                 **dict.fromkeys((f"{it}.get_package_share_path" for it in _AMENT_INDEX), self._share_path),
-                **dict.fromkeys([find[1], *(f"{it}.get_package_prefix" for it in _AMENT_INDEX)], self._prefix),
-                **dict.fromkeys(("builtins.open", "io.open", "codecs.open"), self._open),
+                "launch_ros.substitutions.find_package.FindPackageShare.find": self._share,
+                "builtins.open": self._open,
                 **dict.fromkeys(("pathlib.Path.read_text", "pathlib.Path.open"), self._open_path),
                 **dict.fromkeys(("os.path.exists", "os.path.isfile", "pathlib.Path.exists"), self._exists),
                 **dict.fromkeys(("xacro.process_file", "xacro.process", "xacro.parse"), self._xacro),
-                **dict.fromkeys(("yaml.safe_load", "yaml.load"), safe_load),
-                **dict.fromkeys(("os.environ.__getitem__", "os.environ.get", "os.getenv"), variable),
-                "os.path.join": join_paths,
-                "os.path.expanduser": expand_user,
-                "os.path.expandvars": expand_variables,
+                **dict.fromkeys(("builtins.open.read", *_TEXTS), self._text),
+                **dict.fromkeys(("os.environ.__getitem__", "os.environ.get", "os.getenv"), _variable),
+                "os.path.join": _join_paths,
+                "os.path.expanduser": _expand_user,
                 "pathlib.Path.home": lambda *_: PurePosixPath(HOME),
             }
         )
 
-    def _resolved(self, value: Value, evaluation: Evaluation, call: Call) -> Value:
-        """Return the text of a substitution as Python gets it; of the contents of a file, the call itself."""
+    def _perform(self, _: Evaluation, call: Call) -> Value:
+        """Return the text of a substitution as Python gets it."""
         try:
-            found = resolve(value, self.context, call.at)
+            found = resolve(call.owner, self.context, call.at)
         except LaunchSignal as signal:
             kind = ExpressionFails if isinstance(signal, LaunchFails) else Undetermined
             raise kind(str(signal)) from None
-        if isinstance(found, Contents):
-            text = self.context.around.read(found.path) if found.by != "xacro" else None
-            return text if text is not None else record(evaluation, call)
-        return found
+        reason = "the content of a file is not evaluated"
+        return FileText(reason=reason, at=call.at, contents=found) if isinstance(found, Contents) else found
 
-    def _perform(self, evaluation: Evaluation, call: Call) -> Value:
-        return self._resolved(call.owner, evaluation, call)
-
-    def _perform_argument(self, evaluation: Evaluation, call: Call) -> Value:
-        return self._resolved(known_call(call.args[-1] if call.args else None), evaluation, call)
-
-    def _evaluate(self, evaluation: Evaluation, call: Call) -> Value:
-        if call.owner is None or "predicate_expression" not in call.owner.kwargs:
-            raise Undetermined("this condition is not evaluated")
-        text = self._resolved(call.owner.kwargs["predicate_expression"], evaluation, call)
-        if not isinstance(text, str):
-            return text
-        try:
-            return condition(text, call.at) == call.owner.name.endswith("IfCondition")
-        except LaunchFails as error:
-            raise ExpressionFails(str(error), ValueError) from None
+    def _text(self, evaluation: Evaluation, call: Call) -> Value:
+        """Return the text of a file that is expanded, or read for the first time."""
+        opened = call.owner
+        if opened is None or call.args:
+            raise Undetermined("a part of the text of a file is not evaluated")
+        if call.name.endswith(".read"):
+            if any(not before.name.endswith("__enter__") for before in opened.method_calls):
+                raise Undetermined("a file that is closed or read once more is not evaluated")
+            record(evaluation, call)
+        return FileText(reason="the content of a file is not evaluated", at=opened.at, contents=_contents(opened))
 
     def _package(self, evaluation: Evaluation, call: Call) -> str:
         name = known(call.argument(0, "package_name", "package"))
@@ -136,36 +116,25 @@ class PythonLaunchFile:
     def _share_path(self, evaluation: Evaluation, call: Call) -> Value:
         return PurePosixPath(self._share(evaluation, call))
 
-    def _prefix(self, evaluation: Evaluation, call: Call) -> Value:
-        self._package(evaluation, call)
-        return PREFIX
-
     def _open(self, evaluation: Evaluation, call: Call) -> Value:
-        file, position = call.argument(0, "file", "filename"), 2 if call.name.startswith("codecs") else 3
+        file, mode = call.argument(0, "file"), known(call.argument(1, "mode"))
         path = path_text(file if isinstance(file, Call) and class_named(file.name) is not None else known(file))
         if path is None:
             raise ExpressionFails("open takes a path, not a substitution: use Command(['cat ', ...])")
-        mode, encoding = known(call.argument(1, "mode")), known(call.argument(position, "encoding"))
-        errors = known(call.argument(position + 1, "errors"))
-        if not isinstance(mode, str | None) or set(mode or "r") & set("wax+"):
-            raise Undetermined("a launch file that writes files is not evaluated")
+        encoding = known(call.argument(3, "encoding"))
+        others = call.kwargs.keys() - {"file", "mode", "encoding"}
         is_utf8 = encoding is None or str(encoding).lower().replace("_", "-") in ("utf-8", "utf8")
-        by = "open" if is_utf8 and errors in (None, "strict") and "b" not in (mode or "") else "decode"
-        self.reads.append((Contents(path, by), call.at))
-        text = self.context.around.read(path) if by == "open" else None
-        if text is None:
-            call.name, call.args, call.kwargs = "builtins.open", [path], {"by": by}
-            return record(evaluation, call)
-        self.context.around.texts.setdefault(text, path)
-        return StringIO(text)
+        if mode not in (None, "r", "rt") or not is_utf8 or others or len(call.args) > 2:
+            raise EvaluationStopped("this use of open is not evaluated", call.at)
+        self.reads.append((Contents(path, "open"), call.at))
+        call.name, call.args, call.kwargs = "builtins.open", [path], {}
+        return record(evaluation, call)
 
     def _open_path(self, evaluation: Evaluation, call: Call) -> Value:
-        is_read = call.name.endswith("read_text")
-        inner = [call.args[0], *(["r"] if is_read else []), *call.args[1:]]
-        found = self._open(evaluation, Call("builtins.open", inner, call.kwargs, call.at))
-        if isinstance(found, StringIO):
-            return found.read() if is_read else found
-        return record(evaluation, Call("builtins.open.read", [], {}, call.at, found)) if is_read else found
+        if not call.name.endswith("read_text"):
+            return self._open(evaluation, call)
+        opened = self._open(evaluation, Call("", [call.args[0], "r", *call.args[1:]], call.kwargs, call.at))
+        return self._text(evaluation, Call("builtins.open.read", [], {}, call.at, opened))
 
     def _exists(self, _: Evaluation, call: Call) -> Value:
         path = path_text(known(call.args[0])) or ""
@@ -176,19 +145,52 @@ class PythonLaunchFile:
         given = call.argument(0, "input_file_name")
         if isinstance(given, Call) and not given.name.startswith("builtins.open"):
             raise ExpressionFails(f"{call.name} takes a path, not a substitution: use Command(['xacro ', ...])")
-        if isinstance(given, StringIO):
-            given = self.context.around.texts.get(given.getvalue())
-        elif isinstance(given, Call):
+        if isinstance(given, Call):
             given = given.args[0] if given.args else None
         path = path_text(known(given))
         if path is None:
             raise Undetermined("what xacro reads is not evaluated")
         call.args = [path, *call.args[1:]]
         self.reads.append((Contents(path, "xacro"), call.at))
+        if call.name == "xacro.process":
+            return FileText(reason="the output of xacro is not evaluated", at=call.at, contents=_contents(call))
         return record(evaluation, call)
 
 
-def _methods(name: str, base: str) -> list[str]:
-    """Return the full names of a method of each class with a base."""
-    classes = {full for names in exports().values() for full in names.values() if full}
-    return [f"{full}.{name}" for full in sorted(classes) if is_a(full, base)]
+def _contents(call: Call) -> Contents:
+    """Return what a call of open or xacro reads, as far as this is known."""
+    given = call.kwargs.get("mappings")
+    pairs = given.items() if isinstance(given, dict) else ()
+    arguments = tuple((str(name), value if isinstance(value, str) else None) for name, value in pairs)
+    return Contents(call.args[0], "xacro" if call.name.startswith("xacro.") else "open", arguments)
+
+
+def _add_action(evaluation: Evaluation, call: Call) -> Value:
+    """Record an action that is added to a description."""
+    if len(call.args) + len(call.kwargs) != 1:
+        raise ExpressionFails(f"{call.name.rpartition('.')[2]} takes one action")
+    record(evaluation, call)
+
+
+def _variable(_: Evaluation, call: Call) -> Value:
+    """Return a variable of the environment: whether it is set is not known."""
+    name, default = known(call.argument(0, "key")), known(call.argument(1, "default"))
+    if name == "HOME":
+        return HOME
+    reason = "the environment is not evaluated"
+    if call.name.endswith("__getitem__"):
+        raise Undetermined(reason)
+    return (UnknownText if isinstance(default, str) else Unknown)(reason, call.at)
+
+
+def _join_paths(evaluation: Calls, call: Call) -> Value:
+    """Return what os.path.join returns; it fails for substitutions."""
+    if any(isinstance(value, Call) and class_named(value.name) is not None for value in call.args):
+        raise ExpressionFails("os.path.join takes strings, not substitutions: use PathJoinSubstitution([...])")
+    return evaluation.call_value(standard_functions(WORKING_FOLDER)["os.path.join"], call)
+
+
+def _expand_user(_: Evaluation, call: Call) -> Value:
+    """Return a path with the home folder in place of ~."""
+    text = path_text(known(call.args[0])) if call.args else None
+    return re.sub("^~", HOME, text) if text is not None else Unknown("a path is not evaluated", call.at)

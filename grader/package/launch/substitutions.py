@@ -1,26 +1,33 @@
-"""The texts of launch's substitutions, with the launch configurations so far."""
+"""The texts of substitutions, as launch evaluates them when it executes an action."""
 
+import builtins
 import posixpath
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from grader.package.launch.commands import command_output, contents_of
-from grader.package.launch.expression import expression_text
-from grader.package.launch.model import Contents, Context, LaunchFails, NotEvaluated, Resolved
-from grader.package.launch.places import HOME, PREFIX, SHARE
-from grader.package.launch.truth import are_equal, boolean, operand
-from grader.package.launch.value_types import gives_text
+import yaml
+
+from grader.package.launch.commands import command_output
+from grader.package.launch.model import ANY, Contents, Context, FileText, LaunchFails, NotEvaluated, Resolved
+from grader.package.launch.places import HOME, SHARE
+from grader.static_python.budget import Budget, OutOfBudget
+from grader.static_python.builtins import BUILTINS, MATH
+from grader.static_python.expressions import evaluate
+from grader.static_python.knowledge import str_of
 from grader.static_python.parse import Position
 from grader.static_python.values import (
     MAX_TEXT,
-    UNKNOWN_KEYS,
     Call,
+    ExpressionFails,
+    Namespace,
+    Undetermined,
     Unknown,
     Value,
 )
 
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
 _PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", "env", "rviz2"})
+BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
 def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Resolved:
@@ -32,12 +39,11 @@ def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Res
     if depth > _MAX_DEPTH or context.around.steps_left < 0:
         raise NotEvaluated("a substitution that is nested so deeply is not evaluated", at)
     match value:
+        case FileText(contents=contents):
+            context.reads.append((contents, value.at))
+            return contents
         case str() | Contents() | Unknown():
             return value
-        case Call() if value.name.endswith(".perform"):
-            return resolve(value.owner if value.owner is not None else value.args[-1], context, at, depth + 1)
-        case Call() if gives_text(value.name) or value.name.startswith("xacro."):
-            return contents_of(value, context)
         case Call():
             return _Substitution(value, context, depth).value()
         case list() | tuple() | dict() | set():
@@ -72,7 +78,7 @@ class _Substitution:
     depth: int
 
     def value(self) -> Resolved:
-        perform = _PERFORMS.get(self.call.name.rpartition(".")[2])
+        perform = PERFORMS.get(self.call.name.rpartition(".")[2])
         if perform is None:
             raise NotEvaluated(f"{self.call.name.rpartition('.')[2]} is not evaluated", self.call.at)
         return perform(self)
@@ -90,25 +96,6 @@ class _Substitution:
         texts = [it for it in found if isinstance(it, str)]
         return texts if len(texts) == len(found) else unknown or Unknown("the content of a file is used", self.call.at)
 
-    def booleans(self, *values: Value) -> list[bool]:
-        texts = self.texts(*values)
-        if isinstance(texts, Unknown):
-            raise NotEvaluated(texts.reason, texts.at)
-        return [boolean(text, self.call.at) for text in texts]
-
-    def combined(self, function: Callable[[list[bool]], bool]) -> str:
-        names = [name for name in ("value", "left", "right") if name in self.call.kwargs]
-        operands = [*(self.call.kwargs[name] for name in names), *self.call.args]
-        return str(function(self.booleans(*operands))).lower()
-
-    def compared(self, *, equal: bool) -> Resolved:
-        texts = self.texts(*(operand(self.call.kwargs[name]) for name in ("left", "right")))
-        return texts if isinstance(texts, Unknown) else str(are_equal(*texts) == equal).lower()
-
-    def if_else(self) -> Resolved:
-        is_chosen = self.booleans(self.call.kwargs["condition"])[0]
-        return self.argument("if_value" if is_chosen else "else_value")
-
     def configuration(self) -> Resolved:
         name, arguments = self.argument("variable_name"), self.context.arguments
         if not isinstance(name, str):
@@ -116,7 +103,7 @@ class _Substitution:
         if name in arguments:
             return arguments[name]
         default = self.call.kwargs.get("default")
-        if UNKNOWN_KEYS in arguments:
+        if ANY in arguments:
             raise NotEvaluated(
                 f"whether {name!r} is declared in a file that is not submitted is not evaluated", self.call.at
             )
@@ -127,18 +114,12 @@ class _Substitution:
         raise LaunchFails(message, self.call.at)
 
     def variable(self) -> Resolved:
-        default = self.call.kwargs.get("default_value")
-        found = self.resolve(default) if default is not None else None
-        name = self.argument("name")
-        if isinstance(name, str) and name in self.context.environment:
-            value = self.context.environment[name]
-            if value is None and found is None:
-                raise LaunchFails(f"the environment variable {name!r} is not set", self.call.at)
-            return value if value is not None else found or ""
+        name, default = self.argument("name"), self.call.kwargs.get("default_value")
         if name == "HOME":
             return HOME
-        if found is None:
+        if default is None:
             raise NotEvaluated(f"whether the environment variable {name!r} is set is not evaluated", self.call.at)
+        self.resolve(default)
         return Unknown("the environment is not evaluated", self.call.at)
 
     def path(self) -> Resolved:
@@ -157,11 +138,7 @@ class _Substitution:
         if not isinstance(package, str) or not self.context.around.is_installed(package):
             shown = repr(package) if isinstance(package, str) else "that is read from a file"
             raise NotEvaluated(f"whether the package {shown} is installed is not evaluated", self.call.at)
-        return f"{SHARE}/{package}" if self.call.name.endswith("Share") else PREFIX
-
-    def executable(self) -> Resolved:
-        folder, texts = self.package_folder(), self.texts(*map(self.call.kwargs.get, ("executable", "package")))
-        return f"{folder}/lib/{texts[1]}/{texts[0]}" if isinstance(texts, list) else texts
+        return f"{SHARE}/{package}"
 
     def program(self) -> Resolved:
         name = self.argument("name")
@@ -175,46 +152,58 @@ class _Substitution:
             raise LaunchFails("on_stderr is one of fail, ignore, warn, capture", self.call.at)
         parts = self.call.kwargs["command"]
         texts = [self.resolve(piece) for piece in (parts if isinstance(parts, list | tuple) else [parts])]
-        return self.read(command_output(texts, self.call.at))
-
-    def read(self, contents: Contents) -> Contents:
+        contents = command_output(texts, self.call.at)
         self.context.reads.append((contents, self.call.at))
         return contents
-
-    def file_content(self) -> Resolved:
-        path = self.argument("path")
-        return self.read(Contents(path, "open")) if isinstance(path, str) else path
 
     def expression(self) -> Resolved:
         texts = self.texts(self.call.kwargs["expression"])
         if isinstance(texts, Unknown):
             raise NotEvaluated(f"this expression is not evaluated: {texts.reason}", self.call.at)
-        return expression_text(texts[0], self.call.kwargs.get("python_modules", ["math"]), self.call.at, self.context)
+        if "python_modules" in self.call.kwargs:
+            raise NotEvaluated("the modules of this expression are not evaluated", self.call.at)
+        return _expression_text(texts[0], self.call.at, self.context)
 
 
-_PERFORMS: dict[str, Callable[[_Substitution], Resolved]] = {
-    "TextSubstitution": lambda it: it.argument("text"),
-    "LaunchConfiguration": _Substitution.configuration,
-    "PathJoinSubstitution": _Substitution.path,
-    "Command": _Substitution.command,
-    "PythonExpression": _Substitution.expression,
-    "FindPackageShare": _Substitution.package_folder,
-    "FindPackagePrefix": _Substitution.package_folder,
-    "FindPackage": _Substitution.package_folder,
-    "ExecutableInPackage": _Substitution.executable,
-    "FindExecutable": _Substitution.program,
-    "EnvironmentVariable": _Substitution.variable,
-    "FileContent": _Substitution.file_content,
-    "ThisLaunchFile": lambda it: it.context.path,
+# The substitutions that are evaluated.
+PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
+    "TextSubstitution": lambda it: it.argument("text"), "LaunchConfiguration": _Substitution.configuration,
+    "PathJoinSubstitution": _Substitution.path, "Command": _Substitution.command,
+    "PythonExpression": _Substitution.expression, "FindPackageShare": _Substitution.package_folder,
+    "FindExecutable": _Substitution.program, "EnvironmentVariable": _Substitution.variable,
     "ThisLaunchFileDir": lambda it: posixpath.dirname(it.context.path),
-    "AnonName": lambda it: it.argument("name") and Unknown("an anonymous name is not evaluated", it.call.at),
-    "LaunchLogDir": lambda it: Unknown("the folder of the log is not evaluated", it.call.at),
-    "EqualsSubstitution": lambda it: it.compared(equal=True),
-    "NotEqualsSubstitution": lambda it: it.compared(equal=False),
-    "NotSubstitution": lambda it: it.combined(lambda values: not values[0]),
-    "AndSubstitution": lambda it: it.combined(all),
-    "OrSubstitution": lambda it: it.combined(any),
-    "AllSubstitution": lambda it: it.combined(all),
-    "AnySubstitution": lambda it: it.combined(any),
-    "IfElseSubstitution": _Substitution.if_else,
-}
+}  # fmt: skip
+
+
+def boolean(text: str, at: Position) -> bool:
+    """Return the value of a text as launch reads it where it wants a boolean, by the rules of YAML."""
+    try:
+        found = BOOLEANS[text] if text in ("0", "1") else yaml.safe_load(text) if len(text) < 20 else None
+    except yaml.YAMLError:
+        found = None
+    if not isinstance(found, bool):
+        raise LaunchFails(f"{text[:40]!r} is neither true nor false", at)
+    return found
+
+
+def _expression_text(text: str, at: Position, context: Context) -> str:
+    """Return the value of a PythonExpression as a text. Raises LaunchSignal."""
+    budget = Budget(_WORK)
+    try:
+        return str_of(evaluate(text, _find, budget))
+    except ExpressionFails as error:
+        raise LaunchFails(f"the expression {text[:60]!r} fails: {error}", at) from None
+    except (Undetermined, OutOfBudget) as error:
+        raise NotEvaluated(f"this expression is not evaluated: {error}", at) from None
+    finally:
+        context.around.steps_left -= budget.used
+
+
+def _find(name: str) -> Value:
+    if name in BUILTINS or name in MATH:
+        return MATH.get(name, BUILTINS.get(name))
+    if name == "math":
+        return Namespace("math", MATH.__getitem__)
+    if hasattr(builtins, name) or name.startswith("__"):
+        raise Undetermined(f"the name {name!r} is not evaluated")
+    raise ExpressionFails(f"the name {name!r} is not defined")

@@ -1,26 +1,23 @@
 """The values that launch and launch_ros take as texts and as parameters of nodes, and what is wrong with others."""
 
 from collections.abc import Callable, Mapping
-from io import StringIO
 from pathlib import PurePosixPath
 from typing import Any
 
 from grader.package.launch.api import ENTITY, SUBSTITUTION, class_named, is_a
+from grader.package.launch.model import UnknownText
 from grader.static_python.knowledge import iterate
-from grader.static_python.values import Call, Function, Items, QualifiedName, Undetermined, Unknown, Value
+from grader.static_python.values import VIEWS, Call, Function, Items, QualifiedName, Undetermined, Unknown, Value
 
-# Calls of Python functions that are not evaluated, but certainly give a text.
-TEXT_CALLS = frozenset(
-    {"builtins.open.read", "xacro.process_file.toxml", "xacro.process_file.toprettyxml", "xacro.process.toxml",
-     "xacro.parse.toxml", "xacro.parse.toprettyxml", "xacro.process"}
-)  # fmt: skip
-TEXT_METHODS = ("replace", "strip", "lstrip", "rstrip", "expandtabs", "decode")
 SCALARS = (bool, int, float, str)
 TYPED = ("launch_ros.parameter_descriptions.ParameterValue", "launch_ros.parameter_descriptions.Parameter")
 FILE = "launch_ros.parameter_descriptions.ParameterFile"
-_EMPTY: dict[str, str] = {}
-_VIEWS = (type(_EMPTY.keys()), type(_EMPTY.values()), type(_EMPTY.items()))
-_COLLECTIONS: Any = (list, tuple, dict, set, frozenset, *_VIEWS)
+# What is no text yet: the calls that give it, and what is missing.
+OPENED = {
+    "builtins.open": "an open file: add .read()", "xacro.process_file": "a document, not its text: add .toxml()",
+    "xacro.parse": "a document, not its text: add .toxml()",
+}  # fmt: skip
+_COLLECTIONS: Any = (list, tuple, dict, set, frozenset, *VIEWS)
 _NAMES = {
     type(None): "None",
     bool: "a boolean",
@@ -29,20 +26,6 @@ _NAMES = {
     dict: "a dict",
     Function: "a function",
 }
-
-
-class UnknownText(Unknown):
-    """A value that is not known, but certainly is a text."""
-
-    __slots__ = ()
-
-
-def gives_text(name: str) -> bool:
-    """Return whether a function that is not evaluated, or a method of what it gives, certainly gives a text."""
-    owner, _, method = name.rpartition(".")
-    while method in TEXT_METHODS and name not in TEXT_CALLS:
-        name, (owner, _, method) = owner, owner.rpartition(".")
-    return name in TEXT_CALLS or method == "perform"
 
 
 def is_text(value: Value) -> bool:
@@ -56,9 +39,9 @@ def is_text(value: Value) -> bool:
             raise Undetermined(f"the value of {value.name}")
         case Call() if class_named(value.name) is not None:
             return is_a(value.name, SUBSTITUTION)
-        case Call() if not gives_text(value.name):
+        case Call() if value.name not in OPENED:
             raise Undetermined(f"the result of {value.name}")
-    return isinstance(value, str | Call | UnknownText)
+    return isinstance(value, str)
 
 
 def is_entity(call: Call) -> bool:
@@ -91,9 +74,7 @@ def wrong_text(value: Value) -> str:
 def kind_of(value: Value) -> str:
     """Return what a value is, in words."""
     if isinstance(value, Call):
-        return f"{value.name.rpartition('.')[2]}(...)"
-    if isinstance(value, StringIO):
-        return "an open file: add .read()"
+        return OPENED.get(value.name, f"{value.name.rpartition('.')[2]}(...)")
     if isinstance(value, PurePosixPath):
         return "a path: write str(...) around it"
     return _NAMES.get(type(value), f"a {type(value).__name__}")
@@ -154,6 +135,8 @@ def wrong_parameter(value: Value) -> str:
 def wrong_typed(call: Call) -> str:
     """Return what is wrong with the value of ParameterValue, or nothing. Raises Undetermined."""
     value, kind = call.kwargs["value"], type_of(call)
+    if isinstance(value, UnknownText):
+        return "" if kind in (None, str) else "the value is a text"
     if isinstance(value, SCALARS):
         return "" if kind is None or isinstance(value, kind) else f"the value is {kind_of(value)}, not {kind.__name__}"
     if isinstance(value, list | tuple) and not any(isinstance(it, Call | Unknown) for it in value):

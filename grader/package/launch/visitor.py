@@ -3,11 +3,10 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from grader.package.launch.api import ENTITY, class_named, is_a
-from grader.package.launch.conditions import both, holds
-from grader.package.launch.effects import EFFECTS
-from grader.package.launch.fields import evaluate_field
+from grader.package.launch.api import CONDITION, ENTITY, class_named, is_a
 from grader.package.launch.model import Context, Findings, LaunchFails, LaunchSignal, NotEvaluated
+from grader.package.launch.parameters import evaluate_parameters
+from grader.package.launch.substitutions import BOOLEANS, boolean, known_text, resolve
 from grader.package.launch.value_types import items_in, kind_of
 from grader.static_python.parse import START, Position
 from grader.static_python.values import Call, Function, Undetermined, Unknown, Value
@@ -15,8 +14,7 @@ from grader.static_python.values import Call, Function, Undetermined, Unknown, V
 _MAX_ACTIONS = 5_000
 _MAX_DEPTH = 40
 _LATE = ("sigterm_timeout", "sigkill_timeout", "default_value")  # arguments that are not evaluated at once
-PROCESSES = ("Node", "LifecycleNode", "ExecuteProcess", "ComposableNodeContainer")
-_IDLE = frozenset({"LogInfo", "SetRemap", "SetROSLogDir", "ResetEnvironment", "LifecycleTransition"})
+PROCESSES = ("Node", "ExecuteProcess")
 
 # Takes the path of a launch file below the prefix and the context for it; returns why it is not read, or nothing.
 Include = Callable[[str, Context], str]
@@ -32,10 +30,9 @@ class ActionVisitor:
     kinds: "Mapping[str, Callable[[ActionVisitor, Call, Context, bool | None], None]]"  # what each kind of action does
     visited: set[int] = field(default_factory=set)  # the ids of the calls that are part of the description
     executed: dict[int, bool | None] = field(default_factory=dict)  # the processes, by id: each is executed once
-    later: list[tuple[Value, Call, Context, Call | None]] = field(
+    later: list[tuple[Value, Call, Context, bool | None]] = field(
         default_factory=list
     )  # what timers and events execute
-    is_loaded: bool = True  # whether an action is part of the description as it is loaded
     steps: int = 0
     depth: int = 0
 
@@ -44,16 +41,14 @@ class ActionVisitor:
         self.visit(description, context, context.when, at)
         for _ in range(_MAX_DEPTH):
             later, self.later = self.later, []
-            for actions, call, own, target in later:
-                is_certain = context.when if target is None else self.executed.get(id(target), False)
-                self.visit_all(actions, call, replace(own, arguments=context.arguments), is_certain)
+            for actions, call, own, when in later:
+                self.visit_all(actions, call, replace(own, arguments=context.arguments), when)
 
     def visit(self, value: Value, context: Context, when: bool | None, at: Position) -> None:
         """Visit an action."""
         self.steps += 1
         if self.depth > _MAX_DEPTH or self.steps > _MAX_ACTIONS:
-            self.findings.add_unknown("a launch file with so many actions is not evaluated", START)
-            self.findings.add_doubt("a launch file with so many actions is not evaluated", START)
+            self.add_form(NotEvaluated("a launch file with so many actions is not evaluated", START), when)
             return
         self.depth += 1
         try:
@@ -65,36 +60,38 @@ class ActionVisitor:
                 hint = ": write * before it" if isinstance(value, list | tuple) else ""
                 raise LaunchFails(f"expected an action, found {kind_of(value)}{hint}", at)
         except LaunchSignal as signal:
-            self.add_of_form(signal, context, when)
+            self.add_form(signal, when)
         else:
             self.visited.add(id(value))
-            try:
-                executed = both(when, holds(value, context))
-            except LaunchSignal as signal:
-                self.findings.add(signal, when)
-                executed = None if when is not False else False
-            self._execute(value, context, executed)
+            self._execute(value, context, self._holds(value, context, when))
         self.depth -= 1
 
-    def add_of_form(self, signal: LaunchSignal, context: Context, when: bool | None) -> None:
+    def add_form(self, signal: LaunchSignal, when: bool | None) -> None:
         """Add an error in the form of a description: launch looks at all of it before it executes any of it."""
         if isinstance(signal, NotEvaluated):
             self.findings.add_unknown(str(signal), signal.at)
-        silent, self.findings.is_silent = self.findings.is_silent, self.findings.is_silent and not self.is_loaded
-        self.findings.add(signal, context.when if self.is_loaded else when)
-        self.findings.is_silent = silent
+        if when and isinstance(signal, LaunchFails) and not self.findings.is_silent:
+            self.findings.add_fault(str(signal), signal.at)
+        elif not self.findings.is_silent or isinstance(signal, LaunchFails):
+            self.findings.add_doubt(str(signal), signal.at)
+
+    def _holds(self, call: Call, context: Context, when: bool | None) -> bool | None:
+        """Return whether an action is executed: if `when`, and if its condition holds."""
+        given = call.kwargs.get("condition")
+        try:
+            holds = _condition(given, context, call.at) if given is not None else True
+        except LaunchSignal as signal:
+            self.findings.add(signal, when)
+            holds = None
+        return False if False in (when, holds) else None if None in (when, holds) else True
 
     def _execute(self, call: Call, context: Context, when: bool | None) -> None:
         kind, start = call.name.rpartition(".")[2], len(context.reads)
-        self.evaluate_fields(call, context, when)
-        own = self.kinds.get(kind)
+        self._evaluate_fields(call, context, when)
         try:
-            if own is not None:
-                own(self, call, context, when)
-            elif kind in EFFECTS:
-                EFFECTS[kind](self.findings, call, context, when)
-            elif kind not in _IDLE:
+            if kind not in self.kinds:
                 raise NotEvaluated(f"what {kind} does is not evaluated", call.at)
+            self.kinds[kind](self, call, context, when)
         except LaunchSignal as signal:
             self.findings.add(signal, when)
             if isinstance(signal, NotEvaluated) and kind not in PROCESSES and when is not False:
@@ -103,15 +100,15 @@ class ActionVisitor:
             self.findings.refer("read", contents, Call("", [], {}, at))
         del context.reads[start:]
 
-    def evaluate_fields(self, call: Call, context: Context, when: bool | None) -> None:
+    def _evaluate_fields(self, call: Call, context: Context, when: bool | None) -> None:
         """Evaluate the arguments of an action that may contain substitutions."""
         cls = class_named(call.name)
         for name, parameter in cls.parameters.items() if cls is not None and when is not False else ():
             value, test = call.kwargs.get(name), parameter.check.removesuffix("?")
-            if value is None or name in _LATE:
+            if value is None or name in _LATE or (name == "output" and isinstance(value, dict)):
                 continue
             try:
-                evaluate_field(value, name, test, context, call.at)
+                _evaluate_field(value, test, context, call.at)
             except LaunchSignal as signal:
                 self.findings.add(signal, when)
             except Undetermined as error:
@@ -124,23 +121,49 @@ class ActionVisitor:
             if items is None:
                 raise LaunchFails(f"expected a list of actions, found {kind_of(actions)}", call.at)
         except Undetermined as error:
-            self.findings.add_unknown(str(error), call.at)
-            self.findings.add_doubt(str(error), call.at)
+            self.add_form(NotEvaluated(str(error), call.at), when)
         except LaunchSignal as signal:
             self.findings.add(signal, when)
         else:
             for action in items:
                 self.visit(action, context, when, call.at)
 
-    def defer(self, actions: Value, call: Call, context: Context, when: bool | None, target: Call | None) -> None:
-        """Execute actions after all others if they certainly are executed; else see only which nodes they may start."""
-        if when:
-            self.later.append((actions, call, context, target))
-        else:
-            self.perhaps(actions, call, context, when and None)
-
     def perhaps(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
         """Visit what may never be executed: errors in it do not count, but for what is no action."""
         silent, self.findings.is_silent, kept, self.executed = self.findings.is_silent, True, self.executed, {}
-        self.visit_all(actions if isinstance(actions, list | tuple) else [actions], call, context.copy(), when)
+        items = actions if isinstance(actions, list | tuple) else [actions]
+        self.visit_all(items, call, context.copy(), False if when is False else None)
         self.findings.is_silent, self.executed = silent, kept
+
+
+def _condition(given: Value, context: Context, at: Position) -> bool:
+    if isinstance(given, Unknown):
+        raise NotEvaluated(given.reason, given.at)
+    if not isinstance(given, Call):
+        raise LaunchFails(f"condition is {kind_of(given)}, not a condition such as IfCondition(...)", at)
+    kind = given.name.rpartition(".")[2]
+    if not is_a(given.name, CONDITION) or kind not in ("IfCondition", "UnlessCondition"):
+        raise NotEvaluated(f"the condition {kind} is not evaluated", given.at)
+    text = known_text(given.kwargs["predicate_expression"], context, given.at)
+    holds = BOOLEANS.get(text.strip().lower())
+    if holds is None:
+        raise LaunchFails(f"a condition is {text[:40]!r}, expected true or false", given.at)
+    return holds == (kind == "IfCondition")
+
+
+def _evaluate_field(value: Value, test: str, context: Context, at: Position) -> None:
+    """Evaluate an argument of an action, which has the check `test`. Raises LaunchSignal, and Undetermined."""
+    match test:
+        case "text":
+            resolve(value, context, at)
+        case "texts" | "mapping":
+            pairs = value.items() if isinstance(value, dict) else ((item,) for item in items_in(value) or ())
+            for item in (item for pair in pairs for item in pair):
+                resolve(item, context, at)
+        case "bool" if not isinstance(value, bool):
+            boolean(known_text(value, context, at), at)
+        case "parameters":
+            evaluate_parameters(value, context, at)
+        case "remappings":
+            for rule in items_in(value) or ():
+                resolve(rule[0], context, at), resolve(rule[1], context, at)
