@@ -16,7 +16,7 @@ from grader.report.drawing import drawing_element
 from grader.report.inspection import Inspection, effect, joint_text, tree
 from grader.report.locations import source_lines
 from grader.report.pages.shell import Assets, render_page
-from grader.report.svg_elements import STYLE
+from grader.report.signs import STYLE
 from grader.robot.model import Box, Cylinder
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Transform

@@ -10,7 +10,7 @@ from grader.report import content
 from grader.report.criteria import CriteriaGroup, Entry, earned_text, groups, status_of
 from grader.report.details import STATUS_WORDS, SYMBOLS
 from grader.report.document import document
-from grader.report.drawing_words import why_no_picture
+from grader.report.drawing import why_no_picture
 from grader.report.locations import diff_lines, location_text, source_lines
 from grader.report.pages.robot import render_robot_page
 from grader.text import format_points, printable
