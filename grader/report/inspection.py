@@ -34,7 +34,7 @@ from grader.robot.reader import Reading
 from grader.robot.transforms import Transform
 from grader.text import printable
 
-_MAX_LISTED = 500  # links in the terminal
+MAX_LISTED = 500  # links and problems
 _EFFECTS = {**{verdict: text.replace("the file", "it") for verdict, text in VERDICTS.items()}, "undecided": UNDECIDED}
 _STYLES = dict(zip(_EFFECTS, ("green", "yellow", "bold red", "bold red"), strict=True))
 _BRANCHES = ("\u251c\u2500 ", "\u2514\u2500 ", "\u2502  ")  # to a link, to the last one, past others
@@ -121,23 +121,26 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     if reading.problems:
         page.title("Problems")
         page.rows.extend(problem_rows(console, reading.problems, lambda _: reading.source, inspection.path))
-    if robot is not None and inspection.relative_to is not None:  # else there is neither a tree nor a frame
-        page.title("Tree")
-        signs = tuple(symbol(console, *pair) for pair in zip(_BRANCHES, ("|- ", "`- ", "|  "), strict=True))
-        for indent, link, joint in islice(tree(robot, signs), _MAX_LISTED):
-            page.rows.append(Text.assemble(f"  {indent}{printable(link)}", (joint_text(joint), "dim")))
-        _add_rest(page, len(robot.roots) + len(robot.parent_joints))
-        page.title(f"Poses in {printable(inspection.relative_to)!r} (x y z in m, roll pitch yaw in rad)")
-        for link, pose in islice(inspection.poses(), _MAX_LISTED):
-            text = (_pose_text(pose), "cyan") if isinstance(pose, Transform) else (printable(pose), "red")
-            page.inset(Text.assemble(f"{printable(link)}  ", text))
-        _add_rest(page, len(robot.robot.links))
+    signs = tuple(symbol(console, *pair) for pair in zip(_BRANCHES, ("|- ", "`- ", "|  "), strict=True))
+    for title, rows in lists(inspection, signs):
+        page.title(title)
+        for name, words in rows:
+            page.inset(Text.assemble(name, (words, "dim")))
     page.print()
 
 
-def _add_rest(page: Page, count: int) -> None:
-    if count > _MAX_LISTED:
-        page.inset(f"... and {count - _MAX_LISTED} more (--format json lists all)")
+def lists(inspection: Inspection, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, list[tuple[str, str]]]]:
+    """Yield the links as a tree with their joints, and their poses: a title, and names with words about each."""
+    if inspection.robot is not None and inspection.relative_to is not None:  # else there is neither a tree nor a frame
+        links = tree(inspection.robot, signs)
+        yield "Tree", _first((indent + printable(link), joint_text(joint)) for indent, link, joint in links)
+        title = f"Poses in {printable(inspection.relative_to)!r} (x y z in m, roll pitch yaw in rad)"
+        yield title, _first((printable(link), f"  {_pose_text(pose)}") for link, pose in inspection.poses())
+
+
+def _first(rows: Iterator[tuple[str, str]]) -> list[tuple[str, str]]:
+    shown, rest = [*islice(rows, MAX_LISTED)], sum(1 for _ in rows)
+    return [*shown, (f"... and {rest} more", " (--format json lists all)")] if rest else shown
 
 
 def effect(inspection: Inspection) -> str:
@@ -176,8 +179,8 @@ def joint_text(joint: Joint | None) -> str:
     return words
 
 
-def _pose_text(pose: Transform) -> str:
-    return f"{_numbers(pose.translation)}  rpy {_numbers(pose.rpy)}"
+def _pose_text(pose: Transform | str) -> str:
+    return printable(pose) if isinstance(pose, str) else f"{_numbers(pose.translation)}  rpy {_numbers(pose.rpy)}"
 
 
 def _numbers(values: tuple[float, ...]) -> str:
