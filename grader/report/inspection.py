@@ -10,7 +10,7 @@ from rich.text import Text
 
 from grader.errors import MissingElement, NotDecided
 from grader.report.as_json import PROBLEM
-from grader.report.console import Page, Room, symbol
+from grader.report.console import INDENT, LOOKS, Page, block, excerpt_block, symbol
 from grader.report.content import UNDECIDED, VERDICTS
 from grader.report.criteria import alike
 from grader.report.json_data import (
@@ -27,14 +27,14 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
-from grader.report.verbose import problem_rows
+from grader.report.locations import calls_text
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.reader import Reading
 from grader.robot.transforms import Transform
 from grader.text import printable
 
-MAX_LISTED = 500  # links and problems
+MAX_LISTED, _MAX_PROBLEMS = 500, 30  # links, or problems on a page; problems on a terminal
 _EFFECTS = {**{verdict: text.replace("the file", "it") for verdict, text in VERDICTS.items()}, "undecided": UNDECIDED}
 _STYLES = dict(zip(_EFFECTS, ("green", "yellow", "bold red", "bold red"), strict=True))
 _BRANCHES = ("\u251c\u2500 ", "\u2514\u2500 ", "\u2502  ")  # to a link, to the last one, past others
@@ -113,20 +113,36 @@ def inspection_json(inspection: Inspection) -> str:
 
 def inspection_terminal(inspection: Inspection, console: Console) -> None:
     """Print the inspection."""
-    page = Page(console, Room.ANY, [])
+    page = Page(console, [])
     reading, robot = inspection.reading, inspection.robot
     name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
     verdict = (effect(inspection), _STYLES[inspection.verdict])
     page.inset(Text.assemble((printable(inspection.path), "bold"), ": ", verdict, f", {printable(name)}"), indent=0)
     if reading.problems:
         page.title("Problems")
-        page.rows.extend(problem_rows(console, reading.problems, lambda _: reading.source, inspection.path))
+        page.rows.extend(_problem_rows(console, reading))
     signs = tuple(symbol(console, *pair) for pair in zip(_BRANCHES, ("|- ", "`- ", "|  "), strict=True))
     for title, rows in lists(inspection, signs):
         page.title(title)
         for name, words in rows:
             page.inset(Text.assemble(name, (words, "dim")))
     page.print()
+
+
+def _problem_rows(console: Console, reading: Reading) -> Iterator[Text]:
+    """Yield problems with their code and location, errors with their source line."""
+    for problem in reading.problems[:_MAX_PROBLEMS]:
+        where = problem.location
+        head = Text.assemble("  ", (f"{problem.code} {problem.severity:<7} ", LOOKS[problem.severity]))
+        named = "" if where.path == reading.source.path else f"{printable(where.path)}:"
+        message = Text.assemble(
+            (f"{named or 'line '}{where.line}{calls_text(where)}: ", "dim"), printable(problem.message)
+        )
+        yield block(console, message, len(head), head)
+        if problem.severity == "error":
+            yield excerpt_block(console, reading.source, where, min(len(head), console.width // 5))
+    if len(reading.problems) > _MAX_PROBLEMS:
+        yield block(console, Text(f"... and {len(reading.problems) - _MAX_PROBLEMS} more"), INDENT)
 
 
 def lists(inspection: Inspection, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, list[tuple[str, str]]]]:
