@@ -22,12 +22,11 @@ CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 
 @contextmanager
 def browser() -> Iterator["Browser"]:
-    """Start a headless browser that renders WebGL without a graphics card."""
+    """Start a headless browser."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        arguments = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-        started = playwright.chromium.launch(executable_path=CHROMIUM, args=arguments)
+        started = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
         yield started
         started.close()
 
@@ -46,7 +45,6 @@ def take(started: "Browser", page: Path, name: str) -> None:
     opened = started.new_page(viewport=SIZE)
     opened.goto(page.as_uri())
     opened.wait_for_load_state("load")
-    opened.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
     opened.screenshot(path=FOLDER / f"{name}.png")
     opened.close()
 

@@ -59,7 +59,7 @@ class About(NamedTuple):
     `measure` ("module:function") yields what is true of a reference, as facts for a new rubric; `usual` are
     arguments for all of these, `unit` their unit in words. `breaks_under` are the equivalents of a robot under
     which a criterion with such arguments may fail. `picture` is what a failure shows of the reference: the outline
-    of the link, also as a wheel that rolls, or its frame.
+    of the link or its frame; a `wheel` shows how it rolls.
     """
 
     looks_at: tuple[str, ...] = ()

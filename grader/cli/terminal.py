@@ -13,11 +13,9 @@ from grader.usecases.terminal import Terminal
 from grader.usecases.writing import write_stdout
 
 if TYPE_CHECKING:
-    from rich.progress import Progress as Bar
-
     from grader.workers.progress import Progress
 
-_LINE_SECONDS = 10.0
+_LINE_SECONDS, _TERMINAL_SECONDS = 10.0, 0.1
 
 
 def screen() -> Screen:
@@ -50,83 +48,53 @@ class TransientLine:
     def __init__(self) -> None:
         self._width = 0
 
-    def show(self, path: str) -> None:
-        """Show which file is being read; for an empty path remove the line."""
-        if sys.stderr is None or not sys.stderr.isatty():
-            return
-        text = f"grader: reading {printable(path)}"[: columns() - 1] if path else ""
-        if text or self._width:
+    def show(self, text: str) -> None:
+        """Show a text in place of the last one."""
+        text = printable(text)[: columns() - 1]
+        if (text or self._width) and _is_terminal():
             write_stderr(without_commands(f"\r{' ' * self._width}\r{text}"))
-        self._width = len(text)
+            self._width = len(text)
+
+    def show_file(self, path: str) -> None:
+        """Show which file is being read; for an empty path remove the line."""
+        self.show(f"grader: reading {path}" if path else "")
+
+
+def _is_terminal() -> bool:
+    return sys.stderr is not None and sys.stderr.isatty()
 
 
 @contextmanager
 def show_class(work: str) -> Iterator[Callable[["Progress"], None]]:
     """Show the progress of a pass over a class, whose work is named; yields the function that receives it.
 
-    It is a bar on a terminal, else a line every ten seconds.
+    It is one line that changes on a terminal, else a line every ten seconds.
     """
     began = last_line = time.monotonic()
+    line, is_terminal = TransientLine(), _is_terminal()
+    pause = _TERMINAL_SECONDS if is_terminal else _LINE_SECONDS
 
-    def print_line(progress: "Progress") -> None:
+    def show(progress: "Progress") -> None:
         nonlocal last_line
         now = time.monotonic()
-        if now - last_line > _LINE_SECONDS:
+        if now - last_line > pause or (is_terminal and not progress.done):
             last_line = now
-            warn(_line(progress, now - began))
+            text = _line(progress, now - began)
+            line.show(f"{work}: {text}") if is_terminal else warn(text)
 
-    if sys.stderr is None or not sys.stderr.isatty():
-        yield print_line
-        return
-    with _bar() as bar:
-        task = bar.add_task(work, total=None, rate="", found="", visible=False)  # until the total is known
-
-        def move(progress: "Progress") -> None:
-            rate = f"{progress.done / max(1e-3, time.monotonic() - began):.0f}/s"
-            bar.update(
-                task,
-                total=progress.total,
-                completed=progress.done,
-                rate=rate,
-                found=", ".join(_faults(progress)),
-                visible=True,
-                refresh=not progress.done,  # a short pass would end before its start is drawn
-            )
-
-        yield move
-
-
-def _bar() -> "Bar":
-    from rich import progress
-    from rich.console import Console
-    from rich.table import Column
-
-    shown = (
-        progress.TextColumn("{task.description}"),
-        progress.BarColumn(None, table_column=Column(ratio=1)),  # the space that the other columns leave
-        progress.MofNCompleteColumn(),
-        progress.TextColumn("{task.fields[rate]}"),
-        progress.TimeRemainingColumn(),
-        progress.TextColumn("{task.fields[found]}"),
-    )
-    return progress.Progress(*shown, console=Console(stderr=True), transient=True, expand=True)
-
-
-def _faults(progress: "Progress") -> list[str]:
-    """Return how many are errored and unreadable: 80 columns have no room for more beside the bar."""
-    return _counts((progress.errored, "errored"), (progress.unreadable, "unreadable"))
-
-
-def _counts(*counts: tuple[int, str]) -> list[str]:
-    return [f"{count} {status}" for count, status in counts if count]
+    try:
+        yield show
+    finally:
+        line.show("")
 
 
 def _line(progress: "Progress", seconds: float) -> str:
     rate = progress.done / seconds if seconds else 0.0
     left = (progress.total - progress.done) / rate if rate else 0.0
-    counts = ", ".join([*_faults(progress), *_counts((progress.unchanged, "unchanged"))])
+    kinds = (progress.errored, "errored"), (progress.unreadable, "unreadable")
+    counts = ", ".join(f"{count} {kind}" for count, kind in kinds if count)
     time_left = f"{left:.0f} s" if left < 100 else f"{left / 60:.0f} min"
     return f"{progress.done} of {progress.total}, {rate:.0f}/s, {time_left} left{f' ({counts})' if counts else ''}"
 
 
-TERMINAL = Terminal(write_stdout, warn, screen, TransientLine().show, show_class)
+TERMINAL = Terminal(write_stdout, warn, screen, TransientLine().show_file, show_class)

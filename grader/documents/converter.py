@@ -9,7 +9,6 @@ import os
 import signal
 import sys
 import threading
-import time
 import zipfile
 from collections.abc import Iterator
 from contextlib import suppress
@@ -27,7 +26,6 @@ _MOST = 0.9  # of the characters of a page
 _MAX_MEMORY = 1024 * 1024 * 1024
 _MAX_UNPACKED = 64 * 1024 * 1024
 _PR_SET_PDEATHSIG = 1
-_POLL_INTERVAL = 0.2  # seconds between two checks whether the parent is alive
 
 
 def main() -> int:
@@ -52,30 +50,17 @@ def is_out_of_time(code: int) -> bool:
 
 
 def end_with_parent(parent: int, seconds: int) -> None:
-    """End this process when its parent has ended: by the kernel on Linux, by a thread elsewhere.
+    """End this process when its parent has ended: by the kernel on Linux, elsewhere after so many seconds."""
+    if sys.platform == "linux":
+        import ctypes
 
-    On Windows the thread cannot see the parent: there it ends the process after so many seconds.
-    """
-    if not _has_death_signal():
-        threading.Thread(target=_watch, args=(parent, seconds), daemon=True).start()
-    if os.name != "nt" and os.getppid() != parent:  # it ended before the kernel call
-        os._exit(1)
-
-
-def _has_death_signal() -> bool:
-    if sys.platform != "linux":
-        return False
-    import ctypes
-
-    done: int = ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
-    return done == 0
-
-
-def _watch(parent: int, seconds: int) -> None:
-    end = time.monotonic() + seconds
-    while (os.name == "nt" or os.getppid() == parent) and time.monotonic() < end:
-        time.sleep(_POLL_INTERVAL)
-    os._exit(1)
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+        if os.getppid() != parent:  # it ended before the kernel call
+            os._exit(1)
+    else:
+        end = threading.Timer(seconds, os._exit, (1,))
+        end.daemon = True
+        end.start()
 
 
 def _limit(seconds: int) -> None:

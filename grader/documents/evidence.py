@@ -10,7 +10,6 @@ from grader.documents.evidence_files import EvidenceFile, LabelledFile, as_evide
 from grader.documents.headings import Heading, is_about
 from grader.documents.labels import Label, matches, read_label, stem
 from grader.files.tree import File
-from grader.names import closest
 from grader.text import cut
 
 DOCUMENTS = ("*.pdf", "*.docx")  # which may have evidence below their headings
@@ -30,60 +29,26 @@ def find_evidence(
 ) -> FoundEvidence:
     """Return the evidence that one of these names labels: `task 1 step 8`, or plain words such as `webcam`.
 
-    Files with the label come first. Without one, files count that have a misspelt label with task and step, and
-    headings of Word and PDF files with a picture below them. Not certain are labels without a task, headings without a
-    picture, documents that were not read or have pictures without headings, and everything of a pre-lab.
+    Files with the label come first. Without one, headings of Word and PDF files with a picture below them count. Not
+    certain are labels without a task, headings without a picture, documents that were not read or have pictures without
+    headings, and everything of a pre-lab.
     """
     wanted = [read_label(name) for name in names]
-    exact = [it for it in files if _is_named(it.label, wanted)]
+    exact = [it for it in files if any(matches(label, it.label) for label in wanted)]
     if certain := [it for it in exact if not _PRELAB.search(it.file.path)]:
         return FoundEvidence(as_evidence(certain))
-    others = [labelled for labelled in files if not labelled.label.is_complete]
-    meant = [it for it in others if it.loose.is_complete and _is_named(it.loose, wanted)]
     headings = _headings_about(documents, wanted) if documents is not None else []
     inside = [(_below(document, head), _is_certain(label, document, head)) for document, head, label in headings]
-    found = [*as_evidence(meant), *(file for file, is_certain in inside if is_certain)]
-    if found := [file for file in found if not _PRELAB.search(file.path)]:
+    if found := [file for file, is_certain in inside if is_certain and not _PRELAB.search(file.path)]:
         return FoundEvidence(tuple(found))
-    misspelt = [it for it in others if it not in exact and any(_may_match(label, it) for label in wanted)]
-    perhaps = [*exact, *meant, *misspelt]
+    without_task = [it for it in files if any(label.steps and label.steps <= it.label.steps for label in wanted)]
+    perhaps = [*exact, *(it for it in without_task if it.label.task is None)]
     return FoundEvidence((), (*as_evidence(perhaps), *(it for it, _ in inside), *_unlisted(documents, perhaps)))
 
 
 def _unlisted(documents: DocumentCollection | None, listed: Sequence[LabelledFile]) -> Iterator[EvidenceFile]:
     paths = {labelled.file.path for labelled in listed}
     return (EvidenceFile(it.path, it.size) for it in _whole_documents(documents) if it.path not in paths)
-
-
-def _is_named(label: Label, wanted: Sequence[Label]) -> bool:
-    return any(matches(it, label) for it in wanted)
-
-
-def find_all_evidence(
-    files: Sequence[LabelledFile], names: Sequence[Sequence[str]], documents: DocumentCollection | None
-) -> list[FoundEvidence]:
-    """Return the evidence for each of several lists of names.
-
-    A file is perhaps meant for one of them, the first without a file, unless its headings name several, it could not
-    be read, or it has pictures without headings.
-    """
-    found = [find_evidence(files, one, documents) for one in names]
-    claimed = {file.path for one in found for file in one.files}
-    several = {it.path for it in _whole_documents(documents)} - claimed
-    several |= {it.path for it in documents.named(DOCUMENTS)[1]} if documents is not None else set()
-    for index, one in enumerate(found):
-        perhaps = tuple(file for file in one.possible if file.heading or file.path not in claimed - several)
-        claimed |= {file.path for file in perhaps}
-        found[index] = FoundEvidence(one.files, perhaps)
-    return found
-
-
-def _may_match(wanted: Label, labelled: LabelledFile) -> bool:
-    """Return whether a file may be meant: it names the step without a task, or a word that is misspelt."""
-    if wanted.steps:
-        return labelled.loose.task is None and wanted.steps <= labelled.loose.steps
-    is_word = wanted.task is None and len(wanted.words) == 1
-    return is_word and any(closest(word, wanted.words) for word in labelled.label.words if len(word) > 3)
 
 
 def headed(documents: DocumentCollection, names: Sequence[str]) -> list[tuple[Document, Heading]]:

@@ -9,11 +9,7 @@ from grader.documents.labels import Label, read_label, stem
 from grader.files.tree import File, Tree
 
 _PICTURES = frozenset({".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg"})
-
-
 EVIDENCE = _PICTURES | {".pdf", ".mp4", ".mov", ".webm", ".mkv", ".avi"}
-
-
 _COPY = re.compile(r"(?<=\d)\s*\(\d{1,3}\)$")  # the number of a copy: Task1_Step8 (1).png
 
 
@@ -39,24 +35,18 @@ class EvidenceFile:
 
 
 class LabelledFile(NamedTuple):
-    """A picture, video or PDF, and the task and step that its path names: as it is written, and read loosely."""
+    """A picture, video or PDF, and the task and step that its path names."""
 
     file: File
     label: Label
-    loose: Label
 
 
 def read_labelled_files(tree: Tree) -> tuple[LabelledFile, ...]:
-    """Return every picture, video and PDF of a submission, with its labels."""
-    return tuple(_label(file) for file in tree.files.values() if file.suffix in EVIDENCE)
+    """Return every picture, video and PDF of a submission, with its label."""
+    files = (file for file in tree.files.values() if file.suffix in EVIDENCE)
+    return tuple(LabelledFile(file, read_label(_COPY.sub("", stem(file.path)))) for file in files)
 
 
 def as_evidence(files: Sequence[LabelledFile]) -> tuple[EvidenceFile, ...]:
     """Describe files of evidence."""
     return tuple(EvidenceFile(labelled.file.path, labelled.file.size) for labelled in files)
-
-
-def _label(file: File) -> LabelledFile:
-    name = _COPY.sub("", stem(file.path))
-    label = read_label(name)
-    return LabelledFile(file, label, label if label.is_complete else read_label(name, loosely=True))

@@ -15,7 +15,6 @@ _QUESTIONS: tuple[Pattern, ...] = (("required", "question"), ("optional", "quest
 _MAX_LINE = 1000  # characters of a line in which a label is searched
 _MAX_SHOWN = 40  # characters of a heading
 _MAX_WORDS = 6  # the first words of a line, which contain the label of a heading
-_MIN_RATIO = 0.85  # of a misspelt word: 0.93 for "reqired", but 0.71 for "requested"
 _MAX_SPLIT = 12  # words and signs at the beginning of a line that are looked at
 _MARKUP = re.compile(r"^[\s#>*\-_+|`]+")
 _MARKED = re.compile(r"(#{1,6})(?!#)")
@@ -163,19 +162,9 @@ def question_of(text: str, patterns: Collection[Pattern]) -> tuple[Pattern, int 
         number = next((int(token) for token in tokens[1 : count + 1] if token.isdecimal() and len(token) < 5), None)
         first = [token for token in tokens[: count + (number is not None)] if not token.isdecimal()]
         is_short = count > 1 or number is not None or len(tokens) == 1 or ":" in " ".join(text.split()[:2])
-        if is_short and _are_alike(sorted(first), sorted(pattern)):
+        if is_short and sorted(first) == sorted(pattern):
             return pattern, number
     return (), None
-
-
-def _are_alike(words: list[str], wanted: list[str]) -> bool:
-    """Return whether the words are the wanted ones; beside one that is, the others may be misspelt."""
-    if words == wanted or len(words) != len(wanted) or not set(words) & set(wanted):
-        return words == wanted
-    from difflib import SequenceMatcher  # most lines have no misspelt word
-
-    pairs = zip(words, wanted, strict=True)
-    return all(word == other or SequenceMatcher(None, word, other).ratio() >= _MIN_RATIO for word, other in pairs)
 
 
 def _question_words(text: str) -> list[str]:

@@ -5,15 +5,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import takewhile
 
-from grader.names import closest
-
 WORDS = re.compile(r"[^\W\d_]+|\d+")
 QUESTION_WORDS = frozenset({"question", "q", "que", "frage"})
 _NUMBER = re.compile(r"\d{1,4}")
 TASKS = frozenset({"task", "tasks", "t", "tsk", "tast", "aufgabe", "teil"})
 STEPS = {"step", "steps", "s", "st", "stp", "questions", "no", "nr", "schritt", "answer", "antwort"} | QUESTION_WORDS
 KEYWORDS = TASKS | STEPS
-_OTHER_TASKS = frozenset({"part", "section", "exercise", "ex", "problem"})  # which students write for a task
 _MAX_LENGTH = 300
 
 
@@ -32,16 +29,13 @@ class Label:
 
 
 @lru_cache(maxsize=1024)  # a rubric's names are read for each submission
-def read_label(text: str, *, loosely: bool = False) -> Label:
-    """Return the label of a name or line. If it names several tasks, as a path may, the last one counts.
-
-    With `loosely`, misspelt words and other words for a task count as well: Taks1_Step8, Part3_step3, Task1_part18.
-    """
+def read_label(text: str) -> Label:
+    """Return the label of a name or line. If it names several tasks, as a path may, the last one counts."""
     text = text[-_MAX_LENGTH:].lower()
     task: int | None = None
     steps: set[int] = set()
     for part in text.split("/"):
-        own_task, own_steps = _numbers(WORDS.findall(part), loosely=loosely)
+        own_task, own_steps = _numbers(WORDS.findall(part))
         if own_task is not None:
             task, steps = own_task, own_steps
         else:
@@ -65,7 +59,7 @@ def stem(path: str) -> str:
     return folder + slash + (name.rpartition(".")[0] or name)
 
 
-def _numbers(words: list[str], *, loosely: bool) -> tuple[int | None, set[int]]:
+def _numbers(words: list[str]) -> tuple[int | None, set[int]]:
     """Return the task and the steps that these words name."""
     task: int | None = None
     steps: set[int] = set()
@@ -73,19 +67,11 @@ def _numbers(words: list[str], *, loosely: bool) -> tuple[int | None, set[int]]:
         numbers = [int(number) for number in takewhile(_NUMBER.fullmatch, words[index + 1 :])]
         if not numbers:
             continue
-        keyword = _keyword(word, within=task is not None) if loosely else word
-        if keyword in TASKS:
+        if word in TASKS:
             task, steps = numbers[0], (steps if task is None else set()) | set(numbers[1:])
-        elif keyword in STEPS:
+        elif word in STEPS:
             steps |= set(numbers)
     return task, steps
-
-
-def _keyword(word: str, *, within: bool) -> str | None:
-    """Return the keyword that a word stands for, misspelt or not; `within` a task, a part of it is a step."""
-    if word in KEYWORDS:
-        return word
-    return ("step" if within else "task") if word in _OTHER_TASKS else closest(word, ("task", "step"))
 
 
 def _in_order(wanted: tuple[str, ...], found: tuple[str, ...]) -> bool:

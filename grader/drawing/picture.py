@@ -6,24 +6,19 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from grader.checks.visuals import main_visual
-from grader.drawing.scene import Body, Scene, is_drawable, scene_of
-from grader.errors import InputError, MissingElement, NotDecided
+from grader.drawing.scene import Body, Scene, scene_of
+from grader.errors import InputError
 from grader.grading.criterion import Criterion
 from grader.grading.hints.targets import selected
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric
-from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
-from grader.robot.likeness import mismatch
 from grader.robot.selectors import texts_in
-from grader.robot.transforms import Vector, minus
+from grader.robot.transforms import Vector
 
 _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
 # The arguments that name the frame of a measurement.
 _FRAMES = ("relative_to", "base", "on", "of", "parent")
-_SAME = 0.001  # metres: shapes and frames that differ by less look equal
-_TURNED = 0.02  # radians: the same for frames
 
 
 class Callout(NamedTuple):
@@ -43,8 +38,8 @@ class Picture:
     """What a picture of a graded robot shows.
 
     `reference` is the reference solution in the same frame; None if there is none, or the hint level does not show it.
-    `outlines` and `frames` are what differs in the reference, for links that lost points: bodies, and links with
-    another frame.
+    `outlines` are the bodies of the reference where shapes or places of shapes failed, `frames` the links whose frames
+    failed; both also where the robot has none.
     """
 
     scene: Scene
@@ -73,9 +68,14 @@ def picture_of(report: Report) -> Picture | None:
     reference = scene_of(solution, reference_frame, wheels) if solution is not None and reference_frame else None
     lost = [result for result in report.results if _is_marked(result)]
     about = _by_link(lost, robot, solution)
-    outlines, frames = _differences(scene, reference, about) if reference is not None else ((), ())
+    outlines, frames = _expected(scene, reference, about) if reference is not None else ((), ())
     callouts = tuple(
-        Callout(number, link, _point(scene, link) or _point(reference, link), tuple(results))
+        Callout(
+            number,
+            link,
+            scene.centre(link) or (reference.centre(link) if reference is not None else None),
+            tuple(results),
+        )
         for number, (link, results) in enumerate(about.items(), 1)
     )
     return Picture(scene, reference, outlines, frames, callouts)
@@ -93,7 +93,7 @@ def _reference(rubric: Rubric) -> Configuration | None:
 def _frames(rubric: Rubric, robot: Configuration, solution: Configuration | None) -> tuple[str | None, str | None]:
     """Return the links in whose frames both robots are drawn: the rubric's most frequent frame, else the roots.
 
-    Links in a larger tree of the student's robot come first, because more links have a pose there.
+    It is in the largest tree of each robot, because most links have a pose there.
     """
     given = Counter(
         value
@@ -101,20 +101,11 @@ def _frames(rubric: Rubric, robot: Configuration, solution: Configuration | None
         for key, value in criterion.arguments.items()
         if key in _FRAMES and isinstance(value, str)
     )
+    own, other = robot.main_tree, solution.main_tree if solution is not None else ()
     named = [name for name, _ in given.most_common()]
-    pairs = [(selected(robot, name), selected(solution, name) if solution is not None else name) for name in named]
-    roots = (next(iter(robot.main_tree), None), next(iter(solution.main_tree), None) if solution is not None else None)
-    both = [(own, like) for own, like in pairs if solution is None or solution.robot.has_link(like)]
-    known = [pair for pair in both if robot.robot.has_link(pair[0])]
-    sizes = Counter(_root_of(robot, link.name) for link in robot.robot.links)
-    del sizes[""]  # links on loops have no pose in each other's frames
-    return max(known, key=lambda pair: sizes[_root_of(robot, pair[0])], default=roots)
-
-
-def _root_of(robot: Configuration, link: str) -> str:
-    with suppress(MissingElement):
-        return robot.root_of(link)
-    return ""
+    pairs = ((selected(robot, name), selected(solution, name) if solution is not None else None) for name in named)
+    known = (pair for pair in pairs if pair[0] in own and (pair[1] is None or pair[1] in other))
+    return next(known, (next(iter(own), None), next(iter(other), None)))
 
 
 def _wheels(rubric: Rubric, robot: Configuration) -> Iterator[str]:
@@ -147,42 +138,13 @@ def _links(criterion: Criterion, robot: Configuration, solution: Configuration |
             yield link
 
 
-def _differences(
+def _expected(
     scene: Scene, reference: Scene, about: Mapping[str, Sequence[Result]]
 ) -> tuple[tuple[Body, ...], tuple[str, ...]]:
-    """Return the bodies and frames of the reference that differ from the scene's, where criteria about them failed."""
-    seen = {body.link for body in scene.bodies}
+    """Return the bodies and the frames of the reference that the failed criteria are about."""
     kinds = {link: {it.criterion.check.about.picture for it in results} for link, results in about.items()}
-    shapes = {link for link, found in kinds.items() if link not in seen or any(found)}
-    outlines = tuple(body for body in reference.bodies if body.link in shapes and not _shows(scene, reference, body))
-    places = [link for link, found in kinds.items() if link not in scene.poses or "frame" in found]
-    known = (link for link in places if link in reference.poses)
-    return outlines, tuple(link for link in known if not _is_same_place(scene, reference, link))
-
-
-def _shows(scene: Scene, reference: Scene, wanted: Body) -> bool:
-    """Return whether a link of the scene has the same body at the same place as the reference."""
-    pose = reference.pose(wanted)
-    own = [body for body in scene.bodies if body.link == wanted.link]
-    found = (mismatch(wanted.shape, pose, body.shape, scene.pose(body), _SAME) for body in own)
-    return any(it is not None and it.largest <= _SAME for it in found)
-
-
-def _is_same_place(scene: Scene, reference: Scene, link: str) -> bool:
-    if link not in scene.poses:
-        return False
-    one, other = scene.poses[link], reference.poses[link]
-    turned = max(abs(a - b) for a, b in zip(one.rotation, other.rotation, strict=True))
-    return max(map(abs, minus(one.translation, other.translation))) <= _SAME and turned <= _TURNED
-
-
-def _point(scene: Scene | None, link: str) -> Vector | None:
-    """Return the centre of the link's main visual if it can be drawn, else the frame's origin; None without a pose."""
-    if scene is None or link not in scene.poses:
-        return None
-    pose = scene.poses[link]
-    with suppress(MissingElement, NotDecided):
-        centre = placed_by(pose, main_visual(scene.robot, link).origin).translation
-        if is_drawable(centre) and any(body.link == link for body in scene.bodies):
-            return centre
-    return pose.translation
+    shown = {body.link for body in scene.bodies}
+    shapes = {link for link, found in kinds.items() if "outline" in found or link not in shown}
+    frames = {link for link, found in kinds.items() if "frame" in found or link not in scene.poses}
+    outlines = tuple(body for body in reference.bodies if body.link in shapes)
+    return outlines, tuple(link for link in reference.poses if link in frames)

@@ -3,16 +3,15 @@
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from math import inf, isfinite
+from math import isfinite
 from typing import NamedTuple
 
 from grader.checks.motion import travel_of, turning_joint
-from grader.checks.visuals import main_visual
 from grader.errors import MissingElement, NotDecided
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Box, Cylinder, Mesh, Sphere, Visual
-from grader.robot.shapes import Shape, UnknownShape, extent, is_empty
+from grader.robot.model import Box, Cylinder, Link, Mesh, Sphere, Visual
+from grader.robot.shapes import Shape, UnknownShape, is_empty
 from grader.robot.transforms import Z_AXIS, Transform, Vector
 from grader.text import counted, enumerated, quoted
 
@@ -22,35 +21,27 @@ _MAX_BODIES = 500  # in software, a browser draws more only in seconds
 _MAX_COORDINATE = 1e4  # metres
 _MAX_NAMED = 4
 _WITHOUT_MATERIAL: Rgba = (1.0, 0.0, 0.0, 1.0)  # RViz shows such a shape in red
-_LEVEL = 0.005  # metres: shapes whose bottoms differ by less stand on the same ground
 _MESHES, _UNKNOWN = "mesh files are not opened", "the size or place of a shape is zero, too large or not known"
 _NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
 
 
 class Body(NamedTuple):
-    """A visible shape of a link: its pose in the link's frame in metres, and its colour.
+    """A visible shape of a link: its pose in the frame of the scene in metres, and its colour.
 
     Sizes are not negative, and the channels of the colour are from 0 to 1.
     """
 
     link: str
     shape: Shape
-    T_link_shape: Transform
+    T_frame_shape: Transform
     rgba: Rgba
 
 
 class Wheel(NamedTuple):
-    """A wheel in the frame of a scene: its centre, and the unit direction in which it drives at a positive rotation.
+    """A wheel in the frame of a scene: its centre, and the unit direction in which it drives at a positive rotation."""
 
-    `travel` is None if it does not roll; `is_free` is whether neither limits nor another joint determine how far it
-    turns.
-    """
-
-    link: str
-    joint: str
     centre: Vector
-    travel: Vector | None
-    is_free: bool
+    travel: Vector
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,9 +59,10 @@ class Scene:
     wheels: tuple[Wheel, ...]
     missing: tuple[str, ...]
 
-    def pose(self, body: Body) -> Transform:
-        """Return T_frame_shape of one of the bodies."""
-        return self.poses[body.link] @ body.T_link_shape
+    def centre(self, link: str) -> Vector | None:
+        """Return the centre of the first shape of a link, else the origin of its frame; None without a pose."""
+        pose = next((body.T_frame_shape for body in self.bodies if body.link == link), self.poses.get(link))
+        return pose.translation if pose is not None else None
 
     @property
     def root(self) -> str:
@@ -86,10 +78,7 @@ class Scene:
 
 
 def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> Scene:
-    """Return the content of a picture of a robot, in the frame of one of its links.
-
-    `wheels` are links that are meant to roll; other links count as wheels if they roll and stand on the ground.
-    """
+    """Return the content of a picture of a robot, in the frame of a link; `wheels` are links that are meant to roll."""
     omitted: dict[str, dict[str, None]] = {}  # the links that are not shown, or not wholly, by reason
     poses: dict[str, Transform] = {}
     bodies: dict[Body, None] = {}  # each once
@@ -97,18 +86,16 @@ def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> 
         pose = _pose(robot, link.name, frame)
         if isinstance(pose, Transform):
             poses[link.name] = pose
-            found = [_body(link.name, visual) for visual in link.visuals]
-            found += [_UNKNOWN] if link.unresolved.keys() & {"visual", ""} else []
-        else:
-            found = [pose] if link.visuals else []
-        bodies |= {body: None for body in found if isinstance(body, Body)}
-        for reason in (body for body in found if isinstance(body, str)):
-            omitted.setdefault(reason, {})[link.name] = None
-    scene = Scene(robot, frame, poses, (*bodies,)[:_MAX_BODIES], (), ())
+        for found in _bodies(link, pose):
+            if isinstance(found, Body):
+                bodies[found] = None
+            else:
+                omitted.setdefault(found, {})[link.name] = None
     missing = [f"Not shown: {enumerated([*map(quoted, names)], _MAX_NAMED)}: {why}" for why, names in omitted.items()]
     if len(bodies) > _MAX_BODIES:
         missing.append(f"Not shown: {counted(len(bodies) - _MAX_BODIES, 'more shape')}")
-    return replace(scene, wheels=(*_wheels(scene, wheels),), missing=tuple(missing))
+    scene = Scene(robot, frame, poses, (*bodies,)[:_MAX_BODIES], (), (*missing,))
+    return replace(scene, wheels=(*filter(None, (_wheel(scene, link) for link in wheels)),))
 
 
 def _pose(robot: Configuration, link: str, frame: str) -> Transform | str:
@@ -117,11 +104,20 @@ def _pose(robot: Configuration, link: str, frame: str) -> Transform | str:
         pose = robot.pose(link, relative_to=frame)
     except _NOT_KNOWN as error:
         return str(error)
-    return pose if is_drawable(pose.translation) else "it is too far away"
+    return pose if _is_drawable(pose.translation) else "it is too far away"
 
 
-def _body(link: str, visual: Visual) -> Body | str:
-    """Return the body of a visual, or why it is not drawn."""
+def _bodies(link: Link, pose: Transform | str) -> Iterator[Body | str]:
+    """Yield the bodies of a link, and why the others are not drawn."""
+    if isinstance(pose, str):
+        yield from [pose] if link.visuals else ()
+        return
+    yield from (_body(link.name, visual, pose) for visual in link.visuals)
+    if link.unresolved.keys() & {"visual", ""}:
+        yield _UNKNOWN
+
+
+def _body(link: str, visual: Visual, pose: Transform) -> Body | str:
     drawn: Shape
     match visual.geometry:
         case Mesh():
@@ -132,51 +128,24 @@ def _body(link: str, visual: Visual) -> Body | str:
             sizes, drawn = (radius, length, 0.0), Cylinder(abs(radius), abs(length))
         case Sphere(radius=radius):
             sizes, drawn = (radius, 0.0, 0.0), Sphere(abs(radius))
-    pose = placed_by(Transform(), visual.origin)
-    if is_empty(visual.geometry) or not is_drawable(sizes) or not is_drawable(pose.translation):
+    own = placed_by(Transform(), visual.origin)
+    if is_empty(visual.geometry) or not _is_drawable(sizes) or not _is_drawable(own.translation):
         return _UNKNOWN
-    return Body(link, drawn, pose, _clamp(visual.material.rgba) if visual.material is not None else _WITHOUT_MATERIAL)
+    rgba = visual.material.rgba if visual.material is not None else _WITHOUT_MATERIAL
+    red, green, blue, alpha = (min(1.0, max(0.0, value)) if isfinite(value) else 0.0 for value in rgba)
+    return Body(link, drawn, pose @ own, (red, green, blue, alpha))
 
 
-def _clamp(rgba: Rgba) -> Rgba:
-    """Return a colour with channels from 0 to 1; one that is no finite number is 0."""
-    red, green, blue, alpha = (min(max(value, 0.0), 1.0) if isfinite(value) else 0.0 for value in rgba)
-    return red, green, blue, alpha
-
-
-def is_drawable(values: Vector) -> bool:
+def _is_drawable(values: Vector) -> bool:
     """Return whether a size or place in metres is a number that can be drawn."""
     return all(isfinite(value) and abs(value) <= _MAX_COORDINATE for value in values)
 
 
-def _wheels(scene: Scene, meant: Collection[str]) -> Iterator[Wheel]:
-    """Yield the links that are meant to roll, and those that roll with a round shape on the ground."""
-    robot = scene.robot
-    bottoms: dict[str, float] = {}
-    for body in scene.bodies:
-        bottom, _ = extent(body.shape, scene.pose(body), Z_AXIS)
-        bottoms[body.link] = min(bottom, bottoms.get(body.link, inf))
-    ground = min(bottoms.values(), default=0.0) + _LEVEL
-    for joint in robot.parent_joints.values():
-        link = joint.child
-        if link not in meant and joint.type == "continuous" and bottoms.get(link, inf) <= ground:
-            found = [wheel for wheel in _wheel(scene, link) if wheel.travel is not None]
-            yield from found if found and isinstance(main_visual(robot, link).geometry, Cylinder | Sphere) else ()
-    for link in meant:
-        yield from _wheel(scene, link)
-
-
-def _wheel(scene: Scene, link: str) -> Iterator[Wheel]:
-    """Yield a link as a wheel, if a joint turns it and its shape and pose are known."""
-    robot, frame = scene.robot, scene.frame
-    try:
-        joint = turning_joint(robot, link, frame)
-        if link not in scene.poses:
-            return
-        centre = placed_by(scene.poses[link], main_visual(robot, link).origin).translation
-        travel, _ = travel_of(robot, link, joint, frame, Z_AXIS)
-    except _NOT_KNOWN:
-        return
-    if is_drawable(centre):
-        is_free = joint.type == "continuous" and joint.mimic is None
-        yield Wheel(link, joint.name, centre, travel, is_free)
+def _wheel(scene: Scene, link: str) -> Wheel | None:
+    """Return a link as a wheel; None if it has no place, no joint turns it, it does not roll, or no shape is known."""
+    centre = scene.centre(link)
+    with suppress(*_NOT_KNOWN):
+        joint = turning_joint(scene.robot, link, scene.frame)
+        travel, _ = travel_of(scene.robot, link, joint, scene.frame, Z_AXIS)
+        return Wheel(centre, travel) if centre is not None and travel is not None else None
+    return None

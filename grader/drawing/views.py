@@ -6,13 +6,12 @@ Lengths on the sheet are pixels, and y points down.
 
 from collections.abc import Iterable
 from itertools import product
-from math import floor, log10
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from grader.drawing.picture import Picture
-from grader.drawing.scene import Body, Scene
+from grader.drawing.scene import Body
 from grader.robot.model import Box, Sphere
 from grader.robot.transforms import Vector
 
@@ -20,15 +19,13 @@ Place = tuple[float, float]
 Points = Any  # an array of shape (n, 3), or (n, 2) in a view
 
 WIDTH, TITLE = 600.0, 18.0
-KEY_WIDTH, _KEY_HEIGHT = 226.0, 150.0
+PANEL = WIDTH / 2.0  # the width of a view
 _MARGIN = 40.0  # around the robot in each view, for labels
-_MAX_HEIGHT = 460.0  # of the top and the side view of the robot together
-_MAX_BAR = 90.0
+_KEY_HEIGHT = 130.0
+_MAX_HEIGHT = 460.0  # of the view from above and the side view of the robot together
 _SMALLEST = 0.02  # metres
-_MAX_FRAMES = 12
-_MAX_FRAMES_ALONE = 60  # where no shape is shown
+_MAX_FRAMES, _MAX_FRAMES_ALONE = 12, 60  # with shapes, and where none is shown
 _FAR = 2.0  # times the size of the robot: a ground farther away is not in the picture
-_UNITS = ((1.0, "m"), (0.01, "cm"), (0.001, "mm"))
 _ANGLES = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
 _CIRCLE = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
 _CORNERS = np.array([*product((-0.5, 0.5), repeat=3)])
@@ -51,7 +48,6 @@ class Panel(NamedTuple):
     near: Vector
     left: float
     top: float
-    width: float
     height: float
     middle: Vector
     scale: float
@@ -63,7 +59,7 @@ class Panel(NamedTuple):
 
     def places(self, points: Points) -> Points:
         """Return the positions of points of the frame on the sheet."""
-        centre = self.left + self.width / 2.0, self.top + (TITLE + self.height) / 2.0
+        centre = self.left + PANEL / 2.0, self.top + (TITLE + self.height) / 2.0
         across = (np.array(points) - self.middle) @ np.array((self.right, self.up)).T
         return centre + across * (self.scale, -self.scale)
 
@@ -72,16 +68,16 @@ class Panel(NamedTuple):
         x, y = self.places(point)
         return float(x), float(y)
 
-    def outline(self, scene: Scene, body: Body) -> list[Place]:
+    def outline(self, body: Body) -> list[Place]:
         """Return the corners of the outline of a body."""
         if isinstance(body.shape, Sphere):
-            return hull(self.places(scene.pose(body).translation) + _CIRCLE * body.shape.radius * self.scale)
-        return hull(self.places(points_of(scene, body)))
+            return hull(self.places(body.T_frame_shape.translation) + _CIRCLE * body.shape.radius * self.scale)
+        return hull(self.places(points_of(body)))
 
 
-def points_of(scene: Scene, body: Body) -> Points:
+def points_of(body: Body) -> Points:
     """Return points of the frame whose hull is a body; of a sphere, those that are farthest along the axes."""
-    pose, shape = scene.pose(body), body.shape
+    pose, shape = body.T_frame_shape, body.shape
     if isinstance(shape, Sphere):
         return pose.translation + shape.radius * np.vstack([np.eye(3), -np.eye(3)])
     points = _CORNERS * shape.size if isinstance(shape, Box) else _CAPS * (shape.radius, shape.radius, shape.length)
@@ -106,106 +102,66 @@ def _half_hull(ordered: list[Place]) -> list[Place]:
     return half[:-1]
 
 
-def from_back_to_front(scene: Scene, panel: Panel) -> list[Body]:
-    """Return the bodies by the depth of their nearest points; slanted ones that interlock may be in the wrong order."""
-    return sorted(scene.bodies, key=lambda body: float((points_of(scene, body) @ panel.near).max()))
+def from_back_to_front(bodies: Iterable[Body], panel: Panel) -> list[Body]:
+    """Return bodies by the depth of their nearest points; slanted ones that interlock may be in the wrong order."""
+    return sorted(bodies, key=lambda body: float((points_of(body) @ panel.near).max()))
 
 
-class Sheet(NamedTuple):
-    """The panels of the three views, the position of the key, the total height, and pixels per metre."""
-
-    panels: tuple[Panel, ...]
-    key: Place
-    height: float
-    scale: float
-
-    @property
-    def bar(self) -> tuple[float, str]:
-        """The length of the scale bar in pixels, and its label: 1, 2 or 5 times a power of ten."""
-        longest = _MAX_BAR / self.scale
-        power = 10.0 ** floor(log10(longest))
-        length = max(step * power for step in (1.0, 2.0, 5.0) if step * power <= longest * (1.0 + 1e-9))
-        size, name = next((pair for pair in _UNITS if length >= pair[0] * 0.999), _UNITS[-1])
-        return length * self.scale, f"{length / size:g} {name}"
-
-
-def sheet_of(picture: Picture, top: float = 0.0) -> Sheet:
-    """Return the sheet for a picture; its panels begin at `top`. The key is above the front view."""
+def panels_of(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
+    """Return the three views of a picture, below `top`; the room above the last one is for the key."""
     low, high = _bounds(picture)
-    x, y, z = np.maximum(high - low, _SMALLEST)
-    scale = min((WIDTH - 4.0 * _MARGIN) / (x + y), (WIDTH - KEY_WIDTH - 2.0 * _MARGIN) / x, _MAX_HEIGHT / (y + z))
-    deep, tall = y * scale + 2.0 * _MARGIN, z * scale + 2.0 * _MARGIN + TITLE
-    right, upper = max(deep, KEY_WIDTH), max(deep + TITLE, _KEY_HEIGHT)
-    left, rest = WIDTH - right, (tuple((low + high) / 2.0), scale)
-    panels = (
-        Panel(*_TOP, 0.0, top, left, upper, *rest),
-        Panel(*_SIDE, 0.0, top + upper, left, tall, *rest),
-        Panel(*_FRONT, left, top + upper, right, tall, *rest),
+    size = np.maximum(high - low, _SMALLEST)
+    scale = min((PANEL - 2.0 * _MARGIN) / size[:2].max(), _MAX_HEIGHT / size[1:].sum())
+    rest = tuple((low + high) / 2.0), scale
+    upper, lower = (length * scale + 2.0 * _MARGIN + TITLE for length in size[1:])
+    upper = max(upper, _KEY_HEIGHT)
+    return (
+        Panel(*_TOP, 0.0, top, upper, *rest),
+        Panel(*_SIDE, 0.0, top + upper, lower, *rest),
+        Panel(*_FRONT, PANEL, top + upper, lower, *rest),
     )
-    return Sheet(panels, (left, top), top + upper + tall, scale)
 
 
 def _bounds(picture: Picture) -> tuple[Points, Points]:
     """Return the least and the largest coordinates (m) of what a picture shows, in the frame."""
-    shown = [([(0.0, 0.0, 0.0)])]
-    for scene, bodies, links in (
-        (picture.scene, picture.scene.bodies, framed_links(picture)),
-        (picture.reference, picture.outlines, picture.frames),
-    ):
-        if scene is not None:
-            shown += [points_of(scene, body) for body in bodies] + [[scene.poses[link].translation] for link in links]
+    scene, reference = picture.scene, picture.reference
+    shown = [points_of(body) for body in (*scene.bodies, *picture.outlines)]
+    shown += [[scene.poses[link].translation] for link in framed_links(picture)] or [[(0.0, 0.0, 0.0)]]
+    shown += [[reference.poses[link].translation] for link in picture.frames] if reference is not None else []
     points = np.concatenate(shown)
     low, high = points.min(axis=0), points.max(axis=0)
-    far = _FAR * (high - low).max()
-    ground = picture.scene.ground
+    far, ground = _FAR * (high - low).max(), scene.ground
     if ground is not None and low[2] - far <= ground.translation[2] <= high[2] + far:
         low[2], high[2] = min(low[2], ground.translation[2]), max(high[2], ground.translation[2])
     return low, high
 
 
 def framed_links(picture: Picture) -> list[str]:
-    """Return the links whose frames are shown: those with visuals or callouts, or all links if there are no visuals.
-
-    If there are too many links, only those with callouts.
-    """
+    """Return the links whose frames are shown: those with callouts or shapes, or all if there are no shapes."""
     scene = picture.scene
     called = [callout.link for callout in picture.callouts]
-    shown = [link.name for link in scene.robot.robot.links if link.visuals] or list(scene.poses)
-    links = dict.fromkeys([scene.frame, scene.root, *called, *picture.frames, *shown])
-    if len(links) > (_MAX_FRAMES if scene.bodies else _MAX_FRAMES_ALONE):
-        links = dict.fromkeys([scene.frame, *called[:_MAX_FRAMES]])
-    return [link for link in links if link in scene.poses]
+    others = [body.link for body in scene.bodies] or scene.poses
+    links = [link for link in dict.fromkeys([scene.frame, scene.root, *called, *others]) if link in scene.poses]
+    return links[: _MAX_FRAMES if scene.bodies else _MAX_FRAMES_ALONE]
 
 
 class FreePlaces:
-    """The rectangles of a panel that labels have taken, and those of signs that they should not cover."""
+    """The rectangles of a panel that labels have taken."""
 
     def __init__(self, panel: Panel) -> None:
-        self._panel = panel.left, panel.top + TITLE, panel.left + panel.width, panel.top + panel.height
+        self._panel = panel
         self._taken: list[tuple[float, ...]] = []
-        self._signs: list[tuple[float, ...]] = []
 
-    def avoid(self, places: Iterable[Place], margin: float = 2.0) -> None:
-        """Record a sign that labels should not cover."""
-        xs, ys = zip(*places, strict=True)
-        self._signs.append((min(xs) - margin, min(ys) - margin, max(xs) + margin, max(ys) + margin))
-
-    def take(self, place: Place, shifts: Iterable[Place], size: Place) -> Place | None:
-        """Take the first free place of a label near a place, and return its centre; None without one.
-
-        One that covers a sign is taken only if there is no other; labels never overlap.
-        """
-        half, low_x, low_y, high_x, high_y = (size[0] / 2.0, size[1] / 2.0), *self._panel
-        centres = [(place[0] + across, place[1] + down) for across, down in shifts]
-        for others in ([*self._taken, *self._signs], self._taken):
-            for x, y in centres:
-                box = (x - half[0], y - half[1], x + half[0], y + half[1])
-                is_inside = low_x <= box[0] and low_y <= box[1] and box[2] <= high_x and box[3] <= high_y
-                if is_inside and not any(_overlap(box, other) for other in others):
-                    self._taken.append(box)
-                    return x, y
+    def take(self, centres: Iterable[Place], size: Place) -> Place | None:
+        """Take the first of some centres at which a label of a size is in the panel and free; None without one."""
+        panel, (across, down) = self._panel, size
+        for x, y in centres:
+            is_inside = across / 2.0 <= x - panel.left <= PANEL - across / 2.0
+            is_inside &= TITLE + down / 2.0 <= y - panel.top <= panel.height - down / 2.0
+            if is_inside and all(
+                2.0 * abs(x - a) >= across + width or 2.0 * abs(y - b) >= down + height
+                for a, b, width, height in self._taken
+            ):
+                self._taken.append((x, y, across, down))
+                return x, y
         return None
-
-
-def _overlap(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
-    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]

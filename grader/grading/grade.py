@@ -107,19 +107,15 @@ def _evidence_of(
     manual = [row for row in rubric.criteria if row.part in chosen and row.check.function in MANUAL_CHECKS]
     if not (wanted or manual):
         return (), ()
-    from grader.documents.evidence import find_all_evidence  # a URDF on its own has none
+    from grader.documents.evidence import find_evidence  # a URDF on its own has none
     from grader.documents.evidence_files import as_evidence
 
-    graded = {evidence.id: _names_in_criteria(evidence, rubric) for evidence in wanted}
-    # A file that may be meant for several pieces is listed where a criterion lists it, too.
-    ordered = sorted(wanted, key=lambda evidence: not graded[evidence.id])
-    names = [tuple(dict.fromkeys((*evidence.names, *graded[evidence.id]))) for evidence in ordered]
+    names = [tuple(dict.fromkeys((*evidence.names, *_names_in_criteria(evidence, rubric)))) for evidence in wanted]
     known = {name for one in names for name in one}
     shown = [row.arguments["names"] for row in manual if row.check.function is evidence_shown]
     names += [own for own in shown if known.isdisjoint(own)]
-    found = find_all_evidence(submission.labelled_files, names, submission.readable_documents)
-    by_id = {evidence.id: one for evidence, one in zip(ordered, found, strict=False)}
-    found_files = tuple(EvidenceResult(evidence, *by_id[evidence.id]) for evidence in wanted)
+    found = [find_evidence(submission.labelled_files, one, submission.readable_documents) for one in names]
+    found_files = tuple(EvidenceResult(evidence, *one) for evidence, one in zip(wanted, found, strict=False))
     listed = {file.path for one in found for file in (*one.files, *one.possible)}
     others = [labelled for labelled in submission.labelled_files if labelled.file.path not in listed]
     return found_files, as_evidence(others[:_MAX_PICTURES])

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from enum import Enum, auto
 from typing import NamedTuple, get_args
 
 from rich.console import Console
@@ -31,31 +30,16 @@ _MAX_ROWS, _MAX_REASON = 4, 2  # rows of a message, and of a reason; a hint has 
 _LAST_WORD, _LAST_NUMBER = re.compile(r"\s+\S*$"), re.compile(r"\s+[-+.\d]+$")  # a number keeps its unit
 
 
-class Room(Enum):
-    """What a page has room for: everything in any number of rows, or what fits into 24."""
-
-    ANY = auto()
-    EVERYTHING = auto()  # of a short report
-    NO_TITLES = auto()  # of what failed, and no groups that passed
-    NO_EMPTY_ROWS = auto()  # as well
-
-
 class Page(NamedTuple):
-    """The rows of a report for a console, and how much room there is. All texts are printable."""
+    """The rows of a report for a console. All texts are printable.
+
+    A page that is not `is_whole` is a short report; if `is_tight`, without empty rows and with short texts.
+    """
 
     console: Console
-    room: Room
     rows: list[Text]
-
-    @property
-    def is_whole(self) -> bool:
-        """Return whether there is room for everything."""
-        return self.room is Room.ANY
-
-    @property
-    def is_tight(self) -> bool:
-        """Return whether there are no empty rows."""
-        return self.room is Room.NO_EMPTY_ROWS
+    is_whole: bool = True
+    is_tight: bool = False
 
     def leave_row(self) -> None:
         """Add an empty row if there is room for it."""
@@ -132,26 +116,25 @@ def _head(entry: Entry, page: Page) -> Text:
 
 def _shortened(entry: Entry, page: Page, *, is_first: bool) -> Iterator[Block]:
     """Yield the blocks for which a short report has room."""
-    advice = entry.texts("hint", "feedback")
-    is_clear = entry.result.outcome.expected is not None or (page.is_tight and bool(advice))
-    has_reasons = is_first or not page.is_tight
+    is_failed, is_loose = is_failure(entry.result), not page.is_tight
+    is_clear = entry.result.outcome.expected is not None or bool(entry.texts("hint", "feedback"))
     for part in entry.blocks:
         match part:
-            case Location() if is_first:
-                yield part
             case Line("hint", text):
                 yield Line("hint", _short_hint(entry, text, page))
-            case Line("comment" | "alike"):
-                yield part
-            case Answer() if not is_failure(entry.result):
-                yield part
-            case Line("feedback") if has_reasons:
-                yield part
-            case Line("expected") if has_reasons and (page.room is Room.EVERYTHING or not is_clear):
-                yield part
-            case Line("skipped") if not page.is_tight:
+            case Line("skipped") if is_loose:
                 words = f"{counted(len(entry.skipped), 'criterion is', 'criteria are')} skipped because of it"
                 yield Line("skipped", f"{words} ({points_of(entry.skipped)}).")
+            case Line("comment" | "alike"):
+                yield part
+            case Location() if is_first:
+                yield part
+            case Answer() if not is_failed:
+                yield part
+            case Line("feedback") if is_first or is_loose:
+                yield part
+            case Line("expected") if not is_clear and (is_first or is_loose):
+                yield part
 
 
 def _short_hint(entry: Entry, text: str, page: Page) -> str:

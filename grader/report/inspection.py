@@ -10,7 +10,7 @@ from rich.text import Text
 
 from grader.errors import MissingElement, NotDecided
 from grader.report.as_json import PROBLEM
-from grader.report.console import Page, Room, symbol
+from grader.report.console import INDENT, LOOKS, Page, block, excerpt_block, symbol
 from grader.report.content import UNDECIDED, VERDICTS
 from grader.report.criteria import alike
 from grader.report.json_data import (
@@ -27,14 +27,14 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
-from grader.report.verbose import problem_rows
+from grader.report.locations import calls_text
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.reader import Reading
 from grader.robot.transforms import Transform
 from grader.text import printable
 
-_MAX_LISTED = 500  # links in the terminal
+MAX_LISTED, _MAX_PROBLEMS = 500, 30  # links, or problems on a page; problems on a terminal
 _EFFECTS = {**{verdict: text.replace("the file", "it") for verdict, text in VERDICTS.items()}, "undecided": UNDECIDED}
 _STYLES = dict(zip(_EFFECTS, ("green", "yellow", "bold red", "bold red"), strict=True))
 _BRANCHES = ("\u251c\u2500 ", "\u2514\u2500 ", "\u2502  ")  # to a link, to the last one, past others
@@ -113,31 +113,50 @@ def inspection_json(inspection: Inspection) -> str:
 
 def inspection_terminal(inspection: Inspection, console: Console) -> None:
     """Print the inspection."""
-    page = Page(console, Room.ANY, [])
+    page = Page(console, [])
     reading, robot = inspection.reading, inspection.robot
     name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
     verdict = (effect(inspection), _STYLES[inspection.verdict])
     page.inset(Text.assemble((printable(inspection.path), "bold"), ": ", verdict, f", {printable(name)}"), indent=0)
     if reading.problems:
         page.title("Problems")
-        page.rows.extend(problem_rows(console, reading.problems, lambda _: reading.source, inspection.path))
-    if robot is not None and inspection.relative_to is not None:  # else there is neither a tree nor a frame
-        page.title("Tree")
-        signs = tuple(symbol(console, *pair) for pair in zip(_BRANCHES, ("|- ", "`- ", "|  "), strict=True))
-        for indent, link, joint in islice(tree(robot, signs), _MAX_LISTED):
-            page.rows.append(Text.assemble(f"  {indent}{printable(link)}", (joint_text(joint), "dim")))
-        _add_rest(page, len(robot.roots) + len(robot.parent_joints))
-        page.title(f"Poses in {printable(inspection.relative_to)!r} (x y z in m, roll pitch yaw in rad)")
-        for link, pose in islice(inspection.poses(), _MAX_LISTED):
-            text = (_pose_text(pose), "cyan") if isinstance(pose, Transform) else (printable(pose), "red")
-            page.inset(Text.assemble(f"{printable(link)}  ", text))
-        _add_rest(page, len(robot.robot.links))
+        page.rows.extend(_problem_rows(console, reading))
+    signs = tuple(symbol(console, *pair) for pair in zip(_BRANCHES, ("|- ", "`- ", "|  "), strict=True))
+    for title, rows in lists(inspection, signs):
+        page.title(title)
+        for name, words in rows:
+            page.inset(Text.assemble(name, (words, "dim")))
     page.print()
 
 
-def _add_rest(page: Page, count: int) -> None:
-    if count > _MAX_LISTED:
-        page.inset(f"... and {count - _MAX_LISTED} more (--format json lists all)")
+def _problem_rows(console: Console, reading: Reading) -> Iterator[Text]:
+    """Yield problems with their code and location, errors with their source line."""
+    for problem in reading.problems[:_MAX_PROBLEMS]:
+        where = problem.location
+        head = Text.assemble("  ", (f"{problem.code} {problem.severity:<7} ", LOOKS[problem.severity]))
+        named = "" if where.path == reading.source.path else f"{printable(where.path)}:"
+        message = Text.assemble(
+            (f"{named or 'line '}{where.line}{calls_text(where)}: ", "dim"), printable(problem.message)
+        )
+        yield block(console, message, len(head), head)
+        if problem.severity == "error":
+            yield excerpt_block(console, reading.source, where, min(len(head), console.width // 5))
+    if len(reading.problems) > _MAX_PROBLEMS:
+        yield block(console, Text(f"... and {len(reading.problems) - _MAX_PROBLEMS} more"), INDENT)
+
+
+def lists(inspection: Inspection, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, list[tuple[str, str]]]]:
+    """Yield the links as a tree with their joints, and their poses: a title, and names with words about each."""
+    if inspection.robot is not None and inspection.relative_to is not None:  # else there is neither a tree nor a frame
+        links = tree(inspection.robot, signs)
+        yield "Tree", _first((indent + printable(link), joint_text(joint)) for indent, link, joint in links)
+        title = f"Poses in {printable(inspection.relative_to)!r} (x y z in m, roll pitch yaw in rad)"
+        yield title, _first((printable(link), f"  {_pose_text(pose)}") for link, pose in inspection.poses())
+
+
+def _first(rows: Iterator[tuple[str, str]]) -> list[tuple[str, str]]:
+    shown, rest = [*islice(rows, MAX_LISTED)], sum(1 for _ in rows)
+    return [*shown, (f"... and {rest} more", " (--format json lists all)")] if rest else shown
 
 
 def effect(inspection: Inspection) -> str:
@@ -176,8 +195,8 @@ def joint_text(joint: Joint | None) -> str:
     return words
 
 
-def _pose_text(pose: Transform) -> str:
-    return f"{_numbers(pose.translation)}  rpy {_numbers(pose.rpy)}"
+def _pose_text(pose: Transform | str) -> str:
+    return printable(pose) if isinstance(pose, str) else f"{_numbers(pose.translation)}  rpy {_numbers(pose.rpy)}"
 
 
 def _numbers(values: tuple[float, ...]) -> str:

@@ -70,7 +70,7 @@ def _picture(report: Report, address: str) -> str:
     """Return the image of the robot's drawing with a description; empty without a robot."""
     if not address:
         return ""
-    from grader.report.drawing_words import alt_text  # late: few reports show a picture
+    from grader.report.drawing import alt_text  # late: few reports show a picture
 
     words = alt_text(report)
     return f"![{escape(words)}]({address})" if words else ""

@@ -5,32 +5,30 @@ room is joined, cut or left out. Text of a submission is never interpreted as ma
 """
 
 from collections.abc import Sequence
+from itertools import groupby
 
 from rich.console import Console
 from rich.text import Text
 
 from grader.grading.criterion import worth
-from grader.grading.report import Report
+from grader.grading.report import Report, Result
 from grader.report import content
-from grader.report.console import LOOKS, Page, Room, show_entry
-from grader.report.criteria import Entry, alike, groups, is_manual
+from grader.report.console import INDENT, LOOKS, Page, show_entry
+from grader.report.criteria import Entry, Section, alike, earned_text, groups, is_manual, status_of
 from grader.report.details import carried_text, pending_reason, remarks_on
 from grader.report.document import Document, document
 from grader.text import counted, enumerated, printable
 
 _ROWS = 24  # of a common terminal
-_SHORT = Room.EVERYTHING, Room.NO_TITLES, Room.NO_EMPTY_ROWS
 _MAX_NAMES, _MAX_KINDS, _MAX_FILES, _MAX_MISSING = 3, 3, 2, 2
 
 
 def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
     """Print a report, with `verbose` everything in it, else in 24 rows as far as possible."""
-    found, show = document(report, everything=verbose), _show_brief
-    if verbose:
-        from grader.report.verbose import show_everything as show  # late: most reports are short
-    for room in [Room.ANY] if verbose else _SHORT:
-        page = Page(console, room, [])
-        show(report, found, page)
+    found = document(report, everything=verbose)
+    for is_tight in [False] if verbose else [False, True]:
+        page = Page(console, [], verbose, is_tight)
+        (_show_everything if verbose else _show_brief)(report, found, page)
         _show_end(report, page)
         if sum(row.plain.count("\n") + 1 for row in page.rows) <= _ROWS:
             break
@@ -92,13 +90,15 @@ def _show_pending(report: Report, pending: Sequence[Entry], page: Page) -> None:
 
 
 def _show_groups(report: Report, page: Page) -> None:
-    """Add the points of each group, except those of which nothing is known yet: they are listed elsewhere."""
+    """Add the points of each group that lost some, or of all groups if none did.
+
+    Groups of which nothing is known yet are listed elsewhere.
+    """
     known = [group for group in groups(report) if not all(result.is_open for result in group.results)]
     kinds = alike(known, lambda group: group.status)
-    shown = [kind for kind in kinds if page.room is Room.EVERYTHING or kind[0] != "passed"]
-    if shown:
+    if kinds:
         page.leave_row()
-    for status, some in sorted(shown, key=lambda kind: kind[0] == "passed"):
+    for status, some in [kind for kind in kinds if kind[0] != "passed"] or kinds:
         page.item(status, ", ".join(f"{printable(group.title)} {group.points}" for group in some))
 
 
@@ -163,3 +163,52 @@ def _show_end(report: Report, page: Page) -> None:
     score = content.score_text(report).replace(" / ", "/").removesuffix(" points")
     parts = (score, "bold green" if is_full else "bold"), "  ", (printable(report.rubric.title), "bold")
     page.inset(Text.assemble(*parts), indent=0)
+
+
+def _show_everything(report: Report, found: Document, page: Page) -> None:
+    """Add a report, without its last lines."""
+    for line in content.head(report):
+        page.line(line.text, LOOKS[line.role])
+    for section in found.sections:
+        _show_section(section, report, page)
+    _show_parts(report, page)
+    for section in content.closing(report):
+        _show_section(section, report, page)
+    page.leave_row()
+    if report.submission.has_urdf:
+        page.line("grader inspect shows the whole robot.", "dim")
+
+
+def _show_section(section: Section, report: Report, page: Page) -> None:
+    page.title(section.title)
+    for number, entry in enumerate(section.entries):
+        if number and section.title == "Failed":
+            page.leave_row()
+        show_entry(entry, report, page)
+    for line in section.lines:
+        page.inset(line.text, LOOKS[line.role], 2 * INDENT if line.role in ("found", "missing") else INDENT)
+
+
+def _show_parts(report: Report, page: Page) -> None:
+    """Add each part with its groups and all their criteria."""
+    for part, of_part in groupby(groups(report), key=lambda group: group.part):
+        found, title = list(of_part), report.rubric.part(part).title
+        if len(report.parts) > 1:
+            points = earned_text(*(result for group in found for result in group.results))
+            page.title(f"{printable(title)}  {points}", "bold underline")
+        for group in found:
+            if len(found) > 1 or group.title != title:
+                page.title(Text.assemble((printable(group.title), "bold"), (f"  {group.points}", "dim")))
+            for result in group.results:
+                start = Text.assemble("  ", page.mark(status_of(result)), f" {earned_text(result):<5} ")
+                page.inset(_row(result), indent=len(start), head=start)
+
+
+def _row(result: Result) -> Text:
+    """Return a criterion in a line: its title if it passed, else its name, because a title would read as a fact."""
+    status = status_of(result)
+    if status == "passed":
+        return Text(printable(result.criterion.title))
+    is_consequence = status == "skipped" and result.because is not None
+    reason = f"  skipped because {printable(result.because or '')} failed" if is_consequence else ""
+    return Text.assemble(printable(result.criterion.id), (reason, "dim"))

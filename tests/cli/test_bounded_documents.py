@@ -94,30 +94,6 @@ def _converters(process: "subprocess.Popen[str]") -> list[int]:
 
 
 @pytest.mark.exhaustive
-def test_a_converter_without_a_death_signal_watches_its_parent(tmp_path: Path) -> None:
-    """A thread ends the converter on systems without PR_SET_PDEATHSIG."""
-    child = (
-        f"import sys, time; sys.path.insert(0, {str(ROOT)!r}); from grader.documents import converter as it\n"
-        "it._has_death_signal = lambda: False\n"
-        "it.end_with_parent(int(sys.argv[1]), 600); print('ready', flush=True); time.sleep(600)"
-    )
-    parent = (
-        "import os, subprocess, sys\n"
-        f"child = subprocess.Popen([sys.executable, '-c', {child!r}, str(os.getpid())])\n"
-        "print(child.pid, flush=True); child.wait()"
-    )
-    with subprocess.Popen(
-        [sys.executable, "-c", parent], stdout=subprocess.PIPE, text=True, start_new_session=True
-    ) as process:
-        assert process.stdout is not None
-        lines = {process.stdout.readline(), process.stdout.readline()}
-        assert "ready\n" in lines
-        assert len(session_of(process)) == 2
-        process.kill()
-        assert eventually(lambda: not session_of(process))
-
-
-@pytest.mark.exhaustive
 def test_a_converter_without_a_parent_ends_at_once() -> None:
     """A parent that ends before the kernel is told about it leaves no converter."""
     other = os.getppid()  # not the parent of what is started here

@@ -1,8 +1,8 @@
-"""Evidence inside documents, misspelt names of pictures, and what is listed as perhaps meant."""
+"""Evidence inside documents, and what is listed as perhaps meant."""
 
 from collections.abc import Mapping
 
-from grader.documents.evidence import FoundEvidence, find_all_evidence, find_evidence
+from grader.documents.evidence import FoundEvidence, find_evidence
 from tests.checks.submissions import REFERENCE, URDF, Submitted, png
 from tests.documents.files import PICTURE, docx, pdf
 
@@ -88,19 +88,19 @@ STEPS = [["task 1 step 8"], ["task 1 step 18"], ["task 2 step 6"], WEBCAM]
 def offered(files: Files, names: list[list[str]] = STEPS) -> list[tuple[list[str], list[str]]]:
     """Return for each piece of evidence the files that are found, and those that are perhaps meant."""
     submission = Submitted({URDF: REFERENCE.files[URDF], **files}).submission
-    found = find_all_evidence(submission.labelled_files, names, submission.readable_documents)
+    found = [find_evidence(submission.labelled_files, one, submission.readable_documents) for one in names]
     return [([it.path for it in one.files], [it.path for it in one.possible]) for one in found]
 
 
-def test_a_file_is_offered_once() -> None:
-    """A document of pictures is perhaps meant for every piece, that of the prelab for none, and a picture for one."""
+def test_a_file_may_be_meant_for_several_pieces() -> None:
+    """A document of pictures for every piece, that of the prelab for none, and a picture for those of its step."""
     scan = pdf([PICTURE], [PICTURE])
     assert offered({"report.pdf": scan, "prelab.pdf": scan, "Lab6 Pre-Lab.pdf": scan}) == [([], ["report.pdf"])] * 4
     assert offered({"report.pdf": scan, "Task1_Step8.png": png()})[:2] == [
         (["Task1_Step8.png"], []),
         ([], ["report.pdf"]),
     ]
-    assert offered({"step8.png": png()}, [["task 1 step 8"], ["task 2 step 8"]]) == [([], ["step8.png"]), ([], [])]
+    assert offered({"step8.png": png()}, [["task 1 step 8"], ["task 2 step 8"]]) == [([], ["step8.png"])] * 2
 
 
 def test_a_file_whose_headings_name_several_steps_is_offered_for_each() -> None:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from grader.drawing.picture import Picture
 from grader.drawing.scene import Body
-from grader.drawing.views import FreePlaces, Panel, from_back_to_front, hull, sheet_of
+from grader.drawing.views import FreePlaces, Panel, from_back_to_front, hull, panels_of
 from grader.robot.model import Box
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Rotation, Transform, Vector, rotation_from_rpy
@@ -20,7 +20,7 @@ DIRECTIONS = [np.array([cos(number * pi / 8.0), sin(number * pi / 8.0)]) for num
 
 
 def panels(shapes: list[Shape], poses: list[Transform]) -> tuple[Panel, ...]:
-    return sheet_of(Picture(scene_with(shapes, poses), None, (), (), ())).panels
+    return panels_of(Picture(scene_with(shapes, poses), None, (), (), ()))
 
 
 @given(SHAPES, POSES)
@@ -30,7 +30,7 @@ def test_outline_is_that_of_the_sampled_surface(shape: Shape, pose: Transform) -
     """The surface reaches as far as the outline in 16 directions of each view: to 0.3 % of a radius and a tenth of a pixel."""
     scene, points = scene_with([shape], [pose]), placed(pose, surface(shape))
     for panel in panels([shape], [pose]):
-        drawn = np.array(panel.outline(scene, scene.bodies[0]))
+        drawn = np.array(panel.outline(scene.bodies[0]))
         sampled = np.array([panel.place((x, y, z)) for x, y, z in points[:: max(1, len(points) // 3000)]])
         size = np.ptp(drawn, axis=0).max()
         for direction in DIRECTIONS:
@@ -63,10 +63,10 @@ def test_shape_in_front_is_painted_last(shapes: list[tuple[Shape, Rotation, Vect
     poses = [Transform(rotation, place) for _, rotation, place in shapes]
     scene = scene_with([shape for shape, _, _ in shapes], poses)
     panel = panels([shape for shape, _, _ in shapes], poses)[view]
-    drawn, near = from_back_to_front(scene, panel), np.array(panel.near)
+    drawn, near = from_back_to_front(scene.bodies, panel), np.array(panel.near)
     line = np.outer(np.linspace(-2.0, 2.0, 4001), near)
     for body in drawn:
-        centre = np.array(body.T_link_shape.translation)
+        centre = np.array(body.T_frame_shape.translation)
         found = [_depth(other, line + centre - near * (centre @ near)) for other in drawn]
         met = [(depth, index) for index, depth in enumerate(found) if depth is not None]
         assert max(met)[1] == max(index for _, index in met)
@@ -74,17 +74,17 @@ def test_shape_in_front_is_painted_last(shapes: list[tuple[Shape, Rotation, Vect
 
 def _depth(body: Body, ray: object) -> float | None:
     """Return where a ray from the viewer meets a body first; None if it does not."""
-    inside = contains(body.shape, body.T_link_shape, ray, 0.0)
+    inside = contains(body.shape, body.T_frame_shape, ray, 0.0)
     return float(np.flatnonzero(inside).max()) if inside.any() else None
 
 
 def test_labels_take_places_of_their_own() -> None:
-    """The nearest place that is free; one that covers a sign is better than none, one that covers a label is not."""
+    """The first place that is free and in the view; without one, none."""
     (panel, *_) = panels([Box((0.6, 0.4, 0.2))], [Transform()])
-    places, middle, size = FreePlaces(panel), panel.place((0.0, 0.0, 0.0)), (10.0, 10.0)
-    places.avoid([middle])
-    near, far = (0.0, 0.0), (20.0, 0.0)
-    assert places.take(middle, [near, far], size) == (middle[0] + 20.0, middle[1])
-    assert places.take(middle, [near, far], size) == middle
-    assert places.take(middle, [near, far], size) is None
-    assert places.take((panel.left, panel.top), [near], size) is None
+    places, size = FreePlaces(panel), (10.0, 10.0)
+    near = panel.place((0.0, 0.0, 0.0))
+    far = (near[0] + 20.0, near[1])
+    assert places.take([near, far], size) == near
+    assert places.take([near, far], size) == far
+    assert places.take([near, far], size) is None
+    assert places.take([(panel.left, panel.top)], size) is None

@@ -9,7 +9,7 @@ from grader.classroom.submissions import read_class
 from grader.documents.answers import find_answer
 from grader.documents.collection import DocumentCollection
 from grader.documents.document import Document, made_of
-from grader.documents.evidence import DOCUMENTS, find_all_evidence
+from grader.documents.evidence import DOCUMENTS, find_evidence
 from grader.documents.evidence_files import read_labelled_files
 from grader.documents.pictures import EmbeddedPicture, verified
 from grader.errors import InputError
@@ -110,7 +110,7 @@ def answers(data: bytes) -> None:
             assert len(found.text) <= 40_000
     for heading in documents.headings(document) if isinstance(document, Document) else ():
         assert 0 <= heading.start <= heading.end <= len(lines)
-    for one in find_all_evidence((), _EVIDENCE, documents):
+    for one in (find_evidence((), names, documents) for names in _EVIDENCE):
         assert {it.path for it in (*one.files, *one.possible)} <= {path}
 
 
@@ -140,7 +140,7 @@ def names(data: bytes) -> None:
     files = read_labelled_files(tree)
     documents = DocumentCollection(tree, lambda _: None)
     documents._named[DOCUMENTS] = ([], [])
-    for one in find_all_evidence(files, _EVIDENCE, documents):
+    for one in (find_evidence(files, names, documents) for names in _EVIDENCE):
         assert {it.path for it in (*one.files, *one.possible)} <= {*paths}
         for it in one.files:
             check_message(it.words)

@@ -206,8 +206,12 @@ def page_text(text: str) -> str:
     return str(root.text_content())
 
 
-_SVG_ELEMENTS = {"svg", "title", "desc", "style", "rect", "g", "path", "polygon", "text"}
+_SVG_ELEMENTS = {"svg", "title", "desc", "style", "rect", "g", "path", "polygon", "text", "circle"}
 _SVG_ATTRIBUTES = {
+    "cx",
+    "cy",
+    "r",
+    "transform",
     "class",
     "d",
     "fill",

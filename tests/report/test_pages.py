@@ -96,7 +96,7 @@ def test_scripts_make_no_markup_and_run_no_text(file: Path) -> None:
 
 
 def test_a_page_of_a_huge_robot_is_bounded() -> None:
-    """A browser shows it soon: so many shapes, joints and links are on it, and how many are not."""
+    """A browser shows it soon: so many shapes and links are on it, and how many are not."""
     boxes = "".join(f"<visual><geometry><box size='1 1 {1 + k % 600}'/></geometry></visual>" for k in range(1500))
     parts = "".join(
         f"<link name='l{k}'/><joint name='j{k}' type='continuous'><parent link='a'/><child link='l{k}'/></joint>"
@@ -104,6 +104,6 @@ def test_a_page_of_a_huge_robot_is_bounded() -> None:
     )
     urdf = f"<robot name='r'><link name='a'>{boxes}</link>{parts}</robot>"
     text = run_with_input(("inspect", "-", "--format", "html"), urdf.encode()).stdout.decode()
-    assert (text.count('type="range"'), text.count('<tr><th scope="row">')) == (500, 500)
-    for words in ("Not shown: 100 more shapes", "Not listed: 700 more joints.", "Not listed: 701 more links."):
+    assert text.count("about 1 0 0") == 499
+    for words in ("Not shown: 100 more shapes", "... and 701 more"):
         assert words in text, words

@@ -9,8 +9,8 @@ from grader.grading.report import Report
 from grader.report import content
 from grader.report.criteria import CriteriaGroup, Entry, earned_text, groups, status_of
 from grader.report.details import STATUS_WORDS, SYMBOLS
-from grader.report.document import document, failures
-from grader.report.drawing_words import why_no_picture
+from grader.report.document import document
+from grader.report.drawing import why_no_picture
 from grader.report.locations import diff_lines, location_text, source_lines
 from grader.report.pages.robot import render_robot_page
 from grader.text import format_points, printable
@@ -30,7 +30,6 @@ def render_html(report: Report) -> str:
     picture = picture_of(report)
     callouts = [callout for callout in picture.callouts if callout.point is not None] if picture is not None else []
     called = {result.criterion.id: callout.number for callout in callouts for result in callout.results}
-    costly = [called[failure.id] for failure in failures(report) if failure.id in called]
     sections = [part._replace(entries=tuple(_nested(part.entries))) for part in document(report).sections]
     by_part = groupby(groups(report), key=lambda group: group.part)
     values = {
@@ -54,7 +53,7 @@ def render_html(report: Report) -> str:
         "parts": [_part(report.rubric.part(part).title, [*some]) for part, some in by_part],
         "no_picture": why_no_picture(report),
     }
-    return render_robot_page("student.html", values, picture, {"costly": costly}, "failures.js", "student.js")
+    return render_robot_page("student.html", values, picture, "student.js")
 
 
 def _shares(report: Report) -> Iterator[Share]:

@@ -1,0 +1,193 @@
+"""The signs of a drawing: its shapes, ground, frames, driving directions, outlines of the reference, numbers, and key.
+
+Every text is escaped here. No sign depends on its colour alone.
+"""
+
+from collections.abc import Iterator, Sequence
+from html import escape
+from itertools import compress
+from math import cos, hypot, sin, tau
+
+from grader.drawing.picture import Picture
+from grader.drawing.scene import Body, Wheel
+from grader.drawing.views import PANEL, FreePlaces, Panel, Place, framed_links, from_back_to_front
+from grader.robot.transforms import AXES, Z_AXIS, Transform
+from grader.text import printable
+
+_FONT = "12px system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"
+_LOOKS = {
+    "paper": "fill:#fff",
+    "rule": "stroke:#c9ced6",
+    "edge": "stroke:#4b5563",
+    "hidden": "stroke:#1c1f23;stroke-opacity:.35",
+    "ground": "stroke:#6b7280;stroke-width:1.5",
+    "halo": "stroke:#fff;stroke-width:5;stroke-opacity:.75",
+    "reference": "stroke:#a3157f;stroke-width:1.8;stroke-dasharray:6 3.5",
+    "axis-x": "stroke:#d01f2e;stroke-width:1.8",
+    "axis-y": "stroke:#00805c;stroke-width:1.8",
+    "axis-z": "stroke:#0a5fd0;stroke-width:1.8",
+    "arrow": "stroke:#1c1f23;stroke-width:2.6",
+    "leader": "stroke:#b3261e;stroke-width:1.2",
+    "badge": "fill:#b3261e",
+    "number": "fill:#fff;font-weight:700;text-anchor:middle",
+    "text": "fill:#1c1f23",
+    "strong": "fill:#1c1f23;font-weight:700",
+    "title": "fill:#1c1f23;font-size:17px;font-weight:700",
+    "faint": "fill:#4b5563",
+    "letter": "fill:#1c1f23;stroke:#fff;stroke-width:2.5;paint-order:stroke;font-size:11px;text-anchor:middle",
+}
+STYLE = (
+    f".drawing{{font:{_FONT}}}.drawing path{{fill:none;stroke-linecap:round;stroke-linejoin:round}}"
+    f"{''.join(f'.drawing .{name}{{{rules}}}' for name, rules in _LOOKS.items())}"
+)
+_RADIUS = 9.0  # of a number, in pixels
+_AXIS, _LONG_AXIS, _ARROW, _BEHIND = 20.0, 32.0, 30.0, 8.0  # pixels
+_END_ON = 0.2  # of its length: an axis or arrow that appears shorter is not drawn as one
+_LETTER, _BADGE = (9.0, 11.0), (2.0 * _RADIUS + 2.0, 2.0 * _RADIUS + 2.0)  # the room of one
+_RINGS = (22.0, 30.0, 40.0, 52.0, 66.0, 84.0, 106.0, 132.0)  # pixels from what a number labels
+_AROUND = [(ring * cos(tau * n / 16), -ring * sin(tau * n / 16)) for ring in _RINGS for n in range(2, 18)]
+_MAX_NAME, _ROW = 60, 18.0
+
+
+def view(panel: Panel, picture: Picture) -> Iterator[str]:
+    """Yield a view: the ground, the shapes from back to front, then the signs."""
+    places = FreePlaces(panel)
+    yield text("faint", (panel.left + 14.0, panel.top + 14.0), panel.title)
+    yield from _ground(panel, picture, places)
+    outlines = [(body, panel.outline(body)) for body in from_back_to_front(picture.scene.bodies, panel)]
+    yield from (_shape(body, outline) for body, outline in outlines)
+    if len(outlines) > 1:  # what a shape hides shows through
+        yield path("hidden", "".join(_polygon(outline) for _, outline in outlines))
+    lines: dict[tuple[str, str], None] = {
+        ("reference", _polygon(panel.outline(body))): None for body in picture.outlines
+    }
+    frames = [("", _AXIS, picture.scene.poses[link]) for link in framed_links(picture)]
+    if picture.reference is not None:
+        frames += [("reference", _LONG_AXIS, picture.reference.poses[link]) for link in picture.frames]
+    axes = [axis for frame in frames for axis in _axes(panel, *frame)]
+    lines |= {(look, segment(start, tip)): None for look, start, tip, _ in axes}
+    lines |= {("arrow", data): None for wheel in picture.scene.wheels for data in _arrow(panel, wheel)}
+    yield path("halo", "".join(data for _, data in lines))
+    yield from (path(*line) for line in lines)
+    yield from _numbers(panel, picture, places)
+    for _, start, tip, name in axes:
+        if place := places.take(_beside(start, tip), _LETTER):
+            yield text("letter", (place[0], place[1] + 3.5), name)
+
+
+def _ground(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str]:
+    """Yield the ground where it is seen edge-on and is level."""
+    ground = picture.scene.ground
+    if ground is None or abs(panel.direction(ground.rotate(Z_AXIS))[1] + 1.0) > 1e-3:
+        return
+    y = panel.place(ground.translation)[1]
+    if places.take([(panel.left + PANEL / 2.0, y)], (PANEL, 1.0)):
+        yield path("ground", segment((panel.left + 6.0, y), (panel.left + PANEL - 6.0, y)))
+        places.take([(panel.left + 28.0, y + 9.0)], (44.0, 12.0))
+        yield text("letter", (panel.left + 28.0, y + 12.0), "ground")
+
+
+def _shape(body: Body, outline: list[Place]) -> str:
+    fill = "".join(f"{round(255.0 * value):02x}" for value in body.rgba[:3])
+    points, name = " ".join(f"{number(x)} {number(y)}" for x, y in outline), escaped(body.link[:_MAX_NAME])
+    looks = f'class="edge" fill="#{fill}" fill-opacity="{body.rgba[3]:.2g}"'
+    return f'<polygon {looks} points="{points}"><title>{name}</title></polygon>'
+
+
+def _axes(panel: Panel, look: str, length: float, pose: Transform) -> Iterator[tuple[str, Place, Place, str]]:
+    """Yield the axes of a frame that do not point to the viewer or away: look, ends on the sheet, and name."""
+    start = panel.place(pose.translation)
+    for name, axis in zip("xyz", AXES, strict=True):
+        across, down, _ = panel.direction(pose.rotate(axis))
+        if hypot(across, down) > _END_ON:
+            yield look or f"axis-{name}", start, (start[0] + length * across, start[1] + length * down), name
+
+
+def _beside(start: Place, tip: Place) -> list[Place]:
+    """Return the places for the letter of an axis: behind its tip, or beside it."""
+    length = hypot(tip[0] - start[0], tip[1] - start[1]) / _BEHIND
+    x, y = (tip[0] - start[0]) / length, (tip[1] - start[1]) / length
+    return [(tip[0] + across, tip[1] + down) for across, down in ((x, y), (x - y, y + x), (x + y, y - x))]
+
+
+def _arrow(panel: Panel, wheel: Wheel) -> Iterator[str]:
+    """Yield the path of the driving direction; it keeps to the right of the wheel's centre, so that two are visible."""
+    across, down, _ = panel.direction(wheel.travel)
+    if hypot(across, down) > _END_ON:
+        x, y = panel.place(wheel.centre)
+        yield arrow((x - 7.0 * down, y + 7.0 * across), across, down)
+
+
+def arrow(start: Place, across: float, down: float) -> str:
+    """Return the path data of an arrow in a direction on the sheet."""
+    tip = start[0] + _ARROW * across, start[1] + _ARROW * down
+    barbs = ((tip[0] - 6.0 * across - side * down, tip[1] - 6.0 * down + side * across) for side in (4.2, -4.2))
+    return segment(start, tip) + "".join(segment(tip, barb) for barb in barbs)
+
+
+def _numbers(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str]:
+    """Yield the numbers of callouts beside their points, with lines to them."""
+    for callout in picture.callouts:
+        if callout.point is not None:
+            x, y = panel.place(callout.point)
+            centre = places.take([(x + across, y + down) for across, down in _AROUND], _BADGE) or (x, y)
+            yield path("leader", segment((x, y), centre)) + badge(centre, callout.number)
+
+
+def key(picture: Picture, top: float) -> Iterator[str]:
+    """Yield the meaning of each sign that a drawing has, beside the view from above."""
+    is_shown = (
+        any(callout.point is not None for callout in picture.callouts),
+        picture.outlines or picture.frames,
+        picture.scene.wheels,
+        True,
+        len(picture.scene.bodies) > 1,
+    )
+    for row, (sign, meaning) in enumerate(compress(_key(), is_shown), 1):
+        at = f"{PANEL + 26.0:g} {number(top + row * _ROW)}"
+        yield f'<g transform="translate({at})">{sign}{text("faint", (34.0, 4.0), meaning)}</g>'
+
+
+def _key() -> Iterator[tuple[str, str]]:
+    """Yield each sign with its meaning."""
+    axes = (path(f"axis-{name}", f"M{x} -5L{x} 5") for name, x in (("x", 5), ("y", 13), ("z", 21)))
+    yield badge((12.0, 0.0), 1), "points lost"
+    yield path("reference", "M0 0L26 0"), "reference solution"
+    yield path("arrow", arrow((-3.0, 0.0), 1.0, 0.0)), "driven so by a positive rotation"
+    yield "".join(axes), "axes x, y, z of a frame"
+    yield path("hidden", "M0 0L26 0"), "hidden edge"
+
+
+def escaped(words: str) -> str:
+    """Return text as SVG shows it, printable."""
+    return escape(printable(words))
+
+
+def text(look: str, place: Place, words: str) -> str:
+    """Return a label; its place is on its base line."""
+    return f'<text class="{look}" x="{number(place[0])}" y="{number(place[1])}">{escaped(words)}</text>'
+
+
+def number(value: float) -> str:
+    """Return a length in pixels with one decimal."""
+    return f"{round(value, 1) + 0.0:g}"
+
+
+def segment(start: Place, end: Place) -> str:
+    """Return the path data of a straight line."""
+    return f"M{number(start[0])} {number(start[1])}L{number(end[0])} {number(end[1])}"
+
+
+def _polygon(corners: Sequence[Place]) -> str:
+    return f"M{'L'.join(f'{number(x)} {number(y)}' for x, y in corners)}Z"
+
+
+def badge(centre: Place, count: int) -> str:
+    """Return a number in a disc."""
+    disc = f'<circle class="badge" cx="{number(centre[0])}" cy="{number(centre[1])}" r="{_RADIUS:g}"/>'
+    return disc + text("number", (centre[0], centre[1] + 4.2), str(count))
+
+
+def path(look: str, data: str) -> str:
+    """Return lines with the look of a class."""
+    return f'<path class="{look}" d="{data}"/>'
