@@ -222,7 +222,7 @@ def rubric_test(bench: Bench) -> Iterator[Row]:
         urdf.write_text(arm(links))
         bench.grader("rubric", "new", rubric, "--from", urdf, "--force").seconds()
         count = rubric.read_text().count("[[criterion]]")
-        seconds = bench.grader("rubric", "test", rubric, "--mutants", "500", word="Mutants").seconds()
+        seconds = bench.grader("rubric", "test", rubric, word="Mutants").seconds()
         yield Row(f"`rubric test`, 500 mutants, {links} links, {count} criteria", seconds, goal, " s")
 
 

@@ -6,7 +6,6 @@ from itertools import chain, islice
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.authoring.ignored import ignored_mutants
 from grader.authoring.rubric_text import Head, criterion_ids, rubric_text, toml_literal
 from grader.checks.measures.fact import THE_FILE, THE_PACKAGE, THE_ROBOT, Fact, Measure, Omission, Solution
 from grader.checks.outcome import Outcome
@@ -37,10 +36,9 @@ def draft(solution: Solution, head: Head, path: Path) -> RubricDraft:
         )
     facts = _usable([it for it in found if isinstance(it, Fact)])
     omissions = [*_omissions(found)]
-    ignored = list(ignored_mutants(solution))
     while True:
         rows = criterion_ids(facts)
-        data = rubric_text(head, rows, ignored).encode()
+        data = rubric_text(head, rows).encode()
         rubric = read_rubric(data, path)
         lost = _losses(rubric)
         if not lost:

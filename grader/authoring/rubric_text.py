@@ -5,7 +5,6 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from grader.authoring.ignored import IgnoredMutants
 from grader.checks.measures.fact import Fact
 from grader.checks.registry import check_names, usable_check
 from grader.text import printable
@@ -57,7 +56,6 @@ def _key(key: str) -> str:
 
 _ROBOT, _PACKAGE = "robot", "package"
 _MAX_ID = 60
-_MUTANTS = "Mutants of the reference that keep full marks: `grader rubric test`"
 
 
 class Head(NamedTuple):
@@ -74,8 +72,8 @@ class Head(NamedTuple):
     schema: str = ""
 
 
-def rubric_text(head: Head, facts: Mapping[str, Fact], ignored: Sequence[IgnoredMutants] = ()) -> str:
-    """Return a rubric with a criterion for each fact, by the ids of the criteria, and the mutants that it ignores."""
+def rubric_text(head: Head, facts: Mapping[str, Fact]) -> str:
+    """Return a rubric with a criterion for each fact, by the ids of the criteria."""
     of_package = sum(fact.of_package for fact in facts.values())
     lines = [
         *_head(head, len(facts)),
@@ -89,9 +87,6 @@ def rubric_text(head: Head, facts: Mapping[str, Fact], ignored: Sequence[Ignored
             about = fact.about
             lines += ["", _heading(about)]
         lines += _criterion(name, fact)
-    lines += ["", _heading(_MUTANTS)] if ignored else []
-    for patterns, reason in ignored:
-        lines += ["", "[[test.ignore]]", *toml_lines("mutants", patterns), assignment("reason", reason)]
     return "\n".join(lines) + "\n"
 
 

@@ -9,8 +9,7 @@ of an axis, and axes and limits that ROS 2 does not use for a type of joint.
 from collections.abc import Collection, Iterator
 from typing import Any
 
-from grader.mutation.elements import FOREIGN
-from grader.mutation.trees import words_of_foreign
+from grader.mutation.trees import FOREIGN, words_of_foreign
 from grader.robot.frames import placed_by
 from grader.robot.joint_elements import Dynamics
 from grader.robot.model import Box, Collision, Cylinder, Geometry, Joint, Link, Mesh, Visual
