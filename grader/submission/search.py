@@ -57,10 +57,11 @@ _REASONS = {
 
 
 class UrdfChoice(NamedTuple):
-    """The path of the URDF that is graded, if there is one, and the other candidates."""
+    """The path of the URDF that is graded, if there is one, the other candidates, and which of these fit as well."""
 
     path: str | None
     others: tuple[OtherCandidate, ...]
+    fitting: tuple[str, ...] = ()
 
 
 class _Candidate(NamedTuple):
@@ -77,6 +78,7 @@ class _Candidate(NamedTuple):
     package: int  # how many packages match better than the one around it
     depth: int
     path: str
+    is_loose: bool  # in no package
 
 
 def find_urdf(tree: Tree, lab: Lab, robots: tuple[RobotFile, ...], labs: LabFolders, opening: Opening) -> UrdfChoice:
@@ -88,12 +90,16 @@ def find_urdf(tree: Tree, lab: Lab, robots: tuple[RobotFile, ...], labs: LabFold
     if len(robots) < 2:
         return UrdfChoice(next((robot.path for robot in robots), None), generated)
     best, *others = sorted(_candidates(tree, lab, robots, labs, opening))
-    return UrdfChoice(best.path, (*(OtherCandidate(it.path, _reason(best, it, lab)) for it in others), *generated))
+    named = (OtherCandidate(it.path, _reason(best, it, lab)) for it in others)
+    return UrdfChoice(best.path, (*named, *generated), tuple(it.path for it in others if _fits(best, it, lab)))
 
 
-def is_of_lab(robot: RobotFile, urdf: str) -> bool:
-    """Return whether a file surely is what the lab asks for, by its name or that of its robot."""
-    return _tier(robot, urdf) < _Tier.OTHER_ROBOT
+def _fits(best: _Candidate, other: _Candidate, lab: Lab) -> bool:
+    """Return whether another robot may be meant as well: one in another package, or loose, perhaps of a teammate."""
+    stems = [path.partition(".")[0] for path in (best.path, other.path)]  # my_robot.urdf.xacro makes my_robot.urdf
+    is_elsewhere = best.package != other.package or (best.is_loose and stems[0] != stems[1])
+    is_worse = other.is_another or other.is_fragment or other.is_part or other.is_backup or other.place != best.place
+    return is_elsewhere and not is_worse and (bool(lab.links) or other.tier[0] <= max(best.tier[0], _Tier.SAME_ROBOT))
 
 
 def _candidates(
@@ -117,6 +123,7 @@ def _candidates(
             package=folders.index(around.folder) if around is not None else len(folders),
             depth=path.count("/"),
             path=path,
+            is_loose=around is None,
         )
 
 
