@@ -133,7 +133,8 @@ def _of_value(text: str, label: str, span: tuple[int, int], name: str) -> Iterat
     pieces = list(_NUMBER.finditer(text, start, end))
     for part, found in zip(_parts(name, len(pieces)), pieces, strict=True):
         for family, number in _alternatives(float(found[0])):
-            yield MutantEdit(family, f"{label}{part}", *found.span(), f"{number:.6g}")
+            if number != float(found[0]):
+                yield MutantEdit(family, f"{label}{part}", *found.span(), f"{number:.6g}")
     value = text[start:end].strip()
     if not pieces and value:
         start = text.index(value, start)

@@ -45,4 +45,4 @@ def test_no_mutant_of_lab6_that_counts_as_the_same_robot_behaves_otherwise() -> 
         if is_same_robot(urdf, changed.urdf, ()):
             same += 1
             assert not differences(expected, behaviour(changed)), mutant.id
-    assert same > 40
+    assert same > 20
