@@ -6,7 +6,7 @@ from itertools import chain, islice
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.authoring.rubric_text import Head, criterion_ids, rubric_text, toml_literal
+from grader.authoring.rubric_text import Head, criterion_ids, rubric_text
 from grader.checks.measures.fact import THE_FILE, THE_PACKAGE, THE_ROBOT, Fact, Measure, Omission, Solution
 from grader.checks.outcome import Outcome
 from grader.checks.registry import check_names, declared, usable_check
@@ -15,6 +15,7 @@ from grader.errors import InputError
 from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, read_rubric
 from grader.grading.toml_file import read_toml
+from grader.grading.toml_rows import toml_literal
 
 MAX_FACTS = 2000  # more than the largest robots have; criteria cost the square of their number
 

@@ -8,11 +8,12 @@ from grader.checks.registry import check_names, find_check, unused_checks
 from grader.errors import InputError
 from grader.grading.criterion import Criterion, worth
 from grader.grading.rubric import Rubric
+from grader.grading.toml_rows import assignment
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.problems import Kind
 from grader.report.details import model_lines, sentence
-from grader.report.examples import examples, explanation_of, toml_text
+from grader.report.examples import default_text, examples, explanation_of
 from grader.robot.catalogue import CATALOGUE
 from grader.text import enumerated, format_points, printable
 from grader.xacro.catalogue import XACRO_CATALOGUE
@@ -114,7 +115,7 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
 
 
 def _check_text(title: str, check: Check, arguments: Mapping[str, object], *more: str) -> str:
-    given = ", ".join(f"{key} = {toml_text(value)}" for key, value in arguments.items())
+    given = ", ".join(assignment(key, value) for key, value in arguments.items() if value is not None)
     texts = (f"{title}: {check.name}. {check.documentation.fact}", f"With {given}." if given else "", *more)
     texts += (f"`grader explain {check.name}` explains the check.",)
     return "\n".join(map(_fill, filter(None, texts)))
@@ -123,7 +124,7 @@ def _check_text(title: str, check: Check, arguments: Mapping[str, object], *more
 def _arguments(check: Check) -> str:
     lines = []
     for parameter in check.parameters.values():
-        default = "" if parameter.required else f", default: {toml_text(parameter.default)}"
+        default = "" if parameter.required else f", default: {default_text(parameter.default)}"
         meaning = _fill(check.documentation.arguments.get(parameter.name, ""), _WIDTH - 6)
         lines += [f"    {parameter.name}: {parameter.type.name}{default}\n", textwrap.indent(f"{meaning}\n", " " * 6)]
     return "".join(line for line in lines if line.strip())
