@@ -1,7 +1,7 @@
 """Test a rubric: mutants of its reference must lose points, equivalents nothing, samples what they declare."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from decimal import Decimal
 from difflib import unified_diff
 from fnmatch import fnmatchcase
@@ -31,14 +31,16 @@ class Survivor(NamedTuple):
     reason: str = ""
 
 
-class MutantResults(NamedTuple):
-    """What became of the mutants: `total` exist, `tried` were graded, `same` of these turned out to be the same robot.
+class RubricTest(NamedTuple):
+    """The result for a rubric.
 
-    `survivors` lose nothing, and the rubric does not ignore them as it does those in `ignored`. `unused` are patterns
-    of the rubric that match no mutant, `idle` criteria that no mutant fails, `faults` mutants on which a check is
-    faulty.
+    `total` mutants exist, and `tried` were graded: `caught` lose points, `same` are the same robot, `survivors` lose
+    nothing, nor do those that the rubric ignores (`ignored`), and on `faults` a check is faulty. `unused` are patterns
+    of the rubric that match no mutant, `idle` criteria that no mutant fails. `equivalents` are the families that were
+    tried, `losses` those that lose points. `samples` is None where no folder was given.
     """
 
+    reference: Report
     total: int
     tried: int
     caught: int
@@ -47,29 +49,16 @@ class MutantResults(NamedTuple):
     ignored: tuple[Survivor, ...]
     unused: tuple[str, ...]
     idle: tuple[str, ...]
-    faults: tuple[Loss, ...] = ()
+    faults: tuple[Loss, ...]
+    equivalents: tuple[str, ...]
+    losses: tuple[Loss, ...]
+    samples: SampleResults | None = None
 
     @property
     def score(self) -> Decimal:
         """The mutation score: the share of the mutants that lose points, in percent, without those that are ignored."""
         count = self.caught + len(self.survivors)
         return Decimal(100 * self.caught) / count if count else Decimal(100)
-
-
-class EquivalentResults(NamedTuple):
-    """Rewritings of the reference: the families that were tried, and those that lose points."""
-
-    tried: tuple[str, ...]
-    losses: tuple[Loss, ...] = ()
-
-
-class RubricTest(NamedTuple):
-    """The result for a rubric; `samples` is None where no folder was given."""
-
-    reference: Report
-    mutants: MutantResults
-    equivalents: EquivalentResults
-    samples: SampleResults | None = None
 
     @property
     def lost(self) -> tuple[str, ...]:
@@ -79,12 +68,12 @@ class RubricTest(NamedTuple):
     @property
     def is_faulty(self) -> bool:
         """Return whether a check failed to give an outcome, on the reference or a mutant."""
-        return bool(self.mutants.faults) or self.reference.fault != ""
+        return bool(self.faults) or self.reference.fault != ""
 
     @property
     def is_sound(self) -> bool:
         """Return whether no correct robot loses anything, and each sample what it should."""
-        return not (self.lost or self.equivalents.losses or (self.samples is not None and self.samples.different))
+        return not (self.lost or self.losses or (self.samples is not None and self.samples.different))
 
 
 def run_rubric_test(
@@ -103,10 +92,7 @@ def run_rubric_test(
     for outcome in grade_all(chosen):
         outcomes.append(outcome)
         progress(len(samples or ()) + len(outcomes), total)
-    tried = [*trial.equivalents()]
-    losses = (Loss(it.family, lost, diff(trial.robot_files[0], it.before, it.text)) for it, lost in tried if lost)
-    of_equivalents = EquivalentResults(tuple(it.family for it, _ in tried), tuple(losses))
-    return RubricTest(trial.report, mutant_results(trial, every, outcomes), of_equivalents, of_samples)
+    return _result(trial, every, outcomes, of_samples)
 
 
 def mutant_outcomes(data: bytes, path: str, mutants: Sequence[Mutant]) -> list[MutantOutcome]:
@@ -119,24 +105,33 @@ def _trial_from(data: bytes, path: str) -> Trial:
     return Trial(read_rubric(data, Path(path)))
 
 
-def mutant_results(trial: Trial, every: Sequence[Mutant], outcomes: Iterable[MutantOutcome]) -> MutantResults:
-    """Return what became of all mutants, of which those with an outcome were graded."""
-    places: Mapping[Mutant, int] = {mutant: place for place, mutant in enumerate(every)}
+def _result(
+    trial: Trial, every: Sequence[Mutant], outcomes: Iterable[MutantOutcome], samples: SampleResults | None
+) -> RubricTest:
+    """Return the result of a test: `outcomes` are those of the mutants that were graded, in any order."""
+    places = {mutant: place for place, mutant in enumerate(every)}
     graded = sorted(outcomes, key=lambda outcome: places[outcome.mutant])
     fates = Counter(outcome.fate for outcome in graded)
     survivors = [_survivor(trial, outcome.mutant) for outcome in graded if outcome.fate == "survived"]
     failed = {name for outcome in graded for name in outcome.failed}
     patterns = [pattern for row in trial.rubric.ignored for pattern in row.mutants]
-    return MutantResults(
-        len(every),
-        len(graded),
-        fates["caught"],
-        fates["same"],
-        tuple(it for it in survivors if not it.reason),
-        tuple(it for it in survivors if it.reason),
-        tuple(it for it in patterns if not any(_is_match(mutant, it) for mutant in every)),
-        tuple(one.id for one in trial.tested if one.id not in failed),
-        tuple(Loss(it.mutant.id, it.faults, _diff(trial, it.mutant)) for it in graded if it.fate == "faulty"),
+    tried = [*trial.equivalents()]
+    return RubricTest(
+        reference=trial.report,
+        total=len(every),
+        tried=len(graded),
+        caught=fates["caught"],
+        same=fates["same"],
+        survivors=tuple(it for it in survivors if not it.reason),
+        ignored=tuple(it for it in survivors if it.reason),
+        unused=tuple(it for it in patterns if not any(_is_match(mutant, it) for mutant in every)),
+        idle=tuple(one.id for one in trial.tested if one.id not in failed),
+        faults=tuple(Loss(it.mutant.id, it.faults, _diff(trial, it.mutant)) for it in graded if it.fate == "faulty"),
+        equivalents=tuple(it.family for it, _ in tried),
+        losses=tuple(
+            Loss(it.family, lost, diff(trial.robot_files[0], it.before, it.text)) for it, lost in tried if lost
+        ),
+        samples=samples,
     )
 
 

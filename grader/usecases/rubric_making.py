@@ -153,7 +153,7 @@ def test_rubric(
         progress = lambda done, total: show(Progress(total, done))  # noqa: E731
         result = run_rubric_test(rubric, samples, progress, grade_all)
     text = render_rubric_test_json(result) if is_json else render_rubric_test(result, terminal.screen().width)
-    is_passed = result.is_sound and (least is None or result.mutants.score >= least)
+    is_passed = result.is_sound and (least is None or result.score >= least)
     code = ExitCode.PASSED if is_passed else ExitCode.FAILED
     return text, ExitCode.FAULT if result.is_faulty else code
 

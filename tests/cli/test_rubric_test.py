@@ -61,7 +61,7 @@ def test_survivors_are_listed_with_their_diff(tmp_path: Path) -> None:
     text = done.stdout.decode()
     assert done.returncode == 0
     assert "\nThese mutants of the reference get full marks:\n" in text
-    assert re.search(r"\n\.\.\. and \d+ more, which --format json lists", text)
+    assert re.search(r"\n  \.\.\. and \d+ more, which --format json lists", text)
     assert "      --- birch.urdf\n      +++ birch.urdf\n      @@ -" in text
     arm = data(tmp_path / "arm.toml")
     listed = {row["id"]: row for row in arm["survivors"]}
