@@ -209,14 +209,14 @@ def a_thousand(bench: Bench) -> Iterator[Row]:
 
 
 def rubric_test(bench: Bench) -> Iterator[Row]:
-    """Time 500 mutants of two generated rubrics."""
+    """Time all mutants of two generated rubrics."""
     for links in (11, 82):
         urdf, rubric = bench.top / f"arm-{links}.urdf", bench.top / f"arm-{links}.toml"
         urdf.write_text(arm(links))
         bench.grader("rubric", "new", rubric, "--from", urdf, "--force").seconds()
         count = rubric.read_text().count("[[criterion]]")
-        seconds = bench.grader("rubric", "test", rubric, "--mutants", "500", word="Mutants").seconds()
-        yield Row(f"`rubric test`, 500 mutants, {links} links, {count} criteria", seconds, " s")
+        seconds = bench.grader("rubric", "test", rubric, word="Mutants").seconds()
+        yield Row(f"`rubric test`, {links} links, {count} criteria", seconds, " s")
 
 
 def memory(bench: Bench) -> Iterator[Row]:

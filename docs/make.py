@@ -14,7 +14,7 @@ from grader.grading.hints.hinting import hinted
 from grader.grading.keys import ADJUSTMENT, CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
-from grader.report.examples import example_blocks, explanation_of, toml_text
+from grader.report.examples import default_text, example_blocks, explanation_of
 from grader.report.rubrics import EFFECTS, EVERY_KIND
 from grader.report.terminal import render_terminal
 from grader.submission.opening import open_submission
@@ -110,7 +110,7 @@ def long_checks() -> Iterator[str]:
         if check.parameters:
             yield from ("| argument | meaning | type | default |", "|---|---|---|---|")
         for name, parameter in check.parameters.items():
-            default = "required" if parameter.required else f"`{toml_text(parameter.default)}`"
+            default = "required" if parameter.required else f"`{default_text(parameter.default)}`"
             meaning = escaped(check.documentation.arguments[name])
             yield f"| `{name}` | {meaning} | {parameter.type.name} | {default} |"
         yield ""

@@ -7,7 +7,7 @@ from pathlib import Path
 from grader.grading.grade import grade as grade_submission
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric, load_rubric
-from grader.usecases.grade import open_one
+from grader.submission.opening import open_submission
 from grader.usecases.hints import add_hints
 from grader.usecases.rubrics import DEFAULT_RUBRIC
 
@@ -24,10 +24,10 @@ def grade(path: str | Path, rubric: str | Path | Rubric = DEFAULT_RUBRIC, *, par
         The report that `grader grade` prints, with its hints.
 
     Raises:
-        GraderError: The submission cannot be read or is a whole class, or the rubric is broken.
+        GraderError: The submission cannot be read, or the rubric is broken.
     """
     loaded = rubric if isinstance(rubric, Rubric) else load_rubric(rubric)
     chosen = tuple(loaded.part(name).id for name in ((parts,) if isinstance(parts, str) else parts))
-    submission = open_one(os.fsdecode(path), loaded)
+    submission = open_submission(os.fsdecode(path), loaded.lab, with_neighbours=True)
     report = grade_submission(loaded, submission, chosen)
     return add_hints(report, submission, None, lambda _: None, is_fixed=False)[0]

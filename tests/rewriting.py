@@ -12,7 +12,7 @@ from random import Random
 from hypothesis import strategies as st
 from lxml import etree
 
-from grader.mutation import rewritings as seeded
+from grader.mutation.equivalents import split_joint as split
 from grader.mutation.trees import (
     add_joint,
     attribute_numbers,
@@ -25,7 +25,6 @@ from grader.mutation.trees import (
     parent_joint,
     pose,
     set_pose,
-    some,
 )
 from grader.robot.transforms import IDENTITY
 from grader.xml.parsing import Element
@@ -81,7 +80,7 @@ def split_joint(draw: st.DrawFn, tree: Element) -> None:
     joint = _one_of(draw, tree.iterchildren("joint"))
     assert joint is not None
     is_first = joint.get("type") == "fixed" and draw(st.booleans())
-    seeded.split_joint(tree, joint, draw(_poses), is_first=is_first)
+    split(tree, joint, draw(_poses), is_first=is_first)
 
 
 def add_hub(draw: st.DrawFn, tree: Element) -> None:
@@ -137,44 +136,42 @@ def _turns_about_z(joint: Element) -> bool:
 # --- Steps that say the same in other values --------------------------------------------------------------------------
 
 
-def _turn_fully(random: Random, tree: Element, _: seeded.RewritingRules) -> bool:
+def other_angles(draw: st.DrawFn, tree: Element) -> None:
     """Write rotations with additional full turns, or by their other three angles."""
-    origins = list(own_elements(tree, "origin"))
-    for found in some(random, origins):
-        found.set("rpy", attribute_text(_other_angles(random, attribute_numbers(found, "rpy"))))
-    return bool(origins)
+    for found in _some(draw, own_elements(tree, "origin")):
+        roll, pitch, yaw = attribute_numbers(found, "rpy")
+        if draw(st.booleans()):
+            roll, pitch, yaw = roll + pi, pi - pitch, yaw + pi
+        found.set("rpy", attribute_text(angle + 2 * pi * draw(st.integers(-3, 3)) for angle in (roll, pitch, yaw)))
 
 
-def _other_angles(random: Random, rpy: list[float]) -> list[float]:
-    """Return other angles of the same rotation."""
-    roll, pitch, yaw = rpy
-    if random.random() < 0.5:
-        roll, pitch, yaw = roll + pi, pi - pitch, yaw + pi
-    return [angle + 2 * pi * random.randint(-3, 3) for angle in (roll, pitch, yaw)]
-
-
-def _scale_axes(random: Random, tree: Element, _: seeded.RewritingRules) -> bool:
+def scale_axis(draw: st.DrawFn, tree: Element) -> None:
     """Scale axes of joints."""
-    axes = list(own_elements(tree, "axis"))
-    for axis in some(random, axes):
-        factor = 10 ** random.uniform(-2, 2)
+    for axis in _some(draw, own_elements(tree, "axis")):
+        factor = 10 ** draw(st.floats(-2, 2))
         axis.set("xyz", attribute_text(factor * number for number in attribute_numbers(axis, "xyz")))
-    return bool(axes)
 
 
-def _seeded(step: seeded.Rewriting) -> Step:
-    """Return a step that draws the seed of one of `grader rubric test`."""
+def shuffle(draw: st.DrawFn, tree: Element) -> None:
+    """Change the order of elements: links, joints and materials, and those inside of each."""
+    random = Random(draw(st.integers(0, 2**32 - 1)))
+    materials = [found.get("name") for found in own_elements(tree, "material")]
+    is_shared = any(materials.count(name) > 1 for name in materials if not _is_defined(tree, name))
+    free = ("joint", "material", "collision") + (() if is_shared else ("link", "visual"))
+    for owner in [tree, *own_elements(tree, "link", "joint", "visual", "collision", "inertial")]:
+        ranks = {child.tag: random.random() for child in owner}  # of several origins the first counts
+        order = {child: random.random() if child.tag in free else ranks[child.tag] for child in owner}
+        owner[:] = sorted(owner, key=order.__getitem__)
 
-    def drawn(draw: st.DrawFn, tree: Element) -> None:
-        step(Random(draw(st.integers(0, 2**32 - 1))), tree, _NO_NAMES)
 
-    return drawn
+def _is_defined(tree: Element, material: str | None) -> bool:
+    return any(found.get("name") == material for found in tree.iterchildren("material"))
 
 
-_NO_NAMES = seeded.RewritingRules((), lambda _: False)
-other_angles = _seeded(_turn_fully)
-scale_axis = _seeded(_scale_axes)
-shuffle = _seeded(seeded.shuffle)
+def _some(draw: st.DrawFn, elements: Iterable[Element]) -> list[Element]:
+    """Draw one to three elements, or none where there are none."""
+    found = list(elements)
+    return draw(st.lists(st.sampled_from(found), min_size=1, max_size=3, unique=True)) if found else []
 
 
 def nudge(draw: st.DrawFn, tree: Element) -> None:

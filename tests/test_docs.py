@@ -5,7 +5,6 @@ import re
 import runpy
 import tomllib
 from collections.abc import Iterator
-from inspect import signature
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -17,10 +16,10 @@ from typer.main import get_command
 from grader import __version__
 from grader.cli import ending
 from grader.cli.app import COMMANDS, make_app
-from grader.cli.rubric import run_test
 from grader.documents import collection, converter, document, pictures
 from grader.files import limits
 from grader.grading.rubric import load_rubric, shipped_rubrics
+from grader.mutation import testing
 from grader.package import package
 from grader.robot import diagnostics
 from grader.static_python import budget, expressions, values
@@ -158,7 +157,7 @@ LIMITS: dict[str, dict[str, tuple[float, ...]]] = {
             values.MAX_PARTS,
         ),
     },
-    "rubric-test.md": {"(default: {}, sampled": (signature(run_test).parameters["mutants"].default,)},
+    "rubric-test.md": {"a sample of {} is graded": (testing._MAX_MUTANTS,)},
     "grade-a-class.md": {
         "up to {} MiB": (pictures.MAX_BYTES / MIB,),
     },

@@ -7,7 +7,7 @@ from xml.sax.saxutils import escape
 
 from lxml import etree
 
-from grader.mutation.elements import FOREIGN
+from grader.mutation.trees import FOREIGN
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import PARTS
 

@@ -6,8 +6,7 @@ from itertools import chain, islice
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.authoring.ignored import ignored_mutants
-from grader.authoring.rubric_text import Head, criterion_ids, rubric_text, toml_literal
+from grader.authoring.rubric_text import Head, criterion_ids, rubric_text
 from grader.checks.measures.fact import THE_FILE, THE_PACKAGE, THE_ROBOT, Fact, Measure, Omission, Solution
 from grader.checks.outcome import Outcome
 from grader.checks.registry import check_names, declared, usable_check
@@ -16,6 +15,7 @@ from grader.errors import InputError
 from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, read_rubric
 from grader.grading.toml_file import read_toml
+from grader.grading.toml_rows import toml_literal
 
 MAX_FACTS = 2000  # more than the largest robots have; criteria cost the square of their number
 
@@ -37,10 +37,9 @@ def draft(solution: Solution, head: Head, path: Path) -> RubricDraft:
         )
     facts = _usable([it for it in found if isinstance(it, Fact)])
     omissions = [*_omissions(found)]
-    ignored = list(ignored_mutants(solution))
     while True:
         rows = criterion_ids(facts)
-        data = rubric_text(head, rows, ignored).encode()
+        data = rubric_text(head, rows).encode()
         rubric = read_rubric(data, path)
         lost = _losses(rubric)
         if not lost:

@@ -1,38 +1,15 @@
 """The text of a new rubric, in TOML as a person writes it: its keys, default tolerances, a criterion for each fact."""
 
-import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from grader.authoring.ignored import IgnoredMutants
 from grader.checks.measures.fact import Fact
 from grader.checks.registry import check_names, usable_check
+from grader.grading.toml_rows import assignment, toml_literal
 from grader.text import printable
 
 WIDTH = 120  # columns
-_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
-
-
-def assignment(key: str, value: Any) -> str:
-    """Return a line that sets a key."""
-    return f"{_key(key)} = {toml_literal(value)}"
-
-
-def toml_literal(value: Any) -> str:
-    """Return a value as TOML, in one line."""
-    match value:
-        case bool():
-            return str(value).lower()
-        case float():
-            return _number(value)
-        case int():
-            return str(value)
-        case str():
-            return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-        case Mapping():
-            return f"{{ {', '.join(assignment(key, item) for key, item in value.items())} }}"
-    return f"[{', '.join(map(toml_literal, value))}]"
 
 
 def toml_lines(key: str, value: Any) -> Iterator[str]:
@@ -41,23 +18,13 @@ def toml_lines(key: str, value: Any) -> Iterator[str]:
     if len(line) <= WIDTH or not isinstance(value, list):
         yield line
         return
-    yield f"{_key(key)} = ["
+    yield f"{line.partition(' = ')[0]} = ["
     yield from (f"    {toml_literal(item)}," for item in value)
     yield "]"
 
 
-def _number(value: float) -> str:
-    text = repr(value)
-    return text if "e" not in text else f"{value:.15f}".rstrip("0") if 1e-15 < abs(value) < 1 else text
-
-
-def _key(key: str) -> str:
-    return key if _BARE_KEY.fullmatch(key) else toml_literal(key)
-
-
 _ROBOT, _PACKAGE = "robot", "package"
 _MAX_ID = 60
-_MUTANTS = "Mutants of the reference that keep full marks: `grader rubric test`"
 
 
 class Head(NamedTuple):
@@ -74,8 +41,8 @@ class Head(NamedTuple):
     schema: str = ""
 
 
-def rubric_text(head: Head, facts: Mapping[str, Fact], ignored: Sequence[IgnoredMutants] = ()) -> str:
-    """Return a rubric with a criterion for each fact, by the ids of the criteria, and the mutants that it ignores."""
+def rubric_text(head: Head, facts: Mapping[str, Fact]) -> str:
+    """Return a rubric with a criterion for each fact, by the ids of the criteria."""
     of_package = sum(fact.of_package for fact in facts.values())
     lines = [
         *_head(head, len(facts)),
@@ -89,9 +56,6 @@ def rubric_text(head: Head, facts: Mapping[str, Fact], ignored: Sequence[Ignored
             about = fact.about
             lines += ["", _heading(about)]
         lines += _criterion(name, fact)
-    lines += ["", _heading(_MUTANTS)] if ignored else []
-    for patterns, reason in ignored:
-        lines += ["", "[[test.ignore]]", *toml_lines("mutants", patterns), assignment("reason", reason)]
     return "\n".join(lines) + "\n"
 
 
@@ -151,6 +115,6 @@ def _criterion(name: str, fact: Fact) -> Iterator[str]:
     yield from ("", "[criterion.with]")
     for key, value in sorted(fact.arguments.items(), key=lambda item: isinstance(item[1], Mapping)):
         is_long = isinstance(value, Mapping) and len(assignment(key, value)) > WIDTH
-        yield from ("", f"[criterion.with.{_key(key)}]") if is_long else ()
+        yield from ("", f"[criterion.with.{key}]") if is_long else ()
         for inner, item in value.items() if is_long else ((key, value),):
             yield from toml_lines(inner, item)

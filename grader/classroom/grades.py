@@ -82,7 +82,7 @@ class Class:
     def report(self, graded: Graded) -> Report:
         """Return the points of a result: outcomes without places, values and hints."""
         unread = graded.reason if graded.verdict == "unreadable" else ""
-        why = f"{unread}; needs manual grading" if unread else graded.reason
+        why = f"{unread}; needs manual grading" if unread else graded.reason if graded.verdict == "errored" else ""
         entries = ((name, graded.results[name]) for name in self._rows if name in graded.results)
         results = (self._result(name, status, words or why, by) for name, (_, status, words, by) in entries)
         submission = GradedSubmission(graded.student, unread=unread)

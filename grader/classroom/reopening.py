@@ -19,7 +19,6 @@ def reopened(book: Class, graded: Graded) -> Submission | None:
             return None
         known = book.results.texts(graded)
         options = Opening(0, book.settings.arguments, graded.no_documents, converted=known)
-        submission = opened.submission(book.rubric, options)
+        return opened.submission(book.rubric, options)
     except InputError:
         return None
-    return None if submission.students else submission  # that of several students is not graded

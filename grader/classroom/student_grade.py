@@ -23,6 +23,7 @@ class Reason(StrEnum):
     UNREADABLE = "could not be graded"
     UNCLEAR = "it is unclear which submission counts"
     MISSING = "nothing was submitted"
+    SEVERAL = "several robots fit: look whether the right one was graded"
     GONE = "no longer in the class folder"
     OUTDATED = "graded with another rubric or version: run `grader batch` again"
     NOT_ON_ROSTER = "not on the roster"
@@ -151,13 +152,16 @@ class StudentGrade:
             found.add(Reason.FAILED)
         if self.status == "unreadable" and self.pending:
             found.add(Reason.UNREADABLE)
+        if self.status == "graded" and reason:
+            found.add(Reason.SEVERAL)
         if self.graded is None and Reason.UNCLEAR not in found:
             found.add(Reason.MISSING)
         if self.has_final:
             found -= _OBSTACLES - {Reason.GONE}
         if self.older:
             found.add(Reason.OLDER_MARKS)
-        details = {Reason.FAILED: reason, Reason.UNREADABLE: reason, Reason.OLDER_MARKS: ", ".join(self.older)}
+        details = dict.fromkeys((Reason.FAILED, Reason.UNREADABLE, Reason.SEVERAL), reason)
+        details[Reason.OLDER_MARKS] = ", ".join(self.older)
         return {one: details.get(one, "") for one in Reason if one in found}
 
     @cached_property

@@ -13,8 +13,7 @@ from grader.classroom.team_folders import nbgrader, teams
 from grader.errors import InputError
 from grader.files.class_zip import ClassZip
 from grader.files.names import PACKAGE_FILES
-from grader.submission.labs import MAX_WRAPPERS, LabFolders
-from grader.submission.students import is_part
+from grader.submission.labs import MAX_WRAPPERS, LabFolders, is_part
 from grader.text import printable_path, shell_quoted
 
 __all__ = ["ClassSubmission", "Intake", "read_class"]

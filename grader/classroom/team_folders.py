@@ -10,8 +10,7 @@ from grader.classroom.roster import Student, iso_time
 from grader.errors import InputError
 from grader.files.names import PACKAGE_FILES
 from grader.names import folded
-from grader.submission.labs import lab_words
-from grader.submission.students import is_part
+from grader.submission.labs import is_part, lab_words
 from grader.text import enumerated, printable_path
 
 _MAX_NAMED = 10

@@ -26,7 +26,6 @@ Examples:
 
   grader rubric test my_lab.toml
 """
-RubricFormat = Literal["terminal", "markdown"]
 _FOLDER = "A folder with samples: submissions with an expected.toml."
 _LEAST = "Exit 1 if the mutation score is less, in percent."
 rubric = Commands(help=_HELP, no_args_is_help=True)
@@ -50,22 +49,18 @@ def list_rubrics() -> str:
 def show_rubric(
     name: RubricArgument,
     answers: AnswersOption = None,
-    output_format: Annotated[RubricFormat, typer.Option("--format", help="Output format.")] = "terminal",
 ) -> str:
     """Show the parts and criteria of a rubric with their points.
-
-    With --format markdown, it prints tables for the lab's handout, without arguments of checks, feedback and model
-    answers.
 
     Examples:
 
       grader rubric show lab6
 
       grader rubric show my_lab.toml --answers my_lab.answers.toml
-
-      grader rubric show my_lab.toml --format markdown
     """
-    return rubrics.show_rubric(name, answers, markdown=output_format == "markdown")
+    from grader.report.rubrics import rubric_overview
+
+    return rubric_overview(rubrics.load(name, answers))
 
 
 @rubric.command("checks")
@@ -94,7 +89,7 @@ def new_rubric(
     """Write a rubric from a reference solution.
 
     It has a criterion for each fact that can be measured. It is graded on the reference, which must get full marks. The
-    output lists the facts that no check can test, and what looks like a mistake in the solution.
+    output lists the facts that no check can test.
 
     Examples:
 
@@ -144,8 +139,6 @@ def run_test(
     name: RubricArgument,
     folder: Annotated[Path | None, typer.Argument(metavar="[FOLDER]", help=_FOLDER)] = None,
     fail_under: Annotated[str | None, typer.Option(metavar="N|N%", help=_LEAST)] = None,
-    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the random choices.")] = 0,
-    mutants: Annotated[int, typer.Option(metavar="N", min=0, help="Maximum number of mutants to grade.")] = 500,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> int:
     """Test a rubric on variants of its reference and on samples.
@@ -165,7 +158,7 @@ def run_test(
     from grader.usecases.rubric_making import test_rubric
 
     is_json = output_format is OutputFormat.JSON
-    text, code = test_rubric(name, folder, fail_under, seed, mutants, is_json, TERMINAL)
+    text, code = test_rubric(name, folder, fail_under, is_json, TERMINAL)
     write_stdout(text)
     return code
 

@@ -1,7 +1,6 @@
 """The JSON Schema of a rubric, for editors: its keys, and the arguments of every installed check."""
 
 import json
-from collections.abc import Iterable
 from typing import Any
 
 from grader.checks.check import Check
@@ -25,35 +24,16 @@ def rubric_schema() -> _Schema:
         row["properties"]["check"] |= {"enum": list(named), "x-taplo": {"docs": {"enumValues": facts}}}
         # In a row with allOf, taplo completes no key.
         row |= {"if": {"required": ["check"]}, "then": {"$ref": "#/$defs/arguments"}}
+    # Only the loader knows which of the missing keys and arguments the defaults give.
     criterion["required"] = [key for key in criterion["required"] if key not in DEFAULTS.keys]
     schema["properties"]["criterion"]["items"] = criterion
     defaults = {check.name: {"$ref": f"#/$defs/{check.name}"} for check in checks}
     schema["properties"]["defaults"]["properties"]["with"] |= {"properties": defaults, "additionalProperties": False}
     definitions = {check.name: _arguments(check) for check in checks}
-    definitions["arguments"] = {"allOf": [_if_check(check, {"$ref": f"#/$defs/{check.name}"}) for check in checks]}
-    definitions |= _complete(checks)
-    # Only the loader knows which of the missing keys the defaults give.
-    complete = {"properties": {"criterion": {"items": {"$ref": "#/$defs/complete"}}}}
-    schema |= {"if": {"not": {"required": ["defaults"]}}, "then": complete}
+    chosen = [({"check": {"const": name}}, {"with": arguments}) for name, arguments in defaults.items()]
+    rules = [{"if": {"properties": it, "required": ["check"]}, "then": {"properties": then}} for it, then in chosen]
+    definitions["arguments"] = {"allOf": rules}
     return {"$schema": _DRAFT, "title": "grader rubric", **schema, "$defs": definitions}
-
-
-def _complete(checks: Iterable[Check]) -> _Schema:
-    """Return definitions of what else a rubric without defaults requires: in its criteria, and in what they carry."""
-    needed = [(check, [name for name, it in check.parameters.items() if it.required]) for check in checks]
-    rules = [_if_check(check, {"required": names}) for check, names in needed if names]
-    of_check = {"$ref": "#/$defs/needed"}
-    required = [key for key in CRITERION.schema["required"] if key in DEFAULTS.keys]
-    complete = {**of_check, "required": required, "properties": {"carried": {**of_check, "items": of_check}}}
-    return {"needed": {"allOf": rules}, "complete": complete}
-
-
-def _if_check(check: Check, arguments: _Schema) -> _Schema:
-    """Return the rule that the arguments of a check, where a table names it, meet a schema."""
-    then: _Schema = {"properties": {"with": arguments}}
-    if "required" in arguments:
-        then["required"] = ["with"]
-    return {"if": {"properties": {"check": {"const": check.name}}, "required": ["check"]}, "then": then}
 
 
 def _arguments(check: Check) -> _Schema:

@@ -29,30 +29,8 @@ _LONG_KEY = re.compile(
     rf"""(?m)(?:^|[\[{{,])[ \t]*+((?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{_MAX_DEPTH}}})"""
 )
 _MAX_COMPLAINTS = 1000  # lines about one file
-_MAX_WIDTH = 200  # characters of a line that are looked at on each side of a mistake
+_MAX_WIDTH = 100  # characters of a line that are shown on each side of a mistake
 _PLACE = r" \(at (?:line (\d+), column (\d+)|end of document)\)$"
-_SMART = "[“”„‟‘’‚‛«»‹›]"
-# The mistakes that people make: what tomllib says, what is before and what is after the place (a line each), and what
-# to do.
-_MISTAKES = (
-    # name = “lab”, or a string that begins with " and ends with ”
-    (rf".*\n.*\n({_SMART})|Illegal.*\n.*({_SMART})\s*\n$", "{} is not a TOML quote: write straight quotes, \" or '"),
-    (
-        r"(?:Illegal|Found invalid) character '\\n'",
-        'the string has no closing quote on its line: add it, or put a long string between """ and """',
-    ),
-    (r"Invalid value\n.*\n((?i:true|false))\b", "write true and false in lower case, not {}"),
-    # name = lab, and name = lab"
-    (r"Invalid value\n.*\n([^\W\d][^,\]}#\"']*?)\s*[\"']?\s*(?:[,\]}#]|$)", 'a string needs quotes: write "{}"'),
-    (
-        r"Unclosed array\n.*\n(\"[^\"]*\"|'[^']*'|[^\s,\]]+)",
-        "a comma is missing before {}, or a list above has no closing bracket",
-    ),
-    (
-        r"(?:Unclosed inline table|Invalid initial).*\n.*\{.*\n\s*(?:#.*)?$",
-        "a table in braces must be on one line: join the lines, or write it as a [table] after the other keys",
-    ),
-)
 
 
 def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
@@ -85,17 +63,12 @@ def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Pat
 
 
 def _mistake(error: str, text: str) -> str:
-    """Return the place of the mistake that a message of tomllib is about, and what to do, else what tomllib says."""
+    """Return the place of the mistake that a message of tomllib is about, what it says, and the line."""
     lines = text.replace("\r\n", "\n").split("\n")
     said, line, column, _ = re.split(_PLACE, error)
-    row, at = (int(line), int(column) - 1) if line else (len(lines), len(lines[-1]))
-    before, after = lines[row - 1][:at][-_MAX_WIDTH:], lines[row - 1][at:][:_MAX_WIDTH]
-    what = f"{said[0].lower()}{said[1:]}: {(before + after).strip() or 'an empty line'}"
-    for pattern, advice in _MISTAKES:
-        if match := re.match(pattern, f"{said}\n{before}\n{after}"):
-            what = advice.format(match[match.lastindex or 0])
-            break
-    return f"{row}:{at + 1}: {printable(what)}"
+    row, at = (int(line), int(column)) if line else (len(lines), len(lines[-1]) + 1)
+    around = lines[row - 1][max(0, at - _MAX_WIDTH) : at + _MAX_WIDTH].strip() or "an empty line"
+    return f"{row}:{at}: {said[0].lower()}{said[1:]}: {printable(around)}"
 
 
 def _encoding(data: bytes, at: int) -> str:

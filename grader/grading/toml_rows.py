@@ -1,5 +1,7 @@
 """Read the tables of a rubric: values are converted, and every mistake is collected with the path of its key."""
 
+import json
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
@@ -11,6 +13,7 @@ from grader.text import cut
 _MAX_GUESSES = 50  # searches for a similar name in one rubric: each takes its time
 _MAX_SHOWN = 40  # characters of a value
 _MAX_BITS = 1000  # of a whole number that is written out
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 TomlRow = dict[str, Any]
 _NOTHING: Mapping[str, Any] = {}
@@ -86,18 +89,30 @@ class TomlRowReader:
 
 def shorten_value(value: Any) -> str:
     """Return a value of TOML in a few characters."""
+    return cut(toml_literal(value), _MAX_SHOWN)
+
+
+def toml_literal(value: Any) -> str:
+    """Return a value as TOML, in one line."""
     match value:
-        case list():
-            text = ", ".join(map(shorten_value, value[:6]))
-            return f"[{text}{', ...' if len(value) > 6 else ''}]"
-        case dict():
-            text = f"{{ {', '.join(f'{key} = {shorten_value(it)}' for key, it in value.items())} }}" if value else "{}"
         case bool():
-            return str(value).lower()
+            text = str(value).lower()
+        case float():
+            text = repr(value)
+            text = f"{value:.15f}".rstrip("0") if "e" in text and 1e-15 < abs(value) < 1 else text
+        case str():
+            text = json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        case Mapping():
+            text = f"{{ {', '.join(assignment(key, item) for key, item in value.items())} }}" if value else "{}"
+        case list() | tuple():
+            text = f"[{', '.join(map(toml_literal, value))}]"
         case int() if value.bit_length() > _MAX_BITS:  # Python refuses to write numbers of thousands of digits
             text = "a number with too many digits"
-        case str():
-            text = repr(value)
         case _:
             text = str(value)
-    return cut(text, _MAX_SHOWN)
+    return text
+
+
+def assignment(key: str, value: Any) -> str:
+    """Return a line that sets a key."""
+    return f"{key if _BARE_KEY.fullmatch(key) else toml_literal(key)} = {toml_literal(value)}"

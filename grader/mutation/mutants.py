@@ -1,20 +1,19 @@
 """Mutants of a URDF or xacro text: every single edit that a family of mistakes allows."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator
-from itertools import pairwise
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from math import degrees
 from typing import NamedTuple
 
-from grader.markup import Attribute
-from grader.mutation.elements import Element, elements, names_of_tag, text_span
+from grader.markup import Attribute, attributes, element_end, head_end, name_end
+from grader.source import Source
+from grader.xml.parsing import Element, XmlFault, XmlFile, read_document
 from grader.xml.urdf_format import JOINT_TYPES, PARTS
 
 _NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 _NAMES = ("name", "link", "joint", "reference")
-_UNTOUCHED = ("version", "encoding")
-_TYPES = (*JOINT_TYPES, "Fixed", "rotating")
-_MAX_EXCHANGED = 12  # other names that a name becomes
+_UNTOUCHED = ("version", "encoding", "params")
 _BOX = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
 
 
@@ -22,8 +21,7 @@ class Mutant(NamedTuple):
     """One file of a solution with one mistake.
 
     `id` is stable: the family and the place by names, `number x10: joint base_lidar_joint/origin xyz.z`. From `start`
-    to `end` the text becomes `new`; a file that is `renamed` gets this path, and one that `is_deleted` is gone. `tags`
-    are those of the element that is changed, from the root, and the attribute with an @.
+    to `end` the text becomes `new`; a file that `is_deleted` is gone, or is at the path `renamed`.
     """
 
     id: str
@@ -33,9 +31,8 @@ class Mutant(NamedTuple):
     start: int = 0
     end: int = 0
     new: str = ""
-    renamed: str = ""
     is_deleted: bool = False
-    tags: tuple[str, ...] = ()
+    renamed: str = ""
 
     def applied(self, text: str) -> str:
         """Return the text of its file with the mistake."""
@@ -50,7 +47,6 @@ class MutantEdit(NamedTuple):
     start: int
     end: int
     new: str
-    tags: tuple[str, ...] = ()
 
 
 def mutants(text: str, path: str = "", hidden: Collection[str] = ()) -> Iterator[Mutant]:
@@ -58,100 +54,91 @@ def mutants(text: str, path: str = "", hidden: Collection[str] = ()) -> Iterator
     return as_mutants(text, path, _changes(text, {f"link {name}" for name in hidden}))
 
 
-def as_mutants(text: str, path: str, changes: Iterable[MutantEdit], tags: tuple[str, ...] = ()) -> Iterator[Mutant]:
+def as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator[Mutant]:
     """Yield the mutants that changes of a file make, each once and with an id of its own."""
     seen: set[tuple[int, int, str]] = set()
-    ids: dict[str, int] = {}
-    for change in changes:
-        key = (change.start, change.end, change.new)
-        if key in seen or text[change.start : change.end] == change.new:
+    ids: Counter[str] = Counter()
+    for family, label, start, end, new in changes:
+        if (start, end, new) in seen or text[start:end] == new:
             continue
-        seen.add(key)
-        name = f"{change.family}: {change.label}"
-        ids[name] = ids.get(name, 0) + 1
+        seen.add((start, end, new))
+        name = f"{family}: {label}"
+        ids[name] += 1
         name += f" ({ids[name]})" if ids[name] > 1 else ""
-        line = text.count("\n", 0, change.start) + 1
-        yield Mutant(name, change.family, path, line, *key, tags=change.tags or tags)
+        yield Mutant(name, family, path, text.count("\n", 0, start) + 1, start, end, new)
 
 
 def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
-    found = elements(text)
-    known = {tag: names_of_tag(text, found, tag) for tag in ("link", "joint", "material")}
-    for element in found:
-        for attribute in element.attributes:
-            yield from _of_attribute(text, element, attribute, known)
-        span = text_span(text, element)
-        if span is not None and element.parent >= 0:
-            yield from of_value(text, element.label, span, "", (*element.tags, "@"))
-        if element.parent >= 0:
-            yield from _of_element(text, element, found[element.parent])
-        if element.label in hidden:
-            is_empty = text[element.head_end - 2] == "/"
-            span = element.head_end - (2 if is_empty else 0), element.head_end
+    places = list(_places(text))
+    names = {tag: [it.get("name", "") for it, *_ in places if it.tag == tag] for tag in ("link", "joint", "material")}
+    for element, label, start in places:
+        for attribute in attributes(text, start):
+            yield from _of_attribute(text, element, label, attribute, names)
+        if element.getparent() is None:
+            continue
+        (head, is_empty), end = head_end(text, start), element_end(text, start)
+        if not len(element) and (element.text or "").strip():
+            yield from _of_value(text, label, (head, text.rindex("</", head, end)), "")
+        yield MutantEdit("element deleted", label, start, end, "")
+        if label in hidden:
             new = f">{_BOX}</link>" if is_empty else _BOX
-            yield MutantEdit("visual added", element.label, *span, new, (*element.tags, "visual"))
+            yield MutantEdit("visual added", label, head - 2 * is_empty, head, new)
+
+
+def _places(text: str) -> Iterator[tuple[Element, str, int]]:
+    """Yield each element with its offset, and its place by names, which does not change if lines are added."""
+    data, source = text.encode("utf-8", "surrogateescape"), Source("", text)
+    try:
+        root: Element | None = XmlFile(data, source).root
+    except XmlFault:
+        document = read_document(data, "")
+        root, source = document.root, document.source
+    labels: dict[Element | None, str] = {}
+    counts: Counter[str] = Counter()
+    for index, element in enumerate(root.iter("*") if root is not None else ()):
+        parent, (_, start) = element.getparent(), source.element(index)
+        is_named = parent is not None and (element.tag != "material" or parent.getparent() is None)
+        name = (element.get("name") or element.get("reference") or "") if is_named else ""
+        label = f"{text[start + 1 : name_end(text, start)]} {name}".strip()
+        label = f"{labels[parent]}/{label}" if labels.get(parent) else label
+        counts[label] += 1
+        label += f" {counts[label]}" if counts[label] > 1 else ""  # of equal siblings: visual 2
+        labels[element] = label if parent is not None else ""
+        yield element, label, start
 
 
 def _of_attribute(
-    text: str, element: Element, attribute: Attribute, known: dict[str, list[str]]
+    text: str, element: Element, label: str, attribute: Attribute, names: Mapping[str, Sequence[str]]
 ) -> Iterator[MutantEdit]:
     name, span = attribute.name, attribute.value
-    label, tags = f"{element.label} {name}", (*element.tags, f"@{name}")
-    yield MutantEdit("attribute deleted", label, attribute.start - 1, attribute.end, "", tags)
-    name_end = attribute.start + len(name)
-    yield MutantEdit("attribute misspelt", label, attribute.start, name_end, misspelt(name), tags)
+    place = f"{label} {name}"
+    yield MutantEdit("attribute deleted", place, attribute.start - 1, attribute.end, "")
     if name in _NAMES:
-        kind = element.tag if element.tag in known else name if name in known else "link"
-        yield from of_name(text, label, span, known[kind], tags)
+        value = text[slice(*span)]
+        known = names.get(str(element.tag), names.get(name, names["link"]))
+        yield MutantEdit("name misspelt", place, *span, misspelt(value))
+        at = known.index(value) + 1 if value in known else 0
+        other = next((it for it in (*known[at:], *known[:at]) if it != value), "")
+        yield from [MutantEdit("name exchanged", f"{place} -> {other}", *span, other)] if other else []
     elif name == "type" and element.tag == "joint":
-        yield from (MutantEdit("type", f"{label} -> {other}", *span, other, tags) for other in _TYPES)
+        yield from (MutantEdit("type", f"{place} -> {other}", *span, other) for other in JOINT_TYPES)
     elif name not in _UNTOUCHED and not name.startswith("xmlns"):
-        changes = of_value(text, element.label, span, name, tags)
-        yield from (change for change in changes if name != "params" or change.family != "text misspelt")
-    if name == "lower":
-        upper = next((other for other in element.attributes if other.name == "upper"), None)
-        if upper is not None:
-            first, last = sorted((span, upper.value))
-            swapped = text[slice(*last)] + text[first[1] : last[0]] + text[slice(*first)]
-            yield MutantEdit("limits exchanged", element.label, first[0], last[1], swapped, tags)
+        yield from _of_value(text, label, span, name)
 
 
-def of_name(
-    text: str, label: str, span: tuple[int, int], others: Iterable[str], tags: tuple[str, ...] = ()
-) -> Iterator[MutantEdit]:
-    """Yield changes of a name: misspelt, in other case, or another name that exists."""
-    name = text[slice(*span)]
-    yield MutantEdit("name misspelt", label, *span, misspelt(name), tags)
-    yield MutantEdit("name capitalised", label, *span, name.title() if name.islower() else name.lower(), tags)
-    family = "material exchanged" if "material" in tags[-2:] else "name exchanged"
-    yield from (MutantEdit(family, f"{label} -> {other}", *span, other, tags) for other in _next(name, list(others)))
-
-
-def _next(name: str, names: list[str]) -> list[str]:
-    """Return the other names, the next ones of many: a robot of 200 links would have 100,000 exchanges."""
-    start = names.index(name) + 1 if name in names else 0
-    others = [other for other in names[start:] + names[:start] if other != name][:_MAX_EXCHANGED]
-    return sorted(others, key=names.index)
-
-
-def of_value(
-    text: str, label: str, span: tuple[int, int], name: str, tags: tuple[str, ...] = ()
-) -> Iterator[MutantEdit]:
+def _of_value(text: str, label: str, span: tuple[int, int], name: str) -> Iterator[MutantEdit]:
     """Yield changes of a value: of each number in it, else of the text."""
     start, end = span
-    pieces = [(start + found.start(), start + found.end()) for found in _NUMBER.finditer(text[start:end])]
     label = f"{label} {name}".rstrip()
-    parts = [f"{label}{part}" for part in _parts(name, len(pieces))]
-    for part, (low, high) in zip(parts, pieces, strict=True):
-        for family, number in _alternatives(float(text[low:high])):
-            yield MutantEdit(family, part, low, high, f"{number:.6g}", tags)
-    for part, ((low, middle), (next_low, high)) in zip(parts, pairwise(pieces), strict=False):
-        swapped = text[next_low:high] + text[middle:next_low] + text[low:middle]
-        yield MutantEdit("number exchanged", part, low, high, swapped, tags)
-    if not pieces and text[start:end].strip():
-        yield MutantEdit("text misspelt", label, start, end, misspelt(text[start:end]), tags)
-        if name == "filename":
-            yield MutantEdit("text in other case", label, start, end, text[start:end].swapcase(), tags)
+    pieces = list(_NUMBER.finditer(text, start, end))
+    for part, found in zip(_parts(name, len(pieces)), pieces, strict=True):
+        for family, number in _alternatives(float(found[0])):
+            if number != float(found[0]):
+                yield MutantEdit(family, f"{label}{part}", *found.span(), f"{number:.6g}")
+    value = text[start:end].strip()
+    if not pieces and value:
+        start = text.index(value, start)
+        yield MutantEdit("text misspelt", label, start, start + len(value), misspelt(value))
 
 
 def _parts(name: str, count: int) -> list[str]:
@@ -164,24 +151,11 @@ def _alternatives(value: float) -> Iterable[tuple[str, float]]:
     return (
         ("number negated", -value),
         ("number x10", value * 10),
-        ("number /10", value / 10),
         ("number +0.05", value + 0.05),
         ("number -0.05", value - 0.05),
         ("number zero", 0.0),
-        ("number halved", value / 2),
-        ("number doubled", value * 2),
         ("number in degrees", degrees(value)),
     )
-
-
-def _of_element(text: str, element: Element, parent: Element) -> Iterator[MutantEdit]:
-    own, label, tags = text[element.start : element.end], element.label, element.tags
-    yield MutantEdit("element deleted", label, element.start, element.end, "", tags)
-    if not element.is_foreign:  # whether a simulator reads the second one depends on the simulator
-        yield MutantEdit("element duplicated", label, element.end, element.end, f"\n{own}", tags)
-    if parent.parent >= 0:
-        between = text[parent.start : element.start]
-        yield MutantEdit("element moved up", label, parent.start, element.end, f"{own}\n{between}", tags)
 
 
 def misspelt(name: str) -> str:

@@ -1,9 +1,9 @@
 """Sample submissions: folders with an expected.toml, which says what their report must be."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from grader.checks.toml_types import simple_type, toml_type
 from grader.errors import InputError, RubricError
@@ -13,7 +13,6 @@ from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric
 from grader.grading.toml_file import complain_of, read_toml
 from grader.grading.toml_rows import KeyTable, TomlRowReader
-from grader.mutation.result import Loss, SampleResults
 from grader.names import did_you_mean
 from grader.submission.opening import open_submission
 from grader.submission.urdf import Read
@@ -32,6 +31,22 @@ _WORDS = {"lost": "loses its points", "carried": "fails without a deduction", "p
 _TABLE = KeyTable(
     "sample", dict.fromkeys(("about", "path", "rubric"), _TEXT) | {"verdict": _VERDICT} | dict.fromkeys(_WORDS, _IDS)
 )
+
+
+class Loss(NamedTuple):
+    """A submission with criteria that are not what they must be, each with its message."""
+
+    name: str
+    criteria: Mapping[str, str]
+    diff: str = ""
+
+
+class SampleResults(NamedTuple):
+    """How many samples were graded, how many belong to another rubric, and what differs from their expected.toml."""
+
+    tried: int
+    skipped: int
+    different: tuple[Loss, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,13 +95,13 @@ def _sample(path: Path) -> Sample:
     return Sample(path.parent, **values)
 
 
-def tested_samples(rubric: Rubric, samples: list[Sample], step: Callable[[], None]) -> SampleResults:
+def tested_samples(rubric: Rubric, samples: list[Sample], show: Callable[[int], None]) -> SampleResults:
     """Return which samples of a rubric differ from what they expect. Raises RubricError for an unknown criterion."""
     own = [sample for sample in samples if sample.rubric in ("", rubric.id)]
     _check_names(rubric, own)
     different: list[Loss] = []
-    for sample in own:
-        step()
+    for done, sample in enumerate(own):
+        show(done)
         found = dict(differences(sample, rubric))
         if found:
             different.append(Loss(sample.name, found))

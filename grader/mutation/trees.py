@@ -1,18 +1,16 @@
 """The element tree of a URDF, to rewrite a robot: poses, frames and joints."""
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
-from random import Random
-from typing import TypeVar
+from collections.abc import Iterable, Iterator
 
 from lxml import etree
 
-from grader.mutation.elements import FOREIGN
 from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
 from grader.xacro.texts import INSTALLED
 from grader.xml.parsing import Element
 
-_Item = TypeVar("_Item")
+# Tags below <robot> that ROS 2's own reader ignores.
+FOREIGN = ("gazebo", "ros2_control", "transmission", "sensor")
 XACRO = "http://www.ros.org/wiki/xacro"
 _FOUND = re.compile(rf"\Afile:/*{INSTALLED}/([^/]+)/share/\1/")
 
@@ -88,8 +86,9 @@ def end(joint: Element, role: str) -> Element:
 
 
 def parent_joint(tree: Element, link: str) -> Element | None:
-    """Return the joint whose child is this link."""
-    return next((joint for joint in tree.iterchildren("joint") if end(joint, "child").get("link") == link), None)
+    """Return the one joint whose child is this link; None of several."""
+    found = [joint for joint in tree.iterchildren("joint") if end(joint, "child").get("link") == link]
+    return found[0] if len(found) == 1 else None
 
 
 def move_frame(tree: Element, link: Element, change: Transform) -> None:
@@ -137,9 +136,3 @@ def words_of_foreign(tree: Element) -> set[str]:
     found = [element for tag in FOREIGN for child in tree.iterchildren(tag) for element in child.iter("*")]
     values = [value for element in found for value in (element.text or "", *map(str, element.attrib.values()))]
     return {word for value in values for word in value.split()}
-
-
-def some(random: Random, items: Iterable[_Item]) -> Sequence[_Item]:
-    """Return one to three items, or none where there are none."""
-    found = list(items)
-    return random.sample(found, min(len(found), random.randint(1, 3)))

@@ -8,6 +8,7 @@ from typing import Any
 
 from grader.files.reading import shipped_folder
 from grader.grading.toml_file import read_toml
+from grader.grading.toml_rows import toml_literal
 from grader.problems import Kind
 
 _CHECKS = "checks"
@@ -26,7 +27,7 @@ def example_blocks(name: str) -> Iterator[tuple[str, str, str]]:
     example = entries.get(name, {})
     if "wrong" in example:
         if family == _CHECKS:
-            given = f"\nwith = {toml_text(example['with'])}" if "with" in example else ""
+            given = f"\nwith = {toml_literal(example['with'])}" if "with" in example else ""
             yield "In a rubric", "rubric.toml", f'check = "{name}"{given}'
         file = example.get("frame", next(iter(entries["frames"]))).rpartition("/")[2]
         yield "Wrong", file, example["wrong"].rstrip() or "(an empty file)"
@@ -48,18 +49,6 @@ def _family(name: str) -> Mapping[str, Any]:
     return read_toml(path.read_bytes(), path)[1] if path.is_file() else {}
 
 
-def toml_text(value: object) -> str:
-    """Return a value as a rubric has it, one that is not given as `not checked`."""
-    match value:
-        case bool():
-            return str(value).lower()
-        case str():
-            return f'"{value}"'
-        case float():
-            return f"{value:g}"
-        case list() | tuple():
-            return f"[{', '.join(map(toml_text, value))}]"
-        case dict():
-            items = (f"{key if key.isidentifier() else toml_text(key)} = {toml_text(it)}" for key, it in value.items())
-            return f"{{ {', '.join(items)} }}"
-    return "not checked" if value is None else str(value)
+def default_text(value: object) -> str:
+    """Return a default as a rubric has it, one that is not given as `not checked`."""
+    return "not checked" if value is None else toml_literal(value)

@@ -2,14 +2,12 @@
 
 import textwrap
 from collections.abc import Iterator, Sequence
-from os.path import commonprefix
 
 from grader import __version__
 from grader.grading.criterion import worth
-from grader.mutation.mutants import Mutant
-from grader.mutation.result import Loss, MutantResults, RubricTest, Survivor
+from grader.mutation.samples import Loss
+from grader.mutation.testing import RubricTest
 from grader.report.as_json import SCORE
-from grader.report.criteria import alike
 from grader.report.json_data import (
     COUNT,
     GRADER,
@@ -28,22 +26,30 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
-from grader.text import counted, enumerated, first_lines, format_points, printable, without_commands
+from grader.text import enumerated, first_lines, format_points, printable, without_commands
 
-_MAX_OF_GROUP, _MAX_GROUPS, _MAX_DIFF, _MAX_LOSSES = 3, 12, 14, 10
+_MAX_LISTED, _MAX_DIFF = 10, 14
 _DEEPEST = 4  # indentation of a sentence
-_AROUND = 20  # characters of a long line before what changes
 
 
 def render_rubric_test(test: RubricTest, width: int) -> str:
     """Return the result in lines of at most this width: what was graded, what is wrong, the score last."""
-    rubric = test.reference.rubric
-    lines = [f"{rubric.id}: {rubric.title}", "", *_counts(test), *_reference(test)]
-    lines += _losses("These equivalents of the reference lose points:", test.equivalents.losses)
-    lines += _losses("These samples differ from their expected.toml:", test.samples.different if test.samples else ())
-    lines += _losses("On these mutants a check is faulty:", test.mutants.faults)
-    lines += [*_survivors(test.mutants.survivors), *_idle(test.mutants)]
-    percent = int(test.mutants.score * 10) / 10  # rounded down: 100 only where nothing survived
+    results = test.reference.results
+    lost = [f"  {it.criterion.id}: {it.outcome.message}" for it in results if it.criterion.id in test.lost]
+    lines = [f"{test.reference.rubric.id}: {test.reference.rubric.title}", "", *_counts(test)]
+    lines += ["", "The reference does not get full marks:", *lost] if lost else []
+    lines += _listed("These equivalents of the reference lose points:", test.losses)
+    lines += _listed("These samples differ from their expected.toml:", test.samples.different if test.samples else ())
+    lines += _listed("On these mutants a check is faulty:", test.faults)
+    survivors = [Loss(it.mutant.id, {}, it.diff) for it in test.survivors]
+    lines += _listed("These mutants of the reference get full marks:", survivors)
+    lines += ["", "To accept a mutant, add it to [[test.ignore]] with a reason."] if survivors else []
+    if test.idle:
+        mutant = "mutant" if test.tried == test.total else "graded mutant"
+        lines += ["", f"Idle criteria, which no {mutant} fails: {enumerated(test.idle)}"]
+    for pattern in test.unused:
+        lines += ["", f"The pattern {pattern!r} of [[test.ignore]] matches no mutant."]
+    percent = int(test.score * 10) / 10  # rounded down: 100 only where nothing survived
     lines += ["", f"Mutation score: {percent:g} %"]
     text = "\n".join(folded for line in lines for folded in _fold(printable(line), width))
     return without_commands(f"{text}\n")
@@ -60,93 +66,36 @@ def _fold(line: str, width: int) -> list[str]:
 
 
 def _counts(test: RubricTest) -> Iterator[str]:
-    report, equivalents, samples = test.reference, test.equivalents, test.samples
-    decided = worth(
-        result.criterion for result in report.results if not result.is_open or result.criterion.id in test.lost
-    )
+    report, samples = test.reference, test.samples
+    decided = worth(it.criterion for it in report.results if not it.is_open or it.criterion.id in test.lost)
     yield f"Reference    {format_points(report.score)} of {decided.text}"
-    if equivalents.tried:
-        losing = _some(len(equivalents.losses), "loses", "lose")
-        yield f"Equivalents  {sum(equivalents.tried.values())} graded, {losing} points"
+    if test.equivalents:
+        yield f"Equivalents  {len(test.equivalents)} graded, {_some(len(test.losses), 'loses', 'lose')} points"
     else:
-        yield f"Equivalents  none graded: {next(iter(equivalents.unused.values()), '')}"
+        yield "Equivalents  none graded: ROS 2 does not load the reference without problems"
     if samples is not None:
         skipped = f", {samples.skipped} of other rubrics skipped" if samples.skipped else ""
         differ = _some(len(samples.different), "differs", "differ")
         yield f"Samples      {samples.tried} graded, {differ} from expected.toml{skipped}"
-    found = test.mutants
-    sample = f" of {found.total}" if found.tried < found.total else ""
-    same = f", {found.same} {'is' if found.same == 1 else 'are'} the same robot" if found.same else ""
-    ignored = f", {len(found.ignored)} ignored by the rubric" if found.ignored else ""
-    survive = _some(len(found.survivors), "survives", "survive")
-    yield f"Mutants      {found.tried}{sample} graded, {found.caught} lose points{same}{ignored}, {survive}"
+    sample = f" of {test.total}" if test.tried < test.total else ""
+    same = f", {test.same} {'is' if test.same == 1 else 'are'} the same robot" if test.same else ""
+    ignored = f", {len(test.ignored)} ignored by the rubric" if test.ignored else ""
+    survive = _some(len(test.survivors), "survives", "survive")
+    yield f"Mutants      {test.tried}{sample} graded, {test.caught} lose points{same}{ignored}, {survive}"
 
 
 def _some(count: int, one: str, several: str) -> str:
     return f"{count or 'none'} {one if count == 1 else several}"
 
 
-def _reference(test: RubricTest) -> Iterator[str]:
-    if test.lost:
-        yield from ("", "The reference does not get full marks:")
-    for result in test.reference.results:
-        if result.criterion.id in test.lost:
-            yield f"  {result.criterion.id}: {result.outcome.message}"
-
-
-def _losses(title: str, losses: Sequence[Loss]) -> Iterator[str]:
+def _listed(title: str, losses: Sequence[Loss]) -> Iterator[str]:
     if losses:
         yield from ("", title)
-    for loss in losses[:_MAX_LOSSES]:
+    for loss in losses[:_MAX_LISTED]:
         yield from ("", f"  {loss.name}", *(f"    {name}: {message}" for name, message in loss.criteria.items()))
-        yield from _diff(loss.diff)
-    if len(losses) > _MAX_LOSSES:
-        yield from ("", f"  ... and {len(losses) - _MAX_LOSSES} more")
-
-
-def _survivors(survivors: Sequence[Survivor]) -> Iterator[str]:
-    """Yield the survivors by the element or attribute that they change, the most frequent first."""
-    groups = sorted(alike(survivors, lambda survivor: _place(survivor.mutant)), key=lambda group: -len(group[1]))
-    if groups:
-        yield from ("", "These mutants of the reference get full marks:")
-    for place, group in groups[:_MAX_GROUPS]:
-        yield from ("", f"{place}: {counted(len(group), 'mutant')}")
-        for survivor in group[:_MAX_OF_GROUP]:
-            yield from (f"  {survivor.mutant.id}", *_diff(survivor.diff))
-        if len(group) > _MAX_OF_GROUP:
-            yield f"  ... and {len(group) - _MAX_OF_GROUP} more"
-    hidden = sum(len(group) for _, group in groups[_MAX_GROUPS:])
-    if hidden:
-        yield from ("", f"... and {counted(hidden, 'other mutant')}")
-    if hidden or any(len(group) > _MAX_OF_GROUP for _, group in groups):
-        yield "--format json lists all. To accept one, add it to [[test.ignore]] with a reason."
-
-
-def _place(mutant: Mutant) -> str:
-    """Return what a mutant changes: material/color@rgba, setup.py."""
-    return "/".join(mutant.tags[mutant.tags[:1] == ("robot",) :]).replace("/@", "@") or mutant.family
-
-
-def _diff(diff: str) -> list[str]:
-    """Return the lines of a diff; of a long line that changes, what is around the change."""
-    lines = first_lines(diff.splitlines(), _MAX_DIFF)
-    changed = [line[1:] for line in lines[3:] if line[:1] in "+-"]
-    before = len(commonprefix(changed)) - _AROUND if len(changed) == 2 else 0  # noqa: RUF071  of texts, not of paths
-    if before > _AROUND:
-        lines = [
-            f"{line[0]}...{line[1 + before :]}" if line[:1] in "+-" and i > 2 else line for i, line in enumerate(lines)
-        ]
-    return [f"      {line}" for line in lines]
-
-
-def _idle(found: MutantResults) -> Iterator[str]:
-    if found.idle:
-        yield from (
-            "",
-            f"No mutant fails {enumerated(found.idle)}: {'it is' if len(found.idle) == 1 else 'they are'} idle.",
-        )
-    for pattern in found.unused:
-        yield from ("", f"The pattern {pattern!r} of [[test.ignore]] matches no mutant.")
+        yield from (f"      {line}" for line in first_lines(loss.diff.splitlines(), _MAX_DIFF))
+    if len(losses) > _MAX_LISTED:
+        yield from ("", f"  ... and {len(losses) - _MAX_LISTED} more, which --format json lists")
 
 
 _LOSSES = Many(Record({"name": TEXT, "criteria": mapping(TEXT), "diff": TEXT}))
@@ -161,26 +110,25 @@ _MUTANTS = Record(
     {
         **each(TOTAL, "total tried caught"),
         "same_robot": (TOTAL, "same"),
-        "ignored": (TOTAL, lambda found: len(found.ignored)),
-        "survived": (TOTAL, lambda found: len(found.survivors)),
+        "ignored": (TOTAL, lambda test: len(test.ignored)),
+        "survived": (TOTAL, lambda test: len(test.survivors)),
     }
 )
-_EQUIVALENTS = Record({"tried": mapping(TOTAL), "unused": mapping(TEXT), "lost": (_LOSSES, "losses")})
+_EQUIVALENTS = Record({"tried": (array(TEXT), "equivalents"), "lost": (_LOSSES, "losses")})
 RUBRIC_TEST = Record(
     {
         **schema_key("grader/rubric-test/v1"),
         "grader": (GRADER, lambda _: {"version": __version__}),
         "rubric": (RUBRIC, "reference.rubric"),
-        "seed": {"type": "integer"},
-        "score": ({"type": "number", "minimum": 0, "maximum": 100}, lambda test: rounded(float(test.mutants.score))),
+        "score": ({"type": "number", "minimum": 0, "maximum": 100}, lambda test: rounded(float(test.score))),
         "reference": (Record({**inner("reference", SCORE), "lost": array(TEXT)}), lambda test: test),
-        "equivalents": _EQUIVALENTS,
+        "equivalents": (_EQUIVALENTS, lambda test: test),
         "samples": Maybe(Record({**each(TOTAL, "tried skipped"), "different": _LOSSES})),
-        "mutants": _MUTANTS,
-        **inner("mutants", each(Many(_SURVIVOR), "survivors ignored")),
-        "faults": (_LOSSES, "mutants.faults"),
-        "unused_patterns": (array(TEXT), "mutants.unused"),
-        **inner("mutants", {"idle": array(TEXT)}),
+        "mutants": (_MUTANTS, lambda test: test),
+        **each(Many(_SURVIVOR), "survivors ignored"),
+        "faults": _LOSSES,
+        "unused_patterns": (array(TEXT), "unused"),
+        "idle": array(TEXT),
     }
 )
 

@@ -1,20 +1,19 @@
-"""Rubrics, checks and problem codes in plain text, and a rubric as Markdown for the lab's handout."""
+"""Rubrics, checks and problem codes in plain text."""
 
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 
 from grader.checks.check import Check
-from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.registry import check_names, find_check, unused_checks
 from grader.errors import InputError
-from grader.grading.criterion import Criterion, Part, worth
+from grader.grading.criterion import Criterion, worth
 from grader.grading.rubric import Rubric
+from grader.grading.toml_rows import assignment
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.problems import Kind
 from grader.report.details import model_lines, sentence
-from grader.report.examples import examples, explanation_of, toml_text
-from grader.report.markdown import code, escape
+from grader.report.examples import default_text, examples, explanation_of
 from grader.robot.catalogue import CATALOGUE
 from grader.text import enumerated, format_points, printable
 from grader.xacro.catalogue import XACRO_CATALOGUE
@@ -61,8 +60,9 @@ def checks_text() -> str:
         if check is not None:
             fact = textwrap.indent(_fill(check.documentation.fact), "  ")
             listed.append(f"{name} ({check.distribution or 'grader'})\n{fact}\n{_arguments(check)}")
-    for name, package in unused_checks():
-        listed.append(f"{name} ({package})\n  Not used: the grader has a check of this name.\n")
+    listed += [
+        f"{name} ({package})\n  Not used: the grader has a check of this name.\n" for name, package in unused_checks()
+    ]
     return "\n".join(listed)
 
 
@@ -115,7 +115,7 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
 
 
 def _check_text(title: str, check: Check, arguments: Mapping[str, object], *more: str) -> str:
-    given = ", ".join(f"{key} = {toml_text(value)}" for key, value in arguments.items())
+    given = ", ".join(assignment(key, value) for key, value in arguments.items() if value is not None)
     texts = (f"{title}: {check.name}. {check.documentation.fact}", f"With {given}." if given else "", *more)
     texts += (f"`grader explain {check.name}` explains the check.",)
     return "\n".join(map(_fill, filter(None, texts)))
@@ -124,7 +124,7 @@ def _check_text(title: str, check: Check, arguments: Mapping[str, object], *more
 def _arguments(check: Check) -> str:
     lines = []
     for parameter in check.parameters.values():
-        default = "" if parameter.required else f", default: {toml_text(parameter.default)}"
+        default = "" if parameter.required else f", default: {default_text(parameter.default)}"
         meaning = _fill(check.documentation.arguments.get(parameter.name, ""), _WIDTH - 6)
         lines += [f"    {parameter.name}: {parameter.type.name}{default}\n", textwrap.indent(f"{meaning}\n", " " * 6)]
     return "".join(line for line in lines if line.strip())
@@ -132,42 +132,3 @@ def _arguments(check: Check) -> str:
 
 def _fill(text: str, width: int = _WIDTH) -> str:
     return textwrap.fill(" ".join(text.split()), width, break_long_words=False, break_on_hyphens=False)
-
-
-_EXAMINED = {
-    "urdf": "The URDF is examined.",
-    "package": "The ROS 2 package is examined.",
-    "files": "All submitted files are examined.",
-}
-
-
-def render_handout(rubric: Rubric) -> str:
-    """Return the parts of a rubric, each with a table of its criteria and their points."""
-    blocks = [f"# {_text(rubric.title)}", f"{worth(rubric.criteria).text} in total."]
-    for part in rubric.parts:
-        criteria = [criterion for criterion in rubric.criteria if criterion.part == part.id]
-        if criteria:
-            blocks += _part(part, criteria)
-    return "\n\n".join(blocks) + "\n"
-
-
-def _part(part: Part, criteria: Sequence[Criterion]) -> Iterator[str]:
-    yield f"## {_text(part.title)} ({worth(criteria).text})"
-    yield _EXAMINED[part.needs]
-    rows = [["criterion", "about", "what should be true", "points"], ["---", "---", "---", "---:"]]
-    rows += map(_row, criteria, [None, *criteria])
-    columns = [0, 1, 2, 3] if any(criterion.about for criterion in criteria) else [0, 2, 3]
-    yield "\n".join(f"| {' | '.join(row[column] for column in columns)} |" for row in rows)
-
-
-def _row(criterion: Criterion, before: Criterion | None) -> list[str]:
-    """Return the cells of a criterion; its heading only where the one before has another."""
-    name = code(printable(criterion.id)).replace("|", "\\|")
-    about = "" if before is not None and before.about == criterion.about else _text(criterion.about)
-    manual = " *(graded manually)*" if criterion.check.function in MANUAL_CHECKS else ""
-    adjusted = f" *({_text(criterion.adjustment.message)})*" if criterion.adjustment is not None else ""
-    return [name, about, _text(criterion.title) + manual + adjusted, worth((criterion,)).short]
-
-
-def _text(text: str) -> str:
-    return escape(printable(" ".join(text.split())))

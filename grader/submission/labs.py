@@ -1,7 +1,7 @@
 """The folder of a lab in a repository that holds several labs."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from enum import IntEnum
 
 from grader.files.names import ARCHIVES, PACKAGE_FILES
@@ -17,6 +17,17 @@ _NUMBER_WORDS = {
         ["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"], start=1
     )
 }
+# Words in the names of folders that are a part or version of a submission.
+_PARTS = frozenset(
+    {
+        "src", "launch", "config", "resource", "resources", "test", "build", "install", "log", "docs", "images",
+        "pictures", "screenshots", "evidence", "answers", "meshes", "worlds", "models", "code", "package", "ws",
+        "part", "task", "step", "lab", "prelab", "description", "base", "template", "old", "new", "copy", "backup",
+        "v", "version", "final", "solution", "second", "submission", "submissions", "project", "my", "team",
+        "students",
+    }
+)  # fmt: skip
+_ROBOTICS = re.compile("robot|urdf|xacro|gazebo|rviz|webots|turtle|workspace")
 _FINAL = re.compile(r"(?:final|course|term|semester|capstone)projects?|capstone")
 
 
@@ -98,6 +109,12 @@ def lab_words(name: str) -> tuple[str, ...]:
     """Return the words and numbers of a name: lab and 6 of Lab_06 or Lab Six."""
     words = _WORD.findall(name[:100].casefold())
     return tuple(str(int(word)) if word.isdecimal() else _NUMBER_WORDS.get(word, word) for word in words)
+
+
+def is_part(name: str, lab: Collection[str] = ()) -> bool:
+    """Return whether a folder's name is that of a part or version of a submission. `lab` are words to ignore."""
+    words = [word for word in lab_words(name) if word not in lab]
+    return not _PARTS.isdisjoint(words) or all(map(str.isdecimal, words)) or any(map(_ROBOTICS.search, words))
 
 
 def _join_words(words: Sequence[str]) -> str:

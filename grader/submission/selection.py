@@ -1,32 +1,28 @@
 """What of a submission is graded: where its lab is searched, and of these files the URDF and the package."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import NamedTuple
 
 from grader.files.names import PACKAGE_FILES
 from grader.files.tree import Tree
 from grader.package.package import MANIFEST, Package
-from grader.submission.labs import Belonging, LabFolders, lab_words
+from grader.submission.labs import Belonging, LabFolders
 from grader.submission.packages import best_named, package_around, read_packages, why_none, why_not
-from grader.submission.robots import RobotFile, find_robots
-from grader.submission.search import ELSEWHERE, UrdfChoice, find_urdf, is_of_lab
-from grader.submission.students import StudentWork, students_beside, students_in
+from grader.submission.robots import find_robots
+from grader.submission.search import ELSEWHERE, UrdfChoice, find_urdf
 from grader.submission.submission import Lab, Opening
 from grader.submission.urdf import OtherCandidate
 from grader.text import enumerated, was_not_committed
 
 _MAX_ELSEWHERE = 40
-_MAX_WORKS = 1000  # robots of which the student is determined
-_MAX_NAMED = 5  # folders in a note
-_BESIDE = "{others} may be of other students, but were read as well: grade {own} to leave them out"
+_MAX_NAMED = 5  # robots in a note
 
 
 class Selection(NamedTuple):
     """The files of the lab, the URDF and the package that are graded, the other candidates, and notes on the choice.
 
-    `packages` are all of the lab, and `no_package` says why none of them is graded, and which there are. `students` are
-    the folders of several students, if the submission holds theirs. `other_lab` is the folder of another lab that is
-    graded.
+    `packages` are all of the lab, and `no_package` says why none of them is graded, and which there are. `several` is
+    the note if several robots fit. `other_lab` is the folder of another lab that is graded.
     """
 
     tree: Tree
@@ -36,12 +32,12 @@ class Selection(NamedTuple):
     no_package: tuple[str, str]
     others: tuple[OtherCandidate, ...]
     notes: tuple[str, ...]
-    students: tuple[str, ...]
+    several: str
     other_lab: str
 
 
 class LabScope(NamedTuple):
-    """Where a lab is searched: the URDF among `robots`, of which `choice` is graded; documents in `tree`.
+    """Where a lab is searched: the URDF of `choice` is graded, and documents are in `tree`.
 
     If the lab has a folder, `tree` is only that folder, `own_folder`. `other_lab` is the folder of another lab that is
     searched as well. `elsewhere` are robots and packages in other places.
@@ -49,7 +45,6 @@ class LabScope(NamedTuple):
 
     choice: UrdfChoice
     tree: Tree
-    robots: tuple[RobotFile, ...]
     packages: tuple[Package, ...]
     no_package: tuple[str, str]
     elsewhere: tuple[OtherCandidate, ...]
@@ -69,29 +64,19 @@ class LabScope(NamedTuple):
 def select(tree: Tree, lab: Lab, opening: Opening) -> Selection:
     """Select what is graded of the files of a submission."""
     scope = lab_scope(tree, lab, opening)
-    packages, (urdf, others) = scope.packages, scope.choice
+    packages, (urdf, others, fitting) = scope.packages, scope.choice
     named, around = best_named(packages, lab.package), package_around(packages, urdf)
     graded = around if named is None or (around is not None and around.name == named.name) else named
     others += tuple(
         OtherCandidate(it.path(MANIFEST), why_not(graded, it, lab.urdf)) for it in packages if it is not graded
     )
-    names = {package.folder: package.name for package in packages}
-    words = {word for name in lab.folders for word in lab_words(name)}
-    students = _students(scope, names, words, lab)
-    notes = scope.notes()
-    if urdf is not None and not students:
-        own, beside = students_beside(urdf.rpartition("/")[0], scope.tree.folders, names, words, lab.package)
-        notes += (_BESIDE.format(others=enumerated(beside, _MAX_NAMED), own=own),) if beside else ()
     others += scope.elsewhere
-    return Selection(scope.tree, urdf, graded, packages, scope.no_package, others, notes, students, scope.other_lab)
-
-
-def _students(scope: LabScope, names: Mapping[str, str], words: set[str], lab: Lab) -> tuple[str, ...]:
-    """Return the folders of the students if the robots and packages are of several; `names` are those of packages."""
-    robots = (robot for robot in scope.robots[:_MAX_WORKS] if robot.size)
-    works = [StudentWork(robot.path.rpartition("/")[0], is_of_lab(robot, lab.urdf)) for robot in robots]
-    works += [StudentWork(folder, is_of_lab=True) for folder, name in names.items() if name == lab.package]
-    return students_in(works, names, words, lab.package) if len(works) > 1 else ()
+    several = ""
+    if fitting:
+        which = f"{urdf} was graded, not {enumerated(fitting, _MAX_NAMED)}"
+        several = f"{len(fitting) + 1} robots fit this lab: {which}; to grade another one, name its file or folder"
+    notes = (*filter(None, [several]), *scope.notes())
+    return Selection(scope.tree, urdf, graded, packages, scope.no_package, others, notes, several, scope.other_lab)
 
 
 class _Places(NamedTuple):
@@ -133,7 +118,6 @@ def lab_scope(tree: Tree, lab: Lab, opening: Opening) -> LabScope:
     places = _Places(labs, _other_lab(tree, labs, choice.path, () if has_own else roots))
     search_tree = places.only(tree, tuple(Belonging))
     own_tree = places.only(tree, (Belonging.THIS_LAB,)) if has_own else search_tree
-    of_robots = {places.nearest(robot.path for robot in robots), labs.belonging(choice.path or "")}
     of_packages = places.nearest(roots)
     packages = read_packages(places.only(tree, (of_packages,)), lab) if of_packages is not None else ()
     other_roots = [path for path in roots if places.of(path) is None or places.of(path) is not of_packages]
@@ -143,7 +127,6 @@ def lab_scope(tree: Tree, lab: Lab, opening: Opening) -> LabScope:
     return LabScope(
         choice,
         own_tree,
-        tuple(robot for robot in robots if places.of(robot.path) in of_robots),
         packages,
         (reason, which + (_built_package(search_tree) if not packages else "")),
         tuple(OtherCandidate(path, ELSEWHERE[labs.belonging(path)]) for path in elsewhere[:_MAX_ELSEWHERE]),

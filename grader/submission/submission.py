@@ -63,8 +63,8 @@ DEFAULTS = Opening()
 class Submission:
     """The work that a student submitted. `package` is the graded one; `no_package` says why none is, and which exist.
 
-    `tree` has the files of the lab, and `whole_tree` those around it as well. `students` are the folders of several
-    students whose work it holds, and `notes` say how it was read.
+    `tree` has the files of the lab, and `whole_tree` those around it as well. `notes` say how it was read; `several` is
+    the one that says that several robots fit.
     """
 
     id: str
@@ -75,7 +75,7 @@ class Submission:
     package: Package | None = None
     no_package: tuple[str, str] = (NO_PACKAGE, "")
     whole_tree: Tree = _NO_FILES
-    students: tuple[str, ...] = ()
+    several: str = ""
     notes: tuple[str, ...] = ()
     is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
     other_lab: str = ""  # the folder of another lab, where it is graded

@@ -11,10 +11,10 @@ from grader.errors import GraderError, InputError
 from grader.files.names import ROBOT_ENDINGS
 from grader.grading.levels import HintLevel
 from grader.report.formats import Format, inputs_of, render
-from grader.text import printable, shell_quoted
+from grader.text import printable
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
 from grader.usecases.repository import base_of, folder_of
-from grader.usecases.rubrics import DEFAULT_RUBRIC, files_of, load
+from grader.usecases.rubrics import files_of, load
 from grader.usecases.saves import Saves, picture_beside
 from grader.usecases.terminal import ShowFile, Warn
 from grader.usecases.writing import refuse_inputs, refuse_symlinks, remove_previous, save
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from grader.grading.report import Report
     from grader.grading.rubric import Rubric
     from grader.source import Base
-    from grader.submission.submission import Opening, Submission
 
 _KEPT = (*ROBOT_ENDINGS, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # files that a report may not remove first
 _SHA256 = r"[0-9a-fA-F]{64}"
@@ -51,13 +50,6 @@ class GradeRequest(NamedTuple):
     def threshold(self) -> tuple[Decimal, bool] | None:
         """The threshold of `--fail-under`, if there is one. Raises GraderError."""
         return read_threshold(self.fail_under) if self.fail_under is not None else None
-
-    @property
-    def choice(self) -> str:
-        """The options that choose the rubric and its parts, as a shell reads them."""
-        words = [("--rubric", self.rubric)] if self.rubric != DEFAULT_RUBRIC else []
-        words += [("--part", part) for part in self.parts]
-        return "".join(f" {option} {shell_quoted(value)}" for option, value in words)
 
 
 class GradeRun(NamedTuple):
@@ -108,11 +100,14 @@ def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> 
     for kind in (request.format, *(kind for kind, _ in request.saves)):
         inputs_of(kind)  # as well
     from grader.grading.grade import grade
+    from grader.submission.opening import open_submission
     from grader.submission.submission import Opening
 
     rubric = requested_rubric(request)
     opening = Opening(request.max_size, _arguments(request), show_file=show_file)
-    submission = open_one(request.path, rubric, opening, request.choice)
+    submission = open_submission(request.path, rubric.lab, opening, with_neighbours=True)
+    if submission.several:
+        warn(submission.several)
     report = grade(rubric, submission, request.parts)
     for result in report.results:
         if result.traceback:
@@ -125,23 +120,6 @@ def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> 
     folder = folder_of(request.path, submission.path) if submission.is_single else None
     besides = tuple(folder / path for path in submission.besides) if folder is not None else ()
     return GradeRun(report, base_of(request.path, folder), exit_code(report, threshold), fix, besides)
-
-
-def open_one(path: str, rubric: "Rubric", opening: "Opening | None" = None, options: str = "") -> "Submission":
-    """Return the submission of one student; raises InputError for a class, with the command that has these options."""
-    from grader.submission.opening import open_submission
-    from grader.submission.submission import DEFAULTS
-
-    if not path.lower().endswith(ROBOT_ENDINGS):
-        from grader.usecases.several_students import refuse_class  # late: most submissions are one URDF
-
-        refuse_class(path, rubric, options)
-    submission = open_submission(path, rubric.lab, opening or DEFAULTS, with_neighbours=True)
-    if submission.students:
-        from grader.usecases.several_students import refusal  # late: few submissions are several
-
-        raise refusal(path, submission.students, options)
-    return submission
 
 
 def remove_reports(saves: Saves, rubric: Sequence[Path], *paths: str) -> dict[Path, int]:

@@ -17,9 +17,9 @@ from grader.errors import GraderError, InputError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.rubric import Rubric
 from grader.mutation.mutants import Mutant
-from grader.mutation.mutation_test import GradeAll, MutantOutcome
 from grader.mutation.samples import read_samples
-from grader.mutation.testing import mutant_outcomes, run_rubric_test
+from grader.mutation.testing import GradeAll, mutant_outcomes, run_rubric_test
+from grader.mutation.trial import MutantOutcome
 from grader.package.package import MANIFEST
 from grader.report.rubric_test import render_rubric_test, render_rubric_test_json
 from grader.robot.kinematics import Configuration
@@ -78,6 +78,8 @@ def _solution(reference: str, warn: Warn) -> Solution:
                 reason = loading.mistake if loading.status == "pending" else loading.message
                 advice = f"see `grader inspect {shell_quoted(reference)}`"
                 raise InputError(f"{shown} is no reference solution: {reason} ({advice})")
+            for found in (it for it in submission.urdf.problems if it.kind.effect == "drops"):
+                warn(f"{found.location.path}:{found.location.line}: {found.code}: {found.message}")
     others = [file.path for file in submission.other_candidates if not file.path.endswith(MANIFEST)]
     if others:
         warn(f"the rubric is made from {submission.path}; other candidates: {enumerated(others, _MAX_NAMED)}")
@@ -138,7 +140,7 @@ _SECONDS = 60.0  # for some mutants
 
 
 def test_rubric(
-    name: str, folder: Path | None, fail_under: str | None, seed: int, most: int, is_json: bool, terminal: Terminal
+    name: str, folder: Path | None, fail_under: str | None, is_json: bool, terminal: Terminal
 ) -> tuple[str, ExitCode]:
     """Return the result of testing a rubric, and the exit code.
 
@@ -149,9 +151,9 @@ def test_rubric(
     samples = read_samples(folder) if folder is not None else None
     with terminal.show_class(f"Testing {rubric.id}") as show, _workers(rubric) as grade_all:
         progress = lambda done, total: show(Progress(total, done))  # noqa: E731
-        result = run_rubric_test(rubric, samples, seed, most, progress, grade_all)
+        result = run_rubric_test(rubric, samples, progress, grade_all)
     text = render_rubric_test_json(result) if is_json else render_rubric_test(result, terminal.screen().width)
-    is_passed = result.is_sound and (least is None or result.mutants.score >= least)
+    is_passed = result.is_sound and (least is None or result.score >= least)
     code = ExitCode.PASSED if is_passed else ExitCode.FAILED
     return text, ExitCode.FAULT if result.is_faulty else code
 

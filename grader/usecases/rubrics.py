@@ -29,16 +29,6 @@ def load(name: str, answers: Path | None = None) -> "Rubric":
     return load_with_answers(name, answers)
 
 
-def show_rubric(name: str, answers: Path | None, *, markdown: bool) -> str:
-    """Return the parts and criteria of a rubric: with or without its model answers, or in Markdown for students."""
-    from grader.report.rubrics import render_handout, rubric_overview
-
-    if answers is not None and markdown:
-        raise GraderError("--format markdown is for students, so it shows no model answers: omit --answers")
-    rubric = load(name, answers)
-    return render_handout(rubric) if markdown else rubric_overview(rubric)
-
-
 def list_rubrics() -> str:
     """Return a line for each rubric that comes with the grader."""
     from grader.grading.rubric import load_rubric, shipped_rubrics

@@ -72,7 +72,12 @@ def test_the_sheet_has_what_there_is_to_read(book: Path) -> None:
     first, formula, *pictures = sheet_of(book)
     where = f"answers Zebulon Ash.md, line 1 in {book.parent}/class/u7701"
     assert first["text"].split("\n")[-2:] == ["The red roots.", where]
-    assert [first[name] for name in ("criterion", "students", "points", "maximum")] == ["essay", "u7701; u7703", "", "4"]
+    assert [first[name] for name in ("criterion", "students", "points", "maximum")] == [
+        "essay",
+        "u7701; u7703",
+        "",
+        "4",
+    ]
     assert "'=1+1" in formula["text"]
     assert [row["text"].count(f"{book.parent}/class/") for row in pictures] == [2, 2, 2]
     assert [row["students"] for row in sheet_of(book, "--section", "lab b", "--criterion", "essay")] == ["u7702"]

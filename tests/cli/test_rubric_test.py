@@ -45,10 +45,10 @@ def data(*arguments: object) -> dict[str, Any]:
 @pytest.mark.parametrize("name", shipped_rubrics())
 def test_a_shipped_rubric_catches_every_mutant(name: str) -> None:
     """Or says in the rubric why not; no criterion is idle, no pattern unused, no correct robot loses points, no sample differs."""
-    found = data(name, f"submissions/{name}", "--mutants", 100_000)
+    found = data(name, f"submissions/{name}")
     assert (found["score"], found["survivors"], found["idle"], found["unused_patterns"]) == (100, [], [], [])
     assert found["equivalents"]["lost"] == found["reference"]["lost"] == []
-    assert sum(found["equivalents"]["tried"].values()) >= 30
+    assert len(found["equivalents"]["tried"]) >= 6
     assert found["mutants"]["caught"] > 5 * len(found["ignored"])
     own = sum(sample.expected.rubric == name for sample in SAMPLES.values())
     assert own
@@ -56,14 +56,14 @@ def test_a_shipped_rubric_catches_every_mutant(name: str) -> None:
 
 
 def test_survivors_are_listed_with_their_diff(tmp_path: Path) -> None:
-    """Grouped by what they change; the exit code is 0 because no correct robot loses points."""
-    done = command(write_rubric(tmp_path), "--mutants", 300)
+    """The exit code is 0 because no correct robot loses points."""
+    done = command(write_rubric(tmp_path))
     text = done.stdout.decode()
     assert done.returncode == 0
     assert "\nThese mutants of the reference get full marks:\n" in text
-    assert re.search(r"\njoint/origin@xyz: \d+ mutants\n", text)
+    assert re.search(r"\n  \.\.\. and \d+ more, which --format json lists", text)
     assert "      --- birch.urdf\n      +++ birch.urdf\n      @@ -" in text
-    arm = data(tmp_path / "arm.toml", "--mutants", 5000)
+    arm = data(tmp_path / "arm.toml")
     listed = {row["id"]: row for row in arm["survivors"]}
     row = listed["number x10: joint base_plate/origin xyz.z"]
     assert (
@@ -91,10 +91,10 @@ def test_an_equivalent_that_loses_points_fails(tmp_path: Path, monkeypatch: pyte
     monkeypatch.setattr(
         "grader.grading.validation.find_check", lambda name: textual if name == "frame_at" else find_check(name)
     )
-    done = command(write_rubric(tmp_path, TOP + EXACT, SMALL), "--mutants", 20)
+    done = command(write_rubric(tmp_path, TOP + EXACT, SMALL))
     assert done.returncode == 1
     text = done.stdout.decode()
-    assert "These equivalents of the reference lose points:\n\n  fixed joints split 1\n    frame: the rpy is" in text
+    assert "These equivalents of the reference lose points:\n\n  fixed joints split\n    frame: the rpy is" in text
     assert '-    <origin xyz="1 2 3" rpy="0.1 0.2 0.3"/>' in text
 
 
@@ -112,7 +112,7 @@ def test_a_check_that_is_faulty_on_a_mutant_is_not_a_catch(tmp_path: Path, monke
     monkeypatch.setattr(
         "grader.grading.validation.find_check", lambda name: plain if name == "frame_at" else find_check(name)
     )
-    found = data(write_rubric(tmp_path, TOP + EXACT, SMALL), "--mutants", 5000)
+    found = data(write_rubric(tmp_path, TOP + EXACT, SMALL))
     assert "number zero: joint j/origin xyz.x" in [row["name"] for row in found["faults"]]
     assert all(row["criteria"]["frame"].startswith("the grader itself failed") for row in found["faults"])
     counts = found["mutants"]
@@ -142,10 +142,8 @@ def test_a_package_is_changed_as_far_as_criteria_look(tmp_path: Path, check: str
         'title = "An arm"', 'title = "An arm"\npackage = "ash"\nurdf = "robot.urdf"'
     )
     text = f'{top}[[criterion]]\nid = "other"\npart = "model"\ntitle = "Another"\npoints = 1\n{check}\n'
-    found = data(
-        write_rubric(tmp_path, text + '[[test.ignore]]\nmutants = ["*"]\nreason = "All."\n'), "--mutants", 5000
-    )
+    found = data(write_rubric(tmp_path, text + '[[test.ignore]]\nmutants = ["*"]\nreason = "All."\n'))
     assert found["reference"]["lost"] == []
     assert {row["path"] for row in found["ignored"]} <= changed
-    without = data(write_rubric(tmp_path, top), "--mutants", 0)["mutants"]["total"]
+    without = data(write_rubric(tmp_path, top))["mutants"]["total"]
     assert (found["mutants"]["total"] > without) == (len(changed) > 1)

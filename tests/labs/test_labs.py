@@ -15,8 +15,6 @@ import pytest
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric, load_rubric
-from grader.mutation import testing
-from grader.mutation.mutation_test import mutant_results, mutants_of, outcome_of
 from grader.mutation.trial import Trial
 from grader.submission.opening import open_submission
 from tests.command_line import run
@@ -149,16 +147,11 @@ def test_a_rubric_passes_its_check(lab: str) -> None:
 @every_lab
 def test_mutants_of_a_reference_lose_something(lab: str) -> None:
     """No mistake costs nothing, unless the rubric says why, and no equivalent costs something; `grader rubric test` tries all."""
-    rubric = rubric_of(lab)
-    assert rubric.solution is not None
-    trial = Trial(grade(rubric, rubric.solution.submission), rubric.solution.submission)
-    assert testing.tested_equivalents(trial, seed=15).losses == ()
-    # Without the search for idle criteria, which takes as long as 500 mutants.
-    found = mutant_results(
-        trial, [*mutants_of(trial)], 60, 15, lambda some: (outcome_of(trial, it) for it in some), others=0
-    )
-    assert [survivor.mutant.id for survivor in found.survivors] == []
-    assert found.caught >= 40
+    trial = Trial(rubric_of(lab))
+    assert [family.family for family, lost in trial.equivalents() if lost] == []
+    outcomes = [trial.outcome(mutant) for mutant in [*trial.mutants()][::20]]
+    assert [outcome.mutant.id for outcome in outcomes if outcome.fate not in ("caught", "same")] == []
+    assert sum(outcome.fate == "caught" for outcome in outcomes) >= 20
 
 
 def test_a_class_is_graded_with_its_reference(tmp_path: Path) -> None:

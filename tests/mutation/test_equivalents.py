@@ -10,9 +10,9 @@ from lxml import etree
 from grader.checks.check import EQUIVALENTS
 from grader.checks.registry import find_check
 from grader.grading.criterion import Criterion
-from grader.grading.rubric import Rubric
-from grader.mutation.equivalents import FAMILIES, Equivalent, breaking, equivalents
+from grader.mutation.equivalents import Equivalent, RewritingRules, equivalents
 from grader.mutation.trees import copied
+from grader.mutation.trial import Trial, breaks
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
@@ -23,13 +23,12 @@ from tests.mutation.robots import ARM, BOX, FRAME, TOP, rubric_in
 POSITIONS = ((0.0, 0.0), (0.4, 0.03), (-1.1, 0.09))  # of the shoulder and the slide, which are told by their limits
 
 
-def made(rubric: Rubric, kept: set[str] | None = None, text: str = ARM) -> list[Equivalent]:
+def made(kept: set[str] | None = None, text: str = ARM, *, placed: bool = False) -> list[Equivalent]:
     """Return the equivalents of the arm, or of another robot."""
     urdf = read_submission(text.encode(), identity="a", path="birch.urdf").urdf
     assert isinstance(urdf, Read)
     assert urdf.reading.root is not None
-    assert urdf.reading.robot is not None
-    return list(equivalents(rubric, urdf.reading.root, urdf.reading.robot, kept or set(), 0))
+    return list(equivalents(urdf.reading.root, RewritingRules(kept or set(), placed)))
 
 
 def read(equivalent: Equivalent) -> Robot:
@@ -68,16 +67,16 @@ def _numbers(matrix: tuple[tuple[float, ...], ...]) -> tuple[float, ...]:
     return tuple(number for row in matrix for number in row)
 
 
-def test_every_equivalent_is_the_same_robot(tmp_path: Path) -> None:
+def test_every_equivalent_is_the_same_robot() -> None:
     """In all families, shapes and masses are where they were, also when the joints move."""
     expected = dict(seen(read_arm()))
-    found = made(rubric_in(tmp_path, TOP))
-    assert {equivalent.family for equivalent in found} == set(FAMILIES)
+    found = made()
+    assert [equivalent.family for equivalent in found] == [*EQUIVALENTS]
     for equivalent in found:
         robot = read(equivalent)
-        assert dict(seen(robot)).keys() == expected.keys(), equivalent.name
+        assert dict(seen(robot)).keys() == expected.keys(), equivalent.family
         for name, numbers in seen(robot):
-            assert numbers == pytest.approx(expected[name], abs=1e-9), f"{equivalent.name}: {name}"
+            assert numbers == pytest.approx(expected[name], abs=1e-9), f"{equivalent.family}: {name}"
         assert sorted(map(str, limits(robot))) == sorted(map(str, limits(read_arm())))
 
 
@@ -94,9 +93,9 @@ def limits(robot: Robot) -> list[object]:
     return [(joint.type, joint.limit) for joint in robot.joints if joint.type != "fixed"]
 
 
-def test_each_family_changes_what_it_says(tmp_path: Path) -> None:
-    """The first one of each family differs from the reference in the thing that gives it its name."""
-    first = {equivalent.family: equivalent for equivalent in reversed(made(rubric_in(tmp_path, TOP)))}
+def test_each_family_changes_what_it_says() -> None:
+    """Each differs from the reference in the thing that gives it its name."""
+    first = {equivalent.family: equivalent for equivalent in made()}
     arm, robots = read_arm(), {family: read(equivalent) for family, equivalent in first.items()}
     assert [link.name for link in robots["order of elements"].links] != [link.name for link in arm.links]
     assert len(robots["fixed joints split"].links) > len(arm.links)
@@ -112,8 +111,10 @@ def test_each_family_changes_what_it_says(tmp_path: Path) -> None:
 
 def test_names_that_something_refers_to_stay(tmp_path: Path) -> None:
     """Those in the rubric's arguments, in files around the URDF and in the elements of simulators; their frames stay, too."""
-    found = made(rubric_in(tmp_path, TOP + BOX + FRAME), kept={"plate", "tool", "finger", "slide"})
-    arm = read_arm()
+    (tmp_path / "other.yaml").write_text("joint: slide\n")
+    kept = Trial(rubric_in(tmp_path, TOP + BOX + FRAME)).kept
+    assert {"plate", "tool", "finger"} <= kept
+    found, arm = made(kept | {"slide"}), read_arm()
     for equivalent in found:
         robot = read(equivalent)
         assert all(map(robot.has_link, ("plate", "tool", "finger", "base")))
@@ -122,6 +123,16 @@ def test_names_that_something_refers_to_stay(tmp_path: Path) -> None:
         for link in ("plate", "tool", "finger"):
             moved, before = Configuration(robot).pose(link), Configuration(arm).pose(link)
             assert moved.translation == pytest.approx(before.translation, abs=1e-9)
+
+
+def test_frames_of_links_that_are_named_by_their_place_stay() -> None:
+    """@root, @tip and @moved:1 are the ends of the tree and the links that move."""
+    moved = next(equivalent for equivalent in made(placed=True) if equivalent.family == "frames moved")
+    robot, arm = Configuration(read(moved)), Configuration(read_arm())
+    inner = {joint.parent for joint in arm.robot.joints}
+    for joint in arm.robot.joints:
+        if joint.type != "fixed" or joint.child not in inner:
+            assert robot.pose(joint.child).translation == pytest.approx(arm.pose(joint.child).translation, abs=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -145,7 +156,7 @@ def test_a_check_breaks_under_families(check: str, arguments: dict[str, object],
     assert found is not None
     assert found.about.breaks_under(arguments) == families
     criterion = Criterion("a", "", "", Decimal(1), found, arguments)
-    assert [name for name in EQUIVALENTS if breaking(criterion, [name])] == [it for it in EQUIVALENTS if it in families]
+    assert [name for name in EQUIVALENTS if breaks(criterion, name)] == [it for it in EQUIVALENTS if it in families]
 
 
 SHARED = """<robot name="r">
@@ -159,9 +170,9 @@ SHARED = """<robot name="r">
 </robot>"""
 
 
-def test_a_material_that_a_visual_defines_keeps_its_place(tmp_path: Path) -> None:
+def test_a_material_that_a_visual_defines_keeps_its_place() -> None:
     """Visuals before it would have no colour; text in elements that ROS 2 ignores stays as well."""
-    for equivalent in made(rubric_in(tmp_path, TOP), text=SHARED):
+    for equivalent in made(text=SHARED):
         colours = [visual.material for link in read(equivalent).links for visual in link.visuals]
         assert [colour.rgba for colour in colours if colour is not None] == [(1.0, 0.0, 0.0, 1.0)] * 3
         assert ">Text &amp; more<" in equivalent.text

@@ -1,14 +1,9 @@
-"""Mutants of a text: the families, their ids, their places; and the sample of them that is graded."""
-
-from collections import Counter
-from random import Random
+"""Mutants of a text: the families, their ids, their places."""
 
 import pytest
 
-from grader.mutation.elements import elements
-from grader.mutation.mutants import Mutant, mutants
-from grader.mutation.mutation_test import sampled
-from grader.mutation.result import diff
+from grader.mutation.mutants import mutants
+from grader.mutation.testing import diff
 from tests.mutation.robots import ARM, CHANGES
 
 FOUND = {mutant.id: mutant for mutant in mutants(ARM, "birch.urdf")}
@@ -41,10 +36,14 @@ def test_ids_are_unique_and_do_not_depend_on_lines() -> None:
 
 def test_equal_siblings_are_counted() -> None:
     """The second visual of a link has a place of its own."""
-    labels = [
-        found.label for found in elements("<robot><link name='a'><visual/><visual/></link><link/><link/></robot>")
-    ]
-    assert labels == ["robot", "link a", "link a/visual", "link a/visual 2", "link", "link 2"]
+    found = mutants("<robot><link name='a'><visual/><visual/></link><link/><link/></robot>")
+    labels = [mutant.id.partition(": ")[2] for mutant in found if mutant.family == "element deleted"]
+    assert labels == ["link a", "link a/visual", "link a/visual 2", "link", "link 2"]
+
+
+def test_markup_that_only_ros_2_reads_has_mutants() -> None:
+    """TinyXML2 allows white space before the declaration."""
+    assert [mutant.line for mutant in mutants("\n<?xml version='1.0'?><robot><link name='a'/></robot>")] == [2, 2, 2]
 
 
 @pytest.mark.parametrize(
@@ -53,21 +52,6 @@ def test_equal_siblings_are_counted() -> None:
 def test_broken_markup_has_mutants_or_none(text: str) -> None:
     """A text with open or stray tags is no reason to stop."""
     assert all(mutant.applied(text) != text for mutant in mutants(text))
-
-
-def _of(**counts: int) -> list[Mutant]:
-    return [Mutant(f"{family} {i}", family, "", i) for family, count in counts.items() for i in range(count)]
-
-
-def test_a_sample_has_the_same_number_of_each_family() -> None:
-    """As far as a family has as many; the order stays, and the seed decides which."""
-    every = _of(a=100, b=3, c=50)
-    chosen = sampled(every, 43, Random(1))
-    assert Counter(mutant.family for mutant in chosen) == {"a": 20, "b": 3, "c": 20}
-    assert chosen == [mutant for mutant in every if mutant in chosen] == sampled(every, 43, Random(1))
-    assert chosen != sampled(every, 43, Random(2))
-    assert sampled(every, 1000, Random(1)) == every
-    assert sampled(every, 0, Random(1)) == []
 
 
 def test_a_diff_has_two_lines_around_the_change() -> None:

@@ -1,7 +1,5 @@
 """Which changes leave a robot the same, and which do not."""
 
-import re
-
 import pytest
 
 from grader.mutation.mutants import mutants
@@ -42,10 +40,9 @@ def test_no_mutant_of_lab6_that_counts_as_the_same_robot_behaves_otherwise() -> 
     base = BASES["reference"]
     urdf, expected = base.submission.urdf, behaviour(base.submission)
     same = 0
-    drawn_twice = re.compile("element duplicated: link [a-z_]+/visual")
     for mutant in mutants(base.text):
         changed = base.changed(mutant.applied(base.text))
         if is_same_robot(urdf, changed.urdf, ()):
             same += 1
-            assert drawn_twice.fullmatch(mutant.id) or not differences(expected, behaviour(changed)), mutant.id
-    assert same > 100
+            assert not differences(expected, behaviour(changed)), mutant.id
+    assert same > 20

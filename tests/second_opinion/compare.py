@@ -14,7 +14,6 @@ from grader.grading.grade import grade
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric as GraderRubric
 from grader.grading.rubric import load_rubric
-from grader.mutation.mutation_test import mutants_of
 from grader.mutation.trial import Trial
 from grader.robot.reader import read_urdf
 from grader.submission.opening import read_submission
@@ -107,19 +106,15 @@ def compared_seeds(seeds: Iterable[int], processes: int = 1) -> Iterator[Compari
 
 def compared_mutants(rubric: str) -> Iterator[Comparison]:
     """Yield the comparisons of all mutants of the robot of a rubric's reference; xacro itself expands those in xacro."""
-    solution = _rubric(rubric)[1].solution
-    assert solution is not None
-    trial = Trial(grade(_rubric(rubric)[1], solution.submission), solution.submission)
+    trial = Trial(_rubric(rubric)[1])
     texts = {path: trial.text(path) for path in trial.robot_files}
-    for mutant in mutants_of(trial):
-        submission = (
-            trial.submission(mutant) if mutant.path in texts and not (mutant.renamed or mutant.is_deleted) else None
-        )
+    for mutant in trial.mutants():
+        submission = trial.submission(mutant) if mutant.path in texts and not mutant.is_deleted else None
         if submission is None:
             continue
         files: dict[str, str | bytes] = {**texts, mutant.path: mutant.applied(texts[mutant.path])}
         expanded = oracle.expand(Document(str(files[trial.robot_files[0]]), files, path=trial.robot_files[0]))
-        results = list(trial.results(mutant, submission, trial.expected))
+        results = list(trial.results(mutant, submission))
         if isinstance(expanded, oracle.Accepted):
             yield compared(mutant.id, rubric, expanded.text.encode("utf-8", "surrogateescape"), results)
         else:

@@ -437,13 +437,13 @@ def team(first: list[str], second: list[str]) -> Tree:
 
 
 def test_a_team_is_not_mixed_up() -> None:
-    """One member's package is not graded with the other's URDF, even if that has a better name: they are two students."""
+    """One member's package is not graded with the other's URDF, even if that has a better name, and a note names both."""
     found = submission_of(
         team(["package.xml", "robot.urdf"], ["package.xml", "urdf/my_robot.urdf"]),
         "team",
         Lab(EXPECTED, "my_robot"),
     )
-    assert found.students == ("Lab6/Adams", "Lab6/Brown")
+    assert "Lab6/Brown/my_robot/urdf/my_robot.urdf was graded, not Lab6/Adams/my_robot/robot.urdf" in found.several
     assert found.path == "Lab6/Brown/my_robot/urdf/my_robot.urdf"
     assert found.package is not None
     assert found.package.folder == "Lab6/Brown/my_robot"

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from grader.checks.outcome import Status
 from grader.classroom.entries import answers_of, entries_of
 from grader.classroom.equal_work import forms_of, hashes_of
-from grader.classroom.graded import Graded, digest_of
+from grader.classroom.graded import Graded, Verdict, digest_of
 from grader.classroom.opening import digest_of_unread, open_class_submission
 from grader.errors import InputError, MachineError
 from grader.files.names import ARCHIVES
@@ -18,7 +18,6 @@ from grader.grading.grade import grade
 from grader.grading.rubric import Rubric, read_rubric
 from grader.submission.submission import Opening, Submission
 from grader.submission.urdf import Absent, Unreadable
-from grader.text import enumerated
 from grader.workers.pool import NO_MEMORY
 
 _MAX_NAMED = 10  # students in a message
@@ -67,8 +66,6 @@ def _grade_one(context: ClassContext, task: Task) -> Graded:
         if result.digest == task.graded:
             return result
         submission = opened.submission(rubric, Opening(arguments=context.arguments, no_documents=task.no_documents))
-        if submission.students:
-            raise InputError(students_refusal(submission))  # noqa: TRY301  it is handled like files that cannot be read
         report = grade(rubric, submission, context.parts, is_one_of_class=True, is_explained=False)
     except InputError as error:
         result = result._replace(digest=result.digest or digest_of(str(error), digest_of_unread(root, task.paths)))
@@ -87,9 +84,10 @@ def _grade_one(context: ClassContext, task: Task) -> Graded:
     if fault := report.fault:
         return result._replace(verdict="errored", reason=fault)
     is_handed_out = bool(report.submission.another_robot)  # by the course, so that it is no equal work
-    reason = _why_unreadable(submission)
+    unread = _why_unreadable(submission)
+    verdict: Verdict = "unreadable" if unread else "graded"
     texts = submission.documents.converted
-    result = result._replace(verdict="unreadable" if reason else "graded", reason=reason, texts=texts)
+    result = result._replace(verdict=verdict, reason=unread or submission.several, texts=texts)
     return result if is_handed_out else result._replace(work=forms_of(submission))
 
 
@@ -131,13 +129,6 @@ def _why_unreadable(submission: Submission) -> str:
         because = str(tree.ignored[0]) if tree.ignored else f"{next(iter(tree.files))} is empty"
         return f"nothing to grade was found: {because}"
     return ""
-
-
-def students_refusal(submission: Submission) -> str:
-    """Return why a submission is left unassigned that contains those of several students."""
-    named = enumerated(submission.students, _MAX_NAMED)
-    count = len(submission.students)
-    return f"it contains the submissions of {count} students, {named}: left unassigned (--layout teams grades each)"
 
 
 @lru_cache(maxsize=4)
