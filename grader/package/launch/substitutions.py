@@ -15,15 +15,7 @@ from grader.static_python.builtins import BUILTINS, MATH
 from grader.static_python.expressions import evaluate
 from grader.static_python.knowledge import str_of
 from grader.static_python.parse import Position
-from grader.static_python.values import (
-    MAX_TEXT,
-    Call,
-    ExpressionFails,
-    Namespace,
-    Undetermined,
-    Unknown,
-    Value,
-)
+from grader.static_python.values import MAX_TEXT, Call, ExpressionFails, Namespace, Undetermined, Unknown, Value
 
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
 _PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", "env", "rviz2"})

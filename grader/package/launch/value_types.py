@@ -19,13 +19,8 @@ OPENED = {
 }  # fmt: skip
 _COLLECTIONS: Any = (list, tuple, dict, set, frozenset, *VIEWS)
 _NAMES = {
-    type(None): "None",
-    bool: "a boolean",
-    int: "a number",
-    float: "a number",
-    dict: "a dict",
-    Function: "a function",
-}
+    type(None): "None", bool: "a boolean", int: "a number", float: "a number", dict: "a dict", Function: "a function",
+}  # fmt: skip
 
 
 def is_text(value: Value) -> bool:
