@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 ENTITY = "launch.launch_description_entity.LaunchDescriptionEntity"
-ACTION = "launch.action.Action"
 PROCESS = "launch.actions.execute_local.ExecuteLocal"
 CONDITION = "launch.condition.Condition"
 SUBSTITUTION = "launch.substitution.Substitution"
