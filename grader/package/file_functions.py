@@ -1,9 +1,9 @@
-"""Functions that search a package for files, as setup.py calls them: evaluated on the list of the package's files."""
+"""Functions that search a package for files or packages, as setup.py calls them: evaluated on the list of its files."""
 
 import posixpath
-import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from functools import partial
 from io import StringIO
 from pathlib import PurePosixPath
@@ -11,22 +11,12 @@ from pathlib import PurePosixPath
 from grader.errors import InputError
 from grader.files.names import ignored_part
 from grader.package.globbing import PackageListing, SearchError
-from grader.package.python_packages import below, find_packages
 from grader.static_python.evaluation import Evaluation, EvaluationStopped
 from grader.static_python.knowledge import known, path_text
-from grader.static_python.values import (
-    Call,
-    ExpressionFails,
-    FunctionTable,
-    Items,
-    PlainFunction,
-    Undetermined,
-    Unknown,
-    Value,
-)
+from grader.static_python.values import Call, ExpressionFails, FunctionTable, Items, Undetermined, Unknown, Value
 
 _OUTSIDE = "it reads files outside of the package"
-_GLOB_OPTIONS = {"pathname", "root_dir", "recursive", "include_hidden"}
+_GLOB_OPTIONS = ("pathname", "recursive", "root_dir", "include_hidden", "dir_fd")
 _MAX_READ = 128 * 1024  # bytes
 
 
@@ -38,16 +28,14 @@ def file_functions(listing: PackageListing, root: str) -> FunctionTable:
         "glob.iglob": lambda evaluation, call: Items(folder.glob(evaluation, call)),
         "os.listdir": folder.listdir,
         "os.walk": folder.walk,
-        "os.chdir": folder.chdir,
-        "builtins.open": folder.open,
-        "io.open": folder.open,
+        **dict.fromkeys(("builtins.open", "io.open"), folder.open),
         "pathlib.Path.open": folder.open,
         "pathlib.Path.read_text": folder.read_text,
         "pathlib.Path.iterdir": folder.iterdir,
         "pathlib.Path.glob": folder.path_glob,
         "pathlib.Path.rglob": partial(folder.path_glob, prefix="**/"),
-        "setuptools.find_packages": partial(find_packages, listing),
-        "setuptools.find_namespace_packages": partial(find_packages, listing),
+        "setuptools.find_packages": partial(_find_packages, listing),
+        "setuptools.find_namespace_packages": partial(_find_packages, listing),
     }
     tests: dict[str, Callable[[str | None], bool]] = {
         "exists": lambda path: path is not None,
@@ -57,9 +45,7 @@ def file_functions(listing: PackageListing, root: str) -> FunctionTable:
     for name, test in tests.items():
         functions[f"pathlib.Path.{name}"] = partial(folder.test, test)
         functions[f"os.path.{name.replace('_', '')}"] = partial(folder.test, test)
-    table: FunctionTable = {name: partial(_evaluate, function, listing) for name, function in functions.items()}
-    escape = PlainFunction("escape", lambda pathname: re.sub(r"([*?\[])", r"[\1]", pathname), "path")
-    return {**table, "glob.escape": escape}
+    return {name: partial(_evaluate, function, listing) for name, function in functions.items()}
 
 
 def _evaluate(
@@ -102,27 +88,24 @@ class _PackageFolder:
         return real
 
     def glob(self, _: Evaluation, call: Call) -> Value:
-        pattern, start = call.argument(0, "pathname"), call.kwargs.get("root_dir")
-        options = [call.kwargs.get(name, False) for name in ("recursive", "include_hidden")]
+        pattern, recursive = call.argument(0, "pathname"), call.kwargs.get("recursive", False)
         if isinstance(pattern, PurePosixPath):
             raise ExpressionFails("glob takes a string, and this is a path: write str(...) around it")
-        if not call.kwargs.keys() <= {*_GLOB_OPTIONS, "dir_fd"} or len(call.args) + ("pathname" in call.kwargs) != 1:
+        if not call.kwargs.keys() <= {*_GLOB_OPTIONS} or len(call.args) + ("pathname" in call.kwargs) != 1:
             raise ExpressionFails("glob takes one pattern, and the options recursive, root_dir and include_hidden")
         if not isinstance(pattern, str):
             raise ExpressionFails(f"glob takes a string, and this is of the type {type(pattern).__name__}")
-        if not isinstance(start, str | PurePosixPath | None) or "dir_fd" in call.kwargs:
-            raise Undetermined("this search for files is not supported")
+        if call.kwargs.keys() & {*_GLOB_OPTIONS[2:]}:
+            raise Undetermined("these options of glob are not evaluated")
         if pattern == self.root:
             return [pattern]
         above = self.root + "/" if pattern.startswith(self.root + "/") else ""
         pattern = pattern.removeprefix(above)
-        recursive, hidden = map(bool, options)
         try:
-            folder = "" if start is None or above else self.inside(start)
-            found = self.listing.glob(pattern, recursive=recursive, hidden=hidden, start=folder, above=above)
+            found = self.listing.glob(pattern, recursive=bool(recursive), above=above)
         except SearchError as error:  # glob raises no error of its own
             return Unknown(str(error), call.at)
-        return self.listing.record(posixpath.join(folder, pattern), found, call.at)
+        return self.listing.record(pattern, found, call.at)
 
     def path_glob(self, _: Evaluation, call: Call, prefix: str = "") -> Value:
         pattern = call.argument(1, "pattern")
@@ -163,26 +146,18 @@ class _PackageFolder:
         except SearchError as error:
             raise Undetermined(str(error)) from None
         self.listing.order_matters |= len(names) > 1
-        paths = {name: below(real, name) for name in names}
+        paths = {name: _below(real, name) for name in names}
         folders = [name for name, path in paths.items() if path in self.listing.folders]
         yield (spelled, folders, [name for name in paths if name not in folders])
         for name in folders:
-            yield from self._steps(evaluation, self.real(below(real, name)), posixpath.join(spelled, name))
-
-    def chdir(self, _: Evaluation, call: Call) -> Value:
-        if len(call.args) != 1 or self.real(call.args[0]) != "":
-            raise EvaluationStopped("a change of the working folder is not evaluated", call.at)
+            yield from self._steps(evaluation, self.real(_below(real, name)), posixpath.join(spelled, name))
 
     def open(self, evaluation: Evaluation, call: Call) -> Value:
         path, mode = call.argument(0, "file"), call.argument(1, "mode")
-        if (
-            mode not in (None, "r", "rt")
-            or not call.kwargs.keys() <= {"file", "mode", "encoding"}
-            or len(call.args) > 2
-        ):
-            raise EvaluationStopped(
-                "a file that is opened to write into it, or by other options, is not evaluated", call.at
-            )
+        others = call.kwargs.keys() - {"file", "mode", "encoding"}
+        if mode not in (None, "r", "rt") or others or len(call.args) > 2:
+            reason = "a file that is opened to write into it, or by other options, is not evaluated"
+            raise EvaluationStopped(reason, call.at)
         real = self.real(path)
         if real is None:
             raise ExpressionFails(f"there is no file {str(path)!r}")
@@ -208,3 +183,31 @@ class _PackageFolder:
         if real is None:
             raise ExpressionFails(f"there is no folder {str(path)!r}")
         raise ExpressionFails(f"{str(path)!r} is a file, not a folder")
+
+
+def _find_packages(listing: PackageListing, _: Evaluation, call: Call) -> Value:
+    """Return the folders with an __init__.py; those without need other rules."""
+    where, exclude, include = (call.argument(place, name) for place, name in enumerate(("where", "exclude", "include")))
+    exclude, include = () if exclude is None else exclude, ["*"] if include is None else include
+    is_known = where in (None, ".", "./") and call.kwargs.keys() <= {"where", "exclude", "include"}
+    is_listed = isinstance(exclude, list | tuple) and isinstance(include, list | tuple)
+    if not is_known or "namespace" in call.name or not is_listed:
+        return Unknown("which packages there are is not evaluated", call.at)
+    return [name for name in _packages(listing, "") if _fits(name, include) and not _fits(name, exclude)]
+
+
+def _packages(listing: PackageListing, folder: str) -> Iterator[str]:
+    for name in listing.names(folder):
+        path = _below(folder, name)
+        if "." not in name and f"{path}/__init__.py" in listing.files:
+            yield path.replace("/", ".")
+            yield from _packages(listing, path)
+
+
+def _below(folder: str, name: str) -> str:
+    """Return the path of a name in a folder, which may be the package's, empty."""
+    return f"{folder}/{name}" if folder else name
+
+
+def _fits(name: str, patterns: Value) -> bool:
+    return any(isinstance(pattern, str) and fnmatchcase(name, pattern) for pattern in patterns)

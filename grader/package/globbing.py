@@ -106,20 +106,17 @@ class PackageListing:
                 return None
         return here if here in self.folders or here in self.files else None
 
-    def glob(
-        self, pattern: str, *, recursive: bool = False, hidden: bool = False, start: str = "", above: str = ""
-    ) -> list[str]:
+    def glob(self, pattern: str, *, recursive: bool = False, above: str = "") -> list[str]:
         """Return the paths that glob.glob finds, as it writes them. Raises SearchError.
 
-        `recursive` lets ** match any number of folders, `hidden` lets wildcards match names that begin with a dot;
-        `start` is the folder that is searched; `above` is the absolute path of the tree's root, which precedes each
-        path.
+        `recursive` lets ** match any number of folders; `above` is the absolute path of the tree's root, which precedes
+        each path.
         """
         if pattern.startswith("/"):
             raise SearchError(_OUTSIDE)
         if len(pattern) > _MAX_PATTERN or pattern.count("/") > _MAX_PARTS:
             raise SearchError("the pattern is too long")
-        found = _GlobSearch(self, start, recursive, hidden).find(pattern, folders_only=False)
+        found = _GlobSearch(self, recursive).find(pattern, folders_only=False)
         return [above + path for path in dict.fromkeys(found) if above or path]
 
     def path_glob(self, folder: str, pattern: str) -> list[str]:
@@ -148,12 +145,11 @@ class PackageListing:
 
 @dataclass(frozen=True, slots=True)
 class _GlobSearch:
-    """One call of glob.glob, with the algorithm of Python's own; paths are relative to the start of the search."""
+    """One call of glob.glob, with the algorithm of Python's own."""
 
     listing: PackageListing
-    start: str = ""
     recursive: bool = False
-    hidden: bool = False
+    hidden: bool = False  # whether wildcards match names that begin with a dot, as in pathlib
 
     def find(self, pattern: str, *, folders_only: bool) -> list[str]:
         """Return the paths that match a pattern; only folders for the part before the last one."""
@@ -199,10 +195,7 @@ class _GlobSearch:
         return [name for name in names if _join(folder, name) in self.listing.folders] if folders_only else names
 
     def _real(self, path: str, *, is_folder: bool = False) -> str | None:
-        start = self.listing.real(self.start) if self.start else ""
-        if start not in self.listing.folders:
-            return None
-        real = self.listing.real(posixpath.join(self.start, path) or ".")
+        real = self.listing.real(path or ".")
         return real if not is_folder or real in self.listing.folders else None
 
 

@@ -24,8 +24,7 @@ if TYPE_CHECKING:
 MANIFEST, SETUP = "package.xml", "setup.py"
 RESOURCE_INDEX = "share/ament_index/resource_index/packages/"
 NO_PACKAGE = "the submission has no ROS 2 package: there is no package.xml"
-PYTHON_LIMIT = 128 * 1024  # bytes; a syntax tree takes several hundred times as much
-_RVIZ_LIMIT = 512 * 1024
+PYTHON_LIMIT, _RVIZ_LIMIT = 128 * 1024, 512 * 1024  # bytes; a syntax tree takes several hundred times as much
 _MAX_LAUNCHES = 10
 # What a file of a kind is called in messages, and how its name ends.
 _KINDS = {"urdf": ("URDF", (".urdf", ".xacro")), "rviz": ("RViz file", (".rviz",)), "launch": ("launch file", ENDINGS)}
@@ -57,14 +56,14 @@ class Package:
     @property
     def name(self) -> str:
         """The name that ROS 2 finds it by; without a package.xml, that of setup.py or of the folder."""
-        declared = self.manifest.name if self.manifest is not None else None
-        set_up = self.setup.name if declared is None and self.setup is not None else None
-        return declared or set_up or PurePosixPath(self.folder or self.tree.name).name
+        if self.manifest is not None and self.manifest.name is not None:
+            return self.manifest.name
+        set_up = self.setup.name if self.setup is not None else None
+        return set_up or PurePosixPath(self.folder or self.tree.name).name
 
     def find(self, name: str) -> "Package | None":
         """Return the package of the submission that ROS 2 finds by a name."""
-        others = (package for package in self.packages.values() if name in package.names)
-        return self.packages.get(name) or next(others, None)
+        return self.packages.get(name) or next((it for it in self.packages.values() if name in it.names), None)
 
     def depends_on(self, name: str) -> bool:
         """Return whether its package.xml depends on a package of this name."""
@@ -125,17 +124,17 @@ class Package:
     def built(self, kind: str, name: str = "") -> str:
         """Return the end of a message on a missing file if a build has one of that kind, or the one of that name."""
         shares = [f"/{folder}/{self.name}/" for folder in ("build", "install", "share")]
-        for path in self.generated:
-            is_meant = path.rpartition("/")[2] == name if name else path.lower().endswith(_KINDS[kind][1])
-            if is_meant and any(share in f"/{path}" for share in shares):
-                return was_not_committed(path)
-        return ""
+        copied = (path for path in self.generated if any(share in f"/{path}" for share in shares))
+        endings = (f"/{name}",) if name else _KINDS[kind][1]
+        return next(
+            (was_not_committed(path) for path in copied if (path if name else path.lower()).endswith(endings)), ""
+        )
 
     def missing(self, kind: str) -> MissingElement:
         """Return the error for a package without a file of a kind: urdf, launch or rviz."""
-        has_folder = any(folder.rpartition("/")[2] == "launch" for folder in self.tree.folders)
         word, endings = _KINDS[kind]
-        folder = ", and there is no folder launch" if kind == "launch" and not has_folder else ""
+        has_folder = kind != "launch" or any(it.rpartition("/")[2] == kind for it in self.tree.folders)
+        folder = "" if has_folder else ", and there is no folder launch"
         message = f"the package has no {word}: no file ends in {enumerated(endings[:3], word='or')}{folder}"
         return MissingElement(f"{word} in the package", "", message=message, detail=self.built(kind))
 
@@ -160,7 +159,8 @@ class Package:
         own = self.path(path)
         try:
             data = self.tree.files[path].read(PYTHON_LIMIT) if text is None else text
-            installed = self.target(path) or f"share/{self.name}/{path}"
+            targets = (target for target, source in self.installed.items() if source == path)
+            installed = next(targets, f"share/{self.name}/{path}")
             launch = read_launch(data, own, installed, self._open_installed, self._is_on_machine, self._has_program)
         except InputError as error:
             launch = Launch(Source(own, ""), unread=str(error))
@@ -196,11 +196,7 @@ class Package:
         paths = [reference.path for reference in launch.named("rviz") if reference.path is not None]
         installed = [source for path in paths if (source := self.source_of(path)) in self.rviz_files]
         names = {path.rpartition("/")[2] for path in paths}
-        return next(iter([*installed, *(path for path in self.rviz_files if path.rpartition("/")[2] in names)]), None)
-
-    def target(self, path: str) -> str | None:
-        """Return the path below the prefix that a build installs a file at; None where it does not."""
-        return next((target for target, source in self.installed.items() if source == path), None)
+        return next(iter([*installed, *(it for it in self.rviz_files if it.rpartition("/")[2] in names)]), None)
 
     def source_of(self, path: str) -> str | None:
         """Return the file of the package that a build installs at a path, which begins with the prefix's stand-in."""
@@ -216,16 +212,15 @@ class Package:
     def _has_program(self, package: str, name: str) -> bool | None:
         """Return whether a package has a program, as far as its setup.py tells; one that is not submitted has it."""
         owner = self.find(package)
-        if owner is None:
-            return True
-        setup = owner.setup
-        return setup.has_program(name) if setup is not None and not owner.is_cmake else None
+        if owner is None or owner.is_cmake or owner.setup is None:
+            return True if owner is None else None
+        return owner.setup.has_program(name)
 
     def _open_installed(self, path: str) -> tuple[bytes, str] | None:
         """Return what a build of any submitted package installs at a path below the prefix, with the file's path."""
-        package = next((package for package in self.packages.values() if path in package.installed), None)
-        if package is not None:
-            source = package.installed[path]
-            with suppress(InputError):
-                return package.tree.files[source].read(PYTHON_LIMIT), package.path(source)
+        for package in self.packages.values():
+            if path in package.installed:
+                source = package.installed[path]
+                with suppress(InputError):
+                    return package.tree.files[source].read(PYTHON_LIMIT), package.path(source)
         return None

@@ -13,7 +13,7 @@ from grader.static_python.budget import Budget
 from grader.static_python.builtins import call, truth
 from grader.static_python.knowledge import call_plain, iterate
 from grader.static_python.operators import attribute, compare, operate, subscript
-from grader.static_python.parse import parse_expression
+from grader.static_python.parse import kinds_of, parse_expression
 from grader.static_python.values import ExpressionFails, Scope, Undetermined, Value
 
 _MAX_LENGTH = 4_000  # characters of an expression
@@ -215,14 +215,6 @@ _UNARY: Mapping[type[ast.unaryop], Callable[[Value], Value]] = {
     ast.USub: lambda value: -value,
     ast.UAdd: lambda value: +value,
 }
-
-
-def kinds_of(evaluator: type) -> Mapping[type, Callable[[Any, Any, Scope], Value]]:
-    """Return the methods of an evaluator by the kind of node that each evaluates."""
-    nodes = (kind for kind in vars(ast).values() if isinstance(kind, type) and issubclass(kind, ast.AST))
-    return {
-        kind: found for kind in nodes if (found := getattr(evaluator, f"_of_{kind.__name__.lower()}", None)) is not None
-    }
 
 
 Expressions.KINDS = kinds_of(Expressions)

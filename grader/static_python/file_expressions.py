@@ -10,11 +10,10 @@ from typing import Any
 from grader.static_python import values as py
 from grader.static_python.calls import Calls
 from grader.static_python.evaluation import NOT_EVALUATED, EvaluationStopped
-from grader.static_python.expressions import kinds_of
 from grader.static_python.knowledge import call_plain, iterate, known, refuse, str_of
 from grader.static_python.library import CONSTANTS, attribute_error
 from grader.static_python.operators import has_attribute, operate
-from grader.static_python.parse import Position, position_of
+from grader.static_python.parse import Position, kinds_of, position_of
 
 _PARTS = ("name", "stem", "suffix", "parent", "parents", "parts")  # of a path
 

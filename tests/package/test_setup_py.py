@@ -32,7 +32,6 @@ UNKNOWN: dict[str, str] = {
     "try_around_imports": "line 1: a statement of the kind Try is not evaluated",
     "two_sources_for_one_target": "line 15: several files are installed as share/my_robot/meshes/two.stl: meshes/a/two.stl and meshes/two.stl; line 15: several files are installed as share/my_robot/meshes/two.stl: meshes/a/two.stl and meshes/two.stl",
     "version_executed": "line 3: exec is not evaluated",
-    "working_folder_is_left": "line 5: a change of the working folder is not evaluated",
 }
 
 

@@ -95,14 +95,7 @@ def _shutdown(visitor: ActionVisitor, call: Call, context: Context, when: bool |
 
 def _group(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     """Visit a group: what it sets ends with it, unless scoped is False."""
-    own = call.kwargs.get("launch_configurations") or {}
-    is_scoped, inner = call.kwargs.get("scoped", True), context
-    if not isinstance(is_scoped, bool) or "forwarding" in call.kwargs:
-        raise NotEvaluated("what this group keeps is not evaluated", call.at)
-    if is_scoped:
-        inner = context.copy()
-    for name, value in own.items() if when is not False else ():
-        inner.arguments[known_text(name, context, call.at)] = resolve(value, context, call.at)
+    inner = context.copy() if call.kwargs.get("scoped", True) else context
     visitor.visit_all(call.kwargs["actions"], call, inner, when)
 
 
@@ -172,10 +165,8 @@ def _launch_arguments(given: Value, context: Context, at: Position) -> dict[str,
         raise NotEvaluated(str(error), at) from None
     found: dict[str, Resolved] = {}
     for pair in pairs or ():
-        if isinstance(pair, Unknown):
-            raise NotEvaluated(pair.reason, pair.at)
-        if not isinstance(pair, list | tuple | str) or len(pair) != 2:
-            raise LaunchFails("launch_arguments takes pairs of a name and a value", at)
+        if not isinstance(pair, list | tuple) or len(pair) != 2:
+            raise NotEvaluated("launch_arguments that are no pairs are not evaluated", at)
         for part in pair:
             if not isinstance(part, str | Call | Unknown | list | tuple):
                 raise LaunchFails(f"the value of a launch argument is {kind_of(part)}, not a string", at)

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 ENTITY = "launch.launch_description_entity.LaunchDescriptionEntity"
-ACTION = "launch.action.Action"
 PROCESS = "launch.actions.execute_local.ExecuteLocal"
 CONDITION = "launch.condition.Condition"
 SUBSTITUTION = "launch.substitution.Substitution"
@@ -25,16 +24,12 @@ class Parameter(NamedTuple):
 
 
 class LaunchClass(NamedTuple):
-    """A class: the parameters of its constructor, with those that it passes on, and the names of its methods.
-
-    `rest` names the parameter that takes any number of positional arguments.
-    """
+    """A class: the parameters of its constructor, with those that it passes on, and the names of its methods."""
 
     name: str
     base: str
     parameters: Mapping[str, Parameter]
     methods: frozenset[str]
-    rest: str
 
     @property
     def short(self) -> str:
@@ -54,18 +49,16 @@ def class_named(name: str) -> LaunchClass | None:
     if row is None:
         return None
     base, signature, methods = row
-    parameters, rest, is_positional = {}, "", True
+    parameters, is_positional = {}, True
     for word in signature.split():
         own, _, check = word.partition(":")
         if word.startswith("*"):
-            rest, is_positional = own[1:], False
+            is_positional = False
         else:
             named = own.removesuffix("!")
             parameters[named] = Parameter(named, check, own.endswith("!"), is_positional)
     inherited = class_named(base)
-    return LaunchClass(
-        name, base, parameters, frozenset(methods.split()) | (inherited.methods if inherited else set()), rest
-    )
+    return LaunchClass(name, base, parameters, frozenset(methods.split()) | (inherited.methods if inherited else set()))
 
 
 def is_a(name: str, base: str) -> bool:

@@ -8,55 +8,24 @@ from grader.names import did_you_mean
 from grader.package.launch.api import PROCESS, SOURCE, LaunchClass, class_named, exports, is_a
 from grader.package.launch.model import not_evaluated
 from grader.package.launch.substitutions import PERFORMS
-from grader.package.launch.value_types import (
-    CHECKS,
-    is_entity,
-    is_text,
-    items_in,
-    kind_of,
-    wrong_text,
-    wrong_typed,
-)
+from grader.package.launch.value_types import CHECKS, is_entity, is_text, items_in, kind_of, wrong_text, wrong_typed
 from grader.static_python.evaluation import Evaluation, record
 from grader.static_python.knowledge import iterate, known
-from grader.static_python.values import (
-    Call,
-    ExpressionFails,
-    Function,
-    Items,
-    Undetermined,
-    Unknown,
-    Value,
-)
+from grader.static_python.values import Call, ExpressionFails, Function, Items, Undetermined, Unknown, Value
 
 _ACTIONS = (
-    "Node",
-    "ExecuteProcess",
-    "LogInfo",
-    "LaunchDescription",
-    "DeclareLaunchArgument",
-    "SetLaunchConfiguration",
-    "GroupAction",
-    "SetEnvironmentVariable",
-    "AppendEnvironmentVariable",
-    "IncludeLaunchDescription",
-    "OpaqueFunction",
-    "TimerAction",
-    "RegisterEventHandler",
-    "OnProcessExit",
-    "OnProcessStart",
-    "Shutdown",
-    "EmitEvent",
-    "PushROSNamespace",
-    "SetParameter",
-)
+    "Node", "ExecuteProcess", "LogInfo", "LaunchDescription", "DeclareLaunchArgument", "SetLaunchConfiguration",
+    "GroupAction", "SetEnvironmentVariable", "AppendEnvironmentVariable", "IncludeLaunchDescription", "OpaqueFunction",
+    "TimerAction", "RegisterEventHandler", "OnProcessExit", "OnProcessStart", "Shutdown", "EmitEvent",
+    "PushROSNamespace", "SetParameter",
+)  # fmt: skip
 _OF_ONE_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
 
 
-def bind(cls: LaunchClass, call: Call) -> None:
-    """Give the arguments of a constructor their names. Raises ExpressionFails as Python does, and Undetermined."""
+def _bind(cls: LaunchClass, call: Call) -> None:
+    """Give the arguments of a constructor their names. Raises ExpressionFails as Python does."""
     positional = [name for name, it in cls.parameters.items() if it.is_positional]
-    if len(call.args) > len(positional) and not cls.rest:
+    if len(call.args) > len(positional):
         names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)
         hint = "put [ ] around them" if cls.short in _OF_ONE_LIST else f"write {names[:100]}"
         raise ExpressionFails(f"{cls.short} takes {len(positional)} argument without a name: {hint}")
@@ -67,7 +36,7 @@ def bind(cls: LaunchClass, call: Call) -> None:
         message = f"{cls.short} has no argument {name!r}{did_you_mean(name, cls.parameters)}"
         raise ExpressionFails(message)
     kwargs = {**given, **call.kwargs}.items()
-    call.args = call.args[len(positional) :]
+    call.args = []
     call.kwargs = {name: list(iterate(value)) if isinstance(value, Items) else value for name, value in kwargs}
     missing = [name for name, it in cls.parameters.items() if it.is_required and name not in call.kwargs]
     if missing:
@@ -75,26 +44,30 @@ def bind(cls: LaunchClass, call: Call) -> None:
 
 
 def check(cls: LaunchClass, call: Call) -> Unknown | None:
-    """Check the arguments of a constructor; return what is not evaluated of them. Raises ExpressionFails."""
-    doubt: Unknown | None = None
+    """Name and check the arguments of a constructor; return what is not evaluated. Raises ExpressionFails."""
     if cls.short not in _EVALUATED and not is_a(cls.name, SOURCE):
-        doubt = Unknown(f"{cls.short} is not evaluated", call.at)
-    for name, value in call.kwargs.items():
-        test = cls.parameters[name].check
-        own = CHECKS.get(test.removesuffix("?"))
+        return Unknown(f"{cls.short} is not evaluated", call.at)
+    _bind(cls, call)
+    doubt: Unknown | None = None
+    for name, value in [*call.kwargs.items(), ("", None)]:
         try:
-            if own is not None and not (value is None and test.endswith("?")) and (wanted := own(value)):
-                tail = "" if wanted.startswith("has a value") else f", not {kind_of(value)}"
-                raise ExpressionFails(f"{name} of {cls.short} {wanted}{tail}")
+            if message := _wrong(cls, call, name, value):
+                raise ExpressionFails(message)
         except Undetermined as error:
             doubt = doubt or Unknown(str(error), call.at)
-    special = _SPECIAL.get(cls.short)
-    try:
-        if special is not None and (message := special(call)):
-            raise ExpressionFails(f"{cls.short}: {message}")
-    except Undetermined as error:
-        doubt = doubt or Unknown(str(error), call.at)
     return doubt
+
+
+def _wrong(cls: LaunchClass, call: Call, name: str, value: Value) -> str:
+    """Return what is wrong with an argument, or, without a name, with all together. Raises Undetermined."""
+    if not name:
+        message = _SPECIAL[cls.short](call) if cls.short in _SPECIAL else ""
+        return f"{cls.short}: {message}" if message else ""
+    test = cls.parameters[name].check
+    own = CHECKS.get(test.removesuffix("?"))
+    wanted = own(value) if own is not None and not (value is None and test.endswith("?")) else ""
+    tail = "" if wanted.startswith("has a value") else f", not {kind_of(value)}"
+    return f"{name} of {cls.short} {wanted}{tail}" if wanted else ""
 
 
 def _declaration(call: Call) -> str:
@@ -150,8 +123,8 @@ def _timer(call: Call) -> str:
 
 
 def _group(call: Call) -> str:
-    if not isinstance(call.kwargs.get("launch_configurations"), dict | None):
-        raise Undetermined("the launch_configurations of this group")
+    if call.kwargs.keys() - {"actions", "scoped", "condition"} or not isinstance(call.kwargs.get("scoped", True), bool):
+        raise Undetermined("what this group keeps")
     return ""
 
 
@@ -190,7 +163,6 @@ def _function_of(name: str) -> "Callable[[Evaluation, Call], Value] | None":
 
 def _construct(cls: LaunchClass, evaluation: Evaluation, call: Call) -> Value:
     call.name = cls.name
-    bind(cls, call)
     doubt = check(cls, call)
     if doubt is not None:
         evaluation.doubted(Unknown(not_evaluated(doubt.reason), doubt.at))

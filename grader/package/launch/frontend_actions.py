@@ -5,7 +5,7 @@ from typing import Any
 
 from grader.names import did_you_mean
 from grader.package.launch.api import class_named, front_end
-from grader.package.launch.arguments import bind, check
+from grader.package.launch.arguments import check
 from grader.package.launch.frontend import Entity
 from grader.package.launch.frontend_values import command_line, is_typed, parse_if_text, parse_value, typed_text
 from grader.package.launch.model import Findings, LaunchFails, LaunchSignal, NotEvaluated
@@ -104,7 +104,7 @@ def _typed(entity: Entity, name: str, value: Any, kind: str) -> Any:
     wanted = _TYPES[kind] if kind else str
     if not entity.is_yaml:
         return value if wanted is str else typed_text(value, wanted, entity.at)
-    if not is_typed(value, wanted):
+    if not is_typed(value, wanted, entity.at):
         what = f"{name} of {entity.kind} is {value!r}, which YAML reads as {type(value).__name__}"
         raise LaunchFails(f"{what}: {'put quotes around it' if wanted is str else f'write a {kind}'}", entity.at)
     return value
@@ -115,7 +115,6 @@ def _checked(call: Call) -> Call:
     cls = class_named(call.name)
     try:
         if cls is not None:
-            bind(cls, call)
             doubt = check(cls, call)
             if doubt is not None:
                 raise NotEvaluated(doubt.reason, doubt.at)

@@ -141,10 +141,10 @@ def command_line(text: str, at: Position) -> list[list[Value]]:
 
 
 def typed_text(text: str, kind: type | None, at: Position) -> Any:
-    """Return the value of a text in XML as a type; a text that is none of it stays a text. `kind` None is any type."""
-    if kind in (int, float):
+    """Return the value of a text in XML as a type, by default any scalar; a text that is none of it stays a text."""
+    if kind is float:
         try:
-            return kind(text)
+            return float(text)
         except ValueError:
             return text
     text = {"1": "true", "0": "false"}.get(text, text) if kind is bool else text
@@ -152,29 +152,19 @@ def typed_text(text: str, kind: type | None, at: Position) -> Any:
         found = yaml.safe_load(text) if text else text
     except (yaml.YAMLError, ValueError, RecursionError):
         return text
-    if not is_typed(found, kind):
+    if not is_typed(found, kind, at):
         raise LaunchFails(f"{text[:40]!r} is of no type that is accepted here: put quotes in it", at)
     return found
 
 
-def is_typed(value: Any, kind: type | None) -> bool:
-    """Return whether a value is a text or of a type; with None, whether it is a scalar or a list of one type."""
-    if kind is not None:
-        return isinstance(value, str | kind)
-    if not isinstance(value, list):
-        return isinstance(value, str | int | float)
-    own = next((type(item) for item in value if not isinstance(item, str)), str)
-    return own in (str, int, float, bool) and all(isinstance(item, own | str) for item in value)
+def is_typed(value: Any, kind: type | None, at: Position) -> bool:
+    """Return whether a value is a text or of a type; with None, whether it is a scalar. Raises NotEvaluated."""
+    if isinstance(value, list) and kind is None:
+        raise NotEvaluated("a list in this place is not evaluated", at)
+    return isinstance(value, str | (kind or float) | (kind or int))
 
 
 def parse_if_text(value: Any, at: Position) -> Any:
-    """Return a value whose texts are parsed. Raises LaunchFails."""
-    if isinstance(value, list):
-        found = [parse_if_text(item, at) for item in value]
-        if len({type(item) for item in found if not isinstance(item, list)}) > 1:
-            raise LaunchFails("a list has values of different types", at)
-        return found
-    if not isinstance(value, str):
-        return value
-    parts = parse_value(value, at)
-    return parts[0] if len(parts) == 1 and isinstance(parts[0], str) else parts
+    """Return a value; a text is parsed. Raises LaunchFails."""
+    parts = parse_value(value, at) if isinstance(value, str) else [value]
+    return parts[0] if len(parts) == 1 and not isinstance(parts[0], Call) else parts

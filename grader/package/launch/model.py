@@ -184,6 +184,11 @@ class Findings:
         """Add what may stop the launch."""
         self.doubts.append(LaunchFault(not_evaluated(reason), self.locate(at)))
 
+    def add_undecided(self, reason: str, at: Position) -> None:
+        """Add what may start more, or stop the launch."""
+        self.add_unknown(reason, at)
+        self.add_doubt(reason, at)
+
     def add(self, signal: LaunchSignal, when: bool | None) -> None:
         """Add what ends an action: an error only if it certainly is executed."""
         if self.is_silent:

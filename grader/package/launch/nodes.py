@@ -3,7 +3,6 @@
 import re
 import shlex
 
-from grader.package.launch.commands import PART_UNKNOWN
 from grader.package.launch.model import (
     STATE_PUBLISHER,
     Contents,
@@ -17,7 +16,7 @@ from grader.package.launch.model import (
     StartedNode,
 )
 from grader.package.launch.parameters import tables_in
-from grader.package.launch.substitutions import known_text, resolve
+from grader.package.launch.substitutions import PART_UNKNOWN, known_text, resolve
 from grader.package.launch.value_types import OPENED, TYPED, items_in
 from grader.static_python.parse import Position
 from grader.static_python.values import Call, Unknown, Value

@@ -7,8 +7,8 @@ from typing import Any
 import yaml
 
 from grader.package.launch.model import Contents, Context, LaunchFails, NotEvaluated, UnknownText
-from grader.package.launch.substitutions import boolean, resolve
-from grader.package.launch.value_types import FILE, SCALARS, TYPED, kind_of, type_of
+from grader.package.launch.substitutions import resolve
+from grader.package.launch.value_types import FILE, SCALARS, TYPED, boolean, kind_of, type_of
 from grader.static_python.parse import Position
 from grader.static_python.values import Call, Undetermined, Unknown, Value
 

@@ -8,14 +8,7 @@ from pathlib import PurePosixPath
 
 from grader.package.launch.api import DESCRIPTION, SUBSTITUTION, class_named, exports, is_a
 from grader.package.launch.arguments import LaunchFunctions
-from grader.package.launch.model import (
-    Contents,
-    Context,
-    FileText,
-    LaunchFails,
-    LaunchSignal,
-    UnknownText,
-)
+from grader.package.launch.model import Contents, Context, FileText, LaunchFails, LaunchSignal, UnknownText
 from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.launch.substitutions import resolve
 from grader.static_python.calls import Calls

@@ -167,8 +167,7 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
         if entry is None:
             findings.add_fault(message, START)
         else:
-            findings.add_unknown(f"{_ENTRY}, which the file does not define itself, is not evaluated", START)
-            findings.add_doubt(f"{_ENTRY}, which the file does not define itself, is not evaluated", START)
+            findings.add_undecided(f"{_ENTRY}, which the file does not define itself, is not evaluated", START)
     _add_python(findings, file)
     nodes = [call for call in interpreter.calls if call.name == _NODE and id(call) not in visitor.visited]
     return _launch(code.source, findings, tuple(_forgotten(node, findings) for node in nodes))
@@ -178,8 +177,7 @@ def _add_python(findings: Findings, file: PythonLaunchFile) -> None:
     """Add what Python raises, what is not evaluated, and what the file reads."""
     interpreter = file.interpreter
     if interpreter.doubt is not None:
-        findings.add_unknown(interpreter.doubt.reason, interpreter.doubt.at)
-        findings.add_doubt(interpreter.doubt.reason, interpreter.doubt.at)
+        findings.add_undecided(interpreter.doubt.reason, interpreter.doubt.at)
     if interpreter.errors:  # the description is not loaded, so what is wrong with the rest of it does not count
         findings.faults, findings.doubts = [], []
     for fault in interpreter.errors:

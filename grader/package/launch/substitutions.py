@@ -1,13 +1,12 @@
-"""The texts of substitutions, as launch evaluates them when it executes an action."""
+"""The texts of substitutions, as launch evaluates them, and the files that their commands print."""
 
 import builtins
 import posixpath
-from collections.abc import Callable, Mapping
+import re
+import shlex
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-import yaml
-
-from grader.package.launch.commands import command_output
 from grader.package.launch.model import ANY, Contents, Context, FileText, LaunchFails, NotEvaluated, Resolved
 from grader.package.launch.places import HOME, SHARE
 from grader.static_python.budget import Budget, OutOfBudget
@@ -15,19 +14,11 @@ from grader.static_python.builtins import BUILTINS, MATH
 from grader.static_python.expressions import evaluate
 from grader.static_python.knowledge import str_of
 from grader.static_python.parse import Position
-from grader.static_python.values import (
-    MAX_TEXT,
-    Call,
-    ExpressionFails,
-    Namespace,
-    Undetermined,
-    Unknown,
-    Value,
-)
+from grader.static_python.values import MAX_TEXT, Call, ExpressionFails, Namespace, Undetermined, Unknown, Value
 
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
+PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
 _PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", "env", "rviz2"})
-BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 
 
 def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Resolved:
@@ -152,7 +143,7 @@ class _Substitution:
             raise LaunchFails("on_stderr is one of fail, ignore, warn, capture", self.call.at)
         parts = self.call.kwargs["command"]
         texts = [self.resolve(piece) for piece in (parts if isinstance(parts, list | tuple) else [parts])]
-        contents = command_output(texts, self.call.at)
+        contents = _command_output(texts, self.call.at)
         self.context.reads.append((contents, self.call.at))
         return contents
 
@@ -173,17 +164,6 @@ PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
     "FindExecutable": _Substitution.program, "EnvironmentVariable": _Substitution.variable,
     "ThisLaunchFileDir": lambda it: posixpath.dirname(it.context.path),
 }  # fmt: skip
-
-
-def boolean(text: str, at: Position) -> bool:
-    """Return the value of a text as launch reads it where it wants a boolean, by the rules of YAML."""
-    try:
-        found = BOOLEANS[text] if text in ("0", "1") else yaml.safe_load(text) if len(text) < 20 else None
-    except yaml.YAMLError:
-        found = None
-    if not isinstance(found, bool):
-        raise LaunchFails(f"{text[:40]!r} is neither true nor false", at)
-    return found
 
 
 def _expression_text(text: str, at: Position, context: Context) -> str:
@@ -207,3 +187,34 @@ def _find(name: str) -> Value:
     if hasattr(builtins, name) or name.startswith("__"):
         raise Undetermined(f"the name {name!r} is not evaluated")
     raise ExpressionFails(f"the name {name!r} is not defined")
+
+
+def _command_output(texts: Sequence[Resolved], at: Position) -> Contents:
+    """Return the contents of the file that a command prints, whose parts have these texts. Raises LaunchSignal."""
+    command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()[:MAX_TEXT]
+    if glued := re.match(r"(xacro|cat)(?=/)", command):
+        raise LaunchFails(f"a space is missing between {glued[1]} and the path: write '{glued[1]} '", at)
+    try:
+        words = shlex.split(command)
+    except ValueError:
+        raise LaunchFails("the quotes in this command are not closed", at) from None
+    if not words:
+        raise LaunchFails("this command is empty", at)
+    found = _file_of(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words)
+    if found is None:
+        unknown = next((text.reason for text in texts if isinstance(text, Unknown)), "")
+        raise NotEvaluated(f"the output of this command is not evaluated{unknown and ': ' + unknown}", at)
+    return found
+
+
+def _file_of(words: list[str]) -> Contents | None:
+    """Return the contents of the one file that xacro or cat prints; None for any other command."""
+    program = words[0].rpartition("/")[2].removesuffix(".py") if words else ""
+    files = [word for word in words[1:] if not word.startswith("-") and ":=" not in word]
+    is_known = len(files) == 1 and files[0] and PART_UNKNOWN not in files[0]
+    if program not in ("xacro", "cat") or "-o" in words or not is_known:
+        return None
+    if program != "xacro":
+        return Contents(files[0], "cat") if words[1:] == files else None
+    given = (word.split(":=", 1) for word in words[1:] if ":=" in word)
+    return Contents(files[0], "xacro", tuple((name, None if PART_UNKNOWN in it else it) for name, it in given))

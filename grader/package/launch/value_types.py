@@ -4,11 +4,15 @@ from collections.abc import Callable, Mapping
 from pathlib import PurePosixPath
 from typing import Any
 
+import yaml
+
 from grader.package.launch.api import ENTITY, SUBSTITUTION, class_named, is_a
-from grader.package.launch.model import UnknownText
+from grader.package.launch.model import LaunchFails, UnknownText
 from grader.static_python.knowledge import iterate
+from grader.static_python.parse import Position
 from grader.static_python.values import VIEWS, Call, Function, Items, QualifiedName, Undetermined, Unknown, Value
 
+BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 SCALARS = (bool, int, float, str)
 TYPED = ("launch_ros.parameter_descriptions.ParameterValue", "launch_ros.parameter_descriptions.Parameter")
 FILE = "launch_ros.parameter_descriptions.ParameterFile"
@@ -19,13 +23,8 @@ OPENED = {
 }  # fmt: skip
 _COLLECTIONS: Any = (list, tuple, dict, set, frozenset, *VIEWS)
 _NAMES = {
-    type(None): "None",
-    bool: "a boolean",
-    int: "a number",
-    float: "a number",
-    dict: "a dict",
-    Function: "a function",
-}
+    type(None): "None", bool: "a boolean", int: "a number", float: "a number", dict: "a dict", Function: "a function",
+}  # fmt: skip
 
 
 def is_text(value: Value) -> bool:
@@ -191,3 +190,14 @@ CHECKS: Mapping[str, Callable[[Value], str]] = {
     "text": wrong_text, "texts": _texts, "mapping": _mapping, "bool": typed(bool), "float": _period,
     "remappings": _remappings, "actions": _actions, "parameters": wrong_parameters, "parameter": wrong_parameter,
 }  # fmt: skip
+
+
+def boolean(text: str, at: Position) -> bool:
+    """Return the value of a text as launch reads it where it wants a boolean, by the rules of YAML."""
+    try:
+        found = BOOLEANS[text] if text in ("0", "1") else yaml.safe_load(text) if len(text) < 20 else None
+    except yaml.YAMLError:
+        found = None
+    if not isinstance(found, bool):
+        raise LaunchFails(f"{text[:40]!r} is neither true nor false", at)
+    return found

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from grader.package.launch.api import CONDITION, ENTITY, class_named, is_a
 from grader.package.launch.model import Context, Findings, LaunchFails, LaunchSignal, NotEvaluated
 from grader.package.launch.parameters import evaluate_parameters
-from grader.package.launch.substitutions import BOOLEANS, boolean, known_text, resolve
-from grader.package.launch.value_types import items_in, kind_of
+from grader.package.launch.substitutions import known_text, resolve
+from grader.package.launch.value_types import BOOLEANS, boolean, items_in, kind_of
 from grader.static_python.parse import START, Position
 from grader.static_python.values import Call, Function, Undetermined, Unknown, Value
 
