@@ -59,7 +59,7 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
     try:
         for besides in changes(watched, frozenset(os.path.realpath(file) for _, file in request.saves)):
             try:
-                result = grade_submission(request, terminal.warn, terminal.show_file)
+                result = grade_submission(request, terminal.warn)
             except (InputError, MachineError, RubricError) as error:
                 code = ExitCode.NOT_GRADED
                 _show_error(request.path, error, terminal.warn)
