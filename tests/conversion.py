@@ -9,7 +9,7 @@ from unittest.mock import patch
 from grader.documents import converter
 
 
-def convert_here(_documents: object, command: list[str], data: bytes, _path: str) -> tuple[int, bytes]:
+def convert_here(_documents: object, command: list[str], data: bytes) -> tuple[int, bytes]:
     """Return the exit code and the output of a converter, as `DocumentCollection._run` does."""
     given, output = (SimpleNamespace(buffer=io.BytesIO(each)) for each in (data, b""))
     with (

@@ -100,7 +100,7 @@ def grade(
 
 def _grade_once(request: GradeRequest) -> int:
     """Grade, and print the report; in a job of GitHub Actions also publish it. Return the exit code."""
-    run = grade_and_save(request, warn, TERMINAL.show_file)
+    run = grade_and_save(request, warn)
     text = render(run.report, request.format, run.base, screen(), verbose=request.verbose)
     write_stdout(text if request.format.needs == "console" else text.encode("utf-8", "backslashreplace"))
     if _is_github_job():

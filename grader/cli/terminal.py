@@ -8,7 +8,7 @@ from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
 from grader.report.screen import Screen, columns
-from grader.text import printable, without_commands
+from grader.text import without_commands
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import write_stdout
 
@@ -42,28 +42,6 @@ def write_stderr(text: str) -> None:
             sys.stderr.flush()
 
 
-class TransientLine:
-    """A line on standard error that the next text replaces; nothing unless that is a terminal."""
-
-    def __init__(self) -> None:
-        self._width = 0
-
-    def show(self, text: str) -> None:
-        """Show a text in place of the last one."""
-        text = printable(text)[: columns() - 1]
-        if (text or self._width) and _is_terminal():
-            write_stderr(without_commands(f"\r{' ' * self._width}\r{text}"))
-            self._width = len(text)
-
-    def show_file(self, path: str) -> None:
-        """Show which file is being read; for an empty path remove the line."""
-        self.show(f"grader: reading {path}" if path else "")
-
-
-def _is_terminal() -> bool:
-    return sys.stderr is not None and sys.stderr.isatty()
-
-
 @contextmanager
 def show_class(work: str) -> Iterator[Callable[["Progress"], None]]:
     """Show the progress of a pass over a class, whose work is named; yields the function that receives it.
@@ -71,8 +49,14 @@ def show_class(work: str) -> Iterator[Callable[["Progress"], None]]:
     It is one line that changes on a terminal, else a line every ten seconds.
     """
     began = last_line = time.monotonic()
-    line, is_terminal = TransientLine(), _is_terminal()
+    is_terminal = sys.stderr is not None and sys.stderr.isatty()
     pause = _TERMINAL_SECONDS if is_terminal else _LINE_SECONDS
+    width = 0
+
+    def replace(text: str) -> None:
+        nonlocal width
+        write_stderr(without_commands(f"\r{' ' * width}\r{text}"))
+        width = len(text)
 
     def show(progress: "Progress") -> None:
         nonlocal last_line
@@ -80,12 +64,16 @@ def show_class(work: str) -> Iterator[Callable[["Progress"], None]]:
         if now - last_line > pause or (is_terminal and not progress.done):
             last_line = now
             text = _line(progress, now - began)
-            line.show(f"{work}: {text}") if is_terminal else warn(text)
+            if is_terminal:
+                replace(f"{work}: {text}"[: columns() - 1])
+            else:
+                warn(text)
 
     try:
         yield show
     finally:
-        line.show("")
+        if width:
+            replace("")
 
 
 def _line(progress: "Progress", seconds: float) -> str:
@@ -97,4 +85,4 @@ def _line(progress: "Progress", seconds: float) -> str:
     return f"{progress.done} of {progress.total}, {rate:.0f}/s, {time_left} left{f' ({counts})' if counts else ''}"
 
 
-TERMINAL = Terminal(write_stdout, warn, screen, TransientLine().show_file, show_class)
+TERMINAL = Terminal(write_stdout, warn, screen, show_class)

@@ -5,7 +5,7 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from fnmatch import translate
 from functools import lru_cache
 from math import ceil
@@ -42,16 +42,12 @@ def _names_like(patterns: tuple[str, ...]) -> re.Pattern[str]:
 class DocumentCollection:
     """The documents of a submission. Each is read once; Word and PDF files share one budget of time.
 
-    `show_file` gets the path of a file that keeps the user waiting, and an empty text when that is read. `converted`
-    are the texts of Word and PDF files by path; those that are given are not read again.
+    `converted` are the texts of Word and PDF files by path; those that are given are not read again.
     """
 
-    def __init__(
-        self, tree: Tree, show_file: Callable[[str], None], converted: Mapping[str, str] = MappingProxyType({})
-    ) -> None:
+    def __init__(self, tree: Tree, converted: Mapping[str, str] = MappingProxyType({})) -> None:
         self.tree = tree
         self.converted = dict(converted)
-        self._show_file = show_file
         self._seconds = MAX_SECONDS
         self._converted = 0
         self._read_files: dict[str, Document | Unread | None] = {}
@@ -139,7 +135,7 @@ class DocumentCollection:
         command = [sys.executable, "-P", str(converter.__file__), file.suffix[1:], *limits]
         began = time.monotonic()
         try:  # an interruption ends the process as well
-            code, output = self._run(command, data, file.path)
+            code, output = self._run(command, data)
         except subprocess.TimeoutExpired:
             raise late from None
         except OSError as error:
@@ -155,21 +151,17 @@ class DocumentCollection:
             raise InputError(f"{file.path} cannot be read; it may be damaged: open it yourself")
         return output
 
-    def _run(self, command: list[str], data: bytes, path: str) -> tuple[int, bytes]:
-        """Return the exit code and the output of a converter; meanwhile the path of its file is shown."""
-        self._show_file(path)
-        try:
-            with TemporaryFile() as file:  # not a pipe: after a timeout, `communicate` would not write the rest into it
-                file.write(data)
-                file.seek(0)
-                done = subprocess.run(
-                    command,
-                    stdin=file,
-                    stdout=subprocess.PIPE,
-                    stderr=subprocess.DEVNULL,
-                    timeout=self._seconds,
-                    check=False,
-                )
-        finally:
-            self._show_file("")
+    def _run(self, command: list[str], data: bytes) -> tuple[int, bytes]:
+        """Return the exit code and the output of a converter."""
+        with TemporaryFile() as file:  # not a pipe: after a timeout, `communicate` would not write the rest into it
+            file.write(data)
+            file.seek(0)
+            done = subprocess.run(
+                command,
+                stdin=file,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                timeout=self._seconds,
+                check=False,
+            )
         return done.returncode, done.stdout

@@ -14,7 +14,7 @@ from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric
 from grader.robot.kinematics import Configuration
 from grader.robot.selectors import texts_in
-from grader.robot.transforms import Vector
+from grader.robot.transforms import Transform, Vector
 
 _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
 # The arguments that name the frame of a measurement.
@@ -37,21 +37,19 @@ class Callout(NamedTuple):
 class Picture:
     """What a picture of a graded robot shows.
 
-    `reference` is the reference solution in the same frame; None if there is none, or the hint level does not show it.
-    `outlines` are the bodies of the reference where shapes or places of shapes failed, `frames` the links whose frames
-    failed; both also where the robot has none.
+    `outlines` are the bodies of the reference where shapes or their places failed, and `frames` its poses of links
+    whose frames failed; also where the robot has none. Both are empty if the hint level does not show the reference.
     """
 
     scene: Scene
-    reference: Scene | None
     outlines: tuple[Body, ...]
-    frames: tuple[str, ...]
+    frames: tuple[Transform, ...]
     callouts: tuple[Callout, ...]
 
 
 def plain_picture(robot: Configuration | None, frame: str | None) -> Picture | None:
     """Return the picture of a robot that is not graded, in the frame of one of its links; None without either."""
-    return Picture(scene_of(robot, frame), None, (), (), ()) if robot is not None and frame is not None else None
+    return Picture(scene_of(robot, frame), (), (), ()) if robot is not None and frame is not None else None
 
 
 def picture_of(report: Report) -> Picture | None:
@@ -78,7 +76,7 @@ def picture_of(report: Report) -> Picture | None:
         )
         for number, (link, results) in enumerate(about.items(), 1)
     )
-    return Picture(scene, reference, outlines, frames, callouts)
+    return Picture(scene, outlines, frames, callouts)
 
 
 def _reference(rubric: Rubric) -> Configuration | None:
@@ -140,11 +138,11 @@ def _links(criterion: Criterion, robot: Configuration, solution: Configuration |
 
 def _expected(
     scene: Scene, reference: Scene, about: Mapping[str, Sequence[Result]]
-) -> tuple[tuple[Body, ...], tuple[str, ...]]:
+) -> tuple[tuple[Body, ...], tuple[Transform, ...]]:
     """Return the bodies and the frames of the reference that the failed criteria are about."""
     kinds = {link: {it.criterion.check.about.picture for it in results} for link, results in about.items()}
     shown = {body.link for body in scene.bodies}
     shapes = {link for link, found in kinds.items() if "outline" in found or link not in shown}
     frames = {link for link, found in kinds.items() if "frame" in found or link not in scene.poses}
     outlines = tuple(body for body in reference.bodies if body.link in shapes)
-    return outlines, tuple(link for link in reference.poses if link in frames)
+    return outlines, tuple(pose for link, pose in reference.poses.items() if link in frames)

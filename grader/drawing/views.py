@@ -13,7 +13,7 @@ import numpy as np
 from grader.drawing.picture import Picture
 from grader.drawing.scene import Body
 from grader.robot.model import Box, Sphere
-from grader.robot.transforms import Vector
+from grader.robot.transforms import Transform, Vector
 
 Place = tuple[float, float]
 Points = Any  # an array of shape (n, 3), or (n, 2) in a view
@@ -124,25 +124,24 @@ def panels_of(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
 
 def _bounds(picture: Picture) -> tuple[Points, Points]:
     """Return the least and the largest coordinates (m) of what a picture shows, in the frame."""
-    scene, reference = picture.scene, picture.reference
-    shown = [points_of(body) for body in (*scene.bodies, *picture.outlines)]
-    shown += [[scene.poses[link].translation] for link in framed_links(picture)] or [[(0.0, 0.0, 0.0)]]
-    shown += [[reference.poses[link].translation] for link in picture.frames] if reference is not None else []
-    points = np.concatenate(shown)
+    shown = [points_of(body) for body in (*picture.scene.bodies, *picture.outlines)]
+    origins = [pose.translation for pose in (*frames_of(picture), *picture.frames)]
+    points = np.concatenate([*shown, origins or [(0.0, 0.0, 0.0)]])
     low, high = points.min(axis=0), points.max(axis=0)
-    far, ground = _FAR * (high - low).max(), scene.ground
+    far, ground = _FAR * (high - low).max(), picture.scene.ground
     if ground is not None and low[2] - far <= ground.translation[2] <= high[2] + far:
         low[2], high[2] = min(low[2], ground.translation[2]), max(high[2], ground.translation[2])
     return low, high
 
 
-def framed_links(picture: Picture) -> list[str]:
-    """Return the links whose frames are shown: those with callouts or shapes, or all if there are no shapes."""
+def frames_of(picture: Picture) -> list[Transform]:
+    """Return the frames that are shown: of links with callouts or shapes, or of all links if there are no shapes."""
     scene = picture.scene
     called = [callout.link for callout in picture.callouts]
     others = [body.link for body in scene.bodies] or scene.poses
-    links = [link for link in dict.fromkeys([scene.frame, scene.root, *called, *others]) if link in scene.poses]
-    return links[: _MAX_FRAMES if scene.bodies else _MAX_FRAMES_ALONE]
+    links = dict.fromkeys([scene.frame, scene.root, *called, *others])
+    poses = [scene.poses[link] for link in links if link in scene.poses]
+    return poses[: _MAX_FRAMES if scene.bodies else _MAX_FRAMES_ALONE]
 
 
 class FreePlaces:

@@ -57,7 +57,7 @@ class InspectFormat(_Row):
     TERMINAL = "terminal", "inspection:inspection_terminal", "console"
     JSON = "json", "inspection:inspection_json"
     SVG = "svg", "drawing:inspection_svg"
-    HTML = "html", "pages.robot:inspection_html"
+    HTML = "html", "pages.student:inspection_html"
 
 
 class OutputFormat(StrEnum):

@@ -10,7 +10,7 @@ from math import cos, hypot, sin, tau
 
 from grader.drawing.picture import Picture
 from grader.drawing.scene import Body, Wheel
-from grader.drawing.views import PANEL, FreePlaces, Panel, Place, framed_links, from_back_to_front
+from grader.drawing.views import PANEL, FreePlaces, Panel, Place, frames_of, from_back_to_front
 from grader.robot.transforms import AXES, Z_AXIS, Transform
 from grader.text import printable
 
@@ -61,9 +61,8 @@ def view(panel: Panel, picture: Picture) -> Iterator[str]:
     lines: dict[tuple[str, str], None] = {
         ("reference", _polygon(panel.outline(body))): None for body in picture.outlines
     }
-    frames = [("", _AXIS, picture.scene.poses[link]) for link in framed_links(picture)]
-    if picture.reference is not None:
-        frames += [("reference", _LONG_AXIS, picture.reference.poses[link]) for link in picture.frames]
+    frames = [("", _AXIS, pose) for pose in frames_of(picture)]
+    frames += [("reference", _LONG_AXIS, pose) for pose in picture.frames]
     axes = [axis for frame in frames for axis in _axes(panel, *frame)]
     lines |= {(look, segment(start, tip)): None for look, start, tip, _ in axes}
     lines |= {("arrow", data): None for wheel in picture.scene.wheels for data in _arrow(panel, wheel)}

@@ -20,7 +20,7 @@ from grader.report.document import Document, document
 from grader.text import counted, enumerated, printable
 
 _ROWS = 24  # of a common terminal
-_MAX_NAMES, _MAX_KINDS, _MAX_FILES, _MAX_MISSING = 3, 3, 2, 2
+_MAX_NAMES, _MAX_PROBLEMS, _MAX_FILES = 3, 3, 2
 
 
 def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
@@ -104,9 +104,11 @@ def _show_groups(report: Report, page: Page) -> None:
 
 def _show_submission(report: Report, page: Page) -> None:
     """Add the evidence in a line, problems, notes, and the first of the files that were not graded."""
-    evidence, submission = _evidence_line(report), report.submission
-    if evidence and not page.is_tight:
-        page.line(evidence, "dim")
+    submission, found = report.submission, sum(bool(one.files) for one in report.evidence)
+    if report.evidence and not page.is_tight:
+        missing = [printable(one.evidence.title) for one in report.evidence if not (one.files or one.possible)]
+        named = f"; missing: {enumerated(missing, _MAX_FILES)}" if missing and found else ""
+        page.line(f"Evidence: {found or 'none'} of {len(report.evidence)} found{named}", "dim")
     _show_problems(report, page)
     for line in content.notes(report)[bool(submission.another_robot) :]:
         page.line(line, "cyan")
@@ -117,36 +119,21 @@ def _show_submission(report: Report, page: Page) -> None:
         page.line(printable(line), "dim")
 
 
-def _evidence_line(report: Report) -> str:
-    """Return how many pieces of evidence were found, and which were not; empty if the lab asks for none."""
-    lacking = [one for one in report.evidence if not one.files]
-    texts = [f"Evidence: {len(report.evidence) - len(lacking) or 'none'} of {len(report.evidence)} found"]
-    texts += [content.evidence_text(one) for one in lacking if one.possible]
-    missing = [one.evidence.title for one in lacking if not one.possible]
-    texts += [f"missing: {enumerated(missing, _MAX_MISSING)}"] if 0 < len(missing) < len(report.evidence) else []
-    return printable("; ".join(texts)) if report.evidence else ""
-
-
 def _show_problems(report: Report, page: Page) -> None:
-    """Add the first problem of each kind that no failed criterion has reported, and how many more there are."""
+    """Add the first problems that no failed criterion has reported, and how many more there are."""
     problems = content.other_problems(report)
     listed = [found for found in problems if found.severity != "note"]
     if page.is_tight:
         problems = listed = [found for found in listed if not found.kind.is_consequence]
     if listed:
         page.leave_row()
-    kinds = alike(listed, lambda problem: f"{problem.code} {problem.location.path}")
-    # No criterion is about the entry for package.xml (PKG015), so this is the only place that reports it.
-    shown = [some for index, (_, some) in enumerate(kinds) if index < _MAX_KINDS or some[0].code == "PKG015"]
-    for first, *others in shown:
-        where = f"{printable(first.location.path.rpartition('/')[2])}:{first.location.line}"
-        text = Text.assemble((f"{first.code} {first.severity} ", LOOKS[first.severity]), (where, "dim"))
-        text.append(f"{f' and {len(others)} more' if others else ''}: {printable(first.message)}")
-        page.inset(text, head=Text(), most=1 if page.is_tight else 2)
-    rest = len(problems) - sum(map(len, shown))
+    for found in listed[:_MAX_PROBLEMS]:
+        where = f"{printable(found.location.path.rpartition('/')[2])}:{found.location.line}"
+        text = Text.assemble((f"{found.code} {found.severity} ", LOOKS[found.severity]), (where, "dim"))
+        page.inset(text.append(f": {printable(found.message)}"), head=Text(), most=1 if page.is_tight else 2)
+    rest = len(problems) - len(listed[:_MAX_PROBLEMS])
     if rest:
-        noun = "problem" if len(kinds) > len(shown) else "note"
-        words = counted(rest, f"more {noun}" if listed else noun)
+        words = counted(rest, "more problem" if listed else "note")
         page.line(f"{words}: --verbose shows {'it' if rest == 1 else 'them'}", "dim")
 
 

@@ -37,22 +37,16 @@ class Lab(NamedTuple):
     links: frozenset[str] = frozenset()
 
 
-def _show_nothing(path: str) -> None:
-    """Show no progress."""
-
-
 class Opening(NamedTuple):
     """How a submission is opened: the largest size of a URDF in bytes, and the arguments of xacro.
 
-    `no_documents` says why no document is read, where grading ran out of memory with them. `show_file` gets the path of
-    a document that keeps the user waiting, and an empty text when that is read. `converted` are the texts of Word and
-    PDF files that were read before, by path.
+    `no_documents` says why no document is read, where grading ran out of memory with them. `converted` are the
+    texts of Word and PDF files that were read before, by path.
     """
 
     max_size: int = URDF_LIMIT
     arguments: Mapping[str, str] = _NO_ARGUMENTS
     no_documents: str = ""
-    show_file: Callable[[str], None] = _show_nothing
     converted: Mapping[str, str] = _NO_ARGUMENTS
 
 
@@ -90,7 +84,7 @@ class Submission:
         """The documents in it, each of which is read once."""
         from grader.documents.collection import DocumentCollection  # a URDF on its own has none
 
-        return DocumentCollection(self.tree, self.opening.show_file, self.opening.converted)
+        return DocumentCollection(self.tree, self.opening.converted)
 
     @property
     def readable_documents(self) -> "DocumentCollection | None":

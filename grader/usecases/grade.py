@@ -16,7 +16,7 @@ from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
 from grader.usecases.repository import base_of, folder_of
 from grader.usecases.rubrics import files_of, load
 from grader.usecases.saves import Saves, picture_beside
-from grader.usecases.terminal import ShowFile, Warn
+from grader.usecases.terminal import Warn
 from grader.usecases.writing import refuse_inputs, refuse_symlinks, remove_previous, save
 
 if TYPE_CHECKING:
@@ -70,10 +70,10 @@ class GradeRun(NamedTuple):
         return printable(f"exit code 1: could not be decided, and needs manual grading: {names}")
 
 
-def grade_and_save(request: GradeRequest, warn: Warn, show_file: ShowFile) -> GradeRun:
+def grade_and_save(request: GradeRequest, warn: Warn) -> GradeRun:
     """Grade a submission and save its reports. Raises GraderError."""
     modes = remove_reports(request.saves, files_of(request.rubric, request.answers), request.path)
-    run = grade_submission(request, warn, show_file)
+    run = grade_submission(request, warn)
     if request.fix is None or run.fix is None:
         save_reports(request, run, modes)
         return run
@@ -94,7 +94,7 @@ def _arguments(request: GradeRequest) -> dict[str, str]:
     return read_arguments(request.arguments)
 
 
-def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> GradeRun:
+def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
     """Grade a submission. Raises GraderError."""
     threshold = request.threshold  # before grading, to refuse a wrong one at once
     for kind in (request.format, *(kind for kind, _ in request.saves)):
@@ -104,7 +104,7 @@ def grade_submission(request: GradeRequest, warn: Warn, show_file: ShowFile) -> 
     from grader.submission.submission import Opening
 
     rubric = requested_rubric(request)
-    opening = Opening(request.max_size, _arguments(request), show_file=show_file)
+    opening = Opening(request.max_size, _arguments(request))
     submission = open_submission(request.path, rubric.lab, opening, with_neighbours=True)
     if submission.several:
         warn(submission.several)

@@ -10,7 +10,6 @@ if TYPE_CHECKING:
     from grader.workers.progress import Progress
 
 Warn = Callable[[str], None]
-ShowFile = Callable[[str], None]  # shows the file that is being read, and nothing for an empty path
 # Shows the progress of a pass over a class, whose work is named.
 ShowClass = Callable[[str], AbstractContextManager[Callable[["Progress"], None]]]
 
@@ -24,5 +23,4 @@ class Terminal(NamedTuple):
     print: Callable[[str], None]
     warn: Warn
     screen: Callable[[], Screen]
-    show_file: ShowFile
     show_class: ShowClass

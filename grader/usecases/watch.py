@@ -5,6 +5,7 @@ import os
 import time
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
+from decimal import Decimal
 from pathlib import Path
 
 from rich.console import Console
@@ -12,13 +13,13 @@ from rich.text import Text
 
 from grader.errors import GraderError, InputError, MachineError, RubricError
 from grader.files.folder import read_folder
-from grader.grading.report import Report
+from grader.grading.report import Report, Result
 from grader.grading.rubric import find_rubric, shipped_rubrics
-from grader.report.comparison import comparison_lines, unchanged_line
 from grader.report.console import wrapped
+from grader.report.criteria import alike
 from grader.report.formats import Format, render
 from grader.report.screen import draw
-from grader.text import printable_path
+from grader.text import enumerated, format_points, printable, printable_path, signed_points
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.grade import GradeRequest, grade_submission, remove_reports, requested_rubric, save_reports
 from grader.usecases.rubrics import files_of
@@ -26,6 +27,14 @@ from grader.usecases.terminal import Terminal, Warn
 
 _POLL = 0.1  # seconds between two looks
 _SHARE = 10  # a look at many files is followed by a pause of this many times its own time
+_MAX_NAMED = 8
+_CHANGES = {
+    "passed": "now passed",
+    "failed": "now failed",
+    "skipped": "now skipped",
+    "pending": "now needs manual grading",
+    "errored": "now errored",
+}
 Stamps = dict[str, tuple[int, ...] | None]
 # The report that was shown last, and all of its text, whatever the terminal's width.
 _Shown = tuple[Report, str]
@@ -50,7 +59,7 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
     try:
         for besides in changes(watched, frozenset(os.path.realpath(file) for _, file in request.saves)):
             try:
-                result = grade_submission(request, terminal.warn, terminal.show_file)
+                result = grade_submission(request, terminal.warn)
             except (InputError, MachineError, RubricError) as error:
                 code = ExitCode.NOT_GRADED
                 _show_error(request.path, error, terminal.warn)
@@ -93,7 +102,7 @@ def _show(report: Report, last: _Shown | None, terminal: Terminal, *, verbose: b
     """Show the whole report, then what changed; of a report that is the same, one line."""
     shown = report, render(report, Format.TERMINAL, verbose=True)
     if last is not None and shown[1] == last[1]:
-        terminal.print(f"{unchanged_line(report)}\n")
+        terminal.print(f"nothing has changed: {_score(report)}\n")
         return shown
     screen = terminal.screen()
     lines = comparison_lines(last[0], report) if last is not None else []
@@ -106,6 +115,36 @@ def _print_lines(lines: list[str], console: Console) -> None:
     console.print()
     for line in lines:
         wrapped(console, Text(line, style="bold"), 0)
+
+
+def comparison_lines(before: Report, after: Report) -> list[str]:
+    """Return the change of the score, then the criteria that changed, those that pass now first."""
+    old = {result.criterion.id: result for result in before.results}
+    kinds = dict(alike(after.results, lambda result: _change(old.get(result.criterion.id), result)))
+    lines = [f"{format_points(before.score)} -> {_score(after)}{_gain(after.score - before.score)}"]
+    for change in (*_CHANGES.values(), "changed"):
+        known = [(one, old.get(one.criterion.id)) for one in kinds.get(change, ())]
+        named = [printable(new.criterion.id) + _gain(new.points - (was.points if was else 0)) for new, was in known]
+        lines += [f"{change}: {enumerated(named, _MAX_NAMED)}"] if named else []
+    return lines
+
+
+def _change(old: Result | None, new: Result) -> str:
+    """Return how a criterion changed; empty if it did not."""
+    if old is None or old.outcome.status != new.outcome.status:
+        return _CHANGES[new.outcome.status]
+    is_other = old.points != new.points or (
+        new.outcome.status != "passed" and old.outcome.message != new.outcome.message
+    )
+    return "changed" if is_other else ""
+
+
+def _score(report: Report) -> str:
+    return f"{format_points(report.score)} of {format_points(report.max_score)} points"
+
+
+def _gain(points: Decimal) -> str:
+    return f" ({signed_points(points)})" if points else ""
 
 
 def changes(watched: Sequence[Path], own: Collection[str] = ()) -> Iterator[list[Path]]:

@@ -1,16 +1,12 @@
 """Documents whose reading depends on what is installed, on time, and on the record of a class."""
 
 import json
-import shutil
-from contextlib import redirect_stderr, redirect_stdout
-from io import StringIO
 from pathlib import Path
 
 import pytest
 
-from grader.cli.app import run as in_process
 from tests.classroom.gradebooks import grader
-from tests.command_line import ROOT, run
+from tests.command_line import run
 from tests.documents.files import PICTURE, docx
 
 
@@ -23,29 +19,6 @@ def test_without_the_extra_one_line_says_what_was_not_searched(tmp_path: Path, m
     assert text.count(f"Note: not searched for evidence: {reason}") == 1
     assert "Step 8: the box on the ground: perhaps report.pdf (11 bytes)" in text
     assert "missing" not in text
-
-
-class _Terminal(StringIO):
-    """Standard error of a terminal."""
-
-    def isatty(self) -> bool:
-        return True
-
-
-@pytest.mark.exhaustive
-@pytest.mark.parametrize(("stream", "lines"), [(_Terminal, 1), (StringIO, 0)])
-def test_a_document_that_is_read_is_named(
-    stream: type[StringIO], lines: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """On a terminal; the line is removed before the report is printed."""
-    monkeypatch.setenv("COLUMNS", "80")
-    shutil.copytree(ROOT / "rubrics/lab6/my_robot", tmp_path / "my_robot")
-    (tmp_path / "an\x1b swers.docx").write_bytes(docx("Task 1 step 15", "Two roots."))
-    with redirect_stderr(stream()) as err, redirect_stdout(StringIO()) as out:
-        in_process(["grade", str(tmp_path), "--verbose"])
-    assert "Two roots." in out.getvalue()
-    text = "grader: reading an\\x1b swers.docx"
-    assert err.getvalue() == f"\r\r{text}\r{' ' * len(text)}\r" * lines
 
 
 def test_a_record_keeps_evidence(tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ DIRECTIONS = [np.array([cos(number * pi / 8.0), sin(number * pi / 8.0)]) for num
 
 
 def panels(shapes: list[Shape], poses: list[Transform]) -> tuple[Panel, ...]:
-    return panels_of(Picture(scene_with(shapes, poses), None, (), (), ()))
+    return panels_of(Picture(scene_with(shapes, poses), (), (), ()))
 
 
 @given(SHAPES, POSES)

@@ -97,7 +97,7 @@ def answers(data: bytes) -> None:
     """Answers are passages of their documents; the first byte says how the file's name ends."""
     path = f"answers{_ENDINGS[data[0] % len(_ENDINGS)] if data else '.md'}"
     file = file_of(path, data[1:])
-    documents = DocumentCollection(make_tree("s", [file], ()), lambda _: None)
+    documents = DocumentCollection(make_tree("s", [file], ()))
     if not path.endswith(".md"):  # the text that a converter has written
         documents._read_files[path] = made_of(file, data[1:].decode("utf-8", "replace"))
     document = documents.document(file)
@@ -138,7 +138,7 @@ def names(data: bytes) -> None:
     paths = [line for line in dict.fromkeys(decoded(data).split("\n")[:40]) if line.strip("/.")]
     tree = make_tree("s", [file_of(path, b"") for path in paths], ())
     files = read_labelled_files(tree)
-    documents = DocumentCollection(tree, lambda _: None)
+    documents = DocumentCollection(tree)
     documents._named[DOCUMENTS] = ([], [])
     for one in (find_evidence(files, names, documents) for names in _EVIDENCE):
         assert {it.path for it in (*one.files, *one.possible)} <= {*paths}

@@ -1,19 +1,26 @@
-"""A report as one HTML page for the student: the score, failures with hints, the robot, and everything else."""
+"""The pages about one robot: the report for the student, with three views of the robot, and an inspection."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
-from grader.drawing.picture import picture_of
+from markupsafe import Markup
+
+from grader import __version__
+from grader.drawing.picture import Picture, picture_of, plain_picture
 from grader.grading.report import Report
 from grader.report import content
 from grader.report.criteria import CriteriaGroup, Entry, earned_text, groups, status_of
 from grader.report.details import STATUS_WORDS, SYMBOLS
 from grader.report.document import document
-from grader.report.drawing import why_no_picture
+from grader.report.drawing import drawing_element, why_no_picture
+from grader.report.inspection import MAX_LISTED, Inspection, effect, lists
 from grader.report.locations import diff_lines, location_text, source_lines
-from grader.report.pages.robot import render_robot_page
+from grader.report.pages.shell import Assets, render_page
+from grader.report.signs import STYLE
 from grader.text import format_points, printable
+
+_CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts
 
 
 class Share(NamedTuple):
@@ -53,7 +60,7 @@ def render_html(report: Report) -> str:
         "parts": [_part(report.rubric.part(part).title, [*some]) for part, some in by_part],
         "no_picture": why_no_picture(report),
     }
-    return render_robot_page("student.html", values, picture, "student.js")
+    return _render("student.html", values, picture, "student.js")
 
 
 def _shares(report: Report) -> Iterator[Share]:
@@ -87,3 +94,30 @@ def _addresses(entry: Entry) -> Iterator[tuple[str, str]]:
     """Yield the criteria of a card, each with the criterion whose card shows it."""
     for one in (entry, *entry.also):
         yield one.id, one.id if one.first else entry.id
+
+
+def inspection_html(inspection: Inspection) -> str:
+    """Return the inspection as an HTML page, with the joints at the given positions."""
+    reading, robot = inspection.reading, inspection.robot
+    sources = {reading.source.path: reading.source}
+    values = {
+        "version": __version__,
+        "title": printable(robot.robot.name if robot is not None else inspection.path),
+        "path": inspection.path,
+        "effect": effect(inspection),
+        "verdict": _CLASSES.get(inspection.verdict, "failed"),
+        "problems": [
+            (problem.severity, content.problem_line(problem), source_lines(problem.location, sources.get))
+            for problem in reading.problems[:MAX_LISTED]
+        ],
+        "lists": lists(inspection),
+    }
+    return _render("inspection.html", values, plain_picture(robot, inspection.relative_to))
+
+
+def _render(template: str, values: Mapping[str, object], picture: Picture | None, script: str = "") -> str:
+    """Return a page about the robot of a picture, if there is one."""
+    drawn = drawing_element(picture, legend=False) if picture is not None else ""
+    views = Markup(drawn)  # noqa: S704  an element, whose text is escaped
+    assets = Assets("robot.css student.css", script, STYLE if drawn else "")
+    return render_page(template, {**values, "picture": picture, "views": views}, {}, assets)
