@@ -58,7 +58,7 @@ def _readme(rubric: Rubric, samples: list[Sample]) -> str:
     text = _TOP.format(id=rubric.id, title=rubric.title, count=len(samples))
     for key, found in groups.items():
         rows = "".join(
-            f"| [{it.expected.name}]({it.expected.name}/) | {it.expected.about} | {_others(it, rubric)} |\n"
+            f"| [{it.expected.folder.name}]({it.expected.folder.name}/) | {it.expected.about} | {_others(it, rubric)} |\n"
             for it in found
         )
         text += f"\n## {titles[key]}\n\n| sample | what is in it | points lost |\n|---|---|---|\n{rows}" if rows else ""

@@ -23,7 +23,7 @@ class Reason(StrEnum):
     UNREADABLE = "could not be graded"
     UNCLEAR = "it is unclear which submission counts"
     MISSING = "nothing was submitted"
-    SEVERAL = "several robots fit: look whether the right one was graded"
+    SEVERAL = "several robots fit: check that the correct one was graded"
     GONE = "no longer in the class folder"
     OUTDATED = "graded with another rubric or version: run `grader batch` again"
     NOT_ON_ROSTER = "not on the roster"

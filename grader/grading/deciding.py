@@ -149,7 +149,7 @@ class _Grading:
         if missing.kind in self._manual:
             return Result(criterion, by_evidence(self.submission, self._manual[missing.kind]))
         if missing.kind == "link":
-            missing = another_robot(self._rubric, robot_of(self.submission.urdf)) or missing
+            missing = another_robot(self._rubric, robot_of(self.submission.urdf), missing.name) or missing
         first = self._first_miss(criterion, (missing.kind, missing.name))
         if first != criterion.id:
             return Result(criterion, _skip_outcome(first), first)

@@ -56,7 +56,7 @@ _POINTS = constrained(
     Constraint(f"a number with at most {_DECIMALS} decimals", lambda points: not points.scaleb(_DECIMALS) % 1),
 )
 _PERCENT, _MINUTES = (constrained(_NUMBER, _range(0, most)) for most in (100, MAX_POINTS))
-_NAMES = simple_type(
+NAMES = simple_type(
     "a list of strings", {"type": "array", "items": _TEXT.schema}, lambda value: _is_list(value, str), tuple
 )
 _ID = constrained(
@@ -107,7 +107,7 @@ CARRIED = KeyTable(
     "carried table",
     {
         "from": described(
-            constrained(_NAMES, Constraint("at least one id", bool, {"minItems": 1})),
+            constrained(NAMES, Constraint("at least one id", bool, {"minItems": 1})),
             "The ids of criteria above this one: their mistakes can make this one fail.",
         ),
         "check": described(_TEXT, "The check that counts instead."),
@@ -132,7 +132,7 @@ CRITERION = KeyTable(
         "at": described(
             toml_type(Mapping[str, float]), "Positions of joints for the check, in degrees or metres; default: 0."
         ),
-        "requires": described(_NAMES, "Ids of criteria above this one: it is skipped unless they passed."),
+        "requires": described(NAMES, "Ids of criteria above this one: it is skipped unless they passed."),
         "carried": described(
             CARRIED.one_or_more, "What counts instead if an earlier mistake makes the criterion fail."
         ),
@@ -191,7 +191,7 @@ IGNORE = KeyTable(
     "test.ignore",
     {
         "mutants": described(
-            constrained(_NAMES, Constraint("at least one pattern", bool, {"minItems": 1})),
+            constrained(NAMES, Constraint("at least one pattern", bool, {"minItems": 1})),
             "Patterns of mutants that may keep full marks, as `grader rubric test` names them.",
         ),
         "reason": described(_TITLE, "Why no criterion looks at what they change."),

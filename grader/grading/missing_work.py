@@ -19,13 +19,14 @@ def robot_of(urdf: Urdf) -> Robot | None:
     return urdf.reading.robot if isinstance(urdf, Read) else None
 
 
-def another_robot(rubric: Rubric, robot: Robot | None) -> MissingElement | None:
-    """Return the error for a robot that is another one; None if it may be that of the lab."""
+def another_robot(rubric: Rubric, robot: Robot | None, link: str = "") -> MissingElement | None:
+    """Return the error for a robot that is another one, and so has no `link`; None if it may be that of the lab."""
     if robot is None or not is_another_robot(robot, rubric.links):
         return None
     count = known_links(robot, rubric.links)
     links = f"only {count} of the {len(rubric.links)} links" if count else "none of the links"
-    message = f"this looks like another robot: it has {links} that the rubric names"
+    missing = f"there is no link {link!r}, and " if link else ""
+    message = f"{missing}this looks like another robot: it has {links} that the rubric names"
     names = enumerated([repr(link.name) for link in robot.links], _MAX_LISTED) or "no link"
     detail = f" ({enumerated(sorted(rubric.links), _MAX_LISTED)}); it has {names}"
     location = robot.links[0].location if robot.links else None

@@ -29,16 +29,12 @@ def rubric_schema() -> _Schema:
     schema["properties"]["criterion"]["items"] = criterion
     defaults = {check.name: {"$ref": f"#/$defs/{check.name}"} for check in checks}
     schema["properties"]["defaults"]["properties"]["with"] |= {"properties": defaults, "additionalProperties": False}
-    definitions = {check.name: _arguments(check) for check in checks}
+    tables = [KeyTable(check.name, {name: _argument(check, name) for name in check.parameters}) for check in checks]
+    definitions = {table.name: table.schema for table in tables}
     chosen = [({"check": {"const": name}}, {"with": arguments}) for name, arguments in defaults.items()]
     rules = [{"if": {"properties": it, "required": ["check"]}, "then": {"properties": then}} for it, then in chosen]
     definitions["arguments"] = {"allOf": rules}
     return {"$schema": _DRAFT, "title": "grader rubric", **schema, "$defs": definitions}
-
-
-def _arguments(check: Check) -> _Schema:
-    """Return the schema of the arguments of a check, none of which is required."""
-    return KeyTable(check.name, {name: _argument(check, name) for name in check.parameters}).schema
 
 
 def _argument(check: Check, name: str) -> TomlType:

@@ -68,20 +68,14 @@ def equivalents(root: Element, rules: RewritingRules) -> Iterator[Equivalent]:
 
 def reorder(tree: Element, _: RewritingRules) -> bool:
     """Reverse the order of elements: links, joints and materials, and those inside of each."""
-    free = ("joint", "material", "collision") if _has_shared_material(tree) else _SORTED
+    # A visual may use the material that another one defines before it.
+    free = ("joint", "material", "collision") if tree.find("link/visual/material/*") is not None else _SORTED
     for owner in [tree, *own_elements(tree, "link", "joint", "visual", "collision", "inertial")]:
         kinds: dict[object, list[Element]] = {}  # of several origins the first counts
         for child in owner:
             kinds.setdefault(child.tag, []).insert(0 if child.tag in free else len(owner), child)
         owner[:] = [child for children in reversed(kinds.values()) for child in children]
     return True
-
-
-def _has_shared_material(tree: Element) -> bool:
-    """Return whether a visual defines a material that another one uses: the first definition counts, from there on."""
-    known = {material.get("name") for material in tree.iterchildren("material")}
-    names = [found.get("name") for found in own_elements(tree, "material") if found.getparent() is not tree]
-    return any(names.count(name) > 1 and name not in known for name in set(names))
 
 
 def split_joints(tree: Element, _: RewritingRules) -> bool:

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, NamedTuple
 
-from grader.checks.toml_types import simple_type, toml_type
-from grader.errors import InputError, RubricError
+from grader.checks.toml_types import toml_type
+from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.grade import grade
-from grader.grading.report import Report, Result
+from grader.grading.keys import NAMES
+from grader.grading.report import Result
 from grader.grading.rubric import Rubric
 from grader.grading.toml_file import complain_of, read_toml
 from grader.grading.toml_rows import KeyTable, TomlRowReader
@@ -20,16 +21,10 @@ from grader.text import printable_path
 
 EXPECTED = "expected.toml"
 _TEXT = toml_type(str)
-_IDS = simple_type(
-    "a list of ids of criteria",
-    {"type": "array", "items": {"type": "string"}},
-    lambda value: isinstance(value, list) and all(isinstance(name, str) for name in value),
-    tuple,
-)
 _VERDICT = toml_type(Literal["clean", "degraded", "rejected", "missing"])
 _WORDS = {"lost": "loses its points", "carried": "fails without a deduction", "pending": "needs manual grading"}
 _TABLE = KeyTable(
-    "sample", dict.fromkeys(("about", "path", "rubric"), _TEXT) | {"verdict": _VERDICT} | dict.fromkeys(_WORDS, _IDS)
+    "sample", dict.fromkeys(("about", "path", "rubric"), _TEXT) | {"verdict": _VERDICT} | dict.fromkeys(_WORDS, NAMES)
 )
 
 
@@ -67,15 +62,6 @@ class Sample:
     carried: tuple[str, ...] = ()
     pending: tuple[str, ...] = ()
 
-    @property
-    def name(self) -> str:
-        """The name of its folder."""
-        return self.folder.name
-
-    def expected(self, name: str) -> str:
-        """Return what must become of a criterion, in words."""
-        return next((words for kind, words in _WORDS.items() if name in getattr(self, kind)), "passes")
-
 
 def read_samples(folder: Path) -> list[Sample]:
     """Return the samples in a folder by name. Raises RubricError for a broken expected.toml, InputError without any."""
@@ -96,53 +82,37 @@ def _sample(path: Path) -> Sample:
 
 
 def tested_samples(rubric: Rubric, samples: list[Sample], show: Callable[[int], None]) -> SampleResults:
-    """Return which samples of a rubric differ from what they expect. Raises RubricError for an unknown criterion."""
+    """Return which samples of a rubric differ from what they expect."""
     own = [sample for sample in samples if sample.rubric in ("", rubric.id)]
-    _check_names(rubric, own)
     different: list[Loss] = []
     for done, sample in enumerate(own):
         show(done)
-        found = dict(differences(sample, rubric))
+        found = dict(_differences(sample, rubric))
         if found:
-            different.append(Loss(sample.name, found))
+            different.append(Loss(sample.folder.name, found))
     return SampleResults(len(own), len(samples) - len(own), tuple(different))
 
 
-def _check_names(rubric: Rubric, samples: list[Sample]) -> None:
-    known = [criterion.id for criterion in rubric.criteria]
-    wrong = [
-        f"{printable_path(sample.folder / EXPECTED)}: the rubric {rubric.id} "
-        f"has no criterion {name!r}{did_you_mean(name, known)}"
-        for sample in samples
-        for name in (*sample.lost, *sample.carried, *sample.pending)
-        if name not in known
-    ]
-    if wrong:
-        raise RubricError(tuple(wrong))
-
-
-def differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
+def _differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
     """Yield what differs from the expected report: a criterion that is not adjusted, or `verdict`, and a message."""
     try:
         submission = open_submission(str(sample.folder / sample.path), rubric.lab)
     except InputError as error:
         yield "submission", f"cannot be read: {error}"
         return
-    report = grade(rubric, submission)
     verdict = submission.urdf.loaded.verdict if isinstance(submission.urdf, Read) else "missing"
     if sample.verdict not in ("", verdict):
         yield "verdict", f"is {verdict}, expected {sample.verdict}"
-    yield from _differing(sample, report)
-
-
-def _differing(sample: Sample, report: Report) -> Iterator[tuple[str, str]]:
-    graded = {result.criterion.id: result for result in report.results}
-    for criterion in (row for row in report.rubric.criteria if row.adjustment is None):
-        result, expected = graded.get(criterion.id), sample.expected(criterion.id)
-        if result is not None and _actual(result) != expected:
-            yield criterion.id, f"{_actual(result)}, expected: {expected}: {result.outcome.message}"
-        elif result is None and expected != "passes":
-            yield criterion.id, f"is not graded, expected: {expected}"
+    expected = {name: words for kind, words in _WORDS.items() for name in getattr(sample, kind)}
+    known = {criterion.id: criterion.adjustment is None for criterion in rubric.criteria}
+    for name in (name for name in expected if name not in known):
+        yield name, f"the rubric has no such criterion{did_you_mean(name, known)}"
+    graded = {it.criterion.id: (_actual(it), f": {it.outcome.message}") for it in grade(rubric, submission).results}
+    for name in (name for name, counts in known.items() if counts):
+        actual, message = graded.get(name, ("is not graded", ""))
+        wanted = expected.get(name, "passes")
+        if actual != wanted and (name in graded or name in expected):
+            yield name, f"{actual}, expected: {wanted}{message}"
 
 
 def _actual(result: Result) -> str:

@@ -82,11 +82,11 @@ def submission_of(tree: Tree, identity: str, lab: Lab, opening: Opening = DEFAUL
     chosen = select(tree, lab, opening)
     urdf: Urdf = Absent()
     surroundings = Surroundings(Budget(), tree, chosen.package, chosen.packages, opening.arguments)
-    if chosen.urdf is not None:
+    if (path := chosen.choice.path) is not None:
         try:
-            urdf = read_as_ros(tree.files[chosen.urdf].read(opening.max_size), chosen.urdf, surroundings)
+            urdf = read_as_ros(tree.files[path].read(opening.max_size), path, surroundings)
         except InputError as error:  # the rest of the submission is graded
-            urdf = Unreadable(chosen.urdf, str(error))
+            urdf = Unreadable(path, str(error))
     return Submission(
         identity,
         urdf,

@@ -3,6 +3,7 @@
 import os
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -11,19 +12,18 @@ from grader.errors import GraderError, InputError
 from grader.files.names import ROBOT_ENDINGS
 from grader.grading.levels import HintLevel
 from grader.report.formats import Format, inputs_of, render
+from grader.source import Base
 from grader.text import printable
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
-from grader.usecases.repository import base_of, folder_of
 from grader.usecases.rubrics import files_of, load
 from grader.usecases.saves import Saves, picture_beside
 from grader.usecases.terminal import Warn
-from grader.usecases.writing import refuse_inputs, refuse_symlinks, remove_previous, save
+from grader.usecases.writing import CHECKOUTS, refuse_inputs, refuse_symlinks, remove_previous, save
 
 if TYPE_CHECKING:
     from grader.grading.hints.hinting import Fix
     from grader.grading.report import Report
     from grader.grading.rubric import Rubric
-    from grader.source import Base
 
 _KEPT = (*ROBOT_ENDINGS, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # files that a report may not remove first
 _SHA256 = r"[0-9a-fA-F]{64}"
@@ -56,7 +56,7 @@ class GradeRun(NamedTuple):
     """A report, its submission's place in a repository, the exit code, and the files read besides a single one."""
 
     report: "Report"
-    base: "Base"
+    base: Base
     exit_code: ExitCode
     fix: "Fix | None" = None
     besides: tuple[Path, ...] = ()
@@ -117,9 +117,9 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
         from grader.usecases.hints import add_hints  # late: many submissions lose nothing
 
         report, fix = add_hints(report, submission, request.hints, warn, is_fixed=request.fix is not None)
-    folder = folder_of(request.path, submission.path) if submission.is_single else None
+    folder = _folder_of(request.path, submission.path) if submission.is_single else None
     besides = tuple(folder / path for path in submission.besides) if folder is not None else ()
-    return GradeRun(report, base_of(request.path, folder), exit_code(report, threshold), fix, besides)
+    return GradeRun(report, _base_of(request.path, folder), exit_code(report, threshold), fix, besides)
 
 
 def remove_reports(saves: Saves, rubric: Sequence[Path], *paths: str) -> dict[Path, int]:
@@ -176,3 +176,44 @@ def requested_rubric(request: GradeRequest) -> "Rubric":
     for name in request.parts:
         rubric.part(name)
     return rubric
+
+
+def _folder_of(path: str, inside: str | None) -> Path:
+    """Return the folder that the paths of a single URDF start in, given the path in it."""
+    return Path(path).parent.resolve().joinpath(*[".."] * (inside or "").count("/")).resolve()
+
+
+def _base_of(path: str, single: Path | None) -> Base:
+    """Return where a submission is in its repository; `single` is the folder in which paths of a single URDF start."""
+    if path == "-":
+        return Base(is_outside=True)
+    named = Path(path)
+    is_folder = named.is_dir()
+    # A file keeps the name that was typed, even if that is a symlink; a folder is resolved.
+    place = named.resolve() if is_folder else named.parent.resolve() / named.name
+    root = _repository(place)
+    if root is None:
+        return Base(is_outside=True)
+    if is_folder or single is not None:
+        start = place if single is None else single
+        if not start.is_relative_to(root):
+            return Base(is_outside=True)
+        folder = start.relative_to(root).as_posix()
+        return Base("" if folder == "." else f"{folder}/")
+    return Base(archive=place.relative_to(root).as_posix())
+
+
+def _repository(place: Path) -> Path | None:
+    """Return the root of a path's repository: the CI checkout, else the folder with .git, else the current folder."""
+    around = [place, *place.parents]
+    for name in CHECKOUTS:
+        checkout = Path(os.environ.get(name) or os.sep).resolve()
+        if checkout in around[:-1]:  # the last is the root of the file system
+            return checkout
+    for folder in around:
+        if (folder / ".git").exists():
+            return folder
+    with suppress(OSError):  # the current folder may have been deleted
+        here = Path.cwd()
+        return here if here in around else None
+    return None

@@ -2,9 +2,7 @@
 
 import os
 import re
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
-from decimal import Decimal
+from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from itertools import chain
 from pathlib import Path
@@ -18,7 +16,7 @@ from grader.files.reading import URDF_LIMIT
 from grader.grading.rubric import Rubric
 from grader.mutation.mutants import Mutant
 from grader.mutation.samples import read_samples
-from grader.mutation.testing import GradeAll, mutant_outcomes, run_rubric_test
+from grader.mutation.testing import mutant_outcomes, run_rubric_test
 from grader.mutation.trial import MutantOutcome
 from grader.package.package import MANIFEST
 from grader.report.rubric_test import render_rubric_test, render_rubric_test_json
@@ -34,7 +32,6 @@ from grader.usecases.terminal import Terminal, Warn
 from grader.usecases.writing import missing_folder, save_bytes
 from grader.workers.pool import Processes, processors
 from grader.workers.progress import Progress
-from grader.workers.queue import Queue
 
 _URDF = "robot.urdf"
 _SCHEMA = "rubric.schema.json"  # beside the rubric, as the documentation calls it
@@ -135,8 +132,7 @@ def _omission_lines(omissions: Iterable[Omission]) -> Iterator[str]:
     yield from (f"{enumerated(names, _MAX_NAMED)}: {why}" for why, names in by_reason.items())
 
 
-_MAX_PERCENT = 100
-_SECONDS = 60.0  # for some mutants
+_GROUP, _SECONDS = 20, 60.0  # mutants that a worker grades at once, and how long they may take
 
 
 def test_rubric(
@@ -146,40 +142,19 @@ def test_rubric(
 
     Raises GraderError for a broken rubric or one without a reference.
     """
-    least = _least(fail_under)
+    least = read_threshold(fail_under)[0] if fail_under is not None else 0
     rubric = load(name)
     samples = read_samples(folder) if folder is not None else None
-    with terminal.show_class(f"Testing {rubric.id}") as show, _workers(rubric) as grade_all:
+    with terminal.show_class(f"Testing {rubric.id}") as show, Processes(processors(), _SECONDS) as executor:
         progress = lambda done, total: show(Progress(total, done))  # noqa: E731
-        result = run_rubric_test(rubric, samples, progress, grade_all)
+        result = run_rubric_test(rubric, samples, progress, partial(_graded, executor, rubric))
     text = render_rubric_test_json(result) if is_json else render_rubric_test(result, terminal.screen().width)
-    is_passed = result.is_sound and (least is None or result.score >= least)
+    is_passed = result.is_sound and result.score >= least
     code = ExitCode.PASSED if is_passed else ExitCode.FAILED
     return text, ExitCode.FAULT if result.is_faulty else code
 
 
-@contextmanager
-def _workers(rubric: Rubric) -> Iterator[GradeAll]:
-    """Yield what grades mutants in processes, one for each processor."""
-    with Processes(processors(), _SECONDS) as executor:
-        work = partial(mutant_outcomes, rubric.data, str(rubric.path))
-
-        def grade_all(mutants: Iterable[Mutant]) -> Iterator[MutantOutcome]:
-            queue = Queue(executor, processors(), work, lambda *_: None, _refuse_lost)
-            return chain.from_iterable(queue.results(mutants))
-
-        yield grade_all
-
-
-def _refuse_lost(mutant: Mutant, error: Exception) -> MutantOutcome:
-    raise GraderError(f"the mutant {mutant.id} could not be graded: {error}") from error
-
-
-def _least(text: str | None) -> Decimal | None:
-    """Return the least mutation score in percent, with or without its sign. Raises GraderError."""
-    if text is None:
-        return None
-    least, _ = read_threshold(text)
-    if least > _MAX_PERCENT:
-        raise GraderError(f"--fail-under takes a mutation score from 0% to 100%, not {text!r}")
-    return least
+def _graded(executor: Processes, rubric: Rubric, mutants: Sequence[Mutant]) -> Iterator[MutantOutcome]:
+    """Yield the outcomes of mutants, which are graded in groups. Raises WorkerError."""
+    groups = [mutants[at : at + _GROUP] for at in range(0, len(mutants), _GROUP)]
+    return chain.from_iterable(executor.map(partial(mutant_outcomes, rubric.data, str(rubric.path)), groups))

@@ -12,6 +12,7 @@ from grader.grading.report import Result
 from grader.robot.edits.draft import Draft
 from grader.robot.reader import read_urdf
 from grader.submission.editing import edited_files
+from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from tests.grading.broken_urdfs import BROKEN, REFERENCE, Broken
@@ -115,3 +116,12 @@ def test_no_hint_loses_a_point(tmp_path: Path) -> None:
             after = results_of(written(tmp_path, fixed_text(submission, found)))
             assert all(after[name].outcome.status == "passed" for name in found.gains), text
             assert all(after[name].points >= result.points for name, result in before.items()), text
+
+
+def test_the_misspelt_name_of_an_attribute_is_corrected() -> None:
+    """Its value stays, and nothing else of the tag changes."""
+    text = REFERENCE.replace('<child link="lidar"/>', '<child lnik="lidar"/>')
+    assert text != REFERENCE
+    submission = read_submission(text.encode(), identity="ash", path="my_robot.urdf")
+    [found] = HintSearch(Trials(LAB6, submission, results_of(submission)), REFERENCE_DRAFT).run().found
+    assert [(edit.old, edit.new) for edit in found.edits] == [('lnik="lidar"', 'link="lidar"')]

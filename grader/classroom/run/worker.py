@@ -7,20 +7,22 @@ from pathlib import Path
 from typing import NamedTuple
 
 from grader.checks.outcome import Status
-from grader.classroom.entries import answers_of, entries_of
 from grader.classroom.equal_work import forms_of, hashes_of
-from grader.classroom.graded import Graded, Verdict, digest_of
+from grader.classroom.graded import Entry, Graded, Verdict, digest_of
 from grader.classroom.opening import digest_of_unread, open_class_submission
 from grader.errors import InputError, MachineError
 from grader.files.names import ARCHIVES
 from grader.files.reading import URDF_LIMIT
 from grader.grading.grade import grade
+from grader.grading.pictures import content_of, is_empty
+from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
 from grader.submission.submission import Opening, Submission
 from grader.submission.urdf import Absent, Unreadable
+from grader.text import cut
 from grader.workers.pool import NO_MEMORY
 
-_MAX_NAMED = 10  # students in a message
+_MAX_CAUSE = 200  # characters
 
 
 class ClassContext(NamedTuple):
@@ -79,7 +81,7 @@ def _grade_one(context: ClassContext, task: Task) -> Graded:
         reason = str(error) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
         reason = NO_MEMORY if isinstance(error, MemoryError) else reason
         return undecided(context, result._replace(verdict="errored", reason=reason))
-    found = entries_of(report), answers_of(report, result.digest)
+    found = _entries_of(report), _answers_of(report, result.digest)
     result = result._replace(parts=report.parts, results=found[0], answers=found[1])
     if fault := report.fault:
         return result._replace(verdict="errored", reason=fault)
@@ -89,6 +91,30 @@ def _grade_one(context: ClassContext, task: Task) -> Graded:
     texts = submission.documents.converted
     result = result._replace(verdict=verdict, reason=unread or submission.several, texts=texts)
     return result if is_handed_out else result._replace(work=forms_of(submission))
+
+
+def _entries_of(report: Report) -> dict[str, Entry]:
+    """Return what a line keeps of each criterion of a report."""
+    return {one.criterion.id: _entry(one) for one in report.results}
+
+
+def _entry(result: Result) -> Entry:
+    outcome = result.outcome
+    is_open = outcome.status in ("pending", "errored") and not result.is_adjusted
+    words = outcome.mistake or (outcome.message if outcome.status in ("failed", "errored") else "")
+    points = result.points
+    number = int(points) if points == int(points) else float(points)
+    return None if is_open else number, outcome.status, cut(words, _MAX_CAUSE), result.carried
+
+
+def _answers_of(report: Report, digest: str) -> dict[str, str]:
+    """Return the key of the answer for each criterion that needs manual grading, empty if there is nothing to read.
+
+    It is that of the words, or of the whole submission where more than words is to be looked at.
+    """
+    open_ones = [one for one in report.results if one.outcome.status == "pending"]
+    contents = {one.criterion.id: content_of(one, report) or digest * (not is_empty(one, report)) for one in open_ones}
+    return {name: content and digest_of(content) for name, content in contents.items()}
 
 
 def undecided(context: ClassContext, result: Graded) -> Graded:

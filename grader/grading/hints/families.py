@@ -9,16 +9,21 @@ from grader.grading.hints.targets import is_another, links_of, own_chain
 from grader.grading.hints.trials import Trials
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
+from grader.robot.edits.elements import Set
 from grader.robot.edits.groups import whole_elements, whole_links
 from grader.robot.edits.pieces import Piece
-from grader.robot.edits.undone import undone_proposals
 from grader.robot.edits.variants import in_another_unit, of_own, of_siblings
-from grader.submission.raw_xacro import raw_xacro_proposals
+from grader.robot.meant import Word
+from grader.robot.reader import Reading
+from grader.source import Edit, Edits
+from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.xml.urdf_format import JOINT_TYPES
 
 if TYPE_CHECKING:
     from grader.package.package import Package
+
+_RAW_XACRO = "the URDF contains xacro, but is loaded without xacro"
 
 
 class Families:
@@ -47,8 +52,8 @@ class Families:
         """Yield what undoes a slip, then what differs from the other side of the robot, and from the reference."""
         subjects = {criterion.check.subject for criterion in lost}
         if self._reading is not None and self.draft is not None and "urdf" in subjects:
-            yield from undone_proposals(self._reading)
-            yield from raw_xacro_proposals(self._trials.submission)
+            yield from _undone(self._reading)
+            yield from _raw_xacro(self._trials.submission)
         if self.difference is not None and self.draft is not None and subjects & {"urdf", "robot"}:
             yield from self.draft.corrections([*self.difference.names, *JOINT_TYPES])
             links = self._links(lost)
@@ -101,3 +106,45 @@ class Families:
         """Return the links on which criteria depend; None if all may."""
         assert self.difference is not None
         return links_of(lost, self.difference.draft.robot, self.difference.reference.robot)
+
+
+def _undone(reading: Reading) -> Iterator[Proposal]:
+    """Yield the edits of the tags and of the words for which ROS 2 or xacro rejects a file."""
+    if reading.verdict == "rejected" and not reading.undone:
+        from grader.xml.tinyxml2.recovery import Recovery  # late: its patterns take long
+
+        recovery = Recovery(reading.source.text)
+        recovery.run()
+        edits = tuple(reading.source.edit(*change) for change in recovery.changes if not recovery.is_lossy)
+        yield Proposal(edits, "the syntax of tags")
+    draft = Draft.of(reading)
+    if draft is not None and reading.undone:
+        edits = tuple(edit for word in reading.undone for edit in _of_word(draft, word))
+        yield Proposal(edits, "the spelling of a word" if len(reading.undone) == 1 else "the spelling of words")
+
+
+def _of_word(draft: Draft, word: Word) -> Edits:
+    """Return the edits of a word: of a tag, of an attribute's name, or of its value."""
+    element, attribute = word.element, word.attribute
+    if attribute is None:
+        return draft.rename_tag(element, word.tag)
+    if attribute in word.attributes:
+        return next(iter(draft.ways([Set(element, "", attribute, word.attributes[attribute])])), ())
+    new = next(name for name in word.attributes if name not in element.attrib)
+    return draft.rename_attribute(element, attribute, new)
+
+
+def _raw_xacro(submission: Submission) -> Iterator[Proposal]:
+    """Yield edits that let xacro expand the URDF, where it is xacro that is loaded without it."""
+    urdf = submission.urdf
+    if not isinstance(urdf, Read) or urdf.as_it_stands is None:
+        return
+    from grader.package.edits.python_file import with_xacro  # late: most URDFs are no such file
+
+    for path in submission.package.launch_files if submission.package is not None else ():
+        source = submission.source(submission.package.path(path)) if submission.package is not None else None
+        for edits in with_xacro(source) if source is not None else ():
+            yield Proposal(edits, _RAW_XACRO)
+    folder, slash, name = urdf.path.rpartition("/")
+    renamed = f"{folder}{slash}{name.removesuffix('.urdf')}.urdf.xacro"
+    yield Proposal((Edit(urdf.path, 1, 1, "", "", renamed),), _RAW_XACRO)
