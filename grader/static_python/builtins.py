@@ -1,8 +1,10 @@
 """Python's built-in functions and those of math, as an expression may call them."""
 
+import builtins
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from typing import Any
 
 from grader.static_python import values as py
@@ -31,8 +33,21 @@ def call(
         return budget.checked(call_plain(function.run, *given, **kwargs), function.kind)
     except py.ExpressionFails as error:
         if function.kind != "plain" and _OF_SIGNATURE.search(str(error)):  # Python's own may take other arguments
-            raise py.Undetermined(f"this use of {function.name} is not supported") from None
+            wrong = _wrong_arguments(function, args, kwargs)
+            raise py.ExpressionFails(f"TypeError: {function.name}() {wrong}") from None
         raise
+
+
+def _wrong_arguments(function: py.PlainFunction, args: list[py.Value], kwargs: dict[str, py.Value]) -> str:
+    """Return what is wrong with the arguments of Python's own function. Raises Undetermined if that is not certain."""
+    from inspect import signature  # late: it takes long to import
+
+    with suppress(ValueError):  # of a function whose signature is not known
+        try:
+            signature(function.own).bind(*args, **kwargs) if function.own is not None else None
+        except TypeError as error:
+            return str(error)
+    return str(_refuse(f"this use of {function.name}"))
 
 
 def _refuse(what: str) -> py.Value:
@@ -159,7 +174,7 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
 }  # fmt: skip
 BUILTINS: Mapping[str, py.PlainFunction] = {
     **{
-        name: py.PlainFunction(name, function, kind)
+        name: py.PlainFunction(name, function, kind, getattr(builtins, name))
         for kind, table in (("plain", _FUNCTIONS), ("holds", _HOLDING), ("applies", _APPLYING))
         for name, function in table.items()
     },

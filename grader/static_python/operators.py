@@ -57,7 +57,7 @@ def method(owner: py.Value, name: str, budget: Budget) -> py.PlainFunction | Non
             budget.charge(budget.measure(owner, kind), sum(search_cost(owner, value) for value in args))
         return call_plain(run, owner, *args, **kwargs)
 
-    return py.PlainFunction(name, charged, kind)
+    return py.PlainFunction(name, charged, kind, getattr(owner, name))
 
 
 def search_cost(text: py.Value, part: py.Value) -> int:
