@@ -83,7 +83,7 @@ def of_own(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]
 def _of_number(difference: RobotDifference, element: Element, name: str) -> Iterator[Piece]:
     unit = TAGS[str(element.tag)].attributes[name].unit
     least = 0.0 if unit == "m" and element.tag != "origin" else -inf  # of a size
-    defined = difference.draft.numbers(element, name)
+    defined = [found for found in difference.draft.numbers(element, name) if values_of(found[0])]  # not 1e400
     for values in () if defined else plausible(unit, values_of(element.get(name))):
         if min(values) > least:
             yield difference.of_sets([Set(element, "", name, format_numbers(values))], OWN)
