@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from grader.cli.options import AnswersOption, ArgOption, MaxSizeOption, PartOption, RubricOption, save_formats
+from grader.cli.options import AnswersOption, ArgOption, MaxSizeOption, PartOption, RubricOption
 from grader.cli.terminal import TERMINAL, screen, warn, write_stderr
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
@@ -14,7 +14,7 @@ from grader.grading.levels import HintLevel
 from grader.report.formats import Format, render
 from grader.usecases.grade import GradeRequest, grade_and_save
 from grader.usecases.rubrics import DEFAULT_RUBRIC
-from grader.usecases.saves import read_saves, saved_pictures
+from grader.usecases.saves import read_saves
 from grader.usecases.writing import write_stdout
 
 _PATH = "A .urdf file, package, workspace, repository, .zip or .tar.gz, or - for standard input."
@@ -34,9 +34,7 @@ def grade(
     output_format: Annotated[
         Format, typer.Option("--format", metavar="FORMAT", help=f"Output format: {', '.join(Format)}.")
     ] = Format.TERMINAL,
-    save: Annotated[
-        list[str] | None, typer.Option(metavar="FORMAT=FILE", help=_SAVE, autocompletion=save_formats)
-    ] = None,
+    save: Annotated[list[str] | None, typer.Option(metavar="FORMAT=FILE", help=_SAVE)] = None,
     fail_under: Annotated[str | None, typer.Option(metavar="N|N%", help=_FAIL_UNDER)] = None,
     max_size: MaxSizeOption = URDF_LIMIT,
     arg: ArgOption = None,
@@ -107,7 +105,7 @@ def _grade_once(request: GradeRequest) -> int:
         from grader.usecases.github import publish_report  # late: most runs are no such job
 
         annotate = write_stderr if request.format is not Format.GITHUB else None
-        publish_report(run.report, run.base, annotate, warn, [*saved_pictures(request.saves)])
+        publish_report(run.report, run.base, annotate, warn)
     elif run.reason:
         warn(run.reason)
     return run.exit_code

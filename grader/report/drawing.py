@@ -88,12 +88,6 @@ def _lines(words: str, width: float) -> list[str]:
     return [line.replace("\xa0", " ") for line in lines]
 
 
-def alt_text(report: Report) -> str:
-    """Return a description of the drawing of a report; empty if there is no robot."""
-    picture = picture_of(report)
-    return f"Top, side and front view of the robot. {_description(picture)}".strip() if picture is not None else ""
-
-
 def why_no_picture(report: Report) -> str:
     """Return why a report has no picture of the robot."""
     submission = report.submission

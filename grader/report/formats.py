@@ -14,15 +14,14 @@ if TYPE_CHECKING:
     from grader.report.inspection import Inspection
     from grader.source import Base
 
-Need = Literal["", "console", "base", "identity", "picture"]
+Need = Literal["", "console", "base", "identity"]
 
 
 class _Row(StrEnum):
     """A format: its name, `module:function` in this package, what that function needs, and the ending of its files.
 
     The function takes the report and returns text. With the need `console` it prints on a rich console instead; `base`
-    is where the submission is in its repository; `identity` is whose result it is, from Classroom 50's environment;
-    `picture` is the relative address of the robot's drawing that is saved with the report.
+    is where the submission is in its repository; `identity` is whose result it is, from Classroom 50's environment.
     """
 
     function: str
@@ -41,7 +40,7 @@ class Format(_Row):
     """The formats of a report. Their endings differ, so that one folder can contain a report in all of them."""
 
     TERMINAL = "terminal", "terminal:render_terminal", "console", "txt"
-    MARKDOWN = "markdown", "markdown:render_markdown", "picture", "md"
+    MARKDOWN = "markdown", "markdown:render_markdown", "", "md"
     JSON = "json", "as_json:render_json"
     JUNIT = "junit", "junit:render_junit", "base", "xml"
     GITHUB = "github", "annotations:render_github", "base", "github.txt"
@@ -95,17 +94,16 @@ def render(
     screen: Screen | None = None,
     *,
     verbose: bool = False,
-    picture: str = "",
 ) -> str:
     """Return a report in a format, for a screen or a file; only that format's module is imported.
 
     `base` is where the submission is in its repository; without it its paths are the repository's. The format
-    `terminal` shows everything only if `verbose`; `picture` is the address of the drawing that a Markdown report shows.
+    `terminal` shows everything only if `verbose`.
     Raises InputError if the environment does not say whose result it is (Classroom 50).
     """
     if kind.needs == "console":
         return draw(partial(_load(kind.function), report, verbose=verbose), screen)
-    text: str = _load(kind.function)(report, *inputs_of(kind, base, picture))
+    text: str = _load(kind.function)(report, *inputs_of(kind, base))
     return text if kind is Format.GITHUB else without_commands(text)  # whose lines are commands
 
 
@@ -120,7 +118,7 @@ def _load(place: str) -> Any:
     return getattr(import_module(f"grader.report.{module}"), name)
 
 
-def inputs_of(kind: Format, base: "Base | None" = None, picture: str = "") -> tuple[object, ...]:
+def inputs_of(kind: Format, base: "Base | None" = None) -> tuple[object, ...]:
     """Return what the function of a format takes after the report. Raises InputError if it cannot be had."""
     match kind.needs:
         case "base":
@@ -131,6 +129,4 @@ def inputs_of(kind: Format, base: "Base | None" = None, picture: str = "") -> tu
             from grader.report.platforms import identity_from
 
             return (identity_from(os.environ),)
-        case "picture":
-            return (picture,)
     return ()

@@ -16,7 +16,7 @@ from grader.report.details import SYMBOLS
 from grader.report.document import document
 from grader.report.locations import diff_lines, excerpt_lines, location_text
 from grader.source import Location
-from grader.text import enumerated, printable
+from grader.text import printable
 
 _HTML = {"<": "&lt;", ">": "&gt;", "&": "&amp;"}
 _ACTIVE = re.compile(
@@ -33,20 +33,17 @@ _MAX_FENCE = 80  # backticks: GitHub's parser takes no more to start code, and c
 _CUT = "**The report is cut off here, because it is too long.** A report that is saved to a file is complete.\n"
 
 
-def render_markdown(report: Report, picture: str = "") -> str:
-    """Return the report. `picture` is the relative address of the robot's drawing, which is shown."""
-    return "\n".join(f"{block}\n" for block in _blocks(report, _picture(report, picture), answers=True))
+def render_markdown(report: Report) -> str:
+    """Return the report."""
+    return "\n".join(f"{block}\n" for block in _blocks(report, answers=True))
 
 
-def cut_markdown(report: Report, most: int, pictures: Sequence[str] = ()) -> str:
+def cut_markdown(report: Report, most: int) -> str:
     """Return the first blocks of a report that fit into a number of bytes of UTF-8, and a notice if some are missing.
 
-    It is for job summaries, which students read, so it has no model answers. GitHub does not show local pictures there,
-    so the text names the files of `pictures`.
+    It is for job summaries, which students read, so it has no model answers.
     """
-    names = enumerated([code(printable(name)) for name in pictures])
-    named = f"Pictures of the robot: {names} (in the artifacts of this run, if the job uploads them)." if names else ""
-    blocks = [f"{block}\n" for block in _blocks(report, named, answers=False)]
+    blocks = [f"{block}\n" for block in _blocks(report, answers=False)]
     whole, room = "\n".join(blocks), most - len(_CUT.encode())
     if len(whole.encode()) <= most:
         return whole
@@ -66,21 +63,9 @@ def criterion_markdown(entry: Entry, report: Report) -> str:
     return "\n\n".join(_details(entry, report, answers=False))
 
 
-def _picture(report: Report, address: str) -> str:
-    """Return the image of the robot's drawing with a description; empty without a robot."""
-    if not address:
-        return ""
-    from grader.report.drawing import alt_text  # late: few reports show a picture
-
-    words = alt_text(report)
-    return f"![{escape(words)}]({address})" if words else ""
-
-
-def _blocks(report: Report, picture: str, *, answers: bool) -> Iterator[str]:
-    """Yield the report block by block, each of which can be the last one; `picture` is the one that shows the robot."""
+def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
+    """Yield the report block by block, each of which can be the last one."""
     yield from _head(report)
-    if picture:
-        yield picture
     for section in document(report).sections:
         yield from _section(section, report, answers=answers)
     passed = [*filter(None, map(_fold_passed, groups(report)))]

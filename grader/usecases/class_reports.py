@@ -19,7 +19,6 @@ from grader.grading.report import Report, Result
 from grader.report.formats import Format, render
 from grader.text import by_name, counted, counted_points, enumerated, format_points, printable, printable_path
 from grader.usecases.report_names import file_names, write_class_page
-from grader.usecases.saves import address
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import make_folder, refuse_symlinks, save
 from grader.workers.pool import Processes, WorkerError, processors
@@ -171,9 +170,8 @@ def _write_some(run: ReportRun, tasks: Sequence[_Task]) -> list[tuple[str, str]]
     book = _class(run)
     for task in tasks:
         report = report_of(book, book.grade(task.key), has_hints=task.has_hints)
-        picture = address(f"{task.name}.{Format.SVG.ending}") if Format.SVG in run.formats else ""
         for kind in run.formats:
-            save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind, picture=picture))
+            save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind))
     return [(task.key, "") for task in tasks]
 
 

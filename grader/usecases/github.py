@@ -1,7 +1,7 @@
 """Annotations and the job summary of GitHub Actions, which `grade` writes without an option."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,10 +18,8 @@ Annotate = Callable[[str], None]  # writes workflow commands
 _MAX_SUMMARY = 1024 * 1024  # bytes: GitHub does not show a longer step summary
 
 
-def publish_report(
-    report: "Report", base: "Base", annotate: Annotate | None, warn: Warn, pictures: Sequence[str] = ()
-) -> None:
-    """Annotate the findings of a report, and add it to the job summary, which names the files with pictures.
+def publish_report(report: "Report", base: "Base", annotate: Annotate | None, warn: Warn) -> None:
+    """Annotate the findings of a report, and add it to the job summary.
 
     Annotations are workflow commands for standard error, where GitHub reads them as well: standard output is for the
     report.
@@ -31,7 +29,7 @@ def publish_report(
 
     if annotate is not None:
         annotate(render_github(report, base))
-    _add_to_summary(lambda room: cut_markdown(report, room, pictures), warn)
+    _add_to_summary(lambda room: cut_markdown(report, room), warn)
 
 
 def publish_refusal(reason: str, annotate: Annotate, warn: Warn) -> None:

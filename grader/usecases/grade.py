@@ -16,7 +16,7 @@ from grader.source import Base
 from grader.text import printable
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
 from grader.usecases.rubrics import files_of, load
-from grader.usecases.saves import Saves, picture_beside
+from grader.usecases.saves import Saves
 from grader.usecases.terminal import Warn
 from grader.usecases.writing import CHECKOUTS, refuse_inputs, refuse_symlinks, remove_previous, save
 
@@ -156,8 +156,7 @@ def save_reports(request: GradeRequest, run: GradeRun, modes: Mapping[Path, int]
         is_source = file.suffix.lower() in _KEPT
         refuse_inputs("--save", file, (Path(request.path) if is_source else graded, *run.besides))
     for kind, file in request.saves:
-        picture = picture_beside(file, request.saves)
-        text = render(run.report, kind, run.base, verbose=request.verbose, picture=picture)
+        text = render(run.report, kind, run.base, verbose=request.verbose)
         save(file, text, (request.path,), modes.get(file))
 
 
