@@ -1,7 +1,6 @@
 """The `grader` command: its subcommands and its error messages."""
 
 import os
-import re
 import sys
 from collections.abc import Collection, Sequence
 from contextlib import nullcontext, redirect_stderr, suppress
@@ -15,7 +14,6 @@ import typer
 
 from grader import __version__
 from grader.cli.ending import outer_limits, quiet_interrupts
-from grader.cli.options import Commands
 from grader.cli.terminal import warn
 from grader.errors import GraderError
 from grader.text import printable_path, shell_quoted
@@ -31,8 +29,6 @@ COMMANDS = {
 }  # fmt: skip
 _LIMITED = ("grade", "inspect")  # the commands that read one submission
 _COMPLETION = ("--show-completion", "--install-completion")
-_NEGATIVE = r"-[.,]?[0-9]"
-_OPTION = r"--[^=]+"  # such as --comment, whose value may be -1
 
 
 def _print_version(is_given: bool) -> None:
@@ -64,7 +60,7 @@ def _root(
 
 def make_app(names: Collection[str]) -> typer.Typer:
     """Return the command line with these commands: importing all of them takes longer than to grade a URDF."""
-    app = Commands(
+    app = typer.Typer(
         name="grader",
         no_args_is_help=True,
         add_completion=len(names) > 1,
@@ -130,7 +126,7 @@ def _run(arguments: Sequence[str]) -> int:
         app = make_app(_command(arguments) or COMMANDS)
         is_limited = arguments and arguments[0] in _LIMITED and "--watch" not in arguments
         with outer_limits() if is_limited else nullcontext():
-            result = app(_points_last(arguments), standalone_mode=False, prog_name="grader")
+            result = app(list(arguments), standalone_mode=False, prog_name="grader")
         if isinstance(result, str):
             write_stdout(result)
     except (GraderError, OSError) as error:
@@ -189,13 +185,3 @@ def _other_error(error: Exception) -> ExitCode:
 
 def _one_line(text: str) -> str:
     return " ".join(text.split())
-
-
-def _points_last(arguments: Sequence[str]) -> list[str]:
-    """Return `mark a b -1` as `mark a b -- -1`, so that negative points are refused as points, not as an option."""
-    typed = list(arguments)
-    if typed[:1] == ["mark"] and "--" not in typed:
-        for index in reversed(range(1, len(typed))):
-            if re.match(_NEGATIVE, typed[index]) and not re.fullmatch(_OPTION, typed[index - 1]):
-                return [*typed[:index], *typed[index + 1 :], "--", typed[index]]
-    return typed

@@ -12,7 +12,6 @@ from grader.cli.options import (
     DueOption,
     FormatOption,
     PartOption,
-    rubric_ids,
 )
 from grader.cli.terminal import TERMINAL
 from grader.errors import GraderError
@@ -31,9 +30,7 @@ _TIMEOUT = "Time limit for each submission."
 def batch(
     paths: Annotated[list[Path] | None, typer.Argument(metavar="PATH...", help=_PATH)] = None,
     gradebook: Annotated[Path | None, typer.Option(metavar="FOLDER", help=_GRADEBOOK, show_default=False)] = None,
-    rubric: Annotated[
-        str | None, typer.Option(metavar="ID|FILE", help=_RUBRIC, show_default=False, autocompletion=rubric_ids)
-    ] = None,
+    rubric: Annotated[str | None, typer.Option(metavar="ID|FILE", help=_RUBRIC, show_default=False)] = None,
     part: PartOption = None,
     answers: AnswersOption = None,
     arg: ArgOption = None,

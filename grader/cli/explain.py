@@ -4,14 +4,14 @@ from typing import Annotated, Literal, get_args
 
 import typer
 
-from grader.cli.options import RubricOption, explainable
+from grader.cli.options import RubricOption
 from grader.usecases.rubrics import DEFAULT_RUBRIC
 
 _NAME = "For example URDF051, frame_at or lidar-frame."
 
 
 def explain(
-    name: Annotated[str, typer.Argument(metavar="CODE|CHECK|CRITERION", help=_NAME, autocompletion=explainable)],
+    name: Annotated[str, typer.Argument(metavar="CODE|CHECK|CRITERION", help=_NAME)],
     rubric: RubricOption = DEFAULT_RUBRIC,
 ) -> str:
     """Explain a problem code, a check or a criterion.

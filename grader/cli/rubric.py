@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from grader.cli.options import AnswersOption, Commands, FormatOption, RubricOption, rubric_ids
+from grader.cli.options import AnswersOption, FormatOption, RubricOption
 from grader.cli.terminal import TERMINAL, warn
 from grader.report.formats import OutputFormat
 from grader.usecases import rubrics
@@ -28,10 +28,8 @@ Examples:
 """
 _FOLDER = "A folder with samples: submissions with an expected.toml."
 _LEAST = "Exit 1 if the mutation score is less, in percent."
-rubric = Commands(help=_HELP, no_args_is_help=True)
-RubricArgument = Annotated[
-    str, typer.Argument(metavar="ID|FILE", help="The rubric: an id or a .toml file.", autocompletion=rubric_ids)
-]
+rubric = typer.Typer(help=_HELP, no_args_is_help=True)
+RubricArgument = Annotated[str, typer.Argument(metavar="ID|FILE", help="The rubric: an id or a .toml file.")]
 
 
 @rubric.command("list")
@@ -106,7 +104,7 @@ def new_rubric(
 
 @rubric.command("copy")
 def copy_rubric(
-    name: Annotated[str, typer.Argument(metavar="ID", help="A rubric of the grader.", autocompletion=rubric_ids)],
+    name: Annotated[str, typer.Argument(metavar="ID", help="A rubric of the grader.")],
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="The folder to write into: FOLDER/ID.")],
 ) -> str:
     """Copy a rubric with its files, to change it.

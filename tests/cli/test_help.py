@@ -55,13 +55,6 @@ def test_help_at_eighty_columns(path: tuple[str, ...]) -> None:
         parse(line)
 
 
-@pytest.mark.parametrize("path", [path for path in PATHS if path], ids=" ".join)
-def test_every_option_has_a_heading(path: tuple[str, ...]) -> None:
-    """The heading for the rest of the options has --help only."""
-    rest = run((*path, "--help")).stdout.decode().partition("\nOptions:\n")[2].partition("\n\n")[0]
-    assert rest.split() == ["-h,", "--help", "Show", "this", "message", "and", "exit."]
-
-
 @pytest.mark.parametrize("command", ["batch", "stats", "diff", "export"])
 def test_recipes(command: str) -> None:
     """Commands for a class have a recipe for each situation, one sentence each."""
