@@ -1,6 +1,5 @@
 """The content of a picture of a graded robot: the scene, differences from the reference, failed criteria."""
 
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -17,8 +16,6 @@ from grader.robot.selectors import texts_in
 from grader.robot.transforms import Transform, Vector
 
 _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
-# The arguments that name the frame of a measurement.
-_FRAMES = ("relative_to", "base", "on", "of", "parent")
 
 
 class Callout(NamedTuple):
@@ -89,21 +86,12 @@ def _reference(rubric: Rubric) -> Configuration | None:
 
 
 def _frames(rubric: Rubric, robot: Configuration, solution: Configuration | None) -> tuple[str | None, str | None]:
-    """Return the links in whose frames both robots are drawn: the rubric's most frequent frame, else the roots.
-
-    It is in the largest tree of each robot, because most links have a pose there.
-    """
-    given = Counter(
-        value
-        for criterion in rubric.criteria
-        for key, value in criterion.arguments.items()
-        if key in _FRAMES and isinstance(value, str)
-    )
-    own, other = robot.main_tree, solution.main_tree if solution is not None else ()
-    named = [name for name, _ in given.most_common()]
-    pairs = ((selected(robot, name), selected(solution, name) if solution is not None else None) for name in named)
-    known = (pair for pair in pairs if pair[0] in own and (pair[1] is None or pair[1] in other))
-    return next(known, (next(iter(own), None), next(iter(other), None)))
+    """Return the links in whose frames both robots are drawn: the rubric's base, else the roots."""
+    trees = [one.main_tree if one is not None else () for one in (robot, solution)]
+    own, other = (selected(one, rubric.base) if one is not None else None for one in (robot, solution))
+    if own in trees[0] and (other is None or other in trees[1]):
+        return own, other
+    return next(iter(trees[0]), None), next(iter(trees[1]), None)
 
 
 def _wheels(rubric: Rubric, robot: Configuration) -> Iterator[str]:

@@ -3,22 +3,21 @@
 It needs no script or other file. A page that contains it adds `STYLE` of `signs.py` to its own rules.
 """
 
-import re
 from collections.abc import Iterable, Sequence
 from textwrap import wrap
 
-from grader.drawing.picture import Callout, Picture, picture_of, plain_picture
+from grader.drawing.picture import Picture, picture_of, plain_picture
 from grader.drawing.views import WIDTH, panels_of
-from grader.grading.report import Report, Result
+from grader.grading.report import Report
 from grader.report.content import bonus_line, grade_line, score_text, summary
 from grader.report.criteria import points_of
 from grader.report.details import remarks_on
 from grader.report.inspection import Inspection, effect
-from grader.report.signs import STYLE, badge, escaped, key, path, segment, text, view
+from grader.report.signs import STYLE, escaped, key, text, view
 from grader.submission.urdf import Absent
-from grader.text import counted_points, enumerated, printable
+from grader.text import enumerated, printable
 
-_LEFT, _LINE, _INDENT = 14.0, 15.0, 26.0  # pixels
+_LEFT, _LINE = 14.0, 15.0  # pixels
 _LETTER_WIDTH = 6.8  # pixels, on average, of a font that is wider than most
 _WIDTH = WIDTH - 2.0 * _LEFT
 _MAX_TITLE, _MAX_TEXT, _MAX_LINES = 200, 1000, 6
@@ -26,17 +25,19 @@ _NO_SHAPES = "No visual can be drawn: only frames of links are shown."
 
 
 def drawing_element(picture: Picture, title: str = "", *, legend: bool = True, above: Sequence[str] = ()) -> str:
-    """Return the drawing of a robot as an SVG element; `above` are lines above it, `legend` lists the criteria below.
+    """Return the drawing of a robot as an SVG element; `above` are lines above it, `legend` lists the callouts below.
 
-    Screen readers read the title, and a description of the callouts.
+    Screen readers read the title and the same list.
     """
     panels = panels_of(picture, _height(above) if title else 0.0)
     parts = _headline(title, above) if title else []
     parts += [f"<g>{''.join(view(panel, picture))}</g>" for panel in panels]
     parts += key(picture, panels[0].top)
-    height = panels[-1].top + panels[-1].height
-    height, below = _legend(picture, height) if legend else (height, [])
-    return _svg(title or "Three views of the robot", _description(picture), height, [*parts, *below])
+    height, words = panels[-1].top + panels[-1].height, _words(picture)
+    lines = [line for part in words if legend for line in _lines(part, _WIDTH)]
+    parts += [text("text", (_LEFT, height + _LINE * number), line) for number, line in enumerate(lines, 1)]
+    below = _LINE * len(lines) + 6.0 if lines else 0.0
+    return _svg(title or "Three views of the robot", " ".join(words), height + below, parts)
 
 
 def _svg(title: str, words: str, height: float, parts: Iterable[str]) -> str:
@@ -46,46 +47,20 @@ def _svg(title: str, words: str, height: float, parts: Iterable[str]) -> str:
     return f'{start} {size}>{said}<rect class="paper" {size}/>{"".join(parts)}</svg>'
 
 
-def _legend(picture: Picture, top: float) -> tuple[float, list[str]]:
-    """Return the failed criteria of each callout, and notes, below `top`, and where they end."""
-    notes = picture.scene.missing if picture.scene.bodies else (*picture.scene.missing, _NO_SHAPES)
-    if not picture.callouts and not notes:
-        return top, []
-    parts, y = [path("rule", segment((_LEFT, top + 8.0), (WIDTH - _LEFT, top + 8.0)))], top + 28.0
-    blocks = [(one.number, [_heading(one), *map(_loss, one.results)]) for one in picture.callouts]
-    for count, rows in (*blocks, (0, notes)):
-        parts += [badge((_LEFT + 9.0, y - 4.0), count)] if count else []
-        for index, line in ((at, line) for at, row in enumerate(rows) for line in _lines(row, _WIDTH - _INDENT)):
-            parts.append(text("text" if index or not count else "strong", (_LEFT + _INDENT, y), line))
-            y += _LINE
-        y += 6.0
-    return y, parts
-
-
-def _heading(callout: Callout) -> str:
-    """Return the link of a callout, the lost points, and a remark if it is not in the picture."""
-    words = f"{callout.link or 'The robot'}: {points_of(callout.results)} lost"
-    return words if callout.point is not None else f"{words} (not in the picture)"
-
-
-def _loss(result: Result) -> str:
-    return f"{result.criterion.id} ({counted_points(result.criterion.points)}): {result.outcome.message}"
-
-
-def _description(picture: Picture) -> str:
-    """Return a description of the callouts of a picture, and of what it does not show."""
+def _words(picture: Picture) -> list[str]:
+    """Return what each callout of a picture is about, and what is not shown."""
     called = [
-        f"{callout.number}: {_heading(callout)}, {enumerated([result.criterion.id for result in callout.results])}."
-        for callout in picture.callouts
+        f"{one.number}: {one.link or 'the robot'}: {points_of(one.results)} lost"
+        f"{' (not in the picture)' * (one.point is None)}, {enumerated([it.criterion.id for it in one.results])}."
+        for one in picture.callouts
     ]
-    return printable(" ".join((*called, *picture.scene.missing)))
+    return [*map(printable, (*called, *picture.scene.missing, *([] if picture.scene.bodies else [_NO_SHAPES])))]
 
 
 def _lines(words: str, width: float) -> list[str]:
-    """Return a text in lines of a width in pixels, with a number and its unit on one line; of a long text the first."""
-    whole = re.sub(r"(?<=\d) (?=(?:m|mm|degrees)\b)", "\xa0", printable(words[:_MAX_TEXT]))
-    lines = wrap(whole, int(width / _LETTER_WIDTH), max_lines=_MAX_LINES, placeholder=" ...", break_on_hyphens=False)
-    return [line.replace("\xa0", " ") for line in lines]
+    """Return a text in lines of a width in pixels; of a long text the first."""
+    text, most = printable(words[:_MAX_TEXT]), int(width / _LETTER_WIDTH)
+    return wrap(text, most, max_lines=_MAX_LINES, placeholder=" ...", break_on_hyphens=False)
 
 
 def why_no_picture(report: Report) -> str:

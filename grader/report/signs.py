@@ -1,6 +1,6 @@
 """The signs of a drawing: its shapes, ground, frames, driving directions, outlines of the reference, numbers, and key.
 
-Every text is escaped here. No sign depends on its colour alone.
+Every text is escaped here.
 """
 
 from collections.abc import Iterator, Sequence
@@ -17,12 +17,12 @@ from grader.text import printable
 _FONT = "12px system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"
 _LOOKS = {
     "paper": "fill:#fff",
-    "rule": "stroke:#c9ced6",
     "edge": "stroke:#4b5563",
     "hidden": "stroke:#1c1f23;stroke-opacity:.35",
     "ground": "stroke:#6b7280;stroke-width:1.5",
     "halo": "stroke:#fff;stroke-width:5;stroke-opacity:.75",
     "reference": "stroke:#a3157f;stroke-width:1.8;stroke-dasharray:6 3.5",
+    "dashed": "stroke-dasharray:6 3.5",
     "axis-x": "stroke:#d01f2e;stroke-width:1.8",
     "axis-y": "stroke:#00805c;stroke-width:1.8",
     "axis-z": "stroke:#0a5fd0;stroke-width:1.8",
@@ -31,7 +31,6 @@ _LOOKS = {
     "badge": "fill:#b3261e",
     "number": "fill:#fff;font-weight:700;text-anchor:middle",
     "text": "fill:#1c1f23",
-    "strong": "fill:#1c1f23;font-weight:700",
     "title": "fill:#1c1f23;font-size:17px;font-weight:700",
     "faint": "fill:#4b5563",
     "letter": "fill:#1c1f23;stroke:#fff;stroke-width:2.5;paint-order:stroke;font-size:11px;text-anchor:middle",
@@ -41,9 +40,9 @@ STYLE = (
     f"{''.join(f'.drawing .{name}{{{rules}}}' for name, rules in _LOOKS.items())}"
 )
 _RADIUS = 9.0  # of a number, in pixels
-_AXIS, _LONG_AXIS, _ARROW, _BEHIND = 20.0, 32.0, 30.0, 8.0  # pixels
+_AXIS, _LONG_AXIS, _ARROW = 20.0, 32.0, 30.0  # pixels
 _END_ON = 0.2  # of its length: an axis or arrow that appears shorter is not drawn as one
-_LETTER, _BADGE = (9.0, 11.0), (2.0 * _RADIUS + 2.0, 2.0 * _RADIUS + 2.0)  # the room of one
+_BADGE = 2.0 * _RADIUS + 2.0, 2.0 * _RADIUS + 2.0  # the room of one
 _RINGS = (22.0, 30.0, 40.0, 52.0, 66.0, 84.0, 106.0, 132.0)  # pixels from what a number labels
 _AROUND = [(ring * cos(tau * n / 16), -ring * sin(tau * n / 16)) for ring in _RINGS for n in range(2, 18)]
 _MAX_NAME, _ROW = 60, 18.0
@@ -62,16 +61,12 @@ def view(panel: Panel, picture: Picture) -> Iterator[str]:
         ("reference", _polygon(panel.outline(body))): None for body in picture.outlines
     }
     frames = [("", _AXIS, pose) for pose in frames_of(picture)]
-    frames += [("reference", _LONG_AXIS, pose) for pose in picture.frames]
-    axes = [axis for frame in frames for axis in _axes(panel, *frame)]
-    lines |= {(look, segment(start, tip)): None for look, start, tip, _ in axes}
+    frames += [(" dashed", _LONG_AXIS, pose) for pose in picture.frames]
+    lines |= {axis: None for frame in frames for axis in _axes(panel, *frame)}
     lines |= {("arrow", data): None for wheel in picture.scene.wheels for data in _arrow(panel, wheel)}
     yield path("halo", "".join(data for _, data in lines))
     yield from (path(*line) for line in lines)
     yield from _numbers(panel, picture, places)
-    for _, start, tip, name in axes:
-        if place := places.take(_beside(start, tip), _LETTER):
-            yield text("letter", (place[0], place[1] + 3.5), name)
 
 
 def _ground(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str]:
@@ -93,20 +88,13 @@ def _shape(body: Body, outline: list[Place]) -> str:
     return f'<polygon {looks} points="{points}"><title>{name}</title></polygon>'
 
 
-def _axes(panel: Panel, look: str, length: float, pose: Transform) -> Iterator[tuple[str, Place, Place, str]]:
-    """Yield the axes of a frame that do not point to the viewer or away: look, ends on the sheet, and name."""
+def _axes(panel: Panel, look: str, length: float, pose: Transform) -> Iterator[tuple[str, str]]:
+    """Yield the axes of a frame that do not point to the viewer or away: the look and the path of each."""
     start = panel.place(pose.translation)
     for name, axis in zip("xyz", AXES, strict=True):
         across, down, _ = panel.direction(pose.rotate(axis))
         if hypot(across, down) > _END_ON:
-            yield look or f"axis-{name}", start, (start[0] + length * across, start[1] + length * down), name
-
-
-def _beside(start: Place, tip: Place) -> list[Place]:
-    """Return the places for the letter of an axis: behind its tip, or beside it."""
-    length = hypot(tip[0] - start[0], tip[1] - start[1]) / _BEHIND
-    x, y = (tip[0] - start[0]) / length, (tip[1] - start[1]) / length
-    return [(tip[0] + across, tip[1] + down) for across, down in ((x, y), (x - y, y + x), (x + y, y - x))]
+            yield f"axis-{name}{look}", segment(start, (start[0] + length * across, start[1] + length * down))
 
 
 def _arrow(panel: Panel, wheel: Wheel) -> Iterator[str]:
@@ -153,7 +141,7 @@ def _key() -> Iterator[tuple[str, str]]:
     yield badge((12.0, 0.0), 1), "points lost"
     yield path("reference", "M0 0L26 0"), "reference solution"
     yield path("arrow", arrow((-3.0, 0.0), 1.0, 0.0)), "driven so by a positive rotation"
-    yield "".join(axes), "axes x, y, z of a frame"
+    yield "".join(axes), "axes of a frame: x red, y green, z blue"
     yield path("hidden", "M0 0L26 0"), "hidden edge"
 
 

