@@ -2,24 +2,13 @@
 
 from dataclasses import dataclass, field
 from decimal import Decimal
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from grader.robot.model import Robot
 from grader.robot.reader import Verdict
 from grader.source import Source
 from grader.submission.submission import Submission
-from grader.submission.urdf import OtherCandidate, Read, Urdf
-
-
-class Originals(Protocol):
-    """The files of a submission, as far as they can still be read."""
-
-    @property
-    def urdf(self) -> Urdf:
-        """The URDF that was graded; absent if it has changed since."""
-
-    def source(self, path: str) -> Source | None:
-        """Return the text of one of the files; None where it cannot be read."""
+from grader.submission.urdf import OtherCandidate, Read
 
 
 class GradedPackage(NamedTuple):
@@ -50,7 +39,7 @@ class GradedSubmission:
     unread: str = ""
     lacks: tuple[str, ...] = ()
     another_robot: str = ""
-    originals: Originals | None = field(default=None, repr=False, compare=False)
+    originals: Submission | None = field(default=None, repr=False, compare=False)
 
     @classmethod
     def of(cls, submission: Submission, lacks: tuple[str, ...], another_robot: str) -> "GradedSubmission":

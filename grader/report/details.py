@@ -1,8 +1,6 @@
 """The content of a report on one criterion, sentence by sentence, or on several, for every format to lay out."""
 
-import re
 from collections.abc import Iterable, Iterator
-from functools import reduce
 
 from grader.checks.outcome import Outcome
 from grader.grading.criterion import Criterion
@@ -24,15 +22,6 @@ _STATUSES = (
 )
 SYMBOLS, ASCII_SYMBOLS, STYLES, STATUS_WORDS = ({row[0]: row[column] for row in _STATUSES} for column in range(1, 5))
 _MAX_FILES, _MAX_CRITERIA = 2, 3
-_FENCE = r"\s*(?:```|~~~)[\w-]*\s*$"
-# What is certain to be Markdown: "> 5 mm", a[i](j), **/*.urdf and a rule of dashes are not.
-_SIGNS = (
-    (r"^ {0,3}#{1,6}(?:\s+|(?<=##)(?=\w))", ""),
-    (r"\*\*(?=[^\s*/])([^*]{1,500}?)(?<=[^\s*/])\*\*", r"\1"),
-    (r"(?<!`)`([^`]{1,500})`(?!`)", r"\1"),
-    (r"!\[([^\[\]]{0,500})\]\([^()\s]{1,500}\)", r"[picture: \1]"),
-    (r"\[([^\[\]]{1,500})\]\((https?://[^()\s]{1,500})\)", r"\1 (\2)"),
-)
 
 
 def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iterator[Block]:
@@ -100,30 +89,13 @@ def _one_line(text: str) -> str:
 
 
 def answer_lines(outcome: Outcome) -> list[str]:
-    """Return the lines of the answer that a check found, as plain text; none if it is not about a question."""
-    text = outcome.measured
-    if not isinstance(text, str):
-        return []
-    is_markup = outcome.location is None or counts_lines(outcome.location)
-    return written_lines(text) if is_markup else text.strip("\n").splitlines()
+    """Return the lines of the answer that a check found; none if it is not about a question."""
+    return outcome.measured.strip("\n").splitlines() if isinstance(outcome.measured, str) else []
 
 
 def model_lines(criterion: Criterion) -> list[str]:
-    """Return the lines of the model answer, as plain text; none if the criterion has no answer or is loaded without."""
-    return written_lines(criterion.answer) if criterion.answer else []
-
-
-def written_lines(markdown: str) -> list[str]:
-    """Return the lines of a text without these signs, except in code, and without empty lines around."""
-    lines: list[str] = []
-    is_code = False
-    for line in markdown.splitlines():
-        if re.match(_FENCE, line):
-            is_code = not is_code
-            continue
-        plain = reduce(lambda text, sign: re.sub(sign[0], sign[1], text), () if is_code else _SIGNS, line)
-        lines.append(plain.rstrip())
-    return "\n".join(lines).strip("\n").split("\n") if any(lines) else []
+    """Return the lines of the model answer; none if the criterion has no answer or is loaded without."""
+    return criterion.answer.strip("\n").splitlines()
 
 
 def counts_lines(location: Location) -> bool:

@@ -2,6 +2,7 @@
 
 from math import dist
 from pathlib import Path
+from typing import cast
 
 import pytest
 
@@ -15,6 +16,7 @@ from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
 from grader.source import Source
 from grader.submission.opening import open_submission
+from grader.submission.submission import Submission
 from grader.submission.urdf import Urdf
 from tests.command_line import run
 
@@ -64,7 +66,7 @@ class Unsafe:
 
 def test_a_submission_that_could_not_be_graded_is_not_opened_again() -> None:
     """It may be one that crashed the process that graded it."""
-    submission = GradedSubmission("ash", originals=Unsafe())
+    submission = GradedSubmission("ash", originals=cast("Submission", Unsafe()))
     assert picture_of(Report(submission, load_rubric("lab6"), (), ())) is None
 
 

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 from grader.grading.graded_submission import GradedPackage, GradedSubmission
 from grader.grading.report import Hint, Report, Result
 from grader.report.content import other_problems
 from grader.source import Location, Source
+from grader.submission.submission import Submission
 from grader.submission.urdf import Absent, OtherCandidate, Read, Urdf
 from grader.text import printable
 
@@ -48,6 +49,7 @@ def recast(report: Report, words: Words) -> Report:
 
 def _submission(old: GradedSubmission, words: Words, path: Words) -> GradedSubmission:
     text = "\n".join(f"<a b='{words()}'/>{words()}" for _ in range(3))
+    urdf = _urdf(old.originals.urdf, words) if old.originals is not None else Absent()
     return GradedSubmission(
         words(),
         path() if old.path is not None else None,
@@ -60,7 +62,7 @@ def _submission(old: GradedSubmission, words: Words, path: Words) -> GradedSubmi
         old.is_single,
         "unread" if old.unread else "",
         another_robot=f"a {words()}" if old.another_robot else "",
-        originals=Reworded(text, _urdf(old.originals.urdf, words) if old.originals is not None else Absent()),
+        originals=cast("Submission", Reworded(text, urdf)),
     )
 
 
