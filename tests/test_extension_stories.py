@@ -159,7 +159,6 @@ def test_a_new_rubric(project: Path) -> None:
         "tests/test_submissions.py",
         "tests/grading",
         "tests/bundle",
-        "tests/cli/test_completion.py",
         "tests/cli/test_answers.py",
     )
 
@@ -174,7 +173,7 @@ def test_a_new_format(project: Path) -> None:
     python(
         project, "-m", "grader", "grade", "submissions/lab6/several-mistakes", "--format", "line", "--fail-under", "0"
     )
-    passes(project, "tests/report", "tests/cli/test_save.py", "tests/cli/test_completion.py", "tests/submission",
+    passes(project, "tests/report", "tests/cli/test_save.py", "tests/submission",
            "tests/test_architecture.py", "tests/test_docs.py")  # fmt: skip
 
 
@@ -191,4 +190,4 @@ def test_a_new_lms(project: Path) -> None:
     export = ("export", "sakai", "--gradebook", book, "--into", exported, "--output", filled, "--pending-as-zero")
     python(project, "-m", "grader", *export)
     assert Path(filled).read_text(encoding="utf-8") == "Student ID,Name,Lab 6 [100]\nash,Ash,90.00\n"
-    passes(project, "tests/classroom/lms", "tests/test_docs.py", "tests/cli/test_completion.py")
+    passes(project, "tests/classroom/lms", "tests/test_docs.py")

@@ -1,15 +1,16 @@
 """grader export: the current grades, for a spreadsheet or an LMS, and feedback for an LMS."""
 
 from pathlib import Path
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal
 
 import typer
 
+from grader.classroom.lms.forms import FORMS
 from grader.cli.options import GradebookOption
 from grader.cli.terminal import TERMINAL
 from grader.usecases.writing import write_stdout
 
-Target = Literal["csv", "canvas", "moodle", "blackboard", "brightspace", "json", "html"]
+_TARGETS = ("csv", *FORMS, "json", "html")
 _INTO = "The gradebook or worksheet that the LMS exported."
 _OUTPUT = "The file to write (default: standard output); with html, the folder (default: the gradebook)."
 _STRICT = "Write nothing if a row or student is unmatched, a mark does not count, or the LMS would refuse a grade."
@@ -20,8 +21,17 @@ _EXCEL = "Write CSV that Excel opens with a double click."
 _FEEDBACK = "Write each student's report into a zip for Moodle or Canvas."
 
 
+def _known(target: str) -> str:
+    if target not in _TARGETS:
+        raise typer.BadParameter(f"{target!r} is not one of {', '.join(map(repr, _TARGETS))}.")
+    return target
+
+
 def export(
-    target: Annotated[Target, typer.Argument(metavar="|".join(get_args(Target)), help="The format of the grades.")],
+    target: Annotated[
+        str,
+        typer.Argument(metavar="|".join(_TARGETS), callback=_known, help="The format of the grades."),
+    ],
     gradebook: GradebookOption,
     into: Annotated[Path | None, typer.Option(metavar="LMS-FILE", help=_INTO)] = None,
     output: Annotated[Path | None, typer.Option(metavar="FILE|DIR", help=_OUTPUT)] = None,

@@ -1,4 +1,4 @@
-"""Pages in headless browsers. Without these, or without Playwright, tests are skipped; `.ci/run` requires all of them."""
+"""Pages in a headless browser. Without it, or without Playwright, tests are skipped; `.ci/run` requires both."""
 
 import os
 import shutil
@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 import pytest
-
-from tests.browser.firefox import FIREFOX, Firefox
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -30,16 +28,6 @@ def browser() -> Iterator["Browser"]:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])  # tests may run as root
         yield browser
         browser.close()
-
-
-@pytest.fixture(scope="module")
-def firefox(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Firefox]:
-    """Return a Firefox."""
-    if FIREFOX is None:
-        pytest.skip("Firefox is not installed")
-    started = Firefox(tmp_path_factory.mktemp("firefox") / "profile")
-    yield started
-    started.close()
 
 
 @dataclass

@@ -1,13 +1,12 @@
-"""Each attack of the corpus in every text of a student, on every page, in two browsers: it is text and nothing else."""
+"""Each attack of the corpus in every text of a student, on every page: it is text and nothing else."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.browser.conftest import OpenPage
-from tests.browser.firefox import Firefox
 from tests.command_line import run
 from tests.report.attacks import ATTACKS, AttackedClass, make_attacked_class
 from tests.review_server import running
@@ -38,26 +37,16 @@ def attacked(tmp_path_factory: pytest.TempPathFactory) -> AttackedClass:
     return make_attacked_class(tmp_path_factory.mktemp("attacked"))
 
 
-@pytest.fixture(params=["chromium", "firefox"])
-def visit(request: pytest.FixtureRequest) -> Iterator[Visit]:
-    """Yield a function that opens an address and returns what no page should have; at the end, the console is empty."""
-    if request.param == "chromium":
-        opened: OpenPage = request.getfixturevalue("open_page")("about:blank")
+@pytest.fixture
+def visit(open_page: Callable[[str], OpenPage]) -> Visit:
+    """Return a function that opens an address and returns what no page should have."""
+    opened = open_page("about:blank")
 
-        def chromium(address: str) -> Any:
-            opened.page.goto(address)
-            return opened.page.evaluate(f"() => {{{LOOK}}}")
+    def chromium(address: str) -> Any:
+        opened.page.goto(address)
+        return opened.page.evaluate(f"() => {{{LOOK}}}")
 
-        yield chromium
-    else:
-        firefox: Firefox = request.getfixturevalue("firefox")
-
-        def navigate(address: str) -> Any:
-            firefox("WebDriver:Navigate", url=address)
-            return firefox.run(LOOK)
-
-        yield navigate
-        assert [one for one in firefox.messages() if "FaviconLoader" not in one] == []
+    return chromium
 
 
 def test_the_look_finds_what_runs(visit: Visit, tmp_path: Path) -> None:

@@ -22,7 +22,6 @@ from tests.classroom.gradebooks import batch, grader, make_class
 from tests.command_line import HANG_TIMEOUT, ROOT
 from tests.faults.shim import COMPILER
 
-needs_linux = pytest.mark.skipif(sys.platform != "linux", reason="needs Linux")
 needs_shim = pytest.mark.skipif(sys.platform != "linux" or COMPILER is None, reason="needs Linux and a C compiler")
 STUDENTS = ("anna", "ben", "cleo", "dora", "emil")
 _THREE_MARKS = """
@@ -64,13 +63,6 @@ def test_failed_calls_of_every_command() -> None:
 def test_power_failures() -> None:
     """Every acknowledged mark is on the disk, and every file is as before or complete."""
     assert found("tests.faults.power") == ""
-
-
-@needs_linux
-@pytest.mark.exhaustive
-def test_a_soak() -> None:
-    """Memory and descriptors do not grow, and every submission has a result."""
-    assert found("tests.faults.soak", "3000") == ""
 
 
 @pytest.mark.exhaustive
