@@ -167,7 +167,7 @@ def graded(data: bytes) -> Report:
 
 def lost(report: Report) -> set[str]:
     """Return the criteria that cost points; none may be errored."""
-    assert report.counts("errored") == 0, [result.traceback for result in report.results if result.traceback]
+    assert not report.fault, [result.traceback for result in report.results if result.traceback]
     return {result.criterion.id for result in report.results if result.points < result.criterion.points}
 
 

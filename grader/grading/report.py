@@ -198,10 +198,6 @@ class Report(NamedTuple):
         errored = (one for one in self.results if one.outcome.status == "errored" and not one.is_adjusted)
         return next((one.outcome.message for one in errored), "")
 
-    def counts(self, *statuses: str) -> int:
-        """Return the number of criteria with one of these statuses."""
-        return sum(result.outcome.status in statuses for result in self.results)
-
 
 def without_gifts(results: Iterable[Result], submission: GradedSubmission) -> tuple[Result, ...]:
     """Return results in which no adjustment gives points to a submission that could not be read."""

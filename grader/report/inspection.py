@@ -1,6 +1,6 @@
 """A URDF as `grader inspect` shows it: problems, tree, joints, poses."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
 from math import isfinite
@@ -10,7 +10,7 @@ from rich.text import Text
 
 from grader.errors import MissingElement, NotDecided
 from grader.report.as_json import PROBLEM
-from grader.report.console import INDENT, LOOKS, Page, block, excerpt_block, symbol
+from grader.report.console import INDENT, LOOKS, Page, block, excerpt_block
 from grader.report.content import UNDECIDED, VERDICTS
 from grader.report.criteria import alike
 from grader.report.json_data import (
@@ -35,9 +35,9 @@ from grader.robot.transforms import Transform
 from grader.text import printable
 
 MAX_LISTED, _MAX_PROBLEMS = 500, 30  # links, or problems on a page; problems on a terminal
+_MAX_INDENT = 60
 _EFFECTS = {**{verdict: text.replace("the file", "it") for verdict, text in VERDICTS.items()}, "undecided": UNDECIDED}
 _STYLES = dict(zip(_EFFECTS, ("green", "yellow", "bold red", "bold red"), strict=True))
-_BRANCHES = ("\u251c\u2500 ", "\u2514\u2500 ", "\u2502  ")  # to a link, to the last one, past others
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,8 +121,7 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     if reading.problems:
         page.title("Problems")
         page.rows.extend(_problem_rows(console, reading))
-    signs = tuple(symbol(console, *pair) for pair in zip(_BRANCHES, ("|- ", "`- ", "|  "), strict=True))
-    for title, rows in lists(inspection, signs):
+    for title, rows in lists(inspection):
         page.title(title)
         for name, words in rows:
             page.inset(Text.assemble(name, (words, "dim")))
@@ -145,11 +144,11 @@ def _problem_rows(console: Console, reading: Reading) -> Iterator[Text]:
         yield block(console, Text(f"... and {len(reading.problems) - _MAX_PROBLEMS} more"), INDENT)
 
 
-def lists(inspection: Inspection, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, list[tuple[str, str]]]]:
+def lists(inspection: Inspection) -> Iterator[tuple[str, list[tuple[str, str]]]]:
     """Yield the links as a tree with their joints, and their poses: a title, and names with words about each."""
     if inspection.robot is not None and inspection.relative_to is not None:  # else there is neither a tree nor a frame
-        links = tree(inspection.robot, signs)
-        yield "Tree", _first((indent + printable(link), joint_text(joint)) for indent, link, joint in links)
+        links = _tree(inspection.robot)
+        yield "Tree", _first((indent + printable(link), _joint_text(joint)) for indent, link, joint in links)
         title = f"Poses in {printable(inspection.relative_to)!r} (x y z in m, roll pitch yaw in rad)"
         yield title, _first((printable(link), f"  {_pose_text(pose)}") for link, pose in inspection.poses())
 
@@ -164,24 +163,17 @@ def effect(inspection: Inspection) -> str:
     return _EFFECTS[inspection.verdict]
 
 
-def tree(robot: Configuration, signs: Sequence[str] = _BRANCHES) -> Iterator[tuple[str, str, Joint | None]]:
-    """Yield every link after its parent: the branches before it, its name, and its parent joint."""
+def _tree(robot: Configuration) -> Iterator[tuple[str, str, Joint | None]]:
+    """Yield every link after its parent: its indentation, its name, and its parent joint."""
     children = dict(alike(robot.parent_joints.values(), lambda joint: joint.parent))
-    branch, last, bar = signs
-    for root in robot.roots:
-        yield "", root, None
-        stack = _branches(children.get(root, ()), "")
-        while stack:
-            joint, indent, is_last = stack.pop()
-            yield f"{indent}{last if is_last else branch}", joint.child, joint
-            stack += _branches(children.get(joint.child, ()), (indent + ("   " if is_last else bar))[-60:])
+    stack: list[tuple[str, str, Joint | None]] = [("", root, None) for root in reversed(robot.roots)]
+    while stack:
+        yield (link := stack.pop())
+        indent = link[0] + "  " * (len(link[0]) < _MAX_INDENT)
+        stack += [(indent, joint.child, joint) for joint in reversed(children.get(link[1], ()))]
 
 
-def _branches(joints: Sequence[Joint], indent: str) -> list[tuple[Joint, str, bool]]:
-    return [(joint, indent, index == 0) for index, joint in enumerate(reversed(joints))]
-
-
-def joint_text(joint: Joint | None) -> str:
+def _joint_text(joint: Joint | None) -> str:
     """Return a joint in words; empty for the parent joint of a root."""
     if joint is None:
         return ""

@@ -55,7 +55,7 @@ def written(texts: Mapping[str, str]) -> Report:
         target = Path(os.fsdecode(os.path.join(os.fsencode(folder), name_of(texts.get("note", "x")))))
         write_submission(target, texts)
         report = grade(LAB6, opened(target))
-        assert not report.counts("errored"), [result.traceback for result in report.results if result.traceback]
+        assert not report.fault, [result.traceback for result in report.results if result.traceback]
         assert_harmless(report, Base(f"{target.name}/"))
         return report
 

@@ -45,8 +45,8 @@ class Fix(NamedTuple):
     why_nothing: str = ""
 
 
-def hinted(report: Report, submission: Submission, level: HintLevel, *, keep_edits: bool = False) -> HintedReport:
-    """Return a report with proven hints for criteria that failed; `keep_edits` keeps edits that the level hides."""
+def hinted(report: Report, submission: Submission, level: HintLevel) -> HintedReport:
+    """Return a report with proven hints for criteria that failed."""
     results = {result.criterion.id: result for result in report.results}
     solution = report.rubric.solution
     trials = Trials(report.rubric, submission, results)
@@ -62,7 +62,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel, *, keep_edi
             found = _first_at(one, results[entry].outcome.location)
             earlier = tuple(dict.fromkeys(entries[id(it)] for it in before))
             text = message(found, level, submission, earlier)
-            hint = _hint(found, text, entry, results[name], keeps_edits=keep_edits or level == "edit")
+            hint = _hint(found, text, entry, results[name], keeps_edits=level == "edit")
             hints[name] = hint._replace(after=earlier)
     left = [name for name in costs if name not in hints and name in search.results and not search.results[name].is_lost]
     for name in left if level == "edit" else ():

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
-from typing import NamedTuple
 
 from markupsafe import Markup
 
@@ -23,15 +22,6 @@ from grader.text import format_points, printable
 _CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts
 
 
-class Share(NamedTuple):
-    """A part of the bar from `start` with a `width`, in percent of the maximum, and what it means."""
-
-    name: str
-    start: float
-    width: float
-    words: str
-
-
 def render_html(report: Report) -> str:
     """Return the report as a page. Model answers are on it only if the rubric was loaded with them."""
     picture = picture_of(report)
@@ -45,7 +35,6 @@ def render_html(report: Report) -> str:
         "report": report,
         "content": content,
         "maximum": format_points(report.max_score) if report.counting is not None else "",
-        "shares": [*_shares(report)],
         "symbols": SYMBOLS,
         "status_words": STATUS_WORDS,
         "status_of": status_of,
@@ -61,20 +50,6 @@ def render_html(report: Report) -> str:
         "no_picture": why_no_picture(report),
     }
     return _render("student.html", values, picture, "student.js")
-
-
-def _shares(report: Report) -> Iterator[Share]:
-    """Yield what is earned, needs manual grading, and is lost; nothing for an excused student."""
-    whole, earned, start = report.max_score, report.counting, 0.0
-    if not whole or earned is None:
-        return
-    lost = whole - earned - report.open_points
-    names = ("earned", "Earned"), ("pending", "Needs manual grading"), ("lost", "Lost")
-    for (name, words), points in zip(names, (earned, report.open_points, lost), strict=True):
-        width = min(round(float(100 * points / whole), 2), 100.0 - start)
-        if points > 0:
-            yield Share(name, start, width, f"{words}: {format_points(points)}")
-            start += width
 
 
 def _part(title: str, some: list[CriteriaGroup]) -> tuple[str, str, list[CriteriaGroup]]:
