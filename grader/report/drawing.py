@@ -9,7 +9,7 @@ from textwrap import wrap
 from grader.drawing.picture import Picture, picture_of, plain_picture
 from grader.drawing.views import WIDTH, panels_of
 from grader.grading.report import Report
-from grader.report.content import bonus_line, grade_line, score_text, summary
+from grader.report.content import bonus_line, grade_line, notes, score_text, summary
 from grader.report.criteria import points_of
 from grader.report.details import remarks_on
 from grader.report.inspection import Inspection, effect
@@ -77,6 +77,7 @@ def why_no_picture(report: Report) -> str:
 def render_svg(report: Report) -> str:
     """Return the drawing of the graded robot as a file; without a robot, a sentence with the reason."""
     words = [grade_line(report), summary(report), bonus_line(report)]
+    words += notes(report)[: bool(report.submission.another_robot)]
     for result in report.results:
         words += [f"{printable(result.criterion.id)}: {remark}" for remark in remarks_on(result)]
     return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, why_no_picture(report))

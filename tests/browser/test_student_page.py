@@ -6,13 +6,9 @@ from typing import Any
 
 import pytest
 
-from grader.grading.report import Report
-from grader.report.formats import Format, render
 from tests.browser.conftest import OpenPage
 from tests.command_line import run
 from tests.report.hostile import HOSTILE
-from tests.report.reports import hinted, marked
-from tests.report.rewording import recast
 from tests.samples import SAMPLES
 
 pytestmark = pytest.mark.exhaustive
@@ -92,19 +88,3 @@ def test_page_works_without_scripts(open_page: Open, tmp_path: Path) -> None:
     assert page.locator("#criterion-lidar-frame").is_visible()
     assert page.locator(".views svg").is_visible()
     assert not page.locator("button.copy").first.is_visible()
-
-
-@pytest.mark.parametrize("made", [hinted, marked])
-def test_hostile_report_stays_text(open_page: Open, tmp_path: Path, made: Callable[[], Report]) -> None:
-    """The same in messages, notes, problems, paths, source lines, hints and comments of manual marks."""
-    report = recast(made(), lambda: ATTACK)
-    results = (
-        result._replace(manual_mark=result.manual_mark and result.manual_mark._replace(by=ATTACK, comment=ATTACK))
-        for result in report.results
-    )
-    file = tmp_path / "page.html"
-    file.write_text(render(report._replace(results=tuple(results), notes=(ATTACK,)), Format.HTML), encoding="utf-8")
-    opened = open_page(file)
-    assert "<script>document.title" in opened.page.locator("main").inner_text()
-    assert opened.page.title() != "run"
-    assert len(opened.requests) == 1

@@ -1,6 +1,7 @@
 """Text that attacks a page, and a class whose students write it wherever they can, graded, marked and exported."""
 
 import csv
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,10 +21,10 @@ class AttackedClass(NamedTuple):
     pages: Path
 
 
-def make_attacked_class(top: Path) -> AttackedClass:
+def make_attacked_class(top: Path, attacks: Sequence[str] = ATTACKS) -> AttackedClass:
     """Grade a class with each attack in the names, files, robots, answers, comments and marks of a student."""
     rows, folders = [["id", "name", "section"]], []
-    for number, text in enumerate(ATTACKS):
+    for number, text in enumerate(attacks):
         visible = text.replace("\0", "\x01")
         folders.append(top / "class" / f"{number} {visible.replace('/', chr(0x2215))}")
         write_submission(folders[-1], dict.fromkeys((*SLOTS, "box", "setup", "frame"), text))

@@ -8,11 +8,10 @@ import pytest
 
 from grader.classroom.grades import Class
 from grader.report.class_summary import percent
-from grader.text import without_commands
 from grader.usecases.report_names import write_class_page
 from tests.classroom.gradebooks import batch, grader, lab_text, write_submission
+from tests.report.attacks import ATTACKS, make_attacked_class
 from tests.report.class_pages import ClassPageReader
-from tests.report.hostile_class import CORPUS, export_hostile_class
 
 ELEMENTS = {
     "html", "head", "meta", "title", "style", "body", "script", "header", "main", "footer", "nav", "section", "article", "div",
@@ -30,15 +29,15 @@ def test_a_share_is_not_rounded_to_all_or_none(share: float, words: str) -> None
 
 def test_text_of_students_stays_text(tmp_path: Path) -> None:
     """Names, ids, folders, robots, reasons and comments: no element, no address and no script comes from them."""
-    pages = export_hostile_class(tmp_path)
+    pages = make_attacked_class(tmp_path, ATTACKS[:6]).pages
     page = ClassPageReader(pages / "index.html")
     assert {str(element.tag) for element in page.root.iter()} <= ELEMENTS
-    assert {row["name"] for row in page.table("students")} >= set(map(without_commands, CORPUS))
+    assert {row["name"] for row in page.table("students")} >= {text for text in ATTACKS[:6] if text.isprintable()}
     links = [link for link in page.root.xpath("//a/@href") if not link.startswith("#")]
     assert {unquote(link) for link in links} == {file.name for file in pages.glob("*.html")} - {"index.html"}
     assert {link[1:] for link in page.root.xpath("//a/@href") if link.startswith("#")} <= set(page.root.xpath("//@id"))
     assert len(page.root.xpath("//script")) == 2
-    assert any(CORPUS[1] in text for text in page.texts("//section[@id='look']//li"))
+    assert any(ATTACKS[7][:20] in text for text in page.texts("//section[@id='look']//li"))
     for file in pages.glob("*.html"):
         assert "<script>document" not in file.read_text(encoding="utf-8")
         assert "\n::error" not in file.read_text(encoding="utf-8")
