@@ -23,7 +23,7 @@ from grader.text import enumerated, format_points, printable, printable_path, si
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.grade import GradeRequest, grade_submission, remove_reports, requested_rubric, save_reports
 from grader.usecases.rubrics import files_of
-from grader.usecases.terminal import Terminal, Warn
+from grader.usecases.terminal import Terminal
 
 _POLL = 0.1  # seconds between two looks
 _SHARE = 10  # a look at many files is followed by a pause of this many times its own time
@@ -36,8 +36,6 @@ _CHANGES = {
     "errored": "now errored",
 }
 Stamps = dict[str, tuple[int, ...] | None]
-# The report that was shown last, and all of its text, whatever the terminal's width.
-_Shown = tuple[Report, str]
 
 
 def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
@@ -54,7 +52,7 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
     _ = request.threshold  # refuse a wrong one at once
     gc.enable()  # unlike other commands, this one may run for hours
     code: ExitCode | None = None
-    last: _Shown | None = None
+    last: Report | None = None
     terminal.warn(f"watching {printable_path(request.path)}; stop with Ctrl-C")
     try:
         for besides in changes(watched, frozenset(os.path.realpath(file) for _, file in request.saves)):
@@ -62,11 +60,13 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
                 result = grade_submission(request, terminal.warn)
             except (InputError, MachineError, RubricError) as error:
                 code = ExitCode.NOT_GRADED
-                _show_error(request.path, error, terminal.warn)
+                for line in str(error).split("\n"):
+                    terminal.warn(line)
                 continue
             code, besides[:] = result.exit_code, result.besides
             save_reports(request, result, modes)
-            last = _show(result.report, last, terminal, verbose=request.verbose)
+            _show(result.report, last, terminal, verbose=request.verbose)
+            last = result.report
     except KeyboardInterrupt:
         if code is None:  # during the first grading
             raise
@@ -90,31 +90,18 @@ def _watched(request: GradeRequest) -> list[Path]:
     return [Path(request.path)]
 
 
-def _show_error(path: str, error: GraderError, warn: Warn) -> None:
-    if not os.path.lexists(path):
-        warn(f"{printable_path(path)} does not exist: waiting until it does")
-        return
-    for line in str(error).split("\n"):
-        warn(line)
-
-
-def _show(report: Report, last: _Shown | None, terminal: Terminal, *, verbose: bool) -> _Shown:
-    """Show the whole report, then what changed; of a report that is the same, one line."""
-    shown = report, render(report, Format.TERMINAL, verbose=True)
-    if last is not None and shown[1] == last[1]:
-        terminal.print(f"nothing has changed: {_score(report)}\n")
-        return shown
+def _show(report: Report, last: Report | None, terminal: Terminal, *, verbose: bool) -> None:
+    """Show the whole report, then what changed."""
     screen = terminal.screen()
-    lines = comparison_lines(last[0], report) if last is not None else []
-    changes = draw(lambda console: _print_lines(lines, console), screen) if lines else ""
+    lines = comparison_lines(last, report) if last is not None else []
+
+    def print_lines(console: Console) -> None:
+        console.print()
+        for line in lines:
+            wrapped(console, Text(line, style="bold"), 0)
+
+    changes = draw(print_lines, screen) if lines else ""
     terminal.print(render(report, Format.TERMINAL, screen=screen, verbose=verbose) + changes)
-    return shown
-
-
-def _print_lines(lines: list[str], console: Console) -> None:
-    console.print()
-    for line in lines:
-        wrapped(console, Text(line, style="bold"), 0)
 
 
 def comparison_lines(before: Report, after: Report) -> list[str]:

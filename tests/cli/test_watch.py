@@ -91,7 +91,7 @@ def test_each_round_ends_with_the_changes(robot: Path, watch: Watch) -> None:
     assert first.encode() == run(("grade", str(SHORT))).stdout.replace(str(SHORT).encode(), str(robot).encode())
     assert (better[:7], better.partition(BETTER)[1:]) == ("grader ", (BETTER, ""))
     assert (worse[:7], worse.partition(WORSE)[1:]) == ("grader ", (WORSE, ""))
-    assert same == "nothing has changed: 64 of 70 points\n"
+    assert same.endswith(f"{END}\n64 -> 64 of 70 points\n")
     assert other.endswith(f"{END}\n64 -> 64 of 70 points\n")
     assert last.startswith("grader ")
     assert done.err == [f"grader: watching {robot}; stop with Ctrl-C\n", "", "", "", "", ""]
@@ -110,7 +110,7 @@ def test_unreadable_states_are_waited_out(robot: Path, watch: Watch) -> None:
     robot.unlink()
     first = partial(put, SHORT, robot)
     done = watch([robot], first, robot.unlink, replace_folder, partial(put, URDF, robot), robot.unlink)
-    gone = f"grader: {robot} does not exist: waiting until it does\n"
+    gone = f"grader: {robot} does not exist\n"
     assert done.err[0].endswith(gone)
     assert (done.err[1], done.err[2], done.err[4], done.err[5]) == ("", gone, "", gone)
     assert "is larger than 1048576 bytes" in done.err[3]
@@ -131,7 +131,6 @@ def test_a_folder_with_saved_reports_in_it(tmp_path: Path, watch: Watch) -> None
     saves = [f"--save=json={folder / 'report.json'}", f"--save=markdown={tmp_path / 'link' / 'report.md'}"]
     edits = partial(put, SHORT, urdf), partial(put, URDF, urdf), partial(launch.rename, launch.with_name("nothing"))
     done = watch([folder, *saves], *edits)
-    assert "nothing has changed" not in "".join(done.out)
     for shown, news in zip(
         done.out[1:], ("now failed: lidar-frame (", "now passed: lidar-frame (", "now failed: "), strict=True
     ):
