@@ -12,7 +12,7 @@ from grader.errors import InputError
 from grader.grading.criterion import Evidence
 from grader.grading.deciding import decide
 from grader.grading.graded_submission import GradedSubmission
-from grader.grading.missing_work import another_robot, missing_work, robot_of
+from grader.grading.missing_work import another_robot, robot_of
 from grader.grading.report import EvidenceResult, Report, Result, without_gifts
 from grader.grading.rubric import Rubric
 from grader.robot.kinematics import Configuration
@@ -51,8 +51,7 @@ def grade(
     is_whole = is_one_of_class or not submission.is_single
     chosen, notes = _choose_parts(rubric, submission, parts, is_whole=is_whole)
     another = another_robot(rubric, robot_of(submission.urdf))
-    lacks = tuple(missing_work(rubric, submission))
-    graded = GradedSubmission.of(submission, lacks, another.mistake if another is not None else "")
+    graded = GradedSubmission.of(submission, another.mistake if another is not None else "")
     wanted = {criterion.id for criterion in rubric.criteria if criterion.part in chosen}
     results = without_gifts(decide(rubric, submission, wanted), graded)
     problems = submission.urdf.problems if isinstance(submission.urdf, Read) else ()

@@ -23,8 +23,7 @@ class GradedSubmission:
     """The submission part of a report. `path`, `sha256` and `verdict` are those of the URDF.
 
     `is_single` distinguishes a single URDF from a folder or archive; `unread` says why the URDF could not be read;
-    `lacks` names what there is evidence for, but no work of this lab: the URDF, the package. `another_robot` says why
-    the robot looks like another one; empty if it does not. `originals` are its files.
+    `another_robot` says why the robot looks like another one; empty if it does not. `originals` are its files.
     """
 
     id: str
@@ -37,12 +36,11 @@ class GradedSubmission:
     verdict: Verdict | None = None
     is_single: bool = False
     unread: str = ""
-    lacks: tuple[str, ...] = ()
     another_robot: str = ""
     originals: Submission | None = field(default=None, repr=False, compare=False)
 
     @classmethod
-    def of(cls, submission: Submission, lacks: tuple[str, ...], another_robot: str) -> "GradedSubmission":
+    def of(cls, submission: Submission, another_robot: str) -> "GradedSubmission":
         """Return what a report says of a submission."""
         package = submission.package
         return cls(
@@ -56,7 +54,6 @@ class GradedSubmission:
             verdict=submission.verdict,
             is_single=submission.is_single,
             unread=submission.unread,
-            lacks=lacks,
             another_robot=another_robot,
             originals=submission,
         )

@@ -57,11 +57,6 @@ def rounded(value: Any) -> Any:
     return [rounded(item) for item in value]
 
 
-def fields(value: object, names: str) -> dict[str, Any]:
-    """Return some fields of an object as plain data; `names` are separated by spaces."""
-    return {name: rounded(getattr(value, name)) for name in names.split()}
-
-
 K = TypeVar("K")
 Schema = dict[str, Any]
 TEXT: Schema = {"type": "string"}

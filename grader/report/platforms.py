@@ -17,7 +17,6 @@ from collections.abc import Mapping
 from typing import Any
 
 from grader.errors import InputError
-from grader.grading.criterion import Criterion
 from grader.grading.report import Report, Result
 from grader.report.as_json import ADDITIONS
 from grader.report.criteria import Entry, earned_text, is_failure
@@ -58,7 +57,6 @@ def _gradescope_test(entry: Entry, report: Report) -> dict[str, Any]:
     return {
         **({} if result.is_open else _gradescope_points(result)),
         "name": printable(criterion.title) + most,
-        "number": _number(criterion, report),
         "output": criterion_markdown(entry, report),
         "output_format": "md",
         "tags": [criterion.id, criterion.part, "adjusted" if result.is_adjusted else status],
@@ -77,13 +75,6 @@ def _gradescope_points(result: Result) -> dict[str, Any]:
     is_lost = is_failure(result) or (result.outcome.status == "skipped" and not result.is_adjusted)
     most = {} if result.criterion.bonus else {"max_score": exact(result.criterion.points)}
     return {"score": exact(result.points), **most, "status": "failed" if is_lost else "passed"}
-
-
-def _number(criterion: Criterion, report: Report) -> str:
-    """Return the number of the part, and of the criterion in it: 2.5."""
-    parts = [part.id for part in report.rubric.parts]
-    of_part = [other.id for other in report.rubric.criteria if other.part == criterion.part]
-    return f"{parts.index(criterion.part) + 1}.{of_part.index(criterion.id) + 1}"
 
 
 _REQUIRED = ("CLASSROOM", "ASSIGNMENT", "SUBMISSION_TAG", "USERNAME", "COMMIT_URL", "RELEASE_URL")
