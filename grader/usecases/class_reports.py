@@ -1,5 +1,8 @@
 """Write a report for each student of a class, and the class's page beside reports in HTML."""
 
+import re
+import unicodedata
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache, partial
 from pathlib import Path
@@ -12,19 +15,33 @@ from grader.classroom.grades import Class
 from grader.classroom.reopening import reopened
 from grader.classroom.student_grade import StudentGrade
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
+from grader.files.reading import sha256_of
 from grader.grading.grade import grade as grade_submission
 from grader.grading.graded_submission import Grade, GradedSubmission
 from grader.grading.hints.hinting import hinted
 from grader.grading.report import Report, Result
 from grader.report.formats import Format, render
-from grader.text import by_name, counted, counted_points, enumerated, format_points, printable, printable_path
-from grader.usecases.report_names import file_names, write_class_page
+from grader.text import (
+    by_name,
+    counted,
+    counted_points,
+    enumerated,
+    format_points,
+    printable,
+    printable_path,
+    without_commands,
+)
+from grader.usecases.saves import address
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import make_folder, refuse_symlinks, save
 from grader.workers.pool import Processes, WorkerError, processors
 from grader.workers.progress import Progress
 from grader.workers.queue import Queue
 
+# No device of Windows, no class's page, and nothing that ends like a name with a digest.
+_SAFE = re.compile(
+    r"(?i)(?!(?:con|prn|aux|nul|com\d|lpt\d)(?:\.|$)|index$|.*-[0-9a-f]{64}$)[\w=][\w.@+=,'()-]{0,39}(?<!\.)"
+)
 _TASK_SIZE = 4  # reports
 _SECONDS = 60.0  # in which hints are searched, and a few reports written
 _NOTHING = Outcome("skipped", "not graded, because nothing was submitted")
@@ -109,13 +126,12 @@ def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
 def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
     """Raise InputError if reports cannot be written to a folder, or the next run would read it as a submission."""
     refuse_symlinks(folder, submissions)
-    why = ""
+    cannot = f"cannot write files to {printable_path(folder)}"
     if folder.exists() and not folder.is_dir():
-        why = "it is not a folder"
-    elif not {folder.resolve(), *folder.resolve().parents}.isdisjoint(submissions):
+        raise InputError(f"{cannot}: it is not a folder")
+    if not {folder.resolve(), *folder.resolve().parents}.isdisjoint(submissions):
         why = "the next run would take them for a submission; choose a folder outside of the class folder"
-    if why:
-        raise InputError(f"cannot write files to {printable_path(folder)}: {why}")
+        raise InputError(f"{cannot}: {why}")
 
 
 def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS) -> None:
@@ -128,10 +144,9 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
     files = file_names([one.student.key for one in book if one.graded is not None or one.has_final])
     lost = render_reports(run._replace(time=book.run.time), files, terminal, jobs, timeout)
     if Format.HTML in run.formats:
-        is_inside = run.folder == run.gradebook / names.REPORTS
-        prefix = f"{names.REPORTS}/" * is_inside
-        pages = {key: f"{prefix}{name}" for key, name in files.items() if key not in lost}
-        write_class_page(book, run.gradebook if is_inside else run.folder, pages)
+        place = run.gradebook if run.folder == run.gradebook / names.REPORTS else run.folder
+        prefix = "" if place == run.folder else f"{names.REPORTS}/"
+        write_class_page(book, place, {key: prefix + name for key, name in files.items() if key not in lost})
     terminal.warn(f"{counted(len(files) - len(lost), 'report')} written to {printable_path(run.folder)}")
     for key, why in lost.items():
         terminal.warn(printable(f"no report for {key}: {why}"))
@@ -178,3 +193,28 @@ def _write_some(run: ReportRun, tasks: Sequence[_Task]) -> list[tuple[str, str]]
 @lru_cache(maxsize=1)
 def _class(run: ReportRun) -> Class:
     return Class(run.gradebook.absolute(), answers=run.answers)  # no report names a rubric by its place in a gradebook
+
+
+def file_names(keys: Sequence[str]) -> dict[str, str]:
+    """Return a file name without ending for each key: valid on every system, and unique without regard to case.
+
+    A key that is not a valid name, or that differs from another one only in case, gets its digest appended.
+    """
+    folds = {key: unicodedata.normalize("NFC", key).casefold() for key in keys}
+    counts = Counter(folds.values())
+    return {key: key if _SAFE.fullmatch(key) and counts[folds[key]] == 1 else _with_digest(key) for key in keys}
+
+
+def _with_digest(key: str) -> str:
+    readable = re.sub(r"[^\w-]+", "_", unicodedata.normalize("NFC", key))[:30].strip(" .-") or "_"
+    return f"{readable}-{sha256_of(key.encode('utf-8', 'surrogateescape'))}"
+
+
+def write_class_page(book: Class, folder: Path, pages: Mapping[str, str]) -> None:
+    """Write the class's page into a folder, with links to the pages of students, by their names from there."""
+    from grader.classroom.statistics import statistics
+    from grader.report.pages.class_page import render_class_page
+
+    grades = list(book)
+    links = {key: address(f"{name}.{Format.HTML.ending}") for key, name in pages.items()}
+    save(folder / "index.html", without_commands(render_class_page(book, grades, statistics(book, grades), links)))

@@ -26,8 +26,7 @@ _TEST_STUDENT = re.compile(r"(?i)student, test|test student|.*_previewuser\d*") 
 _NOT_GRADED = frozenset({"", "-", "needs grading"})  # the last in Blackboard
 _POINTS_ROW = "Points Possible"  # in the first cell, of Canvas
 _THOUSANDS = re.compile(r"\s|[.,](?=.*[.,])")  # in 1.000,00: the last comma or point is decimal
-_COMMA = re.compile(r"[0-9],[0-9]{1,2}$")
-_WORD = re.compile(r"[^\W\d_]+|\d+")
+_COMMA, _WORDS = r"[0-9],[0-9]{1,2}$", r"[^\W\d_]+|\d+"
 _MAX_CHANGES, _MAX_REASONS, _MAX_NAMED, _MAX_COLUMNS = 40, 50, 3, 20
 
 
@@ -146,7 +145,7 @@ def _cell(grade: ClassGrade, file: _GradeFile) -> str:
     if grade.total is None:
         return file.form.excuse if grade.is_excused else ""
     text = format(grade.total.quantize(Decimal("0.01"), ROUND_FLOOR), "f")
-    return text.replace(".", ",") if _COMMA.search(file.maximum) else text
+    return text.replace(".", ",") if re.search(_COMMA, file.maximum) else text
 
 
 def _check_maximum(text: str, what: str, options: FillOptions) -> list[str]:
@@ -214,7 +213,7 @@ def _likeness(found: re.Match[str], options: FillOptions) -> int | None:
 
 def _words(text: str) -> str:
     """Return words between spaces: Lab 6: wheeled base contains lab6, Lab 61 does not."""
-    return f" {' '.join(_WORD.findall(text.casefold()))} "
+    return f" {' '.join(re.findall(_WORDS, text.casefold()))} "
 
 
 def _list(headers: Sequence[str]) -> str:

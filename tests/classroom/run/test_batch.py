@@ -41,7 +41,7 @@ def batch(path: Path, out: Path, *arguments: str, cwd: str = "") -> dict[str, by
 
 def reports_of(book: Path, reports: Path) -> dict[str, bytes]:
     """Return the reports in a folder by the key of their students."""
-    from grader.usecases.report_names import file_names
+    from grader.usecases.class_reports import file_names
 
     names = file_names(sorted(verdicts(book)))
     found = contents(reports)
