@@ -1,24 +1,29 @@
-"""Rubrics, checks and problem codes in plain text."""
+"""Rubrics, checks and problem codes in plain text, with what docs/examples/ has for a code or a check."""
 
 import textwrap
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from string import digits
+from typing import Any
 
 from grader.checks.check import Check
 from grader.checks.registry import check_names, find_check, unused_checks
 from grader.errors import InputError
+from grader.files.reading import shipped_folder
 from grader.grading.criterion import Criterion, worth
 from grader.grading.rubric import Rubric
-from grader.grading.toml_rows import assignment
+from grader.grading.toml_file import read_toml
+from grader.grading.toml_rows import assignment, toml_literal
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.problems import Kind
 from grader.report.details import model_lines, sentence
-from grader.report.examples import default_text, examples, explanation_of
 from grader.robot.catalogue import CATALOGUE
 from grader.text import enumerated, format_points, printable
 from grader.xacro.catalogue import XACRO_CATALOGUE
 
 _WIDTH = 80
+_CHECKS = "checks"
 EVERY_KIND = (*CATALOGUE, *XACRO_CATALOGUE, *PACKAGE_CATALOGUE)
 EFFECTS = {
     "rejects": "ROS 2 rejects the file.",
@@ -132,3 +137,43 @@ def _arguments(check: Check) -> str:
 
 def _fill(text: str, width: int = _WIDTH) -> str:
     return textwrap.fill(" ".join(text.split()), width, break_long_words=False, break_on_hyphens=False)
+
+
+def explanation_of(kind: Kind) -> str:
+    """Return what ROS 2 does about a problem and how to fix the file, in one line; the title if that is unknown."""
+    entry = _family(_family_of(kind.code)).get(kind.code, {})
+    return " ".join(entry.get("explanation", kind.title).split())
+
+
+def example_blocks(name: str) -> Iterator[tuple[str, str, str]]:
+    """Yield title, file name and text of a check's row in a rubric, of what is wrong and of what is right, if known."""
+    family = _family_of(name)
+    entries = _family(family)
+    example = entries.get(name, {})
+    if "wrong" in example:
+        if family == _CHECKS:
+            given = f"\nwith = {toml_literal(example['with'])}" if "with" in example else ""
+            yield "In a rubric", "rubric.toml", f'check = "{name}"{given}'
+        file = example.get("frame", next(iter(entries["frames"]))).rpartition("/")[2]
+        yield "Wrong", file, example["wrong"].rstrip() or "(an empty file)"
+        yield "Right", file, example["right"].rstrip()
+
+
+def examples(name: str) -> Iterator[str]:
+    """Yield these blocks as paragraphs."""
+    return (f"{title}:\n\n{textwrap.indent(text, '    ')}" for title, _, text in example_blocks(name))
+
+
+def _family_of(name: str) -> str:
+    return name.rstrip(digits).lower() if name.isupper() else _CHECKS
+
+
+@cache
+def _family(name: str) -> Mapping[str, Any]:
+    path = shipped_folder("docs", "examples") / f"{name}.toml"  # not in a bundle for a platform
+    return read_toml(path.read_bytes(), path)[1] if path.is_file() else {}
+
+
+def default_text(value: object) -> str:
+    """Return a default as a rubric has it, one that is not given as `not checked`."""
+    return "not checked" if value is None else toml_literal(value)

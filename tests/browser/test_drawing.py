@@ -19,6 +19,6 @@ def test_texts_are_inside_the_drawing_and_legible(open_pages: Callable[..., Open
         "[...document.querySelectorAll('text')].map(text => {const box = text.getBoundingClientRect();"
         "return [box.left, box.right, parseFloat(getComputedStyle(text).fontSize)]})"
     )
-    assert len(boxes) > 40
+    assert len(boxes) > 25
     assert all(left >= 0 and right <= 600 and size >= 11 for left, right, size in boxes)
     opened.check()
