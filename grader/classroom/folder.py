@@ -8,13 +8,11 @@ from pathlib import Path
 from grader.classroom.mark_files import lock
 from grader.classroom.settings import CLASS_FILE
 from grader.errors import InputError
-from grader.files.reading import read_start
 from grader.text import printable_path, shell_quoted
 
 RESULTS, GRADES, ROSTER = "results.jsonl", "grades.csv", "roster.csv"
 RUBRIC, MARKS, REPORTS = "rubric", "marks", "reports"
 _LOCK = ".lock"
-_SQLITE = b"SQLite format 3\0"
 
 
 def default_folder(rubric_id: str) -> Path:
@@ -30,8 +28,6 @@ def is_gradebook(folder: Path) -> bool:
 def check_gradebook(folder: Path) -> None:
     """Raise InputError if a path is not a gradebook."""
     shown = printable_path(folder)
-    if folder.is_file() and read_start(folder, len(_SQLITE)) == _SQLITE:
-        raise InputError(f"{shown} is a gradebook of an earlier version: grade the class again, into a folder")
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{shown} is a file: a gradebook is a folder")
     if not folder.is_dir():

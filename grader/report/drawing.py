@@ -14,13 +14,13 @@ from grader.report.criteria import points_of
 from grader.report.details import remarks_on
 from grader.report.inspection import Inspection, effect
 from grader.report.signs import STYLE, escaped, key, text, view
-from grader.submission.urdf import Absent
 from grader.text import enumerated, printable
 
 _LEFT, _LINE = 14.0, 15.0  # pixels
 _LETTER_WIDTH = 6.8  # pixels, on average, of a font that is wider than most
 _WIDTH = WIDTH - 2.0 * _LEFT
 _MAX_TITLE, _MAX_TEXT, _MAX_LINES = 200, 1000, 6
+NO_PICTURE = "No picture: no robot can be read."
 _NO_SHAPES = "No visual can be drawn: only frames of links are shown."
 
 
@@ -63,24 +63,13 @@ def _lines(words: str, width: float) -> list[str]:
     return wrap(text, most, max_lines=_MAX_LINES, placeholder=" ...", break_on_hyphens=False)
 
 
-def why_no_picture(report: Report) -> str:
-    """Return why a report has no picture of the robot."""
-    submission = report.submission
-    urdf = submission.originals.urdf if submission.originals is not None else Absent()
-    if submission.has_urdf and isinstance(urdf, Absent):
-        return "No picture: the submission has changed or moved since it was graded."
-    if submission.robot is None or not submission.robot.links:
-        return "No picture: no robot could be read from the submission."
-    return "No picture: no link of the robot has a pose."
-
-
 def render_svg(report: Report) -> str:
     """Return the drawing of the graded robot as a file; without a robot, a sentence with the reason."""
     words = [grade_line(report), summary(report), bonus_line(report)]
     words += notes(report)[: bool(report.submission.another_robot)]
     for result in report.results:
         words += [f"{printable(result.criterion.id)}: {remark}" for remark in remarks_on(result)]
-    return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, why_no_picture(report))
+    return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, NO_PICTURE)
 
 
 def inspection_svg(inspection: Inspection) -> str:
@@ -90,7 +79,7 @@ def inspection_svg(inspection: Inspection) -> str:
     name = robot.robot.name if robot is not None else inspection.path
     positions = ", ".join(f"{joint} = {position}" for joint, position in robot.positions.items()) if robot else ""
     words = f"{inspection.path}: {effect(inspection)}{f'; {positions}' if positions else ''}"
-    return _file(picture, name or inspection.path, (words,), "No picture: no robot could be read from the file.")
+    return _file(picture, name or inspection.path, (words,), NO_PICTURE)
 
 
 def _file(picture: Picture | None, title: str, words: Iterable[str], reason: str) -> str:

@@ -89,7 +89,7 @@ def test_reference_is_as_secret_as_the_hints(level: Any, is_shown: bool) -> None
 
 def test_page_says_why_it_has_no_picture() -> None:
     """Nothing was submitted that a picture could show, or it is no longer there."""
-    assert "no robot could be read from the submission" in render_html(SAMPLES["pictures-only"].grade())
+    assert "No picture: no robot can be read" in render_html(SAMPLES["pictures-only"].grade())
     report = SAMPLES["lidar-buried"].grade()
     gone = report._replace(submission=replace(report.submission, originals=None))
-    assert "has changed or moved since it was graded" in render_html(gone)
+    assert "No picture: no robot can be read" in render_html(gone)

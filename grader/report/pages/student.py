@@ -12,7 +12,7 @@ from grader.report import content
 from grader.report.criteria import CriteriaGroup, Entry, earned_text, groups, status_of
 from grader.report.details import STATUS_WORDS, SYMBOLS
 from grader.report.document import document
-from grader.report.drawing import drawing_element, why_no_picture
+from grader.report.drawing import NO_PICTURE, drawing_element
 from grader.report.inspection import MAX_LISTED, Inspection, effect, lists
 from grader.report.locations import diff_lines, location_text, source_lines
 from grader.report.pages.shell import Assets, render_page
@@ -47,7 +47,7 @@ def render_html(report: Report) -> str:
         "sections": sections,
         "cards": dict(item for section in sections for entry in section.entries for item in _addresses(entry)),
         "parts": [_part(report.rubric.part(part).title, [*some]) for part, some in by_part],
-        "no_picture": why_no_picture(report),
+        "no_picture": NO_PICTURE,
     }
     return _render("student.html", values, picture, "student.js")
 
