@@ -103,6 +103,8 @@ class PackageListing:
                 here = f"{here}/{part}" if here else part
             elif index and here not in self.folders:
                 return None
+            if here in self._unseen:
+                raise SearchError(_IGNORED)
         return here if here in self.folders or here in self.files else None
 
     def glob(self, pattern: str, *, recursive: bool = False, above: str = "") -> list[str]:

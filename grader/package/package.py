@@ -6,8 +6,9 @@ from functools import cached_property
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from grader.errors import InputError, MissingElement
-from grader.files.tree import Tree
+from grader.errors import InputError, MissingElement, NotDecided
+from grader.files.names import ignored_part
+from grader.files.tree import IS_LINK, Tree
 from grader.names import closest
 from grader.package.launch.places import ENDINGS, PREFIX, SHARE, is_in_launch_folder, is_launch_named, launch_stem
 from grader.source import Location, Source
@@ -130,9 +131,12 @@ class Package:
             (was_not_committed(path) for path in copied if (path if name else path.lower()).endswith(endings)), ""
         )
 
-    def missing(self, kind: str) -> MissingElement:
+    def missing(self, kind: str) -> MissingElement | NotDecided:
         """Return the error for a package without a file of a kind: urdf, launch or rviz."""
         word, endings = _KINDS[kind]
+        link = next((path for path in sorted(self.tree.unseen) if not ignored_part(path)), None)
+        if link is not None:
+            return NotDecided(f"the {word} may be in {link}, which {IS_LINK}")
         has_folder = kind != "launch" or any(it.rpartition("/")[2] == kind for it in self.tree.folders)
         folder = "" if has_folder else ", and there is no folder launch"
         message = f"the package has no {word}: no file ends in {enumerated(endings[:3], word='or')}{folder}"
