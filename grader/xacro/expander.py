@@ -129,7 +129,7 @@ class Expander:
     def start(self, source: XacroNode, scopes: Scopes) -> XacroNode:
         """Return an element with its attributes expanded, without its children."""
         out = XacroNode(source.tag, self._place(source.place, scopes.symbols))
-        out.moved, out.unresolved = dict(source.moved), dict(source.unresolved)
+        out.unresolved = dict(source.unresolved)
         for name, text in source.attributes.items():
             is_plain = "$" not in text or name in out.unresolved
             value = text if is_plain else self._attribute(out, name, text, scopes)
