@@ -133,4 +133,4 @@ class ExpandedSource(Source):
     def _rewriter(self) -> "Rewriter":
         from grader.xacro.edits import Rewriter
 
-        return Rewriter(self._expander.texts, self._expander.yaml_file)
+        return Rewriter(self._expander.texts)

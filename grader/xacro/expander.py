@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from grader.problems import Kind, Problem
-from grader.source import Location, Source
+from grader.source import Location
 from grader.static_python.budget import CHARACTERS, Budget, OutOfBudget
 from grader.static_python.values import ExpressionFails, Undetermined, Value
 from grader.xacro import catalogue
@@ -74,7 +74,6 @@ class Expander:
         self.own_tags = [tag.removeprefix("xacro:") for tag in handlers]
         self.problems: list[Problem] = []
         self.misspelt: list[Misspelt] = []
-        self._yaml: dict[str, bytes] = {}  # the files that were loaded, by their paths
         self.undetermined: list[Open] = []
         self.refused: list[tuple[XacroFails, ScopePlace, str | None]] = []  # what may be corrected, and where
         self.calls: tuple[tuple[str, ScopePlace], ...] = ()
@@ -201,12 +200,5 @@ class Expander:
     def _load_yaml(self, name: Value) -> Value:
         if self._is_expanded:
             raise Undetermined("a YAML file is not read again for each edit")
-        path = self.files.path(self.texts.written(name))
-        data = self.files.read(path)
-        self._yaml[path] = data
+        data = self.files.read(self.files.path(self.texts.written(name)))
         return read_yaml_values(data, lambda name: self.texts.find(name, XacroScope()), self.budget)
-
-    def yaml_file(self, text: str) -> Source | None:
-        """Return the YAML file that a text loads, if the document loads one of this name."""
-        found = [path for path in self._yaml if path.rpartition("/")[2] in text]
-        return Source(found[0], self._yaml[found[0]].decode("utf-8", "surrogateescape")) if len(found) == 1 else None
