@@ -7,6 +7,7 @@ from typing import NamedTuple, Protocol
 
 from grader.errors import FileError
 from grader.files import limits
+from grader.files.names import ignored_part
 
 IS_LINK = "is a symlink, and was not followed"
 _SMALL = 4096  # bytes
@@ -85,6 +86,11 @@ class Tree:
     def unopened(self) -> tuple[IgnoredFile, ...]:
         """The archives and links in it that were not opened."""
         return tuple(file for file in self.ignored if file.is_closed)
+
+    @property
+    def links(self) -> list[str]:
+        """The paths of the links in it, which are not followed."""
+        return [path for path in sorted(self.unseen) if not ignored_part(f"{path}/")]
 
     def only(self, belongs: Callable[[str], bool]) -> "Tree":
         """Return the tree of only the files, folders and notes whose paths belong; a folder's path ends in a slash."""

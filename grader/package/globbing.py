@@ -8,7 +8,7 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
-from grader.files.tree import Tree
+from grader.files.tree import IS_LINK, Tree
 from grader.static_python.budget import Budget
 from grader.static_python.parse import Position
 from grader.static_python.values import Value
@@ -45,6 +45,7 @@ class PackageListing:
         self.files = tree.files
         self.folders = tree.folders | tree.unseen | {""}
         self._unseen = {path for path in tree.unseen if path.rpartition("/")[2] != _COMPILED}
+        self._links = {*tree.links}
         self.order_matters = False  # whether a search has returned several names
         self.positions: dict[str, Position] = {}  # of the searches that found a path
         self.empty: dict[EmptyGlob, None] = {}  # in the order of the searches
@@ -103,8 +104,8 @@ class PackageListing:
                 here = f"{here}/{part}" if here else part
             elif index and here not in self.folders:
                 return None
-            if here in self._unseen:
-                raise SearchError(_IGNORED)
+            if here in self._links:
+                raise SearchError(f"{here} {IS_LINK}")
         return here if here in self.folders or here in self.files else None
 
     def glob(self, pattern: str, *, recursive: bool = False, above: str = "") -> list[str]:
