@@ -1,7 +1,8 @@
-"""The folders that the usual entry of a CMakeLists.txt installs as they are. CMake is never run.
+"""The folders that the usual entries of a CMakeLists.txt installs as they are. CMake is never run.
 
-`install(DIRECTORY launch meshes DESTINATION share/${PROJECT_NAME})` counts outside of conditions, loops and functions;
-what else a file installs is not evaluated.
+`install(DIRECTORY launch meshes DESTINATION share/${PROJECT_NAME})` counts outside of conditions, loops and functions,
+and so does `install(DIRECTORY meshes/ DESTINATION share/${PROJECT_NAME}/meshes)`; what else a file installs is not
+evaluated.
 """
 
 import re
@@ -13,6 +14,7 @@ _MAX_SIZE = 128 * 1024  # bytes
 _COMMENT = re.compile(r"#\[(=*)\[.*?(?:\]\1\]|\Z)|#[^\n]*", re.DOTALL)
 _BRACKET = re.compile(r"\[=*\[")  # an argument that may hold anything
 _ENTRY = re.compile(r"^[ \t]*+install\s*+\(\s*+DIRECTORY\s([^()]*+)\)", re.IGNORECASE | re.MULTILINE)
+_SHARE = "share/${PROJECT_NAME}/"
 _BLOCK = re.compile(r"\b(end)?(?:if|foreach|while|function|macro|block)\s*\(|\breturn\s*\(", re.IGNORECASE)
 
 
@@ -30,6 +32,9 @@ def installs(tree: Tree, name: str, path: str) -> bool:
         depth += sum(-1 if found[1] else 1 for found in _BLOCK.finditer(text, position, entry.start()))  # or a return()
         position = entry.end()
         words = entry[1].replace('"', "").split()
-        if not depth and words[-2:-1] == ["DESTINATION"] and words[-1].rstrip("/") == "share/${PROJECT_NAME}":
-            folders.update(words[:-2])
+        if not depth and words[-2:-1] == ["DESTINATION"]:
+            target = f"{words[-1].rstrip('/')}/"
+            folders.update(
+                it.strip("/") for it in words[:-2] if target == (_SHARE + it if it.endswith("/") else _SHARE)
+            )
     return path in tree.files and path.partition("/")[0] in folders

@@ -35,6 +35,7 @@ def is_installed(text: str) -> bool:
         "install(DIRECTORY meshes DESTINATION share/${PROJECT_NAME})",
         "INSTALL(\n  DIRECTORY\n  meshes\n  DESTINATION share/${PROJECT_NAME}/\n)",
         'install(DIRECTORY "meshes" DESTINATION "share/${PROJECT_NAME}")',
+        "install(DIRECTORY meshes/ DESTINATION share/${PROJECT_NAME}/meshes)",
         "install(\n  DIRECTORY urdf meshes launch\n  DESTINATION share/${PROJECT_NAME}\n)",
     ],
 )
