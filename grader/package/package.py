@@ -58,8 +58,7 @@ class Package:
         """The name that ROS 2 finds it by; without a package.xml, that of setup.py or of the folder."""
         if self.manifest is not None and self.manifest.name is not None:
             return self.manifest.name
-        set_up = self.setup.name if self.setup is not None else None
-        return set_up or PurePosixPath(self.folder or self.tree.name).name
+        return (self.setup and self.setup.name) or PurePosixPath(self.folder or self.tree.name).name
 
     def find(self, name: str) -> "Package | None":
         """Return the package of the submission that ROS 2 finds by a name."""
@@ -184,9 +183,8 @@ class Package:
 
     def rviz_file(self, name: str, launch: "Launch | None") -> str | None:
         """Return the RViz file that the launch file opens; else the one of this name; else any."""
-        opened = self.rviz_opened(launch) if launch is not None else None
         wanted = min(self.rviz_files, key=lambda it: (it.rpartition("/")[2] != name, it.count("/"), it), default=None)
-        return opened or wanted
+        return (self.rviz_opened(launch) if launch is not None else None) or wanted
 
     def rviz_opened(self, launch: "Launch") -> str | None:
         """Return the RViz file that a launch file opens, also by a wrong folder: that is another error."""
@@ -215,8 +213,8 @@ class Package:
 
     def _open_installed(self, path: str) -> tuple[bytes, str] | None:
         """Return what a build of any submitted package installs at a path below the prefix, with the file's path."""
-        owner = next((package for package in self.packages.values() if path in package.installed), None)
-        with suppress(InputError):
-            source = owner.installed[path] if owner is not None else ""
-            return (owner.tree.files[source].read(PYTHON_LIMIT), owner.path(source)) if owner is not None else None
+        for package in (package for package in self.packages.values() if path in package.installed):
+            with suppress(InputError):
+                source = package.installed[path]
+                return package.tree.files[source].read(PYTHON_LIMIT), package.path(source)
         return None

@@ -393,16 +393,6 @@ def test_corrupted_archives(ending: str, changes: list[tuple[int, int, bytes]]) 
     read_all(tree)
 
 
-@examples(20)
-@given(st.sampled_from(["zip", "tar", "gz", "bz2", "xz"]), st.binary(max_size=1200))
-def test_any_bytes_as_an_archive(kind: str, data: bytes) -> None:
-    """Any bytes are refused in one line or are a file tree."""
-    try:
-        read_all(read_archive(io.BytesIO(data), kind, "a"))
-    except InputError as error:
-        assert "\n" not in str(error)
-
-
 def test_a_member_without_a_name() -> None:
     """A member with an empty name is ignored."""
     data = bytearray(make_zip({"a.urdf": ROBOT, "b.urdf": ROBOT}))
