@@ -137,7 +137,7 @@ LIMITS: dict[str, dict[str, tuple[float, ...]]] = {
         ),
         "| {} GiB; the ratio above |": (limits.MAX_ARCHIVE_SIZE / MIB / 1024,),
         "| {} deep, {} in all, 64 MiB each |": (limits.MAX_NESTED, limits.MAX_ARCHIVES),
-        "| `setup.py`, a launch file | {} KiB |": (package.PYTHON_LIMIT / 1024,),
+        "| `setup.py`, a launch file | {} KiB |": (budget.PYTHON_LIMIT / 1024,),
         "| 1 MiB, and its first {:,} lines |": (document.MAX_LINES,),
         "| its first {} pages |": (converter.MAX_PAGES,),
         "| {} s; {} GiB of memory |": (collection.MAX_SECONDS, converter._MAX_MEMORY / MIB / 1024),

@@ -120,19 +120,20 @@ def _why_not_installed(package: Package, target: str, held: list[str]) -> str:
     """Return why a build does not install a file of a package at a path; empty if it does."""
     setup = package.setup
     if package.is_cmake:
-        from grader.package.cmake import read_cmake  # late: most packages have a setup.py
+        from grader.package.cmake import installs  # late: most packages have a setup.py
 
-        cmake = read_cmake(package.tree)
-        installed, entry = cmake.installed, "install(DIRECTORY ...) in CMakeLists.txt"
-        doubt = "" if cmake.is_certain else "cannot determine statically what CMakeLists.txt installs"
-    elif setup is None:
+        if installs(package.tree, package.name, target.removeprefix(f"share/{package.name}/")):
+            return ""
+        doubt = "cannot determine statically what CMakeLists.txt installs"
+        raise NotDecided(doubt, doubt)
+    if setup is None:
         return "is not installed: its package has no setup.py"
-    elif setup.fault is not None:
+    if setup.fault is not None:
         if setup.fault.sure:
             return "is not installed: Python cannot read setup.py"
-        installed, entry, doubt = {}, "", f"setup.py cannot be read ({setup.fault.message})"
+        installed, doubt = {}, f"setup.py cannot be read ({setup.fault.message})"
     else:
-        installed, entry = setup.installed(), "data_files in setup.py"
+        installed = setup.installed()
         doubt = "cannot determine statically what setup.py installs" if setup.unknown else ""
     if target in installed:
         return ""
@@ -141,4 +142,4 @@ def _why_not_installed(package: Package, target: str, held: list[str]) -> str:
     elsewhere = next((path for path, source in installed.items() if source in held), None)
     if elsewhere is not None:
         return f"is looked for at {target}, but a build installs it as {elsewhere}"
-    return f"is not installed: add {held[0]} to {entry}, for {posixpath.dirname(target)}"
+    return f"is not installed: add {held[0]} to data_files in setup.py, for {posixpath.dirname(target)}"

@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 from grader.classroom.graded import Graded
 from grader.errors import InputError
 from grader.files.reading import sha256_of
-from grader.package.package import PYTHON_LIMIT, SETUP, Package
+from grader.package.package import SETUP, Package
 from grader.robot.normal_form import robot_hash, written_form
+from grader.static_python.budget import PYTHON_LIMIT
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import enumerated

@@ -1,6 +1,5 @@
 """The documents of a submission as lines of text: each is read once, and Word and PDF files share one time limit."""
 
-import os
 import re
 import subprocess
 import sys
@@ -131,8 +130,7 @@ class DocumentCollection:
             raise late
         data = file.read(_DOCUMENT_LIMIT)
         # -P: modules are imported neither from the current folder, which may be the student's, nor from our own.
-        limits = str(ceil(self._seconds)), str(os.getpid())
-        command = [sys.executable, "-P", str(converter.__file__), file.suffix[1:], *limits]
+        command = [sys.executable, "-P", str(converter.__file__), file.suffix[1:], str(ceil(self._seconds))]
         began = time.monotonic()
         try:  # an interruption ends the process as well
             code, output = self._run(command, data)

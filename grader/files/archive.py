@@ -1,31 +1,39 @@
 """A zip or tar as a file tree, read where it is: nothing is unpacked to a place with a name.
 
-Bounded in members, size, ratio and nesting. A name that leads out, a device or a link to elsewhere is ignored and
-named.
+Bounded in members, size, ratio and nesting. A name that leads out, a device or a link is ignored and named.
 """
 
+import bz2
+import gzip
 import io
+import lzma
+import tarfile
 import tempfile
 import weakref
-from bisect import bisect_left
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
 from functools import partial
-from typing import IO
+from typing import IO, Any
 
 from grader.errors import FileError, InputError
 from grader.files import limits
-from grader.files.members import ARCHIVE_ERRORS, MAX_NAME_LENGTH, ArchiveMember, error_text, safe_path, zip_members
+from grader.files.members import (
+    ARCHIVE_ERRORS,
+    MAX_NAME_LENGTH,
+    NOT_REGULAR,
+    ArchiveMember,
+    error_text,
+    safe_path,
+    zip_members,
+)
 from grader.files.names import ignored_part, is_generated
 from grader.files.reading import advice_for, capped
-from grader.files.tar_members import COMPRESSED_KINDS, compressed_members, tar_members
-from grader.files.tree import File, IgnoredFile, Tree, folders_above, keep_small, make_tree, parents
+from grader.files.tree import IS_LINK, File, IgnoredFile, Tree, keep_small, make_tree, parents
 from grader.text import printable_path
 
 _IN_MEMORY = 16 * 1024 * 1024  # bytes
-_MAX_DEPTH = 200  # folders above what a link leads to
-_MAX_LINKS = 40  # in a chain
-_MAX_STEPS = 500_000  # for all links of an archive
+_CHUNK = 1024 * 1024  # bytes
+_DECOMPRESSORS: dict[str, Any] = {"gz": gzip.open, "bz2": bz2.open, "xz": lzma.open}
 
 
 def read_archive(file: IO[bytes], kind: str, name: str, allowance: limits.Allowance | None = None) -> Tree:
@@ -41,18 +49,51 @@ def read_archive(file: IO[bytes], kind: str, name: str, allowance: limits.Allowa
             if size > limits.MAX_ARCHIVE_SIZE:
                 raise limits.archive_size_error(name)
             limit = max(limits.HARMLESS_SIZE, limits.MAX_RATIO * size)
-            if kind in COMPRESSED_KINDS:
+            if kind in _DECOMPRESSORS:
                 stored = opened.enter_context(tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY))
-                members = compressed_members(file, kind, stored, name, limit, allowance)
-            else:
-                members = zip_members(file) if kind == "zip" else tar_members(file)
-            tree = tree_of(members, name, limit)
+                _decompress(_DECOMPRESSORS[kind](file), stored, name, limit, allowance)
+                file = stored
+            tree = tree_of(zip_members(file) if kind == "zip" else _tar_members(file), name, limit)
         except ARCHIVE_ERRORS as error:
             raise FileError(name, f"cannot be read as an archive: {error_text(error, name)}") from None
         sizes = (member.size for member in tree.files.values())
         allowance.spend(name, unpacked=sum(size for size in sizes if size <= limits.MAX_FILE_SIZE))
         weakref.finalize(tree, opened.pop_all().close)
     return tree
+
+
+def _decompress(source: IO[bytes], to: IO[bytes], name: str, limit: int, allowance: limits.Allowance) -> None:
+    """Decompress a tar up to a limit."""
+    total = 0
+    while chunk := source.read(_CHUNK):
+        total += len(chunk)
+        allowance.spend(name, streamed=len(chunk))
+        if total > limit:
+            raise limits.unpacked_limit_error(name, limit)
+        to.write(chunk)
+    to.seek(0)
+
+
+def _tar_members(file: IO[bytes]) -> Iterator[ArchiveMember]:
+    """Yield the members of a tar, which stays open for them."""
+    archive = tarfile.open(fileobj=file, mode="r:")  # noqa: SIM115  it is read from as long as its tree lives
+    offset = -1
+    while (info := archive.next()) is not None:
+        if archive.offset <= offset or info.size < 0:
+            raise tarfile.TarError("it refers to an earlier position")
+        offset = archive.offset
+        opened = partial(_open, archive, info)
+        if info.isfile():
+            yield ArchiveMember(info.name, "file", info.size, opened)
+        elif info.issym() or info.islnk():
+            yield ArchiveMember(info.name, "link", 0, opened)
+        else:
+            reason = "" if info.isdir() else NOT_REGULAR
+            yield ArchiveMember(info.name, "other" if reason else "folder", 0, opened, reason)
+
+
+def _open(archive: tarfile.TarFile, info: tarfile.TarInfo) -> IO[bytes]:
+    return archive.extractfile(info) or io.BytesIO()
 
 
 def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX_UNPACKED_SIZE) -> Tree:
@@ -72,22 +113,16 @@ def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX
             found[path] = member
     if environments := {path.rpartition("/")[0] for path in found if path.endswith("/pyvenv.cfg")}:
         found = {path: member for path, member in found.items() if environments.isdisjoint(parents(path))}
-    folders = {path for path, member in found.items() if member.kind == "folder"} | folders_above(found, name)
-    links = _Links(found, folders, name)
-    ignored += _follow(links, found)
-    members_at = {path: found[real] for path, real in links.files.items()}
-    members_at |= {path: member for path, member in found.items() if member.kind == "file"}
-    files = [File(path, member.size, keep_small(partial(_read, member, path))) for path, member in members_at.items()]
-    return make_tree(name, files, folders | links.folders, sorted(ignored), sorted(generated), unseen)
-
-
-def _follow(links: "_Links", found: Mapping[str, ArchiveMember]) -> Iterator[IgnoredFile]:
-    """Follow the links of an archive; yield the members that cannot be read, and the links that lead nowhere."""
-    for path, member in found.items():
-        if member.reason:
-            yield IgnoredFile(path, member.reason)
-        elif member.kind == "link" and not links.add(path):
-            yield IgnoredFile(path, "is a link that leads nowhere in the archive, and was not followed")
+    folders = [path for path, member in found.items() if member.kind == "folder"]
+    files = [
+        File(path, member.size, keep_small(partial(_read, member, path)))
+        for path, member in found.items()
+        if member.kind == "file"
+    ]
+    ignored += [IgnoredFile(path, member.reason) for path, member in found.items() if member.reason]
+    links = [path for path, member in found.items() if member.kind == "link"]
+    ignored += [IgnoredFile(path, IS_LINK, is_closed=True) for path in links]
+    return make_tree(name, files, folders, sorted(ignored), sorted(generated), [*unseen, *links])
 
 
 def _path(member: ArchiveMember) -> str | IgnoredFile:
@@ -123,54 +158,3 @@ def _read(member: ArchiveMember, path: str, limit: int, *, first: bool = False) 
     except ARCHIVE_ERRORS as error:
         raise InputError(f"cannot read {path}: {error_text(error, path)}") from None
     return capped(data, limit, path, advice_for(path))
-
-
-class _Links:
-    """The files and folders that links of an archive lead to; the files of a folder are below the link, too."""
-
-    def __init__(self, members: Mapping[str, ArchiveMember], folders: set[str], name: str) -> None:
-        self._members, self._real_folders, self._name = members, folders, name
-        self._paths = sorted(path for path, member in members.items() if member.kind == "file")
-        self._steps_left = _MAX_STEPS
-        self.files: dict[str, str] = {}  # paths by way of a link, with the real ones
-        self.folders: set[str] = set()
-
-    def add(self, path: str) -> bool:
-        """Add what a link leads to, unless that is a folder around it; False where it is not in the archive."""
-        real = self._resolve(path)
-        if real is None:
-            return False
-        if real not in self._real_folders:
-            self.files[path] = real
-        elif not path.startswith(f"{real}/"):
-            self.folders.add(path)
-            first, end = bisect_left(self._paths, f"{real}/"), bisect_left(self._paths, f"{real}0")  # 0 comes after /
-            self.files |= {path + file.removeprefix(real): file for file in self._paths[first:end]}
-            if len(self.files) > limits.MAX_FILES:
-                raise limits.files_limit_error(self._name)
-        return True
-
-    def _resolve(self, path: str) -> str | None:
-        """Return the file or folder at the end of a chain of links; None outside of the archive and in a circle."""
-        steps: list[str] = []
-        waiting = path.split("/")[::-1]
-        links = 0
-        while waiting:
-            step = printable_path(waiting.pop())
-            self._steps_left -= 1
-            if (step == ".." and not steps) or len(steps) > _MAX_DEPTH or self._steps_left < 0:
-                return None
-            if step in ("", ".", ".."):
-                steps = steps[:-1] if step == ".." else steps
-                continue
-            steps.append(step)
-            member = self._members.get("/".join(steps))
-            if member is not None and member.kind == "link":
-                links += 1
-                if links > _MAX_LINKS or member.target.startswith("/") or len(member.target) > MAX_NAME_LENGTH:
-                    return None
-                steps = steps[:-1] if not member.is_hard else []
-                waiting += member.target.split("/")[::-1]
-        real = "/".join(steps)
-        is_file = real in self._members and self._members[real].kind == "file"
-        return real if is_file or real in self._real_folders else None

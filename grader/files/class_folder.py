@@ -12,7 +12,7 @@ from grader.files.folder import file_at, read_folder
 from grader.files.names import ignored_part, is_generated
 from grader.files.opening import outer_tree
 from grader.files.reading import open_regular, read_capped, read_error
-from grader.files.tree import Tree, make_tree
+from grader.files.tree import IS_LINK, Tree, make_tree
 from grader.text import printable_path
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ class ClassDirectory:
 def _add(entry: "os.DirEntry[str]", found: Children) -> None:
     try:
         if entry.is_symlink():
-            found.refused.append((entry.name, "is a symlink, and was not followed"))
+            found.refused.append((entry.name, IS_LINK))
         elif entry.is_dir():
             found.folders.append(entry.name)
         elif entry.is_file():

@@ -17,7 +17,7 @@ from grader.files.children import Children, is_litter
 from grader.files.members import ARCHIVE_ERRORS, NOT_REGULAR, ArchiveMember, error_text, safe_path, zip_members
 from grader.files.names import ARCHIVES
 from grader.files.opening import NOT_AN_ARCHIVE, archive_kind
-from grader.files.tree import Tree
+from grader.files.tree import IS_LINK, Tree
 from grader.text import printable_path
 
 if TYPE_CHECKING:
@@ -166,6 +166,6 @@ def _add(names: list[str], kind: str, folders: dict[str, dict[str, str]]) -> Non
             folders[folder][name] = "folder"
             folders.setdefault(child, {})
         else:
-            what = "is a symlink in an archive, and was not followed" if kind == "link" else "file"
+            what = IS_LINK if kind == "link" else "file"
             folders[folder].setdefault(name, what)
         folder = child

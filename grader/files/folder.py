@@ -13,11 +13,10 @@ from grader.errors import FileError, MachineError
 from grader.files import limits
 from grader.files.names import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
 from grader.files.reading import advice_for, read_capped, read_error, read_start, shown_below
-from grader.files.tree import File, IgnoredFile, Tree, keep_small, make_tree
+from grader.files.tree import IS_LINK, File, IgnoredFile, Tree, keep_small, make_tree
 from grader.text import printable_path
 
 _MAX_GENERATED = 10_000  # files of builds that are looked through for those of packages
-_IS_SYMLINK = "is a symlink, and was not followed"
 
 
 def read_folder(folder: Path, top: str = "") -> Tree:
@@ -25,16 +24,16 @@ def read_folder(folder: Path, top: str = "") -> Tree:
 
     Below `top`, a folder around it, no symlink on its path is followed; by default the folder itself is trusted.
 
-    Ignored and named: symlinks that lead out of it or nowhere, folders that cannot be opened, and anything that is
-    neither file nor folder. Silently ignored: folders of builds and tools, virtual environments, hidden files.
+    Ignored and named: symlinks, folders that cannot be opened, and anything that is neither file nor folder. Silently
+    ignored: folders of builds and tools, virtual environments, hidden files.
     """
     walk = _Walk(folder, top)
-    walk.enter("", linked=False)
+    walk.run()
     return make_tree(walk.name, walk.files, walk.folders, sorted(walk.ignored), sorted(walk.generated), walk.unseen)
 
 
 class _Walk:
-    """Walks through a folder. One that symlinks lead to is entered once by its own path, and once by a symlink."""
+    """Walks through a folder."""
 
     def __init__(self, folder: Path, top: str) -> None:
         self._folder = folder
@@ -43,36 +42,27 @@ class _Walk:
         self.name = printable_path(Path(self._top).name or "submission")
         self._trusted = os.path.realpath(top) if top else self._top
         if top and self._top != os.path.normpath(f"{self._trusted}{os.fspath(folder).removeprefix(top)}"):
-            raise FileError(printable_path(folder.name), _IS_SYMLINK)
+            raise FileError(printable_path(folder.name), IS_LINK)
         self._count = 0
-        self._by_link: set[str] = set()
         self.files: list[File] = []
         self.folders: list[str] = []
         self.ignored: list[IgnoredFile] = []
         self.generated: list[str] = []
         self.unseen: list[str] = []
 
-    def enter(self, start: str, *, linked: bool) -> None:
-        """Add everything below a folder."""
-        waiting = [start]
-        links: list[str] = []
+    def run(self) -> None:
+        """Add everything below the folder."""
+        waiting = [""]
         while waiting:
             where = waiting.pop()
-            real_folder = os.path.realpath(self._folder / where) if linked else f"{self._top}/{where}".rstrip("/")
             for entry in self._entries(where):
                 self._count += 1
                 if self._count > limits.MAX_FILES:
                     raise limits.files_limit_error(self._shown)
                 path = f"{where}/{entry.name}" if where else entry.name
                 shown = printable_path(path)
-                if not self._is_ignored(entry, path, shown) and self._add(entry, path, shown, real_folder):
-                    (links if entry.is_symlink() else waiting).append(path)
-        for path in links:
-            real = os.path.realpath(self._folder / path)
-            if not linked and real not in self._by_link:
-                self._by_link.add(real)
-                self.folders.append(printable_path(path))
-                self.enter(path, linked=True)
+                if not self._is_ignored(entry, path, shown) and self._add(entry, path, shown):
+                    waiting.append(path)
 
     def _is_ignored(self, entry: "os.DirEntry[str]", path: str, shown: str) -> bool:
         if entry.name not in IGNORED_FOLDERS and not ignored_part(shown):
@@ -83,28 +73,19 @@ class _Walk:
             self.generated += _generated_files(self._folder, path)
         return True
 
-    def _add(self, entry: "os.DirEntry[str]", path: str, shown: str, real_folder: str) -> bool:
+    def _add(self, entry: "os.DirEntry[str]", path: str, shown: str) -> bool:
         """Add a file, or name an ignored one; return True for a folder to enter."""
-        try:
-            real = os.path.realpath(entry.path) if entry.is_symlink() else ""
-            is_folder, is_file = entry.is_dir(), entry.is_file()
-        except OSError as error:  # such as a symlink to itself
-            MachineError.check(error, shown)
-            real, is_folder, is_file = "", False, False
-        if real and real != self._top and not real.startswith(self._top.rstrip(os.sep) + os.sep):
-            self._ignore(shown, "is a symlink that leads out of the submission, and was not followed")
-        elif is_folder:
-            in_itself = real and f"{self._top}/{path}".startswith(real + "/")
-            if in_itself or os.path.lexists(entry.path + "/pyvenv.cfg"):
+        if entry.is_symlink():
+            self.ignored.append(IgnoredFile(shown, IS_LINK, is_closed=True))
+            self.unseen.append(shown)
+        elif entry.is_dir():
+            if os.path.lexists(entry.path + "/pyvenv.cfg"):
                 return False
-            if not entry.is_symlink():
-                self.folders.append(shown)
+            self.folders.append(shown)
             return True
-        elif is_file:
-            place = real or f"{real_folder}/{entry.name}"
+        elif entry.is_file():
+            place = f"{self._top}/{path}"
             self.files.append(File(shown, _size(entry, shown), keep_small(partial(_read, place, shown, self._trusted))))
-        elif entry.is_symlink() and not Path(entry.path).exists():
-            self._ignore(shown, "is a symlink that leads nowhere, and was not followed")
         else:
             self._ignore(shown, "is not a regular file, and was not read")
         return False
@@ -144,7 +125,7 @@ def file_at(path: Path, name: str, top: str) -> File:
     except OSError as error:
         raise read_error(error, name) from None
     if stat.S_ISLNK(status.st_mode):
-        raise FileError(name, _IS_SYMLINK)
+        raise FileError(name, IS_LINK)
     return File(name, status.st_size, partial(_read, os.fspath(path), name, top))
 
 

@@ -14,7 +14,7 @@ from typing import IO, Any, Literal, NamedTuple
 from grader.errors import MachineError
 from grader.text import printable_path
 
-MAX_NAME_LENGTH = 4096  # characters of a name, and of what a link points to
+MAX_NAME_LENGTH = 4096  # characters
 NOT_REGULAR = "is not a regular file, and was not read"
 # What the standard library raises for archives that are damaged or hostile.
 ARCHIVE_ERRORS = (
@@ -42,17 +42,12 @@ Opener = Callable[[], AbstractContextManager[IO[bytes]]]
 
 
 class ArchiveMember(NamedTuple):
-    """One entry of an archive. `reason` says why one of kind other is not read; `open` returns the content of a file.
-
-    `target` is where a link points to: from its own folder, or, if it is a hard link, from the top.
-    """
+    """One entry of an archive. `reason` says why one of kind other is not read; `open` gives the content of a file."""
 
     path: str
     kind: Literal["file", "folder", "link", "other"]
     size: int
     open: Opener
-    target: str = ""
-    is_hard: bool = False
     reason: str = ""
 
 
@@ -90,20 +85,10 @@ def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> ArchiveMember:
     elif info.compress_type not in _METHODS:
         reason = "is compressed with a method other than deflate, and was not read"
     elif stat.S_ISLNK(mode):
-        return ArchiveMember(name, "link", 0, opened, target=_target(archive, info))
+        return ArchiveMember(name, "link", 0, opened)
     elif stat.S_IFMT(mode) not in (0, stat.S_IFREG, stat.S_IFDIR):
         reason = NOT_REGULAR
     return ArchiveMember(name, "other" if reason else "file", info.file_size, opened, reason=reason)
-
-
-def _target(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> str:
-    """Return where a symlink points to, which is its content; `/` (outside) where that cannot be read."""
-    try:
-        with archive.open(info) as file:
-            return file.read(MAX_NAME_LENGTH).decode("utf-8", "replace")
-    except ARCHIVE_ERRORS as error:
-        MachineError.check(error, info.filename)
-        return "/"
 
 
 def _name(info: zipfile.ZipInfo) -> str:

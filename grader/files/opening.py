@@ -100,7 +100,7 @@ def with_inner(
                 raise limits.files_limit_error(archive.path)
         except InputError as error:
             reason = error.reason if isinstance(error, FileError) else f"cannot be opened: {error}"
-            unopened.append(IgnoredFile(archive.path, reason, is_archive=True))
+            unopened.append(IgnoredFile(archive.path, reason, is_closed=True))
         else:
             parts.append((archive.path + "/", inner))
             count += len(inner.files)

@@ -7,7 +7,9 @@ from typing import NamedTuple, Protocol
 
 from grader.errors import FileError
 from grader.files import limits
+from grader.files.names import ignored_part
 
+IS_LINK = "is a symlink, and was not followed"
 _SMALL = 4096  # bytes
 
 
@@ -34,11 +36,11 @@ def keep_small(read: ContentReader) -> ContentReader:
 
 
 class IgnoredFile(NamedTuple):
-    """A file or folder that is not read, and why: `is encrypted`. The files of an archive may be those to grade."""
+    """A file or folder that is not read, and why: `is encrypted`. What `is_closed` may have to be graded."""
 
     path: str
     reason: str
-    is_archive: bool = False
+    is_closed: bool = False
 
     def __str__(self) -> str:
         return f"{self.path} {self.reason}"
@@ -68,7 +70,7 @@ class File(NamedTuple):
 class Tree:
     """The files of a submission by path, in alphabetical order, and its folders, empty ones included.
 
-    `generated` names files of packages that a build has copied. `unseen` are folders that exist, but were not looked
+    `generated` names files of packages that a build has copied. `unseen` are folders and links that were not looked
     into. `kept` are the archives that have to stay open.
     """
 
@@ -82,8 +84,13 @@ class Tree:
 
     @property
     def unopened(self) -> tuple[IgnoredFile, ...]:
-        """The archives in it that could not be opened."""
-        return tuple(file for file in self.ignored if file.is_archive)
+        """The archives and links in it that were not opened."""
+        return tuple(file for file in self.ignored if file.is_closed)
+
+    @property
+    def links(self) -> list[str]:
+        """The paths of the links in it, which are not followed."""
+        return [path for path in sorted(self.unseen) if not ignored_part(f"{path}/")]
 
     def only(self, belongs: Callable[[str], bool]) -> "Tree":
         """Return the tree of only the files, folders and notes whose paths belong; a folder's path ends in a slash."""

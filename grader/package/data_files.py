@@ -154,7 +154,7 @@ class DataFiles:
             if text.startswith("/"):
                 self.stop("the path is absolute, and colcon takes paths in the package only", at, text)
             else:
-                self._give_up(None, f"{text} is outside of the package", at)
+                self._give_up(None, f"{text} is outside of the package, or ignored", at)
             return
         if PACKAGE_FOLDER in text:
             self._give_up(None, "the name of the package's folder is not known", at)

@@ -1,16 +1,14 @@
 """The results of Python's glob, pathlib and os.listdir in a package, from the list of its files."""
 
-import posixpath
 import re
 import warnings
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
 from fnmatch import translate
 from functools import lru_cache
-from itertools import chain
+from itertools import pairwise
 from typing import NamedTuple
 
-from grader.files.tree import Tree
+from grader.files.tree import IS_LINK, Tree
 from grader.static_python.budget import Budget
 from grader.static_python.parse import Position
 from grader.static_python.values import Value
@@ -20,11 +18,11 @@ from grader.static_python.values import Value
 ORDERS = ("sorted", "reversed", "rotated")
 _MAGIC = re.compile(r"[*?\[]")
 _OUTSIDE = "it searches for files outside of the package"
+_IGNORED = "it searches an ignored folder"
+_UNUSUAL = "a pattern of this kind is not supported"
 _COMPILED = "__pycache__"  # its files are made by Python
-_MAX_FOUND = 20_000
 _MAX_RECORDED = 200  # paths of one search whose position is kept
-_MAX_PATTERN = 1_024
-_MAX_PARTS = 50
+_MAX_PATTERN = 1_024  # characters
 
 
 class SearchError(Exception):
@@ -47,11 +45,13 @@ class PackageListing:
         self.files = tree.files
         self.folders = tree.folders | tree.unseen | {""}
         self._unseen = {path for path in tree.unseen if path.rpartition("/")[2] != _COMPILED}
+        self._links = {*tree.links}
         self.order_matters = False  # whether a search has returned several names
         self.positions: dict[str, Position] = {}  # of the searches that found a path
         self.empty: dict[EmptyGlob, None] = {}  # in the order of the searches
         self._children: dict[str, list[str]] = {}
         self._order = order
+        self._paths = sorted([*tree.files, *tree.folders, *tree.unseen, *(f"{path}/" for path in self.folders if path)])
         for path in sorted([*tree.files, *tree.folders, *tree.unseen]):
             folder, _, name = path.rpartition("/")
             self._children.setdefault(folder, []).append(name)
@@ -76,7 +76,7 @@ class PackageListing:
     def names(self, folder: str) -> list[str]:
         """Return the names in a folder. Raises SearchError for an ignored folder."""
         if folder in self._unseen:
-            raise SearchError("it searches an ignored folder")
+            raise SearchError(_IGNORED)
         found = self._children.get(folder, [])
         self.budget.charge(1 + len(found))
         return found
@@ -104,6 +104,8 @@ class PackageListing:
                 here = f"{here}/{part}" if here else part
             elif index and here not in self.folders:
                 return None
+            if here in self._links:
+                raise SearchError(f"{here} {IS_LINK}")
         return here if here in self.folders or here in self.files else None
 
     def glob(self, pattern: str, *, recursive: bool = False, above: str = "") -> list[str]:
@@ -114,103 +116,79 @@ class PackageListing:
         """
         if pattern.startswith("/"):
             raise SearchError(_OUTSIDE)
-        if len(pattern) > _MAX_PATTERN or pattern.count("/") > _MAX_PARTS:
-            raise SearchError("the pattern is too long")
-        found = _GlobSearch(self, recursive).find(pattern, folders_only=False)
-        return [above + path for path in dict.fromkeys(found) if above or path]
+        start = above or ("./" if pattern.startswith("./") else "")
+        parts = re.sub("/+", "/", pattern.removeprefix("./")).split("/")
+        if not recursive or parts[-1] != "**":
+            return [start + path for path in self._search(parts, recursive=recursive)]
+        found = self._search([*parts, "*"], recursive=True)
+        return [start + path for path in [*self._search([*parts[:-1], ""]), *found] if path]
 
     def path_glob(self, folder: str, pattern: str) -> list[str]:
         """Return the paths below a folder that pathlib's glob finds in Python 3.12. Raises SearchError."""
         parts = [part for part in pattern.split("/") if part not in ("", ".")]
-        odd = any("**" in part and part != "**" for part in parts) or ".." in parts or pattern.startswith("/")
-        if odd or not parts or pattern.endswith(("/", "/.")) or len(parts) > _MAX_PARTS or len(pattern) > _MAX_PATTERN:
-            raise SearchError("a pattern of this kind is not supported")
+        odd = any("**" in part and part != "**" for part in parts) or pattern.startswith("/")
+        if odd or not parts or pattern.endswith(("/", "/.")):
+            raise SearchError(_UNUSUAL)
         start = self.real(folder)
-        found = [""] if start in self.folders else []
-        for index, part in enumerate(parts):
-            last = index == len(parts) - 1
-            steps = (self._path_step(_join(start or "", path), path, part, last=last) for path in found)
-            found = _limit(list(dict.fromkeys(chain.from_iterable(steps))))
-        return found
+        if start not in self.folders:
+            return []
+        folders_only = [""] if parts[-1] == "**" else []
+        found = self._search([*parts, *folders_only], recursive=True, hidden=True, folder=start or "")
+        return [path.rstrip("/") for path in found]
 
-    def _path_step(self, real: str, path: str, part: str, *, last: bool) -> list[str]:
-        """Return what one part of a pathlib pattern matches in a folder."""
-        if part == "**":
-            folders = _GlobSearch(self, hidden=True).descendants(real, folders_only=True)
-            return [path, *(_join(path, folder) for folder in folders)]
-        matches = _matcher(part) if _MAGIC.search(part) else part.__eq__
-        names = [name for name in self.names(real) if matches(name)]
-        return [_join(path, name) for name in names if last or _join(real, name) in self.folders]
+    def _search(
+        self, parts: list[str], *, recursive: bool = False, hidden: bool = False, folder: str = ""
+    ) -> list[str]:
+        """Return the paths below a folder that consist of such names; with an empty one at the end, those of folders.
 
-
-@dataclass(frozen=True, slots=True)
-class _GlobSearch:
-    """One call of glob.glob, with the algorithm of Python's own."""
-
-    listing: PackageListing
-    recursive: bool = False
-    hidden: bool = False  # whether wildcards match names that begin with a dot, as in pathlib
-
-    def find(self, pattern: str, *, folders_only: bool) -> list[str]:
-        """Return the paths that match a pattern; only folders for the part before the last one."""
-        folder, last = posixpath.split(pattern)
-        if not _MAGIC.search(pattern):
-            return [pattern] if self._real(pattern if last else folder, is_folder=not last) is not None else []
-        folders = [folder]
-        if folder and folder != pattern and _MAGIC.search(folder):
-            folders = self.find(folder, folders_only=True)
-        found: list[str] = []
-        for path in dict.fromkeys(folders):
-            found += [posixpath.join(path, name) for name in self._in_folder(path, last, folders_only=folders_only)]
-            self.listing.budget.charge(len(found) // 16)
-            _limit(found)
-        return found
-
-    def _in_folder(self, folder: str, part: str, *, folders_only: bool) -> Iterator[str]:
-        real = self._real(folder, is_folder=True)
-        if real is None:
-            return
-        if not _MAGIC.search(part):
-            if not part or self._real(posixpath.join(folder, part)) is not None:
-                yield part
-        elif part == "**" and self.recursive:
-            yield ""
-            yield from self.descendants(real, folders_only=folders_only)
-        else:
-            matches = _matcher(part)
-            yield from (name for name in self._visible(real, folders_only, part.startswith(".")) if matches(name))
-
-    def descendants(self, folder: str, *, folders_only: bool) -> Iterator[str]:
-        """Yield the paths below a folder, relative to it."""
-        pending = [("", folder)]
-        while pending:
-            path, real = pending.pop()
-            for name in self._visible(real, folders_only, dotted=False):
-                yield _join(path, name)
-                if _join(real, name) in self.listing.folders:
-                    pending.append((_join(path, name), _join(real, name)))
-
-    def _visible(self, folder: str, folders_only: bool, dotted: bool) -> list[str]:
-        names = [name for name in self.listing.names(folder) if dotted or self.hidden or not name.startswith(".")]
-        return [name for name in names if _join(folder, name) in self.listing.folders] if folders_only else names
-
-    def _real(self, path: str, *, is_folder: bool = False) -> str | None:
-        real = self.listing.real(path or ".")
-        return real if not is_folder or real in self.listing.folders else None
+        Wildcards match names that begin with a dot only if `hidden`. Raises SearchError, also for what nobody writes.
+        """
+        if recursive:
+            parts = [part for part, after in pairwise([*parts, ""]) if (part, after) != ("**", "**")]
+        several = recursive and "**" in parts and (parts.count("**") > 1 or any(it.startswith(".") for it in parts))
+        if several or "" in parts[:-1] or {".", ".."} & {*parts} or sum(map(len, parts)) > _MAX_PATTERN:
+            raise SearchError(_UNUSUAL)
+        self.budget.charge(1 + 2 * len(self._paths))
+        place = parts.index("**") if recursive and "**" in parts else None
+        pattern = _Pattern([_test(part, hidden=hidden) for part in parts], place)
+        start = f"{folder}/" if folder else ""
+        if any(pattern.leads_to(names) for names in _below(start, self._unseen)):
+            raise SearchError(_IGNORED)
+        return self.ordered(["/".join(names) for names in _below(start, self._paths) if pattern.matches(names)])
 
 
-def _join(folder: str, name: str) -> str:
-    return f"{folder}/{name}" if folder and name else folder or name
+class _Pattern(NamedTuple):
+    """The tests of the names in a path; the one at `place` is that of any number of folders."""
+
+    tests: list[Callable[[str], object]]
+    place: int | None
+
+    def matches(self, names: list[str]) -> bool:
+        """Return whether a path matches."""
+        tests = self.tests
+        if self.place is not None:
+            count = len(names) - len(tests) + 1
+            tests = [*tests[: self.place], *[tests[self.place]] * count, *tests[self.place + 1 :]]
+        return len(tests) == len(names) and all(test(name) for test, name in zip(tests, names, strict=True))
+
+    def leads_to(self, names: list[str]) -> bool:
+        """Return whether a search looks into a folder."""
+        tests = self.tests[:-1]
+        if self.place is not None:
+            tests = [*tests[: self.place], *[self.tests[self.place]] * len(names)]
+        return len(names) <= len(tests) and all(test(name) for test, name in zip(tests, names, strict=False))
 
 
-def _limit(found: list[str]) -> list[str]:
-    if len(found) > _MAX_FOUND:
-        raise SearchError("it finds too many files")
-    return found
+def _below(start: str, paths: Iterable[str]) -> Iterator[list[str]]:
+    return (path.removeprefix(start).split("/") for path in paths if path.startswith(start))
 
 
 @lru_cache(maxsize=256)
-def _matcher(part: str) -> Callable[[str], object]:
+def _test(part: str, *, hidden: bool) -> Callable[[str], object]:
+    """Return whether a part of a pattern matches a name."""
+    if not _MAGIC.search(part):
+        return part.__eq__
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of nested sets in brackets
-        return re.compile(translate(part)).match
+        matches = re.compile(translate(part)).match
+    return lambda name: name and (hidden or part[0] == "." or name[0] != ".") and matches(name)

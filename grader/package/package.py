@@ -6,12 +6,12 @@ from functools import cached_property
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from grader.errors import InputError, MissingElement
-from grader.files.tree import Tree
+from grader.errors import InputError, MissingElement, NotDecided
+from grader.files.tree import IS_LINK, Tree
 from grader.names import closest
 from grader.package.launch.places import ENDINGS, PREFIX, SHARE, is_in_launch_folder, is_launch_named, launch_stem
 from grader.source import Location, Source
-from grader.static_python.budget import Budget
+from grader.static_python.budget import PYTHON_LIMIT, Budget
 from grader.text import enumerated, was_not_committed
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 MANIFEST, SETUP = "package.xml", "setup.py"
 RESOURCE_INDEX = "share/ament_index/resource_index/packages/"
 NO_PACKAGE = "the submission has no ROS 2 package: there is no package.xml"
-PYTHON_LIMIT, _RVIZ_LIMIT = 128 * 1024, 512 * 1024  # bytes; a syntax tree takes several hundred times as much
+_RVIZ_LIMIT = 512 * 1024  # bytes
 _MAX_LAUNCHES = 10
 # What a file of a kind is called in messages, and how its name ends.
 _KINDS = {"urdf": ("URDF", (".urdf", ".xacro")), "rviz": ("RViz file", (".rviz",)), "launch": ("launch file", ENDINGS)}
@@ -58,8 +58,7 @@ class Package:
         """The name that ROS 2 finds it by; without a package.xml, that of setup.py or of the folder."""
         if self.manifest is not None and self.manifest.name is not None:
             return self.manifest.name
-        set_up = self.setup.name if self.setup is not None else None
-        return set_up or PurePosixPath(self.folder or self.tree.name).name
+        return (self.setup and self.setup.name) or PurePosixPath(self.folder or self.tree.name).name
 
     def find(self, name: str) -> "Package | None":
         """Return the package of the submission that ROS 2 finds by a name."""
@@ -96,15 +95,9 @@ class Package:
         file = self.tree.files.get(SETUP)
         if file is None:
             return None
-        from grader.package.setup_py import read_setup
-        from grader.static_python.parse import SyntaxFault, parse
+        from grader.package.setup_py import read_setup_file
 
-        path = self.path(SETUP)
-        try:
-            code = parse(file.read(PYTHON_LIMIT), path)
-        except InputError as error:
-            code = SyntaxFault(Source(path, ""), str(error), Location(path, 1, 1), sure=False)
-        return read_setup(code, self.tree, self.budget)
+        return read_setup_file(file, self.path(SETUP), self.tree, self.budget)
 
     @cached_property
     def installed(self) -> dict[str, str]:
@@ -130,9 +123,11 @@ class Package:
             (was_not_committed(path) for path in copied if (path if name else path.lower()).endswith(endings)), ""
         )
 
-    def missing(self, kind: str) -> MissingElement:
+    def missing(self, kind: str) -> MissingElement | NotDecided:
         """Return the error for a package without a file of a kind: urdf, launch or rviz."""
         word, endings = _KINDS[kind]
+        if self.tree.links:
+            return NotDecided(f"the {word} may be in {self.tree.links[0]}, which {IS_LINK}")
         has_folder = kind != "launch" or any(it.rpartition("/")[2] == kind for it in self.tree.folders)
         folder = "" if has_folder else ", and there is no folder launch"
         message = f"the package has no {word}: no file ends in {enumerated(endings[:3], word='or')}{folder}"
@@ -159,8 +154,9 @@ class Package:
         own = self.path(path)
         try:
             data = self.tree.files[path].read(PYTHON_LIMIT) if text is None else text
-            targets = (target for target, source in self.installed.items() if source == path)
-            installed = next(targets, f"share/{self.name}/{path}")
+            installed = next(
+                (it for it, source in self.installed.items() if source == path), f"share/{self.name}/{path}"
+            )
             launch = read_launch(data, own, installed, self._open_installed, self._is_on_machine, self._has_program)
         except InputError as error:
             launch = Launch(Source(own, ""), unread=str(error))
@@ -182,14 +178,13 @@ class Package:
     def robot_references(self, name: str = "") -> "list[NamedFile]":
         """Return where its launch files read the robot in a file of this name, or in any file."""
         launches = map(self.launch, self.launch_files[:_MAX_LAUNCHES])
-        references = (reference for launch in launches for reference in launch.named("urdf") if reference.path)
-        return [reference for reference in references if not name or f"/{reference.path}".endswith(f"/{name}")]
+        found = (it for launch in launches for it in launch.named("urdf") if it.path)
+        return [it for it in found if not name or f"/{it.path}".endswith(f"/{name}")]
 
     def rviz_file(self, name: str, launch: "Launch | None") -> str | None:
         """Return the RViz file that the launch file opens; else the one of this name; else any."""
-        opened = self.rviz_opened(launch) if launch is not None else None
-        files = sorted(self.rviz_files, key=lambda path: (path.rpartition("/")[2] != name, path.count("/"), path))
-        return opened or (files[0] if files else None)
+        wanted = min(self.rviz_files, key=lambda it: (it.rpartition("/")[2] != name, it.count("/"), it), default=None)
+        return (self.rviz_opened(launch) if launch is not None else None) or wanted
 
     def rviz_opened(self, launch: "Launch") -> str | None:
         """Return the RViz file that a launch file opens, also by a wrong folder: that is another error."""
@@ -218,9 +213,8 @@ class Package:
 
     def _open_installed(self, path: str) -> tuple[bytes, str] | None:
         """Return what a build of any submitted package installs at a path below the prefix, with the file's path."""
-        for package in self.packages.values():
-            if path in package.installed:
+        for package in (package for package in self.packages.values() if path in package.installed):
+            with suppress(InputError):
                 source = package.installed[path]
-                with suppress(InputError):
-                    return package.tree.files[source].read(PYTHON_LIMIT), package.path(source)
+                return package.tree.files[source].read(PYTHON_LIMIT), package.path(source)
         return None

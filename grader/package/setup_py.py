@@ -3,17 +3,18 @@
 import ast
 from dataclasses import dataclass, replace
 
-from grader.files.tree import Tree
+from grader.errors import InputError
+from grader.files.tree import File, Tree
 from grader.package.build_settings import argument_findings, file_findings
 from grader.package.data_files import DataFiles, InstalledFile, InstallError
 from grader.package.file_functions import file_functions
 from grader.package.globbing import ORDERS, EmptyGlob, PackageListing
 from grader.source import Location, Source
-from grader.static_python.budget import Budget
+from grader.static_python.budget import PYTHON_LIMIT, Budget
 from grader.static_python.evaluation import Evaluation, EvaluationStopped, PythonError
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.library import PACKAGE_FOLDER, standard_functions
-from grader.static_python.parse import START, Code, Position, SyntaxFault, position_of
+from grader.static_python.parse import START, Code, Position, SyntaxFault, parse, position_of
 from grader.static_python.values import Call, ExpressionFails, QualifiedName, Unknown, Value
 
 _ROOT = f"/{PACKAGE_FOLDER}"
@@ -64,6 +65,15 @@ def location_in(source: Source, position: Position) -> Location:
     line = source.line(position.line)
     column = len(line.encode("utf-8", "surrogateescape")[: position.column - 1].decode("utf-8", "ignore"))
     return Location(source.path, position.line, column + 1)
+
+
+def read_setup_file(file: File, path: str, tree: Tree, budget: Budget) -> Setup:
+    """Read and evaluate the setup.py of a package with these files. Never raises."""
+    try:
+        code = parse(file.read(PYTHON_LIMIT), path)
+    except InputError as error:
+        code = SyntaxFault(Source(path, ""), str(error), Location(path, 1, 1), sure=False)
+    return read_setup(code, tree, budget)
 
 
 def read_setup(code: Code | SyntaxFault, tree: Tree, budget: Budget | None = None) -> Setup:

@@ -7,6 +7,7 @@ from grader.static_python import values as py
 from grader.static_python.values import parts_of, too_large
 
 READING = 500_000  # parts that reading one submission may produce or look at: some 0.5 s
+PYTHON_LIMIT = 128 * 1024  # bytes of a file; a syntax tree takes several hundred times as much
 CHARACTERS, _BITS = 16, 256  # that count as one part
 FOLDER = "the name of a folder on the machine is not known"
 

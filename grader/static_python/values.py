@@ -162,18 +162,12 @@ FunctionTable = Mapping[str, "PlainFunction | Callable[[Any, Call], Value]"]
 
 
 class Namespace:
-    """Names that are reached with a dot: math.pi. `find` raises ExpressionFails for other names.
+    """Names that are reached with a dot: math.pi. `find` raises ExpressionFails for other names."""
 
-    Like a dict, it is false if it has no names.
-    """
+    __slots__ = ("find", "name")
 
-    __slots__ = ("find", "has_names", "name")
-
-    def __init__(self, name: str, find: Callable[[str], Value], has_names: Callable[[], bool] = lambda: True) -> None:
-        self.name, self.find, self.has_names = name, find, has_names
-
-    def __bool__(self) -> bool:
-        return self.has_names()
+    def __init__(self, name: str, find: Callable[[str], Value]) -> None:
+        self.name, self.find = name, find
 
 
 class Items:

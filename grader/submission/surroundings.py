@@ -10,6 +10,7 @@ from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree, parents
 from grader.package.package import Package
 from grader.static_python.budget import Budget
+from grader.static_python.values import Undetermined
 
 if TYPE_CHECKING:
     from grader.package.launch.model import NamedFile
@@ -74,12 +75,12 @@ class Surroundings(NamedTuple):
 
     def _installed_file(self, name: str, inside: str) -> str | None:
         """Return the file at a path in a package once it is built; without any package, the most similar path."""
-        from grader.package.cmake import read_cmake  # late: most URDFs are no xacro
-
         for package in self.packages:
             if package.name == name:
-                installed = read_cmake(package.tree).installed if package.is_cmake else package.installed
-                source = installed.get(f"share/{name}/{inside}")
+                similar = any(f"/{path}".endswith(f"/{inside}") for path in package.tree.files)
+                if package.is_cmake and similar and inside not in package.tree.files:
+                    raise Undetermined(f"whether CMakeLists.txt installs {inside} is not evaluated")
+                source = package.installed.get(f"share/{name}/{inside}")
                 return package.path(source) if source is not None else None
         if self.packages:
             return None

@@ -1,14 +1,12 @@
 """The ways to give expanded elements other values: edits of the xacro texts that they come from.
 
 A value is changed where it is defined, if a name alone gives it: in a property, in the argument of a macro call, in the
-default of an argument, in a YAML file. Else it is replaced where it is used, or given in a macro call that lacks it.
-Nothing inside an expression is changed.
+default of an argument. Else it is replaced where it is used, or given in a macro call that lacks it. Nothing inside an
+expression is changed, and nothing that a YAML file gives.
 """
 
 import re
 from collections.abc import Callable, Iterator, Sequence
-
-import yaml
 
 from grader import markup
 from grader.edits import merged, with_attribute
@@ -21,25 +19,24 @@ _TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
 _EXPRESSION = re.compile(r"\$\{([^}]*)\}")
 _NAME = re.compile(r"(?<![\w.'\"])[^\W\d]\w*(?![\w(])")
 _NUMBER = re.compile(r"\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*")
-# The one expression of a text that is a name, perhaps with a minus, or a value of a YAML file: config['wheel']['mass'].
+# The one expression of a text that is a name, perhaps with a minus.
 _ALONE = re.compile(
     r"""(?P<before>[^$]*)
-    (?: \$\{\s*(?P<sign>-?)\s*(?P<name>[^\W\d]\w*)(?P<keys>(?:\[\s*'[^']*'\s*\]|\[\s*"[^"]*"\s*\]|\.[^\W\d]\w*)*)\s*\}
+    (?: \$\{\s*(?P<sign>-?)\s*(?P<name>[^\W\d]\w*)\s*\}
       | \$\(\s*arg\s+(?P<argument>[^\s()]+)\s*\) )
     (?P<after>[^$]*)""",
     re.VERBOSE,
 )
-_KEY = re.compile(r"\[\s*'([^']*)'\s*\]|\[\s*\"([^\"]*)\"\s*\]|\.([^\W\d]\w*)")
 _LOADED = re.compile(r"\$\{\s*(?:xacro\.)?load_yaml\(")
 _MAX_DEPTH = 4  # definitions that lead to one another
 _MAX_DEFINITIONS = 12
 
 
 class Rewriter:
-    """Makes the edits of one expanded document. `yaml_file` returns the only YAML file that a name was loaded from."""
+    """Makes the edits of one expanded document."""
 
-    def __init__(self, texts: Texts, yaml_file: Callable[[str], Source | None]) -> None:
-        self._texts, self._yaml_file = texts, yaml_file
+    def __init__(self, texts: Texts) -> None:
+        self._texts = texts
 
     def ways(self, place: ScopePlace, attribute: str, uses: Sequence[Use]) -> list[Edits]:
         """Return the ways to change an attribute (or, without a name, the text) for its uses, the best first."""
@@ -52,6 +49,8 @@ class Rewriter:
         for use in changed if "$" in text.text else ():
             for part, old, new in _parts(text, use):
                 changes = self._definitions(part, use.scope, old, new)
+                if not changes and self._is_loaded(part):
+                    return []
                 has_definition |= bool(changes)
                 found += changes or [TextChange(part, new)]
         by_place = {change.written[:3]: change for change in found}
@@ -75,7 +74,7 @@ class Rewriter:
         if len(around) == 1 and "" not in around:
             edits = edits_of([TextChange(text, around.pop())])
             return [edits] if edits else []
-        if len({use.new for use in changed}) != 1 or any(_LOADED.match(it.text) for it in self.definitions(text)):
+        if len({use.new for use in changed}) != 1 or self._is_loaded(text):
             return []
         parts = _parts(text, changed[0])
         if len(parts) == 2 and parts[0][1:] == parts[1][:0:-1]:  # two expressions are exchanged
@@ -102,8 +101,6 @@ class Rewriter:
         own = definition_text(definition) if definition is not None else None
         if definition is None or own is None:
             return []
-        if found["keys"]:
-            return self._in_yaml(definition, found["keys"], inner, depth)
         if self.definitions(own):
             parts = _parts(own, Use(definition.scope, was, inner))
             changes = [self._definitions(part, definition.scope, a, b, depth - 1) for part, a, b in parts]
@@ -111,15 +108,9 @@ class Rewriter:
         is_quoted = own.text[:1] == "'" == own.text[-1:]
         return [TextChange(own, f"'{inner}'" if is_quoted else merged(own.text, inner))]
 
-    def _in_yaml(self, definition: Definition, path: str, new: str, depth: int) -> list[TextChange]:
-        """Return the change in the YAML file from which a name is defined, at the keys that follow the name."""
-        part = _ALONE.fullmatch(definition.text) if not _LOADED.match(definition.text) else None
-        above = self._of_name(part["name"], definition.scope) if part is not None and part["name"] and depth else None
-        if part is not None and above is not None:
-            return self._in_yaml(above, part["keys"] + path, new, depth - 1)
-        file = self._yaml_file(definition.text) if _LOADED.match(definition.text) else None
-        keys = [a or b or c for a, b, c in _KEY.findall(path)]
-        return _in_yaml(file, keys, new, definition.scope) if file is not None else []
+    def _is_loaded(self, text: Written) -> bool:
+        """Return whether a YAML file gives a text."""
+        return any(_LOADED.match(it.text) for it in self.definitions(text))
 
     def _of_name(self, name: str, scope: XacroScope) -> Definition | None:
         holder = scope.holder(name)
@@ -176,22 +167,6 @@ def is_equal(one: str, other: str) -> bool:
         return one == other or abs(float(one) - float(other)) < 1e-9
     except ValueError:
         return False
-
-
-def _in_yaml(file: Source, keys: Sequence[str], new: str, scope: XacroScope) -> list[TextChange]:
-    """Return the change of the scalar at a path of keys in a YAML file."""
-    try:
-        node = yaml.compose(file.text, Loader=yaml.SafeLoader)
-    except (yaml.YAMLError, RecursionError):
-        return []
-    for key in keys:
-        pairs = node.value if isinstance(node, yaml.MappingNode) else []
-        node = next((value for name, value in pairs if name.value == key), None)
-    if not isinstance(node, yaml.ScalarNode) or node.style:
-        return []
-    start, end = node.start_mark.index, node.end_mark.index
-    written = Written(file, start, file.text[start:end], scope, (start, end))
-    return [TextChange(written, new)]
 
 
 def conditions(source: Source, known: Sequence[str], near: Callable[[str, Sequence[str]], str | None]) -> list[Edits]:

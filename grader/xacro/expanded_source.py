@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from grader.source import Edit, Edits, Location, Source
 from grader.xacro.expander import Expander
 from grader.xacro.nodes import XacroNode
-from grader.xacro.scopes import ScopePlace, XacroScope
+from grader.xacro.scopes import XacroScope
 
 if TYPE_CHECKING:
     from grader.edits import Proposal
@@ -27,9 +27,7 @@ class ExpandedSource(Source):
 
     def tag(self, index: int, attribute: str | None = None) -> Location:
         """Return the location in the source of an expanded element, or of an attribute if it has it."""
-        node = self._nodes[index]
-        moved = node.moved.get(attribute) if attribute is not None else None
-        return node.place.at(attribute) if moved is None else moved.at("value")
+        return self._nodes[index].place.at(attribute)
 
     def next_tag(self, index: int, name: str) -> int:
         """Return the index of the first expanded element of this name after another one; that one if there is none."""
@@ -70,21 +68,15 @@ class ExpandedSource(Source):
         """Return the ways to give an attribute (or, without a name, the text) of elements of one place other values."""
         from grader.xacro.written import Use
 
-        place, name, scope = self._place(next(iter(wanted)), attribute)
+        place = self._nodes[next(iter(wanted))].place
+        scope = place.scope or XacroScope()
         uses = []
         for tag in self.siblings(next(iter(wanted))):
             node = self._nodes[tag]
             text = node.attributes.get(attribute, "") if attribute else "".join(map(str, node.children)).strip()
             call = node.place.calls[-1][1] if node.place.calls else None
             uses.append(Use(node.place.scope or scope, *wanted.get(tag, (text, text)), call))
-        return self._rewriter.ways(place, name, uses)
-
-    def _place(self, tag: int, attribute: str) -> tuple[ScopePlace, str, XacroScope]:
-        """Return where an attribute is written: in the element, or in an <xacro:attribute>."""
-        node = self._nodes[tag]
-        moved = node.moved.get(attribute)
-        place = moved or node.place
-        return place, "value" if moved else attribute, place.scope or XacroScope()
+        return self._rewriter.ways(place, attribute, uses)
 
     def numbers(self, tag: int, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
         """Return the numbers from which an attribute is computed, each with what makes the edit of its definition."""
@@ -93,7 +85,9 @@ class ExpandedSource(Source):
         def changing(written: Written) -> Callable[[str], Edits]:
             return lambda new: edits_of([TextChange(written, new)]) or ()
 
-        return [(it.text.strip(), changing(it)) for it in self._rewriter.numbers(*self._place(tag, attribute))]
+        place = self._nodes[tag].place
+        found = self._rewriter.numbers(place, attribute, place.scope or XacroScope())
+        return [(it.text.strip(), changing(it)) for it in found]
 
     def siblings(self, tag: int) -> list[int]:
         """Return the indices of the expanded elements that come from the same place of the source."""
@@ -139,4 +133,4 @@ class ExpandedSource(Source):
     def _rewriter(self) -> "Rewriter":
         from grader.xacro.edits import Rewriter
 
-        return Rewriter(self._expander.texts, self._expander.yaml_file)
+        return Rewriter(self._expander.texts)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from grader.problems import Kind, Problem
-from grader.source import Location, Source
+from grader.source import Location
 from grader.static_python.budget import CHARACTERS, Budget, OutOfBudget
 from grader.static_python.values import ExpressionFails, Undetermined, Value
 from grader.xacro import catalogue
@@ -74,7 +74,6 @@ class Expander:
         self.own_tags = [tag.removeprefix("xacro:") for tag in handlers]
         self.problems: list[Problem] = []
         self.misspelt: list[Misspelt] = []
-        self._yaml: dict[str, bytes] = {}  # the files that were loaded, by their paths
         self.undetermined: list[Open] = []
         self.refused: list[tuple[XacroFails, ScopePlace, str | None]] = []  # what may be corrected, and where
         self.calls: tuple[tuple[str, ScopePlace], ...] = ()
@@ -129,7 +128,7 @@ class Expander:
     def start(self, source: XacroNode, scopes: Scopes) -> XacroNode:
         """Return an element with its attributes expanded, without its children."""
         out = XacroNode(source.tag, self._place(source.place, scopes.symbols))
-        out.moved, out.unresolved = dict(source.moved), dict(source.unresolved)
+        out.unresolved = dict(source.unresolved)
         for name, text in source.attributes.items():
             is_plain = "$" not in text or name in out.unresolved
             value = text if is_plain else self._attribute(out, name, text, scopes)
@@ -201,12 +200,5 @@ class Expander:
     def _load_yaml(self, name: Value) -> Value:
         if self._is_expanded:
             raise Undetermined("a YAML file is not read again for each edit")
-        path = self.files.path(self.texts.written(name))
-        data = self.files.read(path)
-        self._yaml[path] = data
+        data = self.files.read(self.files.path(self.texts.written(name)))
         return read_yaml_values(data, lambda name: self.texts.find(name, XacroScope()), self.budget)
-
-    def yaml_file(self, text: str) -> Source | None:
-        """Return the YAML file that a text loads, if the document loads one of this name."""
-        found = [path for path in self._yaml if path.rpartition("/")[2] in text]
-        return Source(found[0], self._yaml[found[0]].decode("utf-8", "surrogateescape")) if len(found) == 1 else None

@@ -39,27 +39,18 @@ class Inventory:
 
 def take_inventory(documents: Iterable[XacroNode], budget: Budget) -> Inventory:
     """Return what files define and use; a macro's parameter is no use of a property of its name. Raises OutOfBudget."""
-    found, roots = Inventory(), [*documents]
-    spaces = {node.attributes.get("ns", "") for root in roots for node in _every(root) if node.tag == "xacro:include"}
-    waiting = [(root, frozenset[str]()) for root in reversed(roots)]
+    found = Inventory()
+    waiting = [(root, frozenset[str]()) for root in reversed([*documents])]
     while waiting:
         node, hidden = waiting.pop()
         own = _note_tag(node, found)
         texts = [*node.attributes.values(), *(child for child in node.children if isinstance(child, str))]
-        names = {name for text in texts for name in _names_in(text, spaces)}
+        names = {name for text in texts for name in _names_in(text)}
         found.used.update(names - hidden - {own})
         if node.tag == "xacro:macro":
             hidden |= _parameters(node, found, budget)
         waiting += [(child, hidden) for child in reversed(node.elements)]
     return found
-
-
-def _every(root: XacroNode) -> Iterator[XacroNode]:
-    waiting = [root]
-    while waiting:
-        node = waiting.pop()
-        yield node
-        waiting += node.elements
 
 
 def _note_tag(node: XacroNode, found: Inventory) -> str:
@@ -96,15 +87,12 @@ def _parameters(node: XacroNode, found: Inventory, budget: Budget) -> frozenset[
     return frozenset(parameter.name.lstrip("*") for parameter in parameters)
 
 
-def _names_in(text: str, spaces: set[str]) -> Iterator[str]:
-    """Yield the names in the expressions of a text: the first of a dotted name, and what is after a namespace."""
+def _names_in(text: str) -> Iterator[str]:
+    """Yield the names in the expressions of a text: the first of a dotted name."""
     position = text.find("$")
     while position >= 0 and (piece := PIECE.match(text, position)) is not None:
         position = piece.end()
         if piece["substitution"] is not None:
-            yield from _names_in(piece["substitution"], spaces)
+            yield from _names_in(piece["substitution"])
         for found in _NAME.finditer(_STRING.sub("''", piece["expression"] or "")):
-            first, *rest = found[0].split(".")
-            yield first
-            if first in spaces:
-                yield from rest
+            yield found[0].partition(".")[0]

@@ -10,7 +10,6 @@ from grader.xacro.macros import (
     bind_defaults,
     bind_values,
     find_macro,
-    namespace_error,
     read_parameters,
 )
 from grader.xacro.nodes import XacroNode
@@ -40,8 +39,6 @@ def define_macro(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scop
     name = needed(node, "name").removeprefix("xacro:")
     if name == "call" or "." in name:
         raise TagFails(f"a macro cannot have the name {name}")
-    if f"{name}." in scopes.macros.properties:
-        raise namespace_error(name)
     macro = Macro(name, node, read_parameters(node.attributes.get("params", ""), expander.budget))
     scopes.macros.bind(name, macro, definition=Definition(name, "", node.place, "name", scopes.symbols))
 
@@ -59,16 +56,15 @@ def call_dynamically(expander: Expander, node: XacroNode, out: XacroNode, scopes
 
 
 def _call_by_name(expander: Expander, name: str, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
-    found = find_macro(name, *scopes)
-    if found is None:
+    macro = find_macro(name, scopes.macros)
+    if macro is None:
         if expander.texts.names_open is not None:
             raise expander.texts.names_open.with_traceback(None)
         raise MacroError(*expander.texts.unknown("macro", name, scopes.macros, expander.own_tags))
-    macro, outer_macros, outer_symbols = found
     if len(expander.calls) >= _MAX_CALLS:
         raise Undetermined(f"macros call each other more than {_MAX_CALLS} deep")
     expander.budget.charge(len(macro.parameters))
-    inner = Scopes(XacroScope(outer_macros), XacroScope(outer_symbols))
+    inner = Scopes(XacroScope(scopes.macros), XacroScope(scopes.symbols))
     left = bind_values(macro, node, scopes.symbols, inner.symbols, expander.texts)
     given = XacroNode(node.tag, node.place)
     expander.content(node, given, scopes)

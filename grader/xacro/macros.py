@@ -75,35 +75,11 @@ def read_parameters(text: str, budget: Budget) -> tuple[MacroParameter, ...]:
     return tuple(defaults.get(parameter.name, parameter) for parameter in parameters)
 
 
-def find_macro(name: str, macros: XacroScope, symbols: XacroScope) -> tuple[Macro, XacroScope, XacroScope] | None:
-    """Return the macro of a name, which may begin with namespaces, and the scopes in which it is defined."""
-    if _namespace(name, macros) is not None:
-        raise namespace_error(name)
+def find_macro(name: str, macros: XacroScope) -> Macro | None:
+    """Return the macro of a name."""
     holder = macros.holder(name)
-    if holder is None and "." in name:
-        *namespaces, name = name.split(".")
-        for space in namespaces:
-            inner_macros, inner_symbols = _namespace(space, macros), _namespace(space, symbols)
-            if inner_macros is None or inner_symbols is None:
-                return None
-            macros, symbols = inner_macros, inner_symbols
-        holder = macros.holder(name)
     macro = holder.properties[name].value if holder is not None else None
-    return (macro, macros, symbols) if isinstance(macro, Macro) else None
-
-
-def namespace_error(name: str) -> MacroError:
-    """Return why no macro has this name: xacro fails if it is the namespace of an included file in the same scope."""
-    return MacroError(f"{name} is the namespace of an included file, so no macro can have this name")
-
-
-def _namespace(name: str, scope: XacroScope) -> XacroScope | None:
-    """Return the namespace of a name, unless it is that of a macro or property in a nearer scope."""
-    holder = scope.holder(f"{name}.")
-    if holder is None or holder.holder(name) is not scope.holder(name):
-        return None
-    value = holder.properties[f"{name}."].value
-    return value if isinstance(value, XacroScope) else None
+    return macro if isinstance(macro, Macro) else None
 
 
 def bind_values(

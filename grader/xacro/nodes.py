@@ -34,7 +34,7 @@ _CDATA = re.compile(r"<!--.*?-->|<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 class XacroNode:
     """An element. `unresolved` holds why attributes are left as written: they are refused, or cannot be determined."""
 
-    __slots__ = ("attributes", "children", "moved", "open", "place", "tag", "unresolved")
+    __slots__ = ("attributes", "children", "open", "place", "tag", "unresolved")
 
     def __init__(self, tag: str, place: ScopePlace, attributes: dict[str, str] | None = None) -> None:
         self.tag = tag
@@ -43,7 +43,6 @@ class XacroNode:
         self.children: Children = []
         self.unresolved: dict[str, str] = {}  # attribute -> why it cannot be determined; empty where xacro refuses it
         self.open: str | None = None  # why it may have more children or attributes; empty where xacro refuses them
-        self.moved: dict[str, ScopePlace] = {}  # the places of attributes that <xacro:attribute> sets
 
     @property
     def elements(self) -> "list[XacroNode]":

@@ -95,11 +95,10 @@ class Property:
 
 
 class XacroScope:
-    """The names of one macro call, one namespace or the whole document."""
+    """The names of one macro call or the whole document."""
 
-    def __init__(self, parent: "XacroScope | None" = None, *, is_namespace: bool = False) -> None:
+    def __init__(self, parent: "XacroScope | None" = None) -> None:
         self.parent = parent
-        self.is_namespace = is_namespace
         self.properties: dict[str, Property] = {}
 
     @property

@@ -4,13 +4,12 @@ import re
 from collections.abc import Mapping
 from keyword import iskeyword
 
-from grader.static_python.values import Namespace, Undetermined, Value
+from grader.static_python.values import Undetermined, Value
 from grader.xacro.expander import Expander, Handler, Scopes, TagFails
 from grader.xacro.files import FileFails
 from grader.xacro.macro_tags import call_dynamically, call_macro, define_macro, insert_block, needed, renamed
 from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import BOOLEANS, Definition, Reported, XacroScope
-from grader.xacro.texts import for_xml
 
 _PATTERN = re.compile(r"[*\[?]")
 _NAME = re.compile(r"[^\W\d][\w.-]*(?::[^\W\d][\w.-]*)?")
@@ -72,15 +71,7 @@ def _target(scope: str | None, name: str, symbols: XacroScope) -> XacroScope:
         return symbols
     if symbols.parent is None:
         raise TagFails(f"the property {name} has the scope parent, but is outside of every macro")
-    return _outer(symbols)
-
-
-def _outer(symbols: XacroScope) -> XacroScope:
-    """Return the scope around a macro's: that of its caller, not a namespace."""
-    outer = symbols.parent or symbols
-    while not symbols.is_namespace and outer.is_namespace and outer.parent is not None:
-        outer = outer.parent
-    return outer
+    return symbols.parent
 
 
 def _if(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
@@ -105,14 +96,8 @@ def _element(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes
     expander.content(holder, out, scopes)
 
 
-def _attribute(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
-    name, value = (expander.texts.evaluate(needed(node, key), scopes.symbols) for key in ("name", "value"))
-    _check_name(name, node, expander)
-    if value and not isinstance(value, str):
-        shown = expander.texts.written(value)
-        raise TagFails(f"<xacro:attribute> needs a value that is a text: xacro fails with the number {shown}")
-    expander.set(out, name, for_xml(value or ""))
-    out.moved[name] = node.place._replace(scope=scopes.symbols)
+def _attribute(*_: object) -> None:
+    raise Undetermined("<xacro:attribute> is not supported")
 
 
 def _check_name(name: Value, node: XacroNode, expander: Expander) -> None:
@@ -122,23 +107,14 @@ def _check_name(name: Value, node: XacroNode, expander: Expander) -> None:
 
 def _include(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     texts = expander.texts
-    space = node.attributes.get("ns")
-    inner = scopes
-    if space:
-        value = texts.evaluate(space, scopes.symbols)
-        if isinstance(value, list | dict):
-            raise TagFails(f"<{node.tag}> needs a namespace that is a text, not {texts.written(value)[:60]}")
-        space = texts.written(value)
-        inner = Scopes(XacroScope(is_namespace=True), XacroScope(scopes.symbols, is_namespace=True))
-        scopes.macros.bind(f"{space}.", inner.macros)
-        scopes.symbols.bind(f"{space}.", inner.symbols)
-        found = Namespace(space, lambda name: texts.find(name, inner.symbols), lambda: _has_names(inner.symbols))
-        scopes.symbols.bind(space, found)
+    if node.attributes.get("ns"):
+        texts.names_open = Undetermined("an included file with a namespace is not supported")
+        raise texts.names_open
     optional = node.attributes.get("optional")
     is_optional = optional is not None and _boolean(optional, optional)
     try:
         path = expander.files.path(texts.text(needed(node, "filename"), scopes.symbols))
-        _insert_file(expander, path, out, inner)
+        _insert_file(expander, path, out, scopes)
         expander.files.followed.setdefault((node.place.source.path, node.place.tag), []).append(path)
     except FileFails as error:
         if is_optional:
@@ -149,13 +125,6 @@ def _include(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes
         if not isinstance(texts.names_open, Undetermined):
             texts.names_open = error
         raise
-
-
-def _has_names(namespace: XacroScope) -> bool:
-    """Return whether a namespace is true; without properties, it is for xacro once it has evaluated something in it."""
-    if not namespace.properties:
-        raise Undetermined("whether a namespace without properties is true is not supported")
-    return True
 
 
 def _insert_file(expander: Expander, path: str, out: XacroNode, scopes: Scopes) -> None:

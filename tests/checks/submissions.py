@@ -41,7 +41,7 @@ class Submitted:
             files,
             (),
             ignored=[
-                IgnoredFile(path, "is a rar archive", is_archive=True) for path in self.files if path.endswith(".rar")
+                IgnoredFile(path, "is a rar archive", is_closed=True) for path in self.files if path.endswith(".rar")
             ],
             generated=[path for path in self.files if path.startswith("install/")],
         )

@@ -250,93 +250,19 @@ def test_harmless_dots() -> None:
 
 
 @pytest.mark.parametrize("ending", EVERY)
-def test_symlinks_inside(ending: str) -> None:
-    """A symlink to a file or folder of the archive is followed, over several steps, and through other symlinks."""
-    links = [
-        LinkMember("one.urdf", URDF), LinkMember("my_robot/two.urdf", "urdf/my_robot.urdf"), LinkMember("a/b/three.urdf", "../../one.urdf"),
-        LinkMember("a/folder", "../my_robot/urdf"), LinkMember("four.urdf", "a/folder/./my_robot.urdf"), LinkMember("again", "a/folder"),
-    ]  # fmt: skip
-    tree = tree_of(MAKERS[ending](FILES, links))
-    assert tree.ignored == ()
-    expected = [
-        "a/b/three.urdf",
-        "a/folder/my_robot.urdf",
-        "again/my_robot.urdf",
-        "four.urdf",
-        "my_robot/two.urdf",
-        "one.urdf",
-        URDF,
-    ]
-    assert [path for path in tree.files if path.endswith(".urdf")] == sorted(expected)
-    assert all(text(tree, path) == ROBOT for path in expected)
-    assert {"a/b", "a/folder", "again"} <= tree.folders
-
-
-@pytest.mark.parametrize("ending", EVERY)
-@pytest.mark.parametrize(
-    "links",
-    [
-        [LinkMember("bad", "/etc/passwd")],
-        [LinkMember("bad", "../other")],
-        [LinkMember("a/bad", "../../" + URDF)],
-        [LinkMember("bad", "nothing.urdf")],
-        [LinkMember("bad", "bad")],
-        [LinkMember("bad", "")],
-        [LinkMember("bad", "my_robot/.git/config")],
-        [LinkMember("bad", "x" * 5000)],
-        [LinkMember("bad", "a/" * 1500)],
-    ],
-)
-def test_symlinks_that_lead_out(ending: str, links: list[LinkMember]) -> None:
-    """A symlink out of the archive, or to nothing in it, is ignored and named; nothing else is lost."""
-    tree = tree_of(MAKERS[ending](FILES, links))
+@pytest.mark.parametrize("target", ["/etc/passwd", "../other", URDF, "nothing.urdf", "link", "", "x" * 5000])
+def test_links_are_not_followed(ending: str, target: str) -> None:
+    """A link is ignored and named, and may hide what is to be graded; nothing else is lost."""
+    tree = tree_of(MAKERS[ending](FILES, [LinkMember("link", target)]))
     assert list(tree.files) == ["my_robot/package.xml", URDF]
-    assert tuple(map(str, tree.ignored)) == (
-        f"{links[0].name} is a link that leads nowhere in the archive, and was not followed",
-    )
+    assert tuple(map(str, tree.unopened)) == ("link is a symlink, and was not followed",)
+    assert "link" in tree.unseen
 
 
-@pytest.mark.parametrize("ending", EVERY)
-def test_symlink_cycles(ending: str) -> None:
-    """Cycles of symlinks end, as does a symlink to a parent folder."""
-    links = [
-        LinkMember("a", "b"),
-        LinkMember("b", "a"),
-        LinkMember("my_robot/urdf/up", ".."),
-        LinkMember("my_robot/here", "."),
-        LinkMember("x", "my_robot"),
-    ]
-    links += [LinkMember(f"chain{n}", f"chain{n + 1}") for n in range(100)]
-    tree = tree_of(MAKERS[ending](FILES, links))
-    assert list(tree.files) == ["my_robot/package.xml", URDF, "x/package.xml", "x/urdf/my_robot.urdf"]
-    assert len(tree.ignored) == 2 + 100
-
-
-def test_hard_links() -> None:
-    """A hard link in a tar names its file from the root; one that leads out is ignored."""
-    links = [
-        LinkMember("my_robot/copy.urdf", URDF, is_hard=True),
-        LinkMember("bad", "../etc/passwd", is_hard=True),
-        LinkMember("worse", "/etc/passwd", is_hard=True),
-    ]
-    tree = tree_of(make_tar(FILES, links))
-    assert text(tree, "my_robot/copy.urdf") == ROBOT
-    assert [line.split()[0] for line in map(str, tree.ignored)] == ["bad", "worse"]
-
-
-@pytest.mark.exhaustive
-def test_many_symlinks() -> None:
-    """Thousands of symlinks to folders of thousands of files are refused; long chains of symlinks end."""
-    files: dict[str, bytes | None] = {f"a/{n}": b"" for n in range(5000)}
-    with limited_work(50_000_000):
-        assert "contains more than 50000 files" in refusal(
-            make_tar(files, [LinkMember(f"b{n}", "a") for n in range(5000)])
-        )
-        tree = tree_of(make_tar({"a/x": b""}, [LinkMember(f"b{n}", "a/../" * 700 + "a") for n in range(3000)]))
-    assert next(iter(tree.files)) == "a/x"
-    chain = [LinkMember(f"l{n}", f"l{n + 1}/l{n + 1}") for n in range(60)]
-    with limited_work(300_000):
-        assert len(tree_of(make_tar({"a": b""}, chain)).ignored) == 60
+def test_hard_links_are_not_followed() -> None:
+    """A hard link in a tar is ignored and named."""
+    tree = tree_of(make_tar(FILES, [LinkMember("copy.urdf", URDF, is_hard=True)]))
+    assert tuple(map(str, tree.unopened)) == ("copy.urdf is a symlink, and was not followed",)
 
 
 @pytest.mark.parametrize("kind", [tarfile.CHRTYPE, tarfile.BLKTYPE, tarfile.FIFOTYPE])
@@ -465,16 +391,6 @@ def test_corrupted_archives(ending: str, changes: list[tuple[int, int, bytes]]) 
         assert "\n" not in str(error)
         return
     read_all(tree)
-
-
-@examples(20)
-@given(st.sampled_from(["zip", "tar", "gz", "bz2", "xz"]), st.binary(max_size=1200))
-def test_any_bytes_as_an_archive(kind: str, data: bytes) -> None:
-    """Any bytes are refused in one line or are a file tree."""
-    try:
-        read_all(read_archive(io.BytesIO(data), kind, "a"))
-    except InputError as error:
-        assert "\n" not in str(error)
 
 
 def test_a_member_without_a_name() -> None:
@@ -770,43 +686,26 @@ def test_a_folder(home: Path) -> None:
 
 
 def test_symlinks_in_folders(home: Path) -> None:
-    """Symlinks inside are followed with the real paths; symlinks out, broken ones and loops are ignored and named."""
-    for name, target in (
-        ("a_link.urdf", URDF), ("a_folder", "my_robot"), ("my_robot/urdf/up", ".."), ("my_robot/top", ".."),
-        ("bad_1", "../secret.urdf"), ("bad_2", "/etc"), ("bad_3", "nothing"), ("bad_4", "bad_4"), ("bad_5", "../lab6/../secret.urdf"),
-        ("fine", "../lab6/my_robot/urdf"),
-    ):  # fmt: skip
+    """No symlink is followed; each is named, and may hide what is to be graded."""
+    links = {"a": URDF, "b": "my_robot", "c": "../secret.urdf", "d": "/etc", "e": "nothing", "f": "f"}
+    for name, target in links.items():
         (home / name).symlink_to(target)
     tree = read_folder(home)
-    assert list(tree.files) == ["a_folder/urdf/my_robot.urdf", "a_link.urdf", "fine/my_robot.urdf", URDF]
-    assert all(text(tree, path) == ROBOT for path in tree.files)
-    assert [line.split()[0] for line in map(str, tree.ignored)] == ["bad_1", "bad_2", "bad_3", "bad_4", "bad_5"]
-
-
-def test_symlink_cycles_in_folders(tmp_path: Path) -> None:
-    """Folders that all link to each other end."""
-    for n in range(30):
-        (tmp_path / f"d{n}").mkdir()
-        (tmp_path / f"d{n}/a.urdf").write_bytes(b"")
-        for m in range(30):
-            (tmp_path / f"d{n}/l{m}").symlink_to(f"../d{m}")
-    with limited_work(4_000_000):
-        tree = read_folder(tmp_path)
-    assert {f"d{n}/a.urdf" for n in range(30)} <= set(tree.files)
-    assert len(tree.files) <= 60
+    assert list(tree.files) == [URDF]
+    assert tuple(map(str, tree.unopened)) == tuple(f"{name} is a symlink, and was not followed" for name in links)
+    assert links.keys() <= tree.unseen
 
 
 def test_special_files(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """FIFOs and sockets are ignored and named, and never opened."""
     os.mkfifo(home / "fifo")
-    (home / "link").symlink_to("fifo")
     monkeypatch.chdir(home)
     with socket.socket(socket.AF_UNIX) as listening:
         listening.bind("socket")
         tree = read_folder(home)
     assert list(tree.files) == [URDF]
     assert tuple(map(str, tree.ignored)) == tuple(
-        f"{name} is not a regular file, and was not read" for name in ("fifo", "link", "socket")
+        f"{name} is not a regular file, and was not read" for name in ("fifo", "socket")
     )
 
 

@@ -83,18 +83,6 @@ def test_a_property_without_prefix_gets_it() -> None:
     assert edits_of(hints)[0] == [("<property", "<xacro:property")]
 
 
-def test_an_attribute_that_xacro_adds_is_not_renamed() -> None:
-    """Its name is not in the tag: the attribute with the right name is added there."""
-    added = '<xacro:attribute name="xzy" value="0.15 0 0.225"/>'
-    text = re.sub(
-        r'<origin xyz="0.15 0 0.225".*?/>', f'<xacro:element xacro:name="origin">{added}</xacro:element>', REFERENCE
-    )
-    text = text.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
-    hints = hints_for(read_submission(text.encode(), identity="robot", path="my_robot.urdf.xacro"))
-    assert hints.is_full
-    assert edits_of(hints) == [[("<xacro:element", '<xacro:element xyz="0.15 0 0.225"')]]
-
-
 def test_exchanged_expressions_are_exchanged() -> None:
     """They are not replaced by numbers."""
     base, right, wrong = (

@@ -1,11 +1,8 @@
 """Reading package.xml: the package's name, its build type, what is missing, and where."""
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from grader.package.manifest import Manifest, read_manifest
-from tests.examples import examples
 from tests.work import limited_work
 
 # As ros2 pkg create writes it, filled in.
@@ -136,23 +133,3 @@ def test_hostile_files(text: str) -> None:
     """Depth, length and number take linear time."""
     with limited_work(400_000):
         assert isinstance(read(text).problems, tuple)
-
-
-@examples(20)
-@given(
-    st.integers(0, len(COMPLETE)),
-    st.integers(0, 30),
-    st.binary(max_size=6) | st.sampled_from([b"<", b"&a;", b"<!--", b"]]>"]),
-)
-def test_changed_files(start: int, length: int, put: bytes) -> None:
-    """A file with text removed or inserted is read without an error."""
-    data = COMPLETE.encode()
-    found = read_manifest(data[:start] + put + data[start + length :], "package.xml")
-    assert all(problem.location.line > 0 and "\n" not in problem.message for problem in found.problems)
-
-
-@examples(20)
-@given(st.binary(max_size=80) | st.text("<>&;!-[]?/= \"'package\n", max_size=60).map(str.encode))
-def test_any_bytes(data: bytes) -> None:
-    """Any bytes are read without an error."""
-    assert isinstance(read_manifest(data, "package.xml"), Manifest)

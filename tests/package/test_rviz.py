@@ -1,12 +1,10 @@
 """Reading RViz files: the fixed frame, the enabled displays, and problems."""
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from grader.package.rviz import RvizFile, read_rviz, switched_on
 from grader.package.yaml_nodes import YamlNode, read_yaml
-from tests.examples import examples, spread
+from tests.examples import spread
 from tests.work import limited_work
 
 # As RViz of ROS 2 Jazzy saves it, without irrelevant parts.
@@ -190,11 +188,6 @@ def test_class_without_a_package() -> None:
     assert [(display.package, display.kind) for display in found] == [("", "RobotModel"), ("a/b", "C"), ("", "")]
 
 
-def test_the_last_of_equal_keys_counts() -> None:
-    """As in RViz, a later key replaces an earlier one."""
-    assert displays("Class: a/B, Enabled: false, Class: c/D, Enabled: true").displays[0].kind == "D"
-
-
 @pytest.mark.parametrize(
     "text",
     spread(
@@ -214,28 +207,3 @@ def test_endless_groups(text: str) -> None:
         found = read(text)
         assert len(found.displays) <= 500
         assert isinstance(found.problems, tuple)
-
-
-LINES = st.sampled_from(SAVED.splitlines(keepends=True))
-
-
-@examples(20)
-@given(
-    st.lists(
-        LINES | st.text(max_size=8) | st.sampled_from(["&a ", "*a", "- ", "\0", "[", "{", "'", '"', "\t"]), max_size=30
-    )
-)
-def test_any_text(pieces: list[str]) -> None:
-    """Any text is read without an error."""
-    found = read_rviz("".join(pieces).encode("utf-8", "surrogatepass"), "a.rviz")
-    assert isinstance(found.problems, tuple)
-    assert (found.fault is None) or not found.displays
-
-
-@examples(20)
-@given(st.integers(0, len(SAVED)), st.integers(0, 30), st.binary(max_size=6))
-def test_changed_files(start: int, length: int, put: bytes) -> None:
-    """A saved file with text removed or inserted is read without an error."""
-    data = SAVED.encode()
-    found = read_rviz(data[:start] + put + data[start + length :], "a.rviz")
-    assert all(problem.location.line > 0 for problem in found.problems)

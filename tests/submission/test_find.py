@@ -1,6 +1,8 @@
 """Selecting the URDF and the package of a submission that are graded, and the reasons against the others."""
 
 from functools import partial
+from pathlib import Path
+from shutil import copytree
 
 import pytest
 from hypothesis import given
@@ -8,15 +10,17 @@ from hypothesis import strategies as st
 
 from grader.errors import InputError
 from grader.files.tree import File, Tree, make_tree
+from grader.grading.grade import grade
 from grader.package.package import Package
 from grader.submission import search
 from grader.submission.labs import LabFolders
-from grader.submission.opening import submission_of
+from grader.submission.opening import open_submission, submission_of
 from grader.submission.packages import find_packages, read_packages
 from grader.submission.robots import find_robots
 from grader.submission.search import UrdfChoice
 from grader.submission.submission import DEFAULTS, Lab
 from grader.submission.urdf import OtherCandidate
+from tests.samples import LAB6, ROOT
 from tests.work import limited_work
 
 EXPECTED = "urdf/my_robot.urdf"
@@ -471,3 +475,18 @@ def test_a_description_package() -> None:
     tree = tree_of("my_robot/package.xml", "my_robot/test.urdf", "my_robot_description/package.xml", "my_robot_description/urdf/my_robot.urdf",
                    package=manifest("my_robot"))  # fmt: skip
     assert submission_of(tree, "a", Lab(EXPECTED, "my_robot")).path == "my_robot_description/urdf/my_robot.urdf"
+
+
+@pytest.mark.parametrize(("is_link", "status"), [(True, "pending"), (False, "failed")])
+def test_a_link_may_hide_what_is_missing(is_link: bool, status: str, tmp_path: Path) -> None:
+    """A launch folder that is a symlink needs manual grading; one that is missing, beside a build, fails."""
+    package = tmp_path / "lab6" / "my_robot"
+    copytree(ROOT / "rubrics/lab6/my_robot", package)
+    (package / "launch").rename(tmp_path / "launch")
+    (package / "build").mkdir()
+    if is_link:
+        (package / "launch").symlink_to(tmp_path / "launch")
+    results = grade(LAB6, open_submission(str(tmp_path / "lab6"), LAB6.lab)).results
+    found = {result.criterion.id: result.outcome.status for result in results}
+    assert found["launch-found"] == status
+    assert found["setup-installs-launch"] == ("pending" if is_link else "skipped")

@@ -1,7 +1,7 @@
-"""Random documents whose properties, macros, blocks, arguments, namespaces and files share a few names.
+"""Random documents whose properties, macros, blocks, arguments and files share a few names.
 
 The other grammar writes what students write. This one writes what they do not: names that hide each other, scopes, blocks in blocks,
-definitions in included files with nested namespaces, defaults of outer scopes, texts that look like numbers, and odd white space.
+definitions in included files, defaults of outer scopes, texts that look like numbers, and odd white space.
 """
 
 from random import Random
@@ -11,7 +11,6 @@ from tests.xacro.documents.document import Document, part, robot
 
 _NAMES = ("a", "b", "c")
 _MACROS = ("m", "k", "a", "n.m", "o.m", "n.o.m", "m.m")
-_SPACES = ("n", "o", "n.o", "m", "a", "${a}", "")
 _FILES = ("one.xacro", "two.xacro", "sub/three.xacro")
 _BY_NAME = "${a}.xacro"
 _PARAMS = (
@@ -46,11 +45,10 @@ def document(seed: int) -> Document:
     files: dict[str, str | bytes] = {f"urdf/{name}": part(writer.body(2)) for name in _FILES if random.random() < 0.6}
     writer.is_main = True
     arguments = {name: random.choice(_VALUES) for name in _NAMES if random.random() < 0.8}
-    body = writer.hidden_namespace() if random.random() < 0.2 else ""
-    body += "".join(writer.definition() for _ in range(random.randint(0, 3))) + writer.body(3)
-    # These need manual grading: who starts xacro may give the argument, a name of a file may be a pattern, a namespace is no value.
+    body = "".join(writer.definition() for _ in range(random.randint(0, 3))) + writer.body(3)
+    # These need manual grading: who starts xacro may give the argument, a name of a file may be a pattern.
     text = body + "".join(map(str, files.values()))
-    is_open = len(arguments) < len(_NAMES) or _BY_NAME in text or " ns=" in text
+    is_open = len(arguments) < len(_NAMES) or _BY_NAME in text
     return Document(robot(body), files, arguments, "perhaps" if is_open else "never")
 
 
@@ -68,18 +66,6 @@ class _Writer:
     def definition(self) -> str:
         """Return a property with a name that many expressions use."""
         return f"<xacro:property name='{self._pick(_NAMES)}' value={quoteattr(self._pick(('1', '2.50', 'x y', 'true', '${1 + 1}', '${[1, 2]}')))}/>"
-
-    def hidden_namespace(self) -> str:
-        """Return a macro that defines and calls another one, most often with the name of a namespace."""
-        space, outer = self._pick(("m", "a", "n", "o")), self._pick(_MACROS[:3])
-        name = self._pick((space, space, *_MACROS[:3]))
-        body = (
-            f"<xacro:macro name='{name}'><s/></xacro:macro><xacro:{name}/>{self._pick(('', '', f'<xacro:{space}.m/>'))}"
-        )
-        return (
-            f"<xacro:include filename='{self._pick(_FILES)}' ns='{space}'/>"
-            f"<xacro:macro name='{outer}'>{body}</xacro:macro><xacro:{outer}/>"
-        )
 
     def _text(self) -> str:
         """Return the text of an attribute: a value, an expression, or several of them."""
@@ -171,22 +157,15 @@ class _Writer:
     def _include(self, _: int) -> str:
         if self.has_optional and not self.is_main:
             return self._shown()  # docs/xacro.md: what is missing inside of an optional file is a known difference
-        space = self._pick(_SPACES)
-        more = (f' ns="{space}"' if self._random.random() < 0.7 else "") + (
-            ' optional="true"' if self.has_optional and self._random.random() < 0.5 else ""
-        )
+        more = ' optional="true"' if self.has_optional and self._random.random() < 0.5 else ""
         name = self._pick((*_FILES, "./one.xacro", "$(find my_robot)/urdf/two.xacro", _BY_NAME))
         return f"<xacro:include filename={quoteattr(name)}{more}/>"
 
     def _element(self) -> str:
-        attribute = (
-            f"<xacro:attribute name={quoteattr(self._pick(('k', 'x', '${a}', '')))} value={quoteattr(self._text())}/>"
-        )
         name = quoteattr(self._pick(("e", "${a}", "")))
         return self._pick(
             (
-                f"<xacro:element xacro:name={name}>{attribute}<z/></xacro:element>",
-                f"<w>{attribute}{attribute}</w>",
+                f"<xacro:element xacro:name={name} k={quoteattr(self._text())}><z/></xacro:element>",
                 f"<xacro:element name={name}/>",
             )
         )

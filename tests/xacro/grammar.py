@@ -62,9 +62,7 @@ class _Writer(Definitions):
 
     def _text(self, names: Names) -> str:
         texts = [escape(self._value(names, kind)) for kind in ("texts", "lists", "numbers")]
-        attribute = f"<xacro:attribute name='k' value={quoteattr('v ' + self._value(names, 'texts'))}/>"
-        condition = f"<xacro:if value='{self._random.choice('01')}'>{attribute}</xacro:if>"
-        return f"<text>{texts[0]} and {texts[1]}<in/>{texts[2]}{self._random.choice((attribute, condition, ''))}</text>"
+        return f"<text>{texts[0]} and {texts[1]}<in/>{texts[2]}</text>"
 
     def _link(self, names: Names) -> str:
         numbers = [f"${{{self._write.number(names)}}}" for _ in range(6)]
@@ -141,10 +139,8 @@ class _Writer(Definitions):
         return f"<xacro:{macro.name} {attributes}>{blocks}</xacro:{macro.name}>"
 
     def _element(self, names: Names) -> str:
-        attribute = (
-            f"<xacro:attribute name='{self._name('k')}' value={quoteattr('v ' + self._value(names, 'numbers'))}/>"
-        )
-        return f'<xacro:element xacro:name="{self._random.choice(("e", "e_${1 + 1}"))}">{attribute}</xacro:element>'
+        value = quoteattr("v " + self._value(names, "numbers"))
+        return f'<xacro:element xacro:name="{self._random.choice(("e", "e_${1 + 1}"))}" k={value}/>'
 
     def _comment(self, names: Names) -> str:
         return f"<!-- ${{not evaluated}} -->{self._call(names)}"
@@ -152,18 +148,13 @@ class _Writer(Definitions):
     def _include(self, names: Names) -> str:
         path = self._name("part") + ".xacro"
         folder = self._random.choice(("urdf/", "urdf/parts/", "common/"))
-        namespace = self._name("n") if self._maybe(0.3) else ""
         names_of_file = Names()
         content = "".join(self._property(names_of_file) for _ in range(self._random.randint(1, 3)))
         if self._maybe(0.5):
             content += self._macro(names_of_file, 0)
-            macro = self._macros[-1]
-            macro.name = f"{namespace}.{macro.name}".removeprefix(".")
         self._files[folder + path] = part(content + self._link(names_of_file))
         for kind in ("numbers", "texts", "lists", "flags"):
-            found = [f"{namespace}.{name}" if namespace else name for name in getattr(names_of_file, kind)]
-            getattr(names, kind).extend(found)
+            getattr(names, kind).extend(getattr(names_of_file, kind))
         way = {"urdf/": path, "urdf/parts/": f"parts/{path}", "common/": f"../common/{path}"}[folder]
         way = f"$(find my_robot)/{folder}{path}" if self._maybe(0.3) else way
-        space = f' ns="{namespace}"' if namespace else ""
-        return f'<xacro:include filename="{way}"{space}/>'
+        return f'<xacro:include filename="{way}"/>'

@@ -59,14 +59,6 @@ def test_the_macro_calls_that_led_to_an_element() -> None:
     assert text_at(NESTED, places["mass"].calls[1][1]).startswith("<xacro:mass/>")
 
 
-def test_an_attribute_is_where_it_is_written() -> None:
-    """A place of an attribute is that in the source; of one that <xacro:attribute> sets, the value there."""
-    document = Document(robot('<link  name="${\'a\'}">\n<xacro:attribute name="note" value="x"/></link>'))
-    source = expand(document).source
-    assert text_at(document, source.tag(1, "name")).startswith("name=\"${'a'}\"")
-    assert text_at(document, source.tag(1, "note")).startswith('value="x"')
-
-
 def test_reports_name_the_calls(tmp_path: Path) -> None:
     """The terminal, Markdown, JSON and inspect show the calls that led to a failure."""
     wheel = '<link name="${side}_wheel"><visual><geometry><box size="1 1"/></geometry></visual></link>'

@@ -31,5 +31,5 @@ def test_random_documents_are_the_same_in_every_run_and_often_accepted(write: ty
 def test_random_documents_use_every_tag(write: type) -> None:
     """Every tag of xacro is in some random document."""
     text = "".join(write(seed).text for seed in range(100))
-    tags = ("property", "macro", "call", "if", "unless", "insert_block", "include", "arg", "element", "attribute")
+    tags = ("property", "macro", "call", "if", "unless", "insert_block", "include", "arg", "element")
     assert [tag for tag in tags if f"<xacro:{tag} " not in text] == []

@@ -10,9 +10,8 @@ from lxml import etree
 from grader.robot.reader import read_urdf
 from grader.xml.catalogue import MISPLACED_DECLARATION
 from grader.xml.parsing import is_plain
-from grader.xml.tinyxml2.recovery import Scan
 from grader.xml.tinyxml2.scanner import Scanner
-from grader.xml.tinyxml2.tags import MAX_NAME_LENGTH
+from grader.xml.tinyxml2.tags import MAX_NAME_LENGTH, Scan
 from tests.examples import examples, spread
 from tests.robot.random_text import data
 from tests.work import limited_work

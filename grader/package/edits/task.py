@@ -10,8 +10,9 @@ from grader.errors import InputError
 from grader.names import closest
 from grader.package.launch.model import Launch
 from grader.package.launch.places import ENDINGS, is_in_launch_folder, is_launch_named
-from grader.package.package import MANIFEST, PYTHON_LIMIT, SETUP, Package
+from grader.package.package import MANIFEST, SETUP, Package
 from grader.source import Edit, Source
+from grader.static_python.budget import PYTHON_LIMIT
 
 _RVIZ_LIMIT = 512 * 1024
 WHAT = {"launch": "the launch file", "rviz": "the RViz file", "urdf": "the URDF"}

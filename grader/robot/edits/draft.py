@@ -135,9 +135,8 @@ class Draft(RobotElements):
         """Return the edit that gives an attribute another name."""
         source, start = self.source.element(self._tags[element])
         found = markup.attribute(source.text, start, old)
-        if found is None:
-            return ()
-        return (source.edit(found.start, found.end, f"{new}{source.text[found.start + len(old) : found.end]}"),)
+        rest = source.text[found.start + len(old) : found.end] if found is not None else ""
+        return (source.edit(found.start, found.end, f"{new}{rest}"),) if found is not None else ()
 
     def rename_tag(self, element: Element, new: str) -> Edits:
         """Return the edits that give an element another name, at its start and at its end."""

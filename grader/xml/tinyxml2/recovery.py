@@ -1,14 +1,13 @@
 """What can be read of a text that TinyXML2 refuses: every element but the broken ones as is, and the assumptions."""
 
 import re
-from typing import Literal, NamedTuple
+from typing import Literal
 
 from grader.markup import indentation
 from grader.names import near
-from grader.problems import Kind
 from grader.text import enumerated
 from grader.xml import catalogue
-from grader.xml.tinyxml2.tags import MalformedTagError, ReadTag, read_tag, short
+from grader.xml.tinyxml2.tags import MalformedTagError, NoteDifference, ReadTag, Scan, read_tag, short
 from grader.xml.tinyxml2.values import decode, escape
 from grader.xml.urdf_format import CHILDREN, REQUIRED, TAGS
 
@@ -34,33 +33,6 @@ _TOP = ("gazebo", "transmission", "ros2_control", *_XACRO)
 _TAGS = {*CHILDREN, *(tag for tags in CHILDREN.values() for tag in tags), *_XACRO}
 _MAX_DEPTH = 32  # where reading stops; urdfdom never looks deeper than robot/link/visual/geometry/box
 _MAX_ASSUMED = 20
-
-
-class NoteDifference(NamedTuple):
-    """A difference from XML, an error, or what was assumed about one, at a character offset.
-
-    `subject` is the tag of which a part cannot be read.
-    """
-
-    kind: Kind
-    message: str
-    offset: int
-    subject: str = ""
-
-
-class Scan(NamedTuple):
-    """The first top-level <robot> as XML, with the offset of each of its start tags; both empty if there is none.
-
-    If TinyXML2 refuses the text, `recovered` is what can be read of it, and the offsets are those of its tags. The XML
-    has no comments, and a prefix stands for its namespace. urdfdom reads tags and attributes only; simulators read the
-    text in elements, too.
-    """
-
-    xml: bytes
-    offsets: list[int]
-    first_tag: int
-    differences: list[NoteDifference]
-    recovered: bytes = b""
 
 
 class Recovery:

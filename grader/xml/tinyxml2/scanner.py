@@ -5,9 +5,9 @@ from functools import cached_property
 
 from grader.problems import Kind
 from grader.xml import catalogue
-from grader.xml.tinyxml2.recovery import NoteDifference, Recovery, Scan
-from grader.xml.tinyxml2.tags import REFERENCE, MalformedTagError, ReadTag, read_tag, short, skip_blank
-from grader.xml.tinyxml2.values import ILLEGAL, decode, escape
+from grader.xml.tinyxml2.recovery import Recovery
+from grader.xml.tinyxml2.tags import MalformedTagError, NoteDifference, ReadTag, Scan, read_tag, short, skip_blank
+from grader.xml.tinyxml2.values import ILLEGAL, REFERENCE, decode, escape
 
 # A declaration that XML parsers accept. TinyXML2 ignores what it says, and always reads UTF-8.
 _DECLARATION = re.compile(

@@ -4,8 +4,9 @@ import re
 from collections.abc import Callable
 from typing import Literal, NamedTuple
 
+from grader.problems import Kind
 from grader.text import cut
-from grader.xml.tinyxml2.values import decode, escape
+from grader.xml.tinyxml2.values import REFERENCE, decode, escape
 from grader.xml.urdf_format import TAGS
 
 Note = Callable[[str, str, int], None]  # the kind of a difference from XML, its description and its offset
@@ -14,9 +15,6 @@ _BLANK = re.compile(r"[ \t\n\v\f\r]*")
 _NAME = re.compile(r"[A-Za-z_:\u0080-\U0010ffff][A-Za-z0-9_:.\-\u0080-\U0010ffff]*")
 _PLAIN_NAME = re.compile(r"(?!(?i:xml))[A-Za-z_][A-Za-z0-9_.\-]*")
 MAX_NAME_LENGTH = 60  # the longest name that urdfdom knows has 17 letters
-
-# A bare & or an entity that XML does not define.
-REFERENCE = re.compile(r"&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
 
 
 class ReadTag(NamedTuple):
@@ -39,6 +37,33 @@ class ReadTag(NamedTuple):
         prefix, colon, _ = self.xml_name.partition(":")
         declared = f' xmlns:{prefix}="{prefix}"' if colon else ""
         return f"<{self.xml_name}{declared}{values}{'>' if self.form == 'open' else '/>'}"
+
+
+class NoteDifference(NamedTuple):
+    """A difference from XML, an error, or what was assumed about one, at a character offset.
+
+    `subject` is the tag of which a part cannot be read.
+    """
+
+    kind: Kind
+    message: str
+    offset: int
+    subject: str = ""
+
+
+class Scan(NamedTuple):
+    """The first top-level <robot> as XML, with the offset of each of its start tags; both empty if there is none.
+
+    If TinyXML2 refuses the text, `recovered` is what can be read of it, and the offsets are those of its tags. The XML
+    has no comments, and a prefix stands for its namespace. urdfdom reads tags and attributes only; simulators read the
+    text in elements, too.
+    """
+
+    xml: bytes
+    offsets: list[int]
+    first_tag: int
+    differences: list[NoteDifference]
+    recovered: bytes = b""
 
 
 class MalformedTagError(Exception):
