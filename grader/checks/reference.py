@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 from math import degrees
 from typing import Annotated, Any, Literal
 
-from grader.checks.check import MEASURES, About, Usual
+from grader.checks.check import About
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, passed, place, point
 from grader.checks.toml_types import Constraint, NonNegative
 from grader.errors import MissingElement, NotDecided, RubricError
@@ -98,8 +98,6 @@ def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
 ABOUT = {
     "kinematics_match_reference": About(
         ("joint/origin",),
-        measure=f"{MEASURES}.joints:motions",
-        usual=Usual({"samples": 20}, "random positions, besides the ends of each range"),
         breaks_under=_breaks_under,
     )
 }
