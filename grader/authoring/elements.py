@@ -8,10 +8,9 @@ from typing import Any
 from grader.authoring.fact import Fact, Facts, Omission, Solution
 from grader.package.launch.places import is_of_one_machine
 from grader.xml.parsing import Element
-from grader.xml.wanted_element import name_of, readable, text_in
+from grader.xml.wanted_element import foreign_elements, name_of, readable, text_in
 
 _MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
-_FOREIGN = ("gazebo", "ros2_control", "transmission", "sensor")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _TRUTH = {"true": True, "false": False}
 _NAMED_BY = ("reference", "name", "filename", "type")
@@ -19,21 +18,9 @@ _NAMED_BY = ("reference", "name", "filename", "type")
 Values = dict[str, Any]
 
 
-def _foreign_elements(root: Element | None) -> list[Element]:
-    """Return the elements of <robot> for simulators and controllers."""
-    return [child for child in root if name_of(child) in _FOREIGN] if root is not None else []
-
-
-def words_in(root: Element | None) -> set[str]:
-    """Return the words in the elements for simulators and controllers, such as names of joints and paths."""
-    inner = [inner for element in _foreign_elements(root) for inner in element.iter()]
-    texts = [text for element in inner for text in (element.text or "", *map(str, element.attrib.values()))]
-    return {word for text in texts for word in text.split()}
-
-
 def element_facts(solution: Solution) -> Facts:
     """Yield the values in each element for simulators and controllers."""
-    for element in _foreign_elements(solution.reading.root):
+    for element in foreign_elements(solution.root):
         about = f"<{name_of(element)}>"
         if sum(1 + len(inner.attrib) for inner in element.iter()) > _MAX_VALUES:
             yield Omission(_label(element), f"it has more than {_MAX_VALUES} elements and attributes")

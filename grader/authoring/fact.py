@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading
 from grader.submission.submission import Submission
+from grader.xml.parsing import Element
 
 THE_FILE, THE_ROBOT, THE_PACKAGE = "The file", "The robot", "The package"  # headings
 
@@ -16,6 +17,12 @@ class Solution(NamedTuple):
     submission: Submission
     reading: Reading
     robot: Configuration
+
+    @property
+    def root(self) -> Element:
+        """The <robot> that it was read from."""
+        assert self.reading.root is not None  # ROS 2 loads it
+        return self.reading.root
 
 
 class Fact(NamedTuple):

@@ -6,7 +6,6 @@ from itertools import permutations
 from math import degrees, isfinite
 from typing import Any
 
-from grader.authoring.elements import words_in
 from grader.authoring.fact import THE_FILE, THE_ROBOT, Fact, Facts, Omission, Solution
 from grader.checks.mesh_files import mesh_file
 from grader.checks.visuals import MAX_SHAPES
@@ -15,6 +14,7 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Collision, Cylinder, Joint, Link, Mesh, Sphere, Visual
 from grader.robot.shapes import is_empty
 from grader.robot.transforms import rotation_from_rpy
+from grader.xml.wanted_element import words_of_foreign
 
 _WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")
 _COUNTED = ("revolute", "continuous", "prismatic")
@@ -161,7 +161,7 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     """Yield the names of joints that other elements use, the root, the numbers of joints, and how the tips move."""
     robot = solution.robot
     joints, root = robot.parent_joints.values(), robot.main_tree[0]
-    words = words_in(solution.reading.root)
+    words = words_of_foreign(solution.root)
     used = {joint.name: joint.child for joint in joints if joint.name in words}
     if used:
         yield _of_robot("joints_named", parent=root, joints=used)
