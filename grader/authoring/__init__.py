@@ -1,4 +1,4 @@
-"""A new rubric from a reference solution: its facts are measured, written as criteria, and tried on the reference.
+"""A new rubric from a reference solution: its facts are tried on it, and written as criteria.
 
 It imports `grading` and below. Begin with `draft.py`.
 """

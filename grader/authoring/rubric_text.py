@@ -4,8 +4,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from grader.checks.measures.fact import Fact
-from grader.checks.registry import check_names, usable_check
+from grader.authoring.fact import THE_PACKAGE, Fact
 from grader.grading.toml_rows import assignment, toml_literal
 from grader.text import printable
 
@@ -23,6 +22,19 @@ def toml_lines(key: str, value: Any) -> Iterator[str]:
     yield "]"
 
 
+# The arguments that all criteria of a check get, with their unit: room for rounding, but not for mistakes.
+_METRES, _DEGREES = ({"tolerance": 0.002}, "metres"), ({"tolerance": 1.0}, "degrees")
+USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
+    **dict.fromkeys(("shows_box", "shows_cylinder", "shows_sphere"), _METRES),
+    "shows_colour": ({"tolerance": 0.01}, "of a channel from 0 to 1"),
+    "frame_at": ({"tolerance": 0.002, "angle": 1.0}, "metres, degrees"),
+    "centre_at": _METRES,
+    **dict.fromkeys(("joint_limits", "joint_axis"), _DEGREES),
+    "mass_is": ({"tolerance": 0.001}, "kilograms"),
+    "inertia_plausible": ({"tolerance": 2.0}, "percent"),
+    **dict.fromkeys(("collision_matches_visual", "collides_as"), _METRES),
+    "kinematics_match_reference": ({"samples": 20}, "random positions, besides the ends of each range"),
+}
 _ROBOT, _PACKAGE = "robot", "package"
 _MAX_ID = 60
 
@@ -41,35 +53,46 @@ class Head(NamedTuple):
     schema: str = ""
 
 
-def rubric_text(head: Head, facts: Mapping[str, Fact]) -> str:
-    """Return a rubric with a criterion for each fact, by the ids of the criteria."""
-    of_package = sum(fact.of_package for fact in facts.values())
+class Row(NamedTuple):
+    """A criterion: a fact that the reference passes, and what the check says of it."""
+
+    fact: Fact
+    title: str
+
+    @property
+    def is_of_package(self) -> bool:
+        """Whether the package is needed for it."""
+        return self.fact.about == THE_PACKAGE
+
+
+def rubric_text(head: Head, rows: Sequence[Row]) -> str:
+    """Return a rubric with a criterion for each row; those with one heading follow each other."""
+    of_package = sum(row.is_of_package for row in rows)
     lines = [
-        *_head(head, len(facts)),
-        *_defaults({fact.check for fact in facts.values()}),
-        *_part(_ROBOT, "The robot", "urdf", len(facts) - of_package),
+        *_head(head, len(rows)),
+        *_defaults({row.fact.check for row in rows}),
+        *_part(_ROBOT, "The robot", "urdf", len(rows) - of_package),
         *(_part(_PACKAGE, "The package", "package", of_package) if of_package else ()),
     ]
     about = ""
-    for name, fact in facts.items():
-        if fact.about != about:
-            about = fact.about
-            lines += ["", _heading(about)]
-        lines += _criterion(name, fact)
+    for name, row in _by_id(rows).items():
+        if row.fact.about != about:
+            about = row.fact.about
+            lines += ["", f"# --- {printable(about)} ".ljust(WIDTH, "-")]
+        lines += _criterion(name, row)
     return "\n".join(lines) + "\n"
 
 
-def criterion_ids(facts: Sequence[Fact]) -> dict[str, Fact]:
-    """Return the facts by their ids: words of the names that they are about, such as upper-arm-mass."""
-    found: dict[str, Fact] = {}
+def _by_id(rows: Sequence[Row]) -> dict[str, Row]:
+    """Return the rows by ids of what they are about and their checks, such as upper-arm-mass-is."""
+    found: dict[str, Row] = {}
     numbers: dict[str, int] = {}  # the last that each name got
-    for fact in facts:
-        words = re.sub(r"[\W_]+", "-", f"{fact.subject} {fact.aspect}".lower()).strip("-")[:_MAX_ID].strip("-")
-        name = words = words or "criterion"
+    for row in rows:
+        name = words = re.sub(r"[\W_]+", "-", row.fact.words.lower()).strip("-")[:_MAX_ID].strip("-")
         while name in found:
             numbers[words] = numbers.get(words, 1) + 1
             name = f"{words}-{numbers[words]}"
-        found[name] = fact
+        found[name] = row
     return found
 
 
@@ -86,10 +109,9 @@ def _head(head: Head, points: int) -> Iterator[str]:
 
 def _defaults(checks: set[str]) -> Iterator[str]:
     yield from ("", "[defaults]", assignment("part", _ROBOT), assignment("points", 1))
-    known = (usable_check(name) for name in check_names() if name in checks)
-    usuals = [(check.name, check.about.usual) for check in known if check is not None and check.about.usual]
-    yield from ("", "[defaults.with]") if usuals else ()
-    yield from (f"{assignment(name, usual.arguments)}  # {usual.unit}" for name, usual in usuals)
+    usual = {name: given for name, given in USUAL.items() if name in checks}
+    yield from ("", "[defaults.with]") if usual else ()
+    yield from (f"{assignment(name, arguments)}  # {unit}" for name, (arguments, unit) in usual.items())
 
 
 def _part(name: str, title: str, needs: str, points: int) -> Iterator[str]:
@@ -97,17 +119,11 @@ def _part(name: str, title: str, needs: str, points: int) -> Iterator[str]:
     yield from (assignment("needs", needs), assignment("points", points))
 
 
-def _heading(about: str) -> str:
-    return f"# --- {printable(about)} ".ljust(WIDTH, "-")
-
-
-def _criterion(name: str, fact: Fact) -> Iterator[str]:
+def _criterion(name: str, row: Row) -> Iterator[str]:
+    fact = row.fact
     yield from ("", "[[criterion]]", assignment("id", name))
-    if fact.of_package:
-        yield assignment("part", _PACKAGE)
-    if fact.about:
-        yield assignment("about", printable(fact.about))
-    yield assignment("title", printable(fact.title))
+    yield from [assignment("part", _PACKAGE)] if row.is_of_package else []
+    yield from (assignment("about", printable(fact.about)), assignment("title", printable(row.title)))
     yield f"check = {toml_literal(fact.check)}"
     if len(assignment("with", fact.arguments)) <= WIDTH:
         yield from [assignment("with", fact.arguments)] if fact.arguments else []

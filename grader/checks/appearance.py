@@ -5,7 +5,7 @@ from itertools import permutations
 from math import cos, radians
 from typing import TypeVar
 
-from grader.checks.check import MEASURES, METRES, About
+from grader.checks.check import About
 from grader.checks.outcome import Outcome, failed, judged, measured, other_unit, passed, place, point, within
 from grader.checks.toml_types import NonNegative, Size
 from grader.checks.visuals import VISIBLE, all_within, main_visual, shape_name, visuals
@@ -15,11 +15,9 @@ from grader.robot.model import Box, Cylinder, Sphere, Visual
 from grader.robot.transforms import IDENTITY_ROTATION, Vector, rotation_from_rpy
 
 ABOUT = {
-    "shows_box": About(("box", "visual"), measure=f"{MEASURES}.shapes:boxes", usual=METRES, picture="outline"),
-    "shows_cylinder": About(
-        ("cylinder", "visual"), measure=f"{MEASURES}.shapes:cylinders", usual=METRES, picture="outline"
-    ),
-    "shows_sphere": About(("sphere", "visual"), measure=f"{MEASURES}.shapes:spheres", usual=METRES, picture="outline"),
+    "shows_box": About(("box", "visual"), picture="outline"),
+    "shows_cylinder": About(("cylinder", "visual"), picture="outline"),
+    "shows_sphere": About(("sphere", "visual"), picture="outline"),
     "shows_nothing": About(("visual",)),
 }
 

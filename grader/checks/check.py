@@ -39,32 +39,16 @@ def everything(arguments: Mapping[str, Any]) -> Collection[str]:
     return EQUIVALENTS
 
 
-class Usual(NamedTuple):
-    """Arguments that a new rubric gives all criteria of a check: the project's tolerances, with their unit in words."""
-
-    arguments: Mapping[str, Any]
-    unit: str
-
-
-METRES = Usual({"tolerance": 0.002}, "metres")  # room for rounding, but not for mistakes
-DEGREES = Usual({"tolerance": 1.0}, "degrees")
-MEASURES = "grader.checks.measures"
-
-
 class About(NamedTuple):
     """What a check declares, in the table `ABOUT` of its module by the name of its function.
 
     `looks_at`: the files of a package (`setup.py`, `package.xml`, `launch`, `rviz`) on which the result depends,
     where hints propose edits, or the tags of a URDF (`limit`, `visual/origin`, `joint@type`).
-    `measure` ("module:function") yields what is true of a reference, as facts for a new rubric; `usual` are
-    arguments for all of these, `unit` their unit in words. `breaks_under` are the equivalents of a robot under
-    which a criterion with such arguments may fail. `picture` is what a failure shows of the reference: the outline
-    of the link or its frame; a `wheel` shows how it rolls.
+    `breaks_under` are the equivalents of a robot under which a criterion with such arguments may fail. `picture` is
+    what a failure shows of the reference: the outline of the link or its frame; a `wheel` shows how it rolls.
     """
 
     looks_at: tuple[str, ...] = ()
-    measure: str = ""
-    usual: Usual | None = None
     breaks_under: BreaksUnder = nothing
     picture: Literal["", "outline", "wheel", "frame"] = ""
 

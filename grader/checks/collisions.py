@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from math import hypot, inf
 
-from grader.checks.check import MEASURES, METRES, About
+from grader.checks.check import About
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, passed, pending, place, point
 from grader.checks.toml_types import NonNegative, RadiusAndLength, Size
 from grader.checks.visuals import MAX_SHAPES, file_name, visuals
@@ -17,8 +17,8 @@ from grader.robot.transforms import IDENTITY, Vector, minus
 from grader.text import counted
 
 ABOUT = {
-    "collision_matches_visual": About(("collision",), measure=f"{MEASURES}.bodies:collisions_as_shown", usual=METRES),
-    "collides_as": About(("collision",), measure=f"{MEASURES}.bodies:collisions", usual=METRES),
+    "collision_matches_visual": About(("collision",)),
+    "collides_as": About(("collision",)),
 }
 
 _ZERO: Vector = (0.0, 0.0, 0.0)

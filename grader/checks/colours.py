@@ -1,15 +1,14 @@
 """Checks of the colour in which a link is shown."""
 
-from grader.checks.check import MEASURES, About, Usual
+from grader.checks.check import About
 from grader.checks.outcome import SLACK, Outcome, failed, judged, pending, place, point, within
 from grader.checks.toml_types import Colour, NonNegative
 from grader.checks.visuals import VISIBLE, ShapeName, all_within, main_visual
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Material, Visual
 
-_CHANNELS = Usual({"tolerance": 0.01}, "of a channel from 0 to 1")
 ABOUT = {
-    "shows_colour": About(("material",), measure=f"{MEASURES}.shapes:colours", usual=_CHANNELS),
+    "shows_colour": About(("material",)),
     "shows_grey": About(("material",)),
 }
 

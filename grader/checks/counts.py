@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from grader.checks.check import MEASURES, About
+from grader.checks.check import About
 from grader.checks.outcome import Outcome, judged
 from grader.checks.toml_types import Count
 from grader.robot.kinematics import Configuration
@@ -17,9 +17,7 @@ def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
     return ("fixed joints split",) if is_counted else ()
 
 
-ABOUT = {
-    "counts": About(("joint", "joint@type", "link"), measure=f"{MEASURES}.joints:counts", breaks_under=_breaks_under)
-}
+ABOUT = {"counts": About(("joint", "joint@type", "link"), breaks_under=_breaks_under)}
 
 
 def counts(

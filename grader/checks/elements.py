@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 from copy import deepcopy
 from typing import Any
 
-from grader.checks.check import MEASURES, About
+from grader.checks.check import About
 from grader.checks.outcome import Outcome, failed, passed
 from grader.checks.toml_types import Content, NonNegative, Scalar
 from grader.errors import MissingElement, NotDecided
@@ -39,7 +39,6 @@ def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
 ABOUT = {
     "element_present": About(
         ("gazebo", "ros2_control", "transmission", "sensor", "safety_controller", "calibration"),
-        measure=f"{MEASURES}.elements:elements",
         breaks_under=_breaks_under,
     )
 }

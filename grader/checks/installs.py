@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from fnmatch import fnmatch
 from typing import TYPE_CHECKING, Literal
 
-from grader.checks.check import MEASURES, About
+from grader.checks.check import About
 from grader.checks.outcome import Outcome, failed, passed, pending
 from grader.errors import MissingElement
 from grader.names import closest
@@ -21,9 +21,9 @@ FileKind = Literal["urdf", "launch", "rviz"]
 
 
 ABOUT = {
-    "build_installs": About((SETUP, "file"), measure=f"{MEASURES}.package:installed_files"),
-    "setup_imports": About((SETUP,), measure=f"{MEASURES}.package:setup_names"),
-    "installs_files": About((SETUP, "file"), measure=f"{MEASURES}.package:installed_folders"),
+    "build_installs": About((SETUP, "file")),
+    "setup_imports": About((SETUP,)),
+    "installs_files": About((SETUP, "file")),
 }
 
 

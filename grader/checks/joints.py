@@ -2,7 +2,7 @@
 
 from math import degrees, hypot, isfinite
 
-from grader.checks.check import DEGREES, MEASURES, About
+from grader.checks.check import About
 from grader.checks.comparison import EXACT, Number, compared, expected_numbers, named, number_text
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, judged, place, point, within
 from grader.checks.toml_types import Direction, NonNegative
@@ -13,9 +13,9 @@ from grader.robot.kinematics import Configuration
 from grader.robot.transforms import Vector, cross, degrees_between, minus, unit
 
 ABOUT = {
-    "joint_limits": About(("limit",), measure=f"{MEASURES}.joints:limits", usual=DEGREES),
-    "joint_axis": About(("axis",), measure=f"{MEASURES}.joints:axes", usual=DEGREES),
-    "joint_dynamics": About(("dynamics",), measure=f"{MEASURES}.joints:dynamics"),
+    "joint_limits": About(("limit",)),
+    "joint_axis": About(("axis",)),
+    "joint_dynamics": About(("dynamics",)),
 }
 
 

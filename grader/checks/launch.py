@@ -4,7 +4,7 @@ import posixpath
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from grader.checks.check import MEASURES, About
+from grader.checks.check import About
 from grader.checks.launch_places import ENDINGS, WORDS, FilePlace, fault_that_stops, launch_of, path_of, place_of
 from grader.checks.outcome import Outcome, failed, judged, passed, pending
 from grader.errors import MissingElement
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 # What the edits for hints may change.
 ABOUT = {
-    "launch_found": About(("launch",), measure=f"{MEASURES}.package:launch_files"),
-    "launch_starts": About(("launch",), measure=f"{MEASURES}.package:started_nodes"),
-    "launch_finds_files": About(("launch",), measure=f"{MEASURES}.package:opened_files"),
+    "launch_found": About(("launch",)),
+    "launch_starts": About(("launch",)),
+    "launch_finds_files": About(("launch",)),
 }
 
 _UNKNOWN_FILES = "cannot determine statically which files it names"

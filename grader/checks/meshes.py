@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from grader.checks.check import MEASURES, About
+from grader.checks.check import About
 from grader.checks.mesh_files import MeshFile, mesh_file, why_not_found
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, measured_point, passed, pending, place
 from grader.checks.toml_types import NonNegative
@@ -18,7 +18,7 @@ from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import quoted
 
-ABOUT = {"shows_mesh": About(("mesh", "visual"), measure=f"{MEASURES}.shapes:meshes", picture="outline")}
+ABOUT = {"shows_mesh": About(("mesh", "visual"), picture="outline")}
 
 _ANGLE = 1.0  # degrees that a mesh may be turned
 _BEST_FIRST = ("passed", "pending", "failed")

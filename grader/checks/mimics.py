@@ -1,6 +1,6 @@
 """The check of a joint that mimics another one."""
 
-from grader.checks.check import MEASURES, About
+from grader.checks.check import About
 from grader.checks.comparison import EXACT, compared, expected_numbers, named
 from grader.checks.outcome import Outcome, failed, place
 from grader.checks.toml_types import NonNegative
@@ -9,7 +9,7 @@ from grader.names import did_you_mean
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 
-ABOUT = {"mimics": About(("mimic",), measure=f"{MEASURES}.joints:mimics")}
+ABOUT = {"mimics": About(("mimic",))}
 
 
 def mimics(

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from grader.checks.check import MEASURES, About
+from grader.checks.check import About
 from grader.checks.outcome import Outcome, failed, judged
 from grader.errors import MissingElement, NotDecided
 from grader.package.package import MANIFEST, RESOURCE_INDEX, SETUP, Package
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 # What the edits for hints may change.
 ABOUT = {
-    "package_found": About((MANIFEST, SETUP), measure=f"{MEASURES}.package:names"),
-    "package_type": About((MANIFEST,), measure=f"{MEASURES}.package:build_types"),
+    "package_found": About((MANIFEST, SETUP)),
+    "package_type": About((MANIFEST,)),
 }
 
 

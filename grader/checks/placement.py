@@ -2,7 +2,7 @@
 
 from math import acos, degrees
 
-from grader.checks.check import MEASURES, METRES, About, Usual
+from grader.checks.check import About
 from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, location_of, measured_point, place, point
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose
@@ -13,12 +13,9 @@ from grader.robot.shapes import UnknownShape
 from grader.robot.transforms import Z_AXIS, Vector, dot, minus, rotation_from_rpy, unit
 from grader.source import LazyLocation
 
-_METRES_AND_DEGREES = Usual({"tolerance": 0.002, "angle": 1.0}, "metres, degrees")
 ABOUT = {
-    "frame_at": About(
-        ("joint/origin",), measure=f"{MEASURES}.joints:frames", usual=_METRES_AND_DEGREES, picture="frame"
-    ),
-    "centre_at": About(("visual/origin",), measure=f"{MEASURES}.shapes:places", usual=METRES, picture="outline"),
+    "frame_at": About(("joint/origin",), picture="frame"),
+    "centre_at": About(("visual/origin",), picture="outline"),
 }
 
 _ALONG = 0.9  # the least cosine of the angle between two vectors that count as one direction

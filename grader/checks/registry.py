@@ -1,8 +1,7 @@
 """The explicit list of checks that a rubric can name. Other packages add theirs by entry points."""
 
-from collections.abc import Callable
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from grader.checks.check import Check, describe
 from grader.errors import InputError, OutOfTime
@@ -111,13 +110,6 @@ def usable_check(name: str) -> Check | None:
         return find_check(name)
     except InputError:
         return None
-
-
-def declared(place: str) -> Callable[..., Any]:
-    """Return the function that a check declares, as "module:function"."""
-    module, _, name = place.partition(":")
-    function: Callable[..., Any] = getattr(import_module(module), name)
-    return function
 
 
 def _load(name: str, entry: "EntryPoint") -> Check:

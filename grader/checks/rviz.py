@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from grader.checks.check import MEASURES, About
+from grader.checks.check import About
 from grader.checks.outcome import Outcome, Status, failed, judged, passed, pending
 from grader.errors import MissingElement, NotDecided
 from grader.names import did_you_mean
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 # What the edits for hints may change.
 ABOUT = {
-    "rviz_found": About(("rviz",), measure=f"{MEASURES}.package:rviz_files"),
-    "rviz_fixed_frame": About(("rviz",), measure=f"{MEASURES}.package:fixed_frames"),
-    "rviz_shows_robot": About(("rviz",), measure=f"{MEASURES}.package:shown_robots"),
-    "rviz_display_on": About(("rviz",), measure=f"{MEASURES}.package:displays"),
+    "rviz_found": About(("rviz",)),
+    "rviz_fixed_frame": About(("rviz",)),
+    "rviz_shows_robot": About(("rviz",)),
+    "rviz_display_on": About(("rviz",)),
 }
 
 _PLUGINS = "rviz_default_plugins"

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from grader.checks.check import MEASURES, About
+from grader.checks.check import About
 from grader.checks.comparison import named, number_text
 from grader.checks.outcome import Outcome, failed, passed, pending, place
 from grader.errors import MissingElement
@@ -18,10 +18,10 @@ from grader.xml import catalogue as xml_catalogue
 from grader.xml.urdf_format import JOINT_TYPES, JointType
 
 ABOUT = {
-    "urdf_loads": About(("joint", "link"), measure=f"{MEASURES}.joints:loading"),
-    "held_by": About(("parent", "child", "joint", "joint@type"), measure=f"{MEASURES}.joints:types"),
-    "joints_named": About(("joint@name",), measure=f"{MEASURES}.joints:names"),
-    "root_of_tree": About(measure=f"{MEASURES}.joints:roots"),
+    "urdf_loads": About(("joint", "link")),
+    "held_by": About(("parent", "child", "joint", "joint@type")),
+    "joints_named": About(("joint@name",)),
+    "root_of_tree": About(),
 }
 
 _MAX_ASSUMED = 3  # that a message names

@@ -22,11 +22,11 @@ from grader.mutation.trees import (
     set_pose,
     text_of,
     vector_of,
-    words_of_foreign,
 )
 from grader.robot.transforms import Transform, unit
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import PARTS
+from grader.xml.wanted_element import words_of_foreign
 
 _SORTED = ("link", "joint", "material", "visual", "collision")  # of these the order does not matter
 _COMMENTS = ("", " a robot ", ' <link name="ghost"/> ', "\n  0.6 / 4\n  ", " $ & % ")

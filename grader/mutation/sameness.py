@@ -11,7 +11,6 @@ from typing import Any
 
 from lxml import etree
 
-from grader.mutation.trees import FOREIGN, words_of_foreign
 from grader.robot.frames import placed_by
 from grader.robot.joint_elements import Dynamics
 from grader.robot.model import Collision, Cylinder, Geometry, Joint, Link, Sphere, Visual
@@ -19,6 +18,7 @@ from grader.robot.shapes import is_empty
 from grader.robot.transforms import AXES, IDENTITY, Transform, Vector, unit
 from grader.source import LazyLocation
 from grader.submission.urdf import Read, Urdf
+from grader.xml.wanted_element import foreign_elements, words_of_foreign
 
 _DIGITS, _DECIMALS = 6, 12  # significant digits, of which rounding leaves those after the 12th decimal open
 _TURN = 2  # decimals of a direction: half a turn that is written 3.14 is the same in both directions
@@ -38,7 +38,9 @@ def _form(urdf: Urdf, kept: Collection[str]) -> object:
     if not isinstance(urdf, Read) or urdf.reading.robot is None or urdf.reading.root is None:
         return None
     robot, root = urdf.reading.robot, urdf.reading.root
-    foreign = [etree.tostring(child, with_tail=False) for tag in FOREIGN for child in root.iterchildren(tag)]
+    foreign = [
+        etree.tostring(child, with_tail=False) for child in sorted(foreign_elements(root), key=lambda it: str(it.tag))
+    ]
     named = {*kept, *words_of_foreign(root)}
     mimicked = {joint.mimic.joint for joint in robot.joints if joint.mimic is not None}
     connected = {name for joint in robot.joints for name in (joint.parent, joint.child)}

@@ -8,9 +8,8 @@ from lxml import etree
 from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
 from grader.xacro.texts import INSTALLED
 from grader.xml.parsing import Element
+from grader.xml.wanted_element import FOREIGN
 
-# Tags below <robot> that ROS 2's own reader ignores.
-FOREIGN = ("gazebo", "ros2_control", "transmission", "sensor")
 XACRO = "http://www.ros.org/wiki/xacro"
 _FOUND = re.compile(rf"\Afile:/*{INSTALLED}/([^/]+)/share/\1/")
 
@@ -129,10 +128,3 @@ def own_elements(tree: Element, *tags: str) -> Iterator[Element]:
     for child in tree:
         if child.tag not in FOREIGN:
             yield from child.iter(*tags)
-
-
-def words_of_foreign(tree: Element) -> set[str]:
-    """Return the words in the elements for simulators and controllers."""
-    found = [element for tag in FOREIGN for child in tree.iterchildren(tag) for element in child.iter("*")]
-    values = [value for element in found for value in (element.text or "", *map(str, element.attrib.values()))]
-    return {word for value in values for word in value.split()}

@@ -194,11 +194,9 @@ class Configuration:
         self.axis(joint)  # raises where it has no direction
         chain = self.chain(link, above=relative_to) or ()
         if joint in chain and not self.positions and all(self.as_known(above).mimic is None for above in chain):
-            T_relative_joint = self.pose(
-                joint.child, relative_to=relative_to
-            )  # everything below the joint turns together
-            turn = motion_of(joint, angle)
-            return T_relative_joint @ (turn or IDENTITY) @ T_relative_joint.inverse()
+            T_relative_joint = self.pose(joint.child, relative_to=relative_to)
+            turn = motion_of(joint, angle) or IDENTITY  # everything below the joint turns together
+            return T_relative_joint @ turn @ T_relative_joint.inverse()
         position = self.position(joint)
         assert isinstance(position, int | float)  # its position is one number
         moved = self.moved(joint, position + angle).pose(link, relative_to=relative_to)

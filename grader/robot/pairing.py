@@ -1,6 +1,6 @@
 """Two robots with paired joints: how far links of one are from those of the other with joints at the same positions."""
 
-from collections.abc import Collection, Hashable, Iterable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 from math import asin, degrees, dist, inf, isfinite, pi, sqrt
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
@@ -44,13 +44,10 @@ class RobotPair(NamedTuple):
     tolerance: float
     angle: float
 
-    def offset(self, positions: tuple[float, ...], reversed_joints: Collection[int] = ()) -> Offset:
-        """Return the largest offset at these positions of the joints; those of one robot may be reversed, by index."""
-        own = {
-            joint.name: -position if index in reversed_joints else position
-            for index, ((joint, _), position) in enumerate(zip(self.joints, positions, strict=True))
-            if joint.mimic is None  # a mimic joint follows
-        }
+    def offset(self, positions: tuple[float, ...]) -> Offset:
+        """Return the largest offset at these positions of the joints."""
+        pairs = zip(self.joints, positions, strict=True)
+        own = {joint.name: position for (joint, _), position in pairs if joint.mimic is None}  # a mimic joint follows
         posed = self.robots[0].at(own)
         found = []
         for (name, _), wanted in zip(self.links, self._reference_poses(positions), strict=True):

@@ -83,12 +83,11 @@ def read_robot(document: XmlDocument) -> Reading:
     effects = {problem.kind.effect for problem in listed}
     if effects.isdisjoint(_FATAL):
         effects.add("rejects")
-        message = "the file has no <robot> at its top level; ROS 2 rejects it"
+        message, at = "the file has no <robot> at its top level; ROS 2 rejects it", source.at(document.first_tag)
         if root is not None:
             message = f"the root of the file is <{root.tag.rpartition('}')[2]}>, expected <robot>; ROS 2 rejects it"
-        listed.append(
-            Problem(catalogue.NO_ROBOT, message, source.at(document.first_tag) if root is None else source.tag(0))
-        )
+            at = source.tag(0)
+        listed.append(Problem(catalogue.NO_ROBOT, message, at))
     return Reading(_verdict(effects), None, in_order(listed), source, root, document.unresolved)
 
 
@@ -173,11 +172,8 @@ def _read_joints(root: Element, problems: Problems) -> tuple[Joint, ...]:
     for element in root.iterchildren("joint"):
         joint = read_joint(element, problems)
         joints.append(joint)
-        if element.get("name") is None:
-            continue
-        if joint.name in elements:
+        if element.get("name") is not None and elements.setdefault(joint.name, element) is not element:
             problems.duplicate(catalogue.DUPLICATE_JOINT, element, elements[joint.name])
-        elements.setdefault(joint.name, element)
     return tuple(joints)
 
 

@@ -8,8 +8,8 @@ from itertools import chain
 from pathlib import Path
 
 from grader.authoring.draft import RubricDraft, draft
+from grader.authoring.fact import Omission, Solution
 from grader.authoring.rubric_text import Head
-from grader.checks.measures.fact import Omission, Solution
 from grader.checks.tree import urdf_loads
 from grader.errors import GraderError, InputError
 from grader.files.reading import URDF_LIMIT

@@ -12,6 +12,7 @@ Scalar = str | float | bool
 _MADE_UP = re.compile(r"ns\d+")  # a prefix that lxml gives an element that is made, not read
 _SLACK = 1e-12  # a tolerance includes its end
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
+FOREIGN = ("gazebo", "ros2_control", "transmission", "sensor")  # below <robot>; ROS 2 itself ignores them
 AttributeValue = Scalar | list[Scalar]
 
 _IDENTIFYING = ("@name", "@reference", "@filename", "@type")  # the first that a rubric gives
@@ -180,3 +181,15 @@ class WantedElement(NamedTuple):
 def readable(text: str) -> str:
     """Return a text in which paths of installed packages are as xacro writes them: $(find package)."""
     return _INSTALLED.sub(r"$(find \1)", text)
+
+
+def foreign_elements(root: Element) -> list[Element]:
+    """Return the elements of <robot> for simulators and controllers."""
+    return [child for child in root if child.tag in FOREIGN]
+
+
+def words_of_foreign(root: Element) -> set[str]:
+    """Return the words in the elements for simulators and controllers, such as names of joints and paths."""
+    found = [inner for element in foreign_elements(root) for inner in element.iter("*")]
+    texts = [text for inner in found for text in (inner.text or "", *map(str, inner.attrib.values()))]
+    return {word for text in texts for word in text.split()}

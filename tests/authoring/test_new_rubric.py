@@ -102,10 +102,10 @@ SHAPE = '<{0}><geometry><box size="1 1 {{}}1"/></geometry></{0}>'
 @pytest.mark.parametrize(
     ("tag", "item", "omitted"),
     [
-        ("link", SHAPE.format("visual"), "what x shows: it has more than 50 visuals"),
-        ("link", SHAPE.format("collision"), "how x collides: it has more than 50 collisions"),
-        ("gazebo", "<y{}>1</y{}>", "There is a <gazebo> of x: it has more than 500 elements and attributes"),
-        ("gazebo", '<y a{}="1"/>', "There is a <gazebo> of x: it has more than 500 elements and attributes"),
+        ("link", SHAPE.format("visual"), "x visuals: it has more than 50"),
+        ("link", SHAPE.format("collision"), "x collisions: it has more than 50"),
+        ("gazebo", "<y{}>1</y{}>", "gazebo x: it has more than 500 elements and attributes"),
+        ("gazebo", '<y a{}="1"/>', "gazebo x: it has more than 500 elements and attributes"),
     ],
 )
 def test_an_element_with_too_much_in_it_is_omitted(tag: str, item: str, omitted: str, tmp_path: Path) -> None:

@@ -66,7 +66,7 @@ def test_the_folder_of_the_package_does_not_matter(case: Case[Submitted]) -> Non
 
 @every_case
 def test_a_check_of_a_package_declares_what_it_looks_at(case: Case[Submitted]) -> None:
-    """Hints propose edits of these files, and `rubric test` suggests the check for mutants of them and of its tags."""
+    """Hints propose edits of these files."""
     check = describe(case.check)
     files = {name for name in check.about.looks_at if not name.startswith("xacro:")}
     assert check.subject != "package" or files

@@ -107,27 +107,3 @@ def test_the_schema_has_the_usable_ones() -> None:
     assert {"behaves", "without_annotation", "with_endless_default"} <= set(named)
     assert "without_annotation" not in schema["$defs"]
     assert schema["$defs"]["with_endless_default"]["properties"] == {"at_most": {"type": "number"}}
-
-
-def new_rubric(folder: Path, name: str) -> tuple[int, str, str]:
-    """Return the exit code of `rubric new` with a robot as its reference, the rubric, and what is printed."""
-    file = folder / "new.toml"
-    done = run(("rubric", "new", str(file), "--from", robot(folder, name)))
-    return done.returncode, file.read_text() if file.exists() else "", (done.stdout + done.stderr).decode()
-
-
-def test_a_new_rubric_has_what_it_measures(tmp_path: Path) -> None:
-    """A fact becomes a criterion; one that names an unknown check is omitted, with the reason."""
-    code, rubric, _ = new_rubric(tmp_path, "fine")
-    assert code == 0
-    assert 'id = "robot-manners"\ntitle = "The robot behaves"\ncheck = "behaves"\n' in rubric
-    (tmp_path / "new.toml").unlink()
-    code, rubric, printed = new_rubric(tmp_path, "other")
-    assert (code, "manners" in rubric) == (0, False)
-    assert "omitted: The robot behaves: there is no check is_not_known\n" in printed
-
-
-def test_a_check_that_cannot_measure_is_named(tmp_path: Path) -> None:
-    """With its package; nothing is written."""
-    reason = "grader: the check behaves of the package hostile-checks cannot measure: RuntimeError: as asked\n"
-    assert new_rubric(tmp_path, "fails") == (2, "", reason)

@@ -9,8 +9,6 @@ import time
 from types import FrameType
 from typing import Any
 
-from grader.checks.check import About
-from grader.checks.measures.fact import Fact, Facts, Solution
 from grader.checks.outcome import Outcome, passed
 from grader.robot.kinematics import Configuration
 
@@ -26,8 +24,6 @@ _RETURNED: dict[str, Any] = {
     "returns_a_value_of_no_report": Outcome("passed", "fine", measured={1, 2}),  # type: ignore[arg-type]
 }
 
-ABOUT = {"behaves": About(measure="hostile_checks:measured")}
-
 
 class Unusual(BaseException):
     """An exception that `except Exception` does not catch."""
@@ -38,17 +34,6 @@ class Wordless(Exception):
 
     def __str__(self) -> str:  # noqa: PLE0307
         sys.exit(0)
-
-
-def measured(solution: Solution) -> Facts:
-    """Yield that a reference behaves, unless its name asks for another fact."""
-    match solution.robot.robot.name:
-        case "fine":
-            yield Fact("robot", "manners", "The robot behaves", "behaves")
-        case "fails":
-            raise RuntimeError("as asked")
-        case "other":
-            yield Fact("robot", "manners", "The robot behaves", "is_not_known")
 
 
 def behaves(robot: Configuration) -> Outcome:

@@ -1,0 +1,178 @@
+"""The facts of a reference: what may be true of its links, joints and elements, as arguments of checks to be tried."""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import permutations
+from math import degrees, isfinite
+from typing import Any
+
+from grader.authoring.fact import THE_FILE, THE_ROBOT, Fact, Facts, Omission, Solution
+from grader.checks.mesh_files import mesh_file
+from grader.checks.visuals import MAX_SHAPES
+from grader.errors import MissingElement, NotDecided
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Box, Collision, Cylinder, Joint, Link, Mesh, Sphere, Visual
+from grader.robot.shapes import is_empty
+from grader.robot.transforms import rotation_from_rpy
+from grader.xml.wanted_element import words_of_foreign
+
+_WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")
+_COUNTED = ("revolute", "continuous", "prismatic")
+_SLIDING_TOLERANCE = 0.002  # m: the tolerance of other limits is in degrees
+_MASS_TOLERANCE = 0.001  # kg; of a small mass, a share of it
+_MASS_SHARE = 0.01
+_LOOSE_INERTIA = 5.0  # percent, for a solution with rounded numbers
+_MAX_TIPS = 20
+
+
+def robot_facts(solution: Solution) -> Facts:
+    """Yield what may be true of the file, of each link with its parent joint, and of the robot."""
+    robot = solution.robot
+    yield Fact(THE_FILE, "urdf_loads", {}, "urdf_loads")
+    for link in robot.robot.links:
+        yield from _visual_facts(link)
+        joint = robot.parent_joints.get(link.name)
+        if joint is not None:
+            try:
+                yield from _joint_facts(robot, joint)
+            except (MissingElement, NotDecided) as error:  # an axis of length zero
+                yield Omission(f"{link.name} joint_axis", str(error))
+        yield from _body_facts(link)
+    yield from _tree_facts(solution) if robot.parent_joints else ()
+
+
+def _of(link: str, check: str, **arguments: Any) -> Fact:
+    return Fact(link, check, {"link": link, **arguments}, f"{link} {check}")
+
+
+def _of_robot(check: str, **arguments: Any) -> Fact:
+    return Fact(THE_ROBOT, check, arguments, check)
+
+
+def _rounded(vector: Sequence[float], digits: int = 6) -> list[float]:
+    """Return numbers without what rounding has added: 0.15 for 0.15000000000000002."""
+    return [round(value, digits) + 0.0 for value in vector]
+
+
+def _visual_facts(link: Link) -> Facts:
+    """Yield what a link shows; the place and colour of a shape only if no other shape of the link is of its kind."""
+    if len(link.visuals) > MAX_SHAPES:
+        yield Omission(f"{link.name} visuals", f"it has more than {MAX_SHAPES}")
+        return
+    shown = [visual for visual in link.visuals if not is_empty(visual.geometry)]
+    kinds = Counter(type(visual.geometry) for visual in shown)
+    for visual in shown:
+        yield _size(link.name, visual)
+        if kinds[type(visual.geometry)] == 1:
+            is_mesh = isinstance(visual.geometry, Mesh)
+            selected = {} if len(kinds) == 1 or is_mesh else {"shape": type(visual.geometry).__name__.lower()}
+            if visual.material is not None:
+                yield _of(link.name, "shows_colour", **selected, colour=_rounded(visual.material.rgba, 4))
+            if not is_mesh:
+                xyz = _rounded(visual.origin.xyz)
+                yield _of(link.name, "centre_at", **selected, relative_to=link.name, xyz=xyz, **_axis(visual))
+    for kind in (kind for kind, number in kinds.items() if number > 1):
+        reason = "a check examines one shape of a kind"
+        yield Omission(f"place and colour of each {kind.__name__.lower()} of {link.name}", reason)
+
+
+def _size(link: str, visual: Visual) -> Fact:
+    match visual.geometry:
+        case Box(size=size):  # along the axes of the link, whichever of its own they are
+            first, *others = [_of(link, "shows_box", size=_rounded(edges)) for edges in permutations(size)]
+            return first._replace(otherwise=others)
+        case Cylinder(radius=radius, length=length):
+            return _of(link, "shows_cylinder", radius=round(radius, 6), length=round(length, 6))
+        case Sphere(radius=radius):
+            return _of(link, "shows_sphere", radius=round(radius, 6))
+        case mesh:
+            file = "/".join(mesh_file(mesh.filename, is_expanded=True).steps)
+            xyz, rpy = _rounded(visual.origin.xyz), _rounded(visual.origin.rpy)
+            return _of(link, "shows_mesh", file=file, scale=_rounded(mesh.scale), xyz=xyz, rpy=rpy)
+
+
+def _axis(visual: Visual) -> dict[str, Any]:
+    """Return how the axis of a cylinder lies: 0 1 0 for what rpy="1.57 0 0" makes of it."""
+    if not isinstance(visual.geometry, Cylinder):
+        return {}
+    return {"axis": _rounded(rotation_from_rpy(visual.origin.rpy)[2::3], 2), "angle": 1.0}
+
+
+def _body_facts(link: Link) -> Facts:
+    """Yield the mass and inertia of a link, and its collision shapes, or that they are those that it shows."""
+    if link.inertial is not None:
+        least = abs(link.inertial.mass) * _MASS_SHARE
+        tolerance = {"tolerance": least} if least < _MASS_TOLERANCE else {}
+        yield _of(link.name, "mass_is", mass=link.inertial.mass, **tolerance)
+        loose = _of(link.name, "inertia_plausible", tolerance=_LOOSE_INERTIA)
+        yield _of(link.name, "inertia_plausible")._replace(otherwise=[loose])
+    if len(link.collisions) > MAX_SHAPES:
+        yield Omission(f"{link.name} collisions", f"it has more than {MAX_SHAPES}")
+        return
+    only = {"only": True} if len(link.collisions) == 1 else {}
+    shapes = [_collision(link.name, collision, only) for collision in link.collisions]
+    if not any(not is_empty(visual.geometry) for visual in link.visuals):
+        yield from shapes
+    elif shapes:
+        yield _of(link.name, "collision_matches_visual")._replace(otherwise=shapes if only else ())
+
+
+def _collision(link: str, collision: Collision, only: Mapping[str, bool]) -> Fact:
+    match collision.geometry:
+        case Box(size=size):
+            shape: dict[str, Any] = {"box": _rounded(size)}
+        case Cylinder(radius=radius, length=length):
+            shape = {"cylinder": _rounded((radius, length))}
+        case Sphere(radius=radius):
+            shape = {"sphere": round(radius, 6)}
+        case _:
+            return _of(link, "collision_matches_visual")
+    xyz, rpy = _rounded(collision.origin.xyz), _rounded(collision.origin.rpy, 4)
+    return _of(link, "collides_as", **shape, xyz=xyz, rpy=rpy, **only)
+
+
+def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
+    """Yield what may be true of the parent joint of a link; raise MissingElement for an axis of length zero."""
+    link, parent = joint.child, joint.parent
+    title = f"a {joint.type} joint connects {link!r} to {parent!r}"  # its name is free
+    yield _of(link, "held_by", parent=parent, joint_type=joint.type)._replace(title=title)
+    pose = robot.pose(link, relative_to=parent)
+    rpy = {"rpy": _rounded(pose.rpy, 4)} if any(_rounded(pose.rpy, 4)) else {}
+    yield _of(link, "frame_at", relative_to=parent, xyz=_rounded(pose.translation), **rpy)
+    if joint.limit is not None and joint.type in ("revolute", "prismatic"):
+        ends = (joint.limit.lower, joint.limit.upper)
+        turns = joint.type == "revolute"
+        lower, upper = _rounded([degrees(end) for end in ends], 1) if turns else _rounded(ends)
+        given = {"effort": joint.limit.effort, "velocity": joint.limit.velocity}
+        others = {name: value for name, value in given.items() if isfinite(value)}
+        others |= {} if turns else {"tolerance": _SLIDING_TOLERANCE}
+        yield _of(link, "joint_limits", lower=lower, upper=upper, **others)
+    if joint.dynamics is not None and joint.type != "fixed":
+        yield _of(link, "joint_dynamics", friction=joint.dynamics.friction, damping=joint.dynamics.damping)
+    mimic = joint.mimic
+    if mimic is not None and joint.type != "fixed" and robot.robot.has_joint(mimic.joint):
+        leader = robot.joint(mimic.joint).child
+        yield _of(link, "mimics", leader=leader, multiplier=mimic.multiplier, offset=mimic.offset)
+    if joint.type in _WITH_AXIS:
+        yield _of(link, "joint_axis", relative_to=parent, direction=_rounded(pose.rotate(robot.axis(joint)), 2))
+
+
+def _tree_facts(solution: Solution) -> Iterator[Fact]:
+    """Yield the names of joints that other elements use, the root, the numbers of joints, and how the tips move."""
+    robot = solution.robot
+    joints, root = robot.parent_joints.values(), robot.main_tree[0]
+    words = words_of_foreign(solution.root)
+    used = {joint.name: joint.child for joint in joints if joint.name in words}
+    if used:
+        yield _of_robot("joints_named", parent=root, joints=used)
+    fixed = (joint.child for joint in joints if joint.parent == root and joint.type == "fixed")
+    yield _of_robot("root_of_tree", link=root, holds=next(fixed, root))
+    moving = [joint for joint in joints if joint.type != "fixed"]
+    kinds = Counter(joint.type for joint in moving)
+    numbers = {"moving": sum(joint.mimic is None for joint in moving), **{kind: kinds[kind] for kind in _COUNTED}}
+    yield _of_robot("counts", **numbers)
+    inner = {joint.parent for joint in joints}
+    chains = {name: robot.chain(name) or () for name in robot.main_tree if name not in inner}
+    tips = [name for name, chain in chains.items() if any(joint.type != "fixed" for joint in chain)]
+    if tips:
+        yield _of_robot("kinematics_match_reference", links=tips[:_MAX_TIPS], match="order")

@@ -1,1 +1,0 @@
-"""What checks would measure on a reference solution: facts for a new rubric. Imported by `rubric new` only."""
