@@ -1,5 +1,6 @@
 """The documents of a submission as lines of text: each is read once, and Word and PDF files share one time limit."""
 
+import os
 import re
 import subprocess
 import sys
@@ -130,7 +131,8 @@ class DocumentCollection:
             raise late
         data = file.read(_DOCUMENT_LIMIT)
         # -P: modules are imported neither from the current folder, which may be the student's, nor from our own.
-        command = [sys.executable, "-P", str(converter.__file__), file.suffix[1:], str(ceil(self._seconds))]
+        limits = str(ceil(self._seconds)), str(os.getpid())
+        command = [sys.executable, "-P", str(converter.__file__), file.suffix[1:], *limits]
         began = time.monotonic()
         try:  # an interruption ends the process as well
             code, output = self._run(command, data)

@@ -1,7 +1,7 @@
 """Convert a Word or PDF file from standard input to text on standard output, in a separate process.
 
 Pages and pictures are marked. A crafted file of either format can use unlimited time or memory, so the grader stops the
-process after a time. The converter limits itself as well, so that it ends however the process that started it ends.
+process after a time. The converter limits itself as well, and ends with the process that started it, however that ends.
 """
 
 import io
@@ -25,11 +25,13 @@ _WEIGHT = 4.0  # of the length of texts, by which pypdf divides to get the width
 _MOST = 0.9  # of the characters of a page
 _MAX_MEMORY = 1024 * 1024 * 1024
 _MAX_UNPACKED = 64 * 1024 * 1024
+_PR_SET_PDEATHSIG = 1
 
 
 def main() -> int:
-    """Convert one document. Arguments: `docx` or `pdf`, and seconds of time."""
-    kind, seconds = sys.argv[1], int(sys.argv[2])
+    """Convert one document. Arguments: `docx` or `pdf`, seconds of processor time, process id of the parent."""
+    kind, seconds, parent = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+    end_with_parent(parent, seconds)
     _limit(seconds)
     data = sys.stdin.buffer.read()
     try:
@@ -47,11 +49,22 @@ def is_out_of_time(code: int) -> bool:
     return code < 0 and code == -getattr(signal, "SIGXCPU", 0)
 
 
+def end_with_parent(parent: int, seconds: int) -> None:
+    """End this process when its parent has ended: by the kernel on Linux, elsewhere after so many seconds."""
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+        if os.getppid() != parent:  # it ended before the kernel call
+            os._exit(1)
+    else:
+        end = threading.Timer(seconds, os._exit, (1,))
+        end.daemon = True
+        end.start()
+
+
 def _limit(seconds: int) -> None:
-    """Limit processor time and memory where the system can, and elsewhere end this process some time later."""
-    end = threading.Timer(10 * seconds, os._exit, (1,))
-    end.daemon = True
-    end.start()
+    """Limit processor time and memory, where the system can."""
     with suppress(ImportError):
         import resource
 
