@@ -67,6 +67,11 @@ def named(key: str, name: str) -> str:
     return f"{name} ({key})" if name not in ("", key) else key
 
 
+def capitalised(text: str) -> str:
+    """Return a text with a capital, unless it begins with a quote, a file or an attribute, such as xyz="0 0"."""
+    return text[:1].upper() + text[1:] if text.split(" ", 1)[0].isalpha() else text
+
+
 def enumerated(items: Collection[str], most: int | None = None, word: str = "and", separator: str = ", ") -> str:
     """Return "a, b and c"; of more than `most` items the first ones: "a, b and 3 more"."""
     names = list(items)

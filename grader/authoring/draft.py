@@ -17,6 +17,7 @@ from grader.grading.rubric import Rubric, read_rubric
 from grader.grading.toml_file import read_toml
 from grader.grading.toml_rows import toml_literal
 from grader.robot.shapes import UnknownShape
+from grader.text import capitalised
 
 MAX_FACTS = 2000  # more than the largest robots have; criteria cost the square of their number
 
@@ -56,7 +57,7 @@ def _tried(solution: Solution, fact: Fact) -> Row | Omission:
             reasons.append(f"an argument must be {error}")
             continue
         if outcome.status == "passed":
-            return Row(one, one.title or outcome.message)
+            return Row(one, capitalised(one.title or outcome.message))
         reasons.append(outcome.mistake if outcome.status == "pending" else outcome.message)
     return Omission(fact.words, reasons[0])
 

@@ -14,6 +14,7 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Collision, Cylinder, Joint, Link, Mesh, Sphere, Visual
 from grader.robot.shapes import is_empty
 from grader.robot.transforms import rotation_from_rpy
+from grader.text import enumerated
 from grader.xml.wanted_element import words_of_foreign
 
 _WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")
@@ -104,8 +105,9 @@ def _body_facts(link: Link) -> Facts:
         least = abs(link.inertial.mass) * _MASS_SHARE
         tolerance = {"tolerance": least} if least < _MASS_TOLERANCE else {}
         yield _of(link.name, "mass_is", mass=link.inertial.mass, **tolerance)
-        loose = _of(link.name, "inertia_plausible", tolerance=_LOOSE_INERTIA)
-        yield _of(link.name, "inertia_plausible")._replace(otherwise=[loose])
+        title = f"the inertia of {link.name!r} is that of a uniform solid of its shapes"
+        loose = _of(link.name, "inertia_plausible", tolerance=_LOOSE_INERTIA)._replace(title=title)
+        yield _of(link.name, "inertia_plausible")._replace(title=title, otherwise=[loose])
     if len(link.collisions) > MAX_SHAPES:
         yield Omission(f"{link.name} collisions", f"it has more than {MAX_SHAPES}")
         return
@@ -148,7 +150,9 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
         others |= {} if turns else {"tolerance": _SLIDING_TOLERANCE}
         yield _of(link, "joint_limits", lower=lower, upper=upper, **others)
     if joint.dynamics is not None and joint.type != "fixed":
-        yield _of(link, "joint_dynamics", friction=joint.dynamics.friction, damping=joint.dynamics.damping)
+        friction, damping = joint.dynamics.friction, joint.dynamics.damping
+        title = f"the joint that moves {link!r} has friction {friction:g} and damping {damping:g}"
+        yield _of(link, "joint_dynamics", friction=friction, damping=damping)._replace(title=title)
     mimic = joint.mimic
     if mimic is not None and joint.type != "fixed" and robot.robot.has_joint(mimic.joint):
         leader = robot.joint(mimic.joint).child
@@ -175,4 +179,6 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     chains = {name: robot.chain(name) or () for name in robot.main_tree if name not in inner}
     tips = [name for name, chain in chains.items() if any(joint.type != "fixed" for joint in chain)]
     if tips:
-        yield _of_robot("kinematics_match_reference", links=tips[:_MAX_TIPS], match="order")
+        names = [repr(tip) for tip in tips[:_MAX_TIPS]]
+        title = f"{enumerated(names)} move{'s' * (len(names) == 1)} as in the reference solution"
+        yield _of_robot("kinematics_match_reference", links=tips[:_MAX_TIPS], match="order")._replace(title=title)

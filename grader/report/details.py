@@ -8,7 +8,7 @@ from grader.grading.report import Report, Result
 from grader.report.criteria import Answer, Block, Diff, Entry, Line, alike, is_failure, is_manual, points_of
 from grader.report.locations import SourceOf, excerpt_lines, location_text
 from grader.source import Location
-from grader.text import by_name, enumerated, printable, signed_points
+from grader.text import by_name, capitalised, enumerated, printable, signed_points
 
 # The symbol of each status, that for a terminal in another encoding, the style on a terminal, and the word.
 _STATUSES = (
@@ -105,9 +105,7 @@ def counts_lines(location: Location) -> bool:
 
 def sentence(message: str) -> str:
     """Return a message as a printable sentence, with a capital and a full stop."""
-    text = printable(message)
-    if text.split(" ")[0].isalpha():  # not an attribute, such as xyz="0 0"
-        text = text[:1].upper() + text[1:]
+    text = capitalised(printable(message))
     return text if text.endswith((".", "?")) else f"{text}."
 
 
