@@ -27,19 +27,21 @@ LOOKS: Mapping[Role, str] = {
 _DIFF_STYLES = {"-": "red", "+": "green"}
 _MAX_FIRST = 3  # failures with their source line
 _MAX_ROWS, _MAX_REASON = 4, 2  # rows of a message, and of a reason; a hint has fewer than a message
+_MOST_ROWS = 10  # of a message in a report of more than 24 rows
 _LAST_WORD, _LAST_NUMBER = re.compile(r"\s+\S*$"), re.compile(r"\s+[-+.\d]+$")  # a number keeps its unit
 
 
 class Page(NamedTuple):
     """The rows of a report for a console. All texts are printable.
 
-    A page that is not `is_whole` is a short report; if `is_tight`, without empty rows and with short texts.
+    A page that is not `is_whole` is a short report; without empty rows if `is_tight`, with short texts if `is_cut`.
     """
 
     console: Console
     rows: list[Text]
     is_whole: bool = True
     is_tight: bool = False
+    is_cut: bool = False
 
     def leave_row(self) -> None:
         """Add an empty row if there is room for it."""
@@ -78,7 +80,7 @@ def show_entry(entry: Entry, report: Report, page: Page, number: int = 0) -> Non
     """Add a criterion; `number` counts failures, of which a short report has only the first with all blocks."""
     head, message, source_of = _head(entry, page), Text(" ".join(entry.texts("finding"))), report.submission.source
     if page.is_tight:
-        most = _MAX_ROWS if number < _MAX_FIRST else _MAX_REASON
+        most = _MOST_ROWS if not page.is_cut else _MAX_ROWS if number < _MAX_FIRST else _MAX_REASON
         page.inset(Text(": ").join((head, message)), head=Text(), most=most)
     else:
         page.line(head)
@@ -86,7 +88,7 @@ def show_entry(entry: Entry, report: Report, page: Page, number: int = 0) -> Non
     for part in entry.blocks if page.is_whole else _shortened(entry, page, is_first=number < _MAX_FIRST):
         match part:
             case Line(role, text) if role != "finding":
-                is_cut = page.is_tight and role in ("feedback", "expected")
+                is_cut = page.is_cut and role in ("feedback", "expected")
                 page.inset(text, LOOKS[role], most=_MAX_REASON - (number > 0) if is_cut else None)
             case Location():
                 source = source_of(part.path)

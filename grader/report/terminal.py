@@ -1,7 +1,8 @@
 """A report for a person at a terminal: what to fix first; the score last, where the eye is when the command ends.
 
 In 24 rows it has of each failure what it costs, what is wrong and what to do, and of the rest what is open. What has no
-room is joined, cut or left out. Text of a submission is never interpreted as markup or control codes.
+room is joined, cut or left out; where even that does not make 24 rows, messages are whole. Text of a submission is
+never interpreted as markup or control codes.
 """
 
 from collections.abc import Sequence
@@ -26,8 +27,8 @@ _MAX_NAMES, _MAX_PROBLEMS, _MAX_FILES = 3, 3, 2
 def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
     """Print a report, with `verbose` everything in it, else in 24 rows as far as possible."""
     found = document(report, everything=verbose)
-    for is_tight in [False] if verbose else [False, True]:
-        page = Page(console, [], verbose, is_tight)
+    for is_tight, is_cut in [(False, False)] if verbose else [(False, False), (True, True), (True, False)]:
+        page = Page(console, [], verbose, is_tight, is_cut)
         (_show_everything if verbose else _show_brief)(report, found, page)
         _show_end(report, page)
         if sum(row.plain.count("\n") + 1 for row in page.rows) <= _ROWS:
@@ -130,7 +131,7 @@ def _show_problems(report: Report, page: Page) -> None:
     for found in listed[:_MAX_PROBLEMS]:
         where = f"{printable(found.location.path.rpartition('/')[2])}:{found.location.line}"
         text = Text.assemble((f"{found.code} {found.severity} ", LOOKS[found.severity]), (where, "dim"))
-        page.inset(text.append(f": {printable(found.message)}"), head=Text(), most=1 if page.is_tight else 2)
+        page.inset(text.append(f": {printable(found.message)}"), head=Text(), most=1 if page.is_cut else 2)
     rest = len(problems) - len(listed[:_MAX_PROBLEMS])
     if rest:
         words = counted(rest, "more problem" if listed else "note")
