@@ -10,8 +10,9 @@ from grader.grading.hints.trials import Trials
 from grader.robot.edits.difference import RobotDifference
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.elements import Set
+from grader.robot.edits.groups import whole_elements, whole_links
 from grader.robot.edits.pieces import Piece
-from grader.robot.edits.variants import in_another_unit, of_own, of_siblings, whole_elements, whole_links
+from grader.robot.edits.variants import in_another_unit, of_own, of_siblings
 from grader.robot.meant import Word
 from grader.robot.reader import Reading
 from grader.source import Edit, Edits
