@@ -51,7 +51,7 @@ class PackageListing:
         self.empty: dict[EmptyGlob, None] = {}  # in the order of the searches
         self._children: dict[str, list[str]] = {}
         self._order = order
-        self._paths = sorted([*tree.files, *tree.folders, *tree.unseen, *(f"{path}/" for path in self.folders if path)])
+        self._paths = sorted([*tree.files, *tree.folders, *tree.unseen, *(path and f"{path}/" for path in self.folders)])
         for path in sorted([*tree.files, *tree.folders, *tree.unseen]):
             folder, _, name = path.rpartition("/")
             self._children.setdefault(folder, []).append(name)
@@ -116,16 +116,17 @@ class PackageListing:
         """
         if pattern.startswith("/"):
             raise SearchError(_OUTSIDE)
-        start = above or ("./" if pattern.startswith("./") else "")
-        parts = re.sub("/+", "/", pattern.removeprefix("./")).split("/")
-        if not recursive or parts[-1] != "**":
-            return [start + path for path in self._search(parts, recursive=recursive)]
-        found = self._search([*parts, "*"], recursive=True)
-        return [start + path for path in [*self._search([*parts[:-1], ""]), *found] if path]
+        start = above + "./" * pattern.startswith("./")
+        parts = pattern.removeprefix("./").split("/")
+        found = self._search(parts, recursive=recursive)
+        if recursive and parts[-1] == "**":  # also the folder that it begins in
+            found = [*self._search([*parts[:-1], ""]), *self._search([*parts, "*"], recursive=True)]
+        return [start + path for path in found if start + path]
 
     def path_glob(self, folder: str, pattern: str) -> list[str]:
         """Return the paths below a folder that pathlib's glob finds in Python 3.12. Raises SearchError."""
         parts = [part for part in pattern.split("/") if part not in ("", ".")]
+        parts = [part for part, after in pairwise([*parts, ""]) if (part, after) != ("**", "**")]
         odd = any("**" in part and part != "**" for part in parts) or pattern.startswith("/")
         if odd or not parts or pattern.endswith(("/", "/.")):
             raise SearchError(_UNUSUAL)
@@ -143,8 +144,6 @@ class PackageListing:
 
         Wildcards match names that begin with a dot only if `hidden`. Raises SearchError, also for what nobody writes.
         """
-        if recursive:
-            parts = [part for part, after in pairwise([*parts, ""]) if (part, after) != ("**", "**")]
         several = recursive and "**" in parts and (parts.count("**") > 1 or any(it.startswith(".") for it in parts))
         if several or "" in parts[:-1] or {".", ".."} & {*parts} or sum(map(len, parts)) > _MAX_PATTERN:
             raise SearchError(_UNUSUAL)
