@@ -17,6 +17,7 @@ from grader.static_python.values import Value
 # these.
 ORDERS = ("sorted", "reversed", "rotated")
 _MAGIC = re.compile(r"[*?\[]")
+_SLASHES = re.compile(r"//+(?=[^/]*[*?\[][^/]*$)")  # those before other names are in the result
 _OUTSIDE = "it searches for files outside of the package"
 _IGNORED = "it searches an ignored folder"
 _UNUSUAL = "a pattern of this kind is not supported"
@@ -51,8 +52,9 @@ class PackageListing:
         self.empty: dict[EmptyGlob, None] = {}  # in the order of the searches
         self._children: dict[str, list[str]] = {}
         self._order = order
-        self._paths = sorted([*tree.files, *tree.folders, *tree.unseen, *(path and f"{path}/" for path in self.folders)])
-        for path in sorted([*tree.files, *tree.folders, *tree.unseen]):
+        paths = [*tree.files, *tree.folders, *tree.unseen]
+        self._paths = sorted([*paths, *(path and f"{path}/" for path in self.folders)])
+        for path in sorted(paths):
             folder, _, name = path.rpartition("/")
             self._children.setdefault(folder, []).append(name)
         self._children = {folder: self.ordered(names) for folder, names in self._children.items()}
@@ -117,7 +119,7 @@ class PackageListing:
         if pattern.startswith("/"):
             raise SearchError(_OUTSIDE)
         start = above + "./" * pattern.startswith("./")
-        parts = pattern.removeprefix("./").split("/")
+        parts = _SLASHES.sub("/", pattern.removeprefix("./")).split("/")
         found = self._search(parts, recursive=recursive)
         if recursive and parts[-1] == "**":  # also the folder that it begins in
             found = [*self._search([*parts[:-1], ""]), *self._search([*parts, "*"], recursive=True)]

@@ -2,6 +2,7 @@
 
 import glob
 import os
+import re
 import sys
 import warnings
 from collections.abc import Iterator
@@ -52,7 +53,7 @@ def trees(draw: st.DrawFn) -> Tree:
 
 def is_unusual(pattern: str) -> bool:
     """Return whether nobody writes such a pattern: its result is unknown."""
-    parts = pattern.removeprefix("./").split("/")
+    parts = re.sub(r"//+([^/]*[*?\[][^/]*)$", r"/\1", pattern.removeprefix("./")).split("/")
     has_odd = ".." in parts or "." in parts or "" in parts[:-1]
     return has_odd or ("**" in parts and (parts.count("**") > 1 or any(part.startswith(".") for part in parts)))
 
