@@ -25,7 +25,7 @@ def file_functions(listing: PackageListing, root: str) -> FunctionTable:
     folder = _PackageFolder(listing, root)
     functions: dict[str, Callable[[Evaluation, Call], Value]] = {
         "glob.glob": folder.glob,
-        "glob.iglob": lambda evaluation, call: Items(folder.glob(evaluation, call)),
+        "glob.iglob": folder.iglob,
         "os.listdir": folder.listdir,
         "os.walk": folder.walk,
         **dict.fromkeys(("builtins.open", "io.open"), folder.open),
@@ -106,6 +106,10 @@ class _PackageFolder:
         except SearchError as error:  # glob raises no error of its own
             return Unknown(str(error), call.at)
         return self.listing.record(pattern, found, call.at)
+
+    def iglob(self, evaluation: Evaluation, call: Call) -> Value:
+        found = self.glob(evaluation, call)
+        return Items(found) if isinstance(found, list) else found
 
     def path_glob(self, _: Evaluation, call: Call, prefix: str = "") -> Value:
         pattern = call.argument(1, "pattern")

@@ -126,7 +126,8 @@ def _inner_value(value: Value) -> Value:
 
 def _find_description(findings: Findings, call: Call, context: Context) -> None:
     """Add the file that robot_state_publisher gets the robot from."""
-    parameters = call.kwargs.get("parameters") or []
+    given = call.kwargs.get("parameters") or []
+    parameters = given if isinstance(given, list | tuple) else [given]
     descriptions = [table["robot_description"] for table in tables_in(parameters) if "robot_description" in table]
     if descriptions:
         _refer_description(findings, descriptions[-1], call, context)

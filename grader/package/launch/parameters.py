@@ -8,7 +8,7 @@ import yaml
 
 from grader.package.launch.model import Contents, Context, LaunchFails, NotEvaluated, UnknownText
 from grader.package.launch.substitutions import resolve
-from grader.package.launch.value_types import FILE, SCALARS, TYPED, boolean, kind_of, type_of
+from grader.package.launch.value_types import FILE, SCALARS, TYPED, boolean, items_in, kind_of, type_of
 from grader.static_python.parse import Position
 from grader.static_python.values import Call, Undetermined, Unknown, Value
 
@@ -16,9 +16,9 @@ _MAX_YAML = 200_000  # characters
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
-def evaluate_parameters(parameters: list[Value], context: Context, at: Position) -> None:
-    """Evaluate the parameters of a node, as launch_ros does before it starts the node. Raises LaunchSignal."""
-    for item in parameters:
+def evaluate_parameters(parameters: Value, context: Context, at: Position) -> None:
+    """Evaluate the parameters of a node, as launch_ros does first. Raises LaunchSignal and Undetermined."""
+    for item in items_in(parameters) or ():
         if isinstance(item, dict):
             evaluate_dict(item, context, at)
         elif isinstance(item, Call) and item.name in (*TYPED, FILE):

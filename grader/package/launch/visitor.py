@@ -92,7 +92,8 @@ class ActionVisitor:
             if kind not in self.kinds:
                 raise NotEvaluated(f"what {kind} does is not evaluated", call.at)
             self.kinds[kind](self, call, context, when)
-        except LaunchSignal as signal:
+        except (LaunchSignal, Undetermined) as error:
+            signal = error if isinstance(error, LaunchSignal) else NotEvaluated(str(error), call.at)
             self.findings.add(signal, when)
             if isinstance(signal, NotEvaluated) and kind not in PROCESSES and when is not False:
                 self.findings.add_unknown(str(signal), signal.at)
@@ -165,5 +166,5 @@ def _evaluate_field(value: Value, test: str, context: Context, at: Position) -> 
         case "parameters":
             evaluate_parameters(value, context, at)
         case "remappings":
-            for rule in items_in(value) or ():
-                resolve(rule[0], context, at), resolve(rule[1], context, at)
+            for name in (name for rule in items_in(value) or () for name in items_in(rule) or ()):
+                resolve(name, context, at)
