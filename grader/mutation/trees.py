@@ -10,29 +10,23 @@ from grader.xacro.texts import INSTALLED
 from grader.xml.parsing import Element
 from grader.xml.wanted_element import FOREIGN
 
-XACRO = "http://www.ros.org/wiki/xacro"
 _FOUND = re.compile(rf"\Afile:/*{INSTALLED}/([^/]+)/share/\1/")
 
 
 def copied(root: Element) -> Element:
-    """Return a copy of a tree without comments; paths of meshes that $(find package) gave become package:// ones.
-
-    Its root declares the namespace of xacro.
-    """
+    """Return a copy of a tree without comments; paths of meshes that $(find package) gave become package:// ones."""
     plain = etree.XMLParser(remove_comments=True, remove_pis=True, remove_blank_text=True)
-    found = etree.fromstring(etree.tostring(root, with_tail=False), plain)
-    copy = etree.Element(found.tag, dict(found.attrib), nsmap={"xacro": XACRO})
-    copy.extend(list(found))
+    copy = etree.fromstring(etree.tostring(root, with_tail=False), plain)
     for mesh in copy.iter("mesh"):
         if mesh.get("filename"):
             mesh.set("filename", _FOUND.sub(r"package://\1/", mesh.get("filename", "")))
     return copy
 
 
-def text_of(tree: Element, indent: str = "  ") -> str:
+def text_of(tree: Element) -> str:
     """Return a tree as text, without namespaces that are not used."""
     etree.cleanup_namespaces(tree)
-    etree.indent(tree, indent)
+    etree.indent(tree)
     return etree.tostring(tree, encoding="unicode")
 
 
