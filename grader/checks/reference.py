@@ -9,9 +9,10 @@ from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millime
 from grader.checks.toml_types import Constraint, NonNegative
 from grader.errors import MissingElement, NotDecided, RubricError
 from grader.names import did_you_mean
+from grader.robot.frames import SINGLE
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
-from grader.robot.pairing import SINGLE, Offset, RobotPair, movers, random_positions, singles
+from grader.robot.pairing import Offset, RobotPair, movers, random_positions, singles
 from grader.robot.selectors import selected_link
 from grader.text import counted, enumerated, quoted
 

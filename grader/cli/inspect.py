@@ -27,7 +27,7 @@ def inspect(
     """Show a URDF as ROS 2 reads it: problems, tree, joints, poses.
 
     A xacro file is expanded as xacro does, without running it. Exits 1 if ROS 2 or xacro rejects the file, or if
-    this cannot be determined statically. A planar joint takes x,y,angle and a floating joint x,y,z,roll,pitch,yaw.
+    this cannot be determined statically.
 
     Examples:
 

@@ -1,19 +1,16 @@
 """The motion of each joint and the frame of each link: forward kinematics down the tree; why a pose is undefined."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from math import atan2, isfinite, nan
+from collections.abc import Iterable, Mapping
+from math import isfinite, nan
 from typing import NamedTuple
 
 from grader.errors import MissingElement
 from grader.robot.joints import MOVING_TYPES
 from grader.robot.model import Joint, Origin, Robot
-from grader.robot.transforms import IDENTITY, Transform, Vector, cross, dot, rotation_about, rotation_from_rpy, unit
-from grader.text import counted, quoted
+from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_about, rotation_from_rpy, unit
+from grader.text import quoted
 
-Position = float | Sequence[float]
-
-# The number of coordinates of a joint's position; the other types do not move.
-DEGREES_OF_FREEDOM = {"continuous": 1, "revolute": 1, "prismatic": 1, "planar": 3, "floating": 6}
+SINGLE = ("revolute", "continuous", "prismatic")  # the types of joints that a position moves
 
 
 class Frame(NamedTuple):
@@ -35,7 +32,7 @@ class Frames:
     Each is computed once, when it is asked for, from the nearest known one above.
     """
 
-    def __init__(self, robot: Robot, parents: Mapping[str, Joint], given: Mapping[str, Position]) -> None:
+    def __init__(self, robot: Robot, parents: Mapping[str, Joint], given: Mapping[str, float]) -> None:
         self._robot, self._parents, self._given = robot, parents, given
         self._mimicked: dict[str, float] = {}  # the positions of mimic joints
         self._known: dict[str, Frame] = {}
@@ -72,11 +69,11 @@ class Frames:
             known[joint.child] = frame
         return frame
 
-    def position(self, joint: Joint) -> Position:
+    def position(self, joint: Joint) -> float:
         """Return the position of a joint: its own, that of the joint it mimics, or 0; NaN if xacro leaves it open."""
         if joint.name in self._given or (joint.mimic is None and "mimic" not in joint.unresolved):
             return self._given.get(joint.name, 0.0)
-        # It is 0 if the chain of mimics ends at a joint that does not exist or has no single number, or forms a loop.
+        # It is 0 if the chain of mimics ends at a joint that does not exist, or forms a loop.
         # The positions of the joints between are kept: long chains are followed once.
         followers: dict[str, Joint] = {}
         value = 0.0
@@ -86,7 +83,7 @@ class Frames:
                 value = nan
                 break
             if own is not None or joint.mimic is None:
-                value = own if isinstance(own, int | float) else 0.0
+                value = own or 0.0
                 break
             followers[joint.name] = joint
             if not self._robot.has_joint(joint.mimic.joint):
@@ -139,63 +136,36 @@ def placed_by(T_frame_parent: Transform, origin: Origin) -> Transform:
     return T_frame_parent @ Transform(rotation_from_rpy(origin.rpy), origin.xyz)
 
 
-def motion_of(joint: Joint, position: Position) -> Transform | None:
-    """Return T_origin_child; None if it is undefined, as it is for every position about a zero axis (KDL)."""
+def motion_of(joint: Joint, position: float) -> Transform | None:
+    """Return T_origin_child; None if it is undefined, as it is for every position about a zero axis (KDL).
+
+    A planar or floating joint stays at its origin: robot_state_publisher does not move it.
+    """
     if joint.type not in MOVING_TYPES:
         return IDENTITY
-    if isinstance(position, int | float) and not isfinite(position):
+    if not isfinite(position):
         return None  # a chain of mimic joints can overflow
     if joint.type == "floating":
-        return _floating(position)
+        return IDENTITY
     direction = unit(joint.axis) if joint.axis is not None else None
     if direction is None:
         # KDL divides by the axis' length before it uses the position. An unreadable axis matters only if the joint
         # moves.
         return IDENTITY if joint.axis is None and not position else None
-    return _planar(direction, position) if joint.type == "planar" else _along(joint, direction, position)
+    return IDENTITY if joint.type == "planar" or not position else _along(joint, direction, position)
 
 
-def _along(joint: Joint, direction: Vector, position: Position) -> Transform:
+def _along(joint: Joint, direction: Vector, position: float) -> Transform:
     """Return a motion along the axis of a prismatic joint, or about that of another one."""
-    if not position:
-        return IDENTITY
-    assert isinstance(position, int | float)  # check_position has made sure
     if joint.type == "prismatic":
         x, y, z = direction
         return Transform(translation=(x * position, y * position, z * position))
     return Transform(rotation_about(direction, position))
 
 
-def _floating(position: Position) -> Transform:
-    if isinstance(position, int | float):
-        return IDENTITY
-    x, y, z, roll, pitch, yaw = position
-    return Transform(rotation_from_rpy((roll, pitch, yaw)), (x, y, z))
-
-
-def _planar(normal: Vector, position: Position) -> Transform:
-    """Return a motion in the plane across `normal`, then about it; x and y are the frame's if it is the z axis."""
-    if isinstance(position, int | float):
-        return IDENTITY
-    x, y, angle = position
-    around = cross((0.0, 0.0, 1.0), normal)
-    turn = unit(around)
-    if turn is None:
-        slide: Vector = (x, y, 0.0) if normal[2] > 0 else (x, -y, 0.0)
-    else:
-        tilt = rotation_about(turn, atan2(dot(turn, around), normal[2]))
-        slide = Transform(tilt).rotate((x, y, 0.0))
-    return Transform(rotation_about(normal, angle), slide)
-
-
-def check_position(joint: Joint, position: Position) -> None:
+def check_position(joint: Joint, position: float) -> None:
     """Raise ValueError for a position that a joint of this type cannot have."""
-    wanted = DEGREES_OF_FREEDOM.get(joint.type, 0)
-    values = (position,) if isinstance(position, int | float) else position
-    if wanted == 0:
+    if joint.type not in SINGLE:
         raise ValueError(f"joint {quoted(joint.name)} is {joint.type or 'without type'}: it cannot move")
-    if not all(map(isfinite, values)):
+    if not isfinite(position):
         raise ValueError(f"joint {quoted(joint.name)} cannot be at {position}")
-    if len(values) != wanted:
-        takes = f"its position takes {counted(wanted, 'number')}, not {len(values)}"
-        raise ValueError(f"joint {quoted(joint.name)} is {joint.type}: {takes}")

@@ -7,7 +7,7 @@ from itertools import takewhile
 from math import isfinite
 
 from grader.errors import MissingElement
-from grader.robot.frames import Frames, Position, check_position, motion_of, undefined_pose
+from grader.robot.frames import Frames, check_position, motion_of, undefined_pose
 from grader.robot.joints import MOVING_TYPES
 from grader.robot.model import Joint, Link, Robot, Visual
 from grader.robot.transforms import IDENTITY, Transform, Vector, unit
@@ -19,15 +19,15 @@ from grader.text import quoted
 class Configuration:
     """A robot with its joints at `positions`: radians or metres; the joints that are not named are at 0.
 
-    A planar joint takes x, y (metres in the plane across its axis) and an angle; a floating joint takes x, y, z, roll,
-    pitch, yaw. A mimic joint follows, unless it is named itself. Links without a parent joint are roots, so a forest is
-    solved tree by tree. Every link is solved once: linear in the number of links, without recursion.
+    A mimic joint follows, unless it is named itself. Planar and floating joints stay at 0. Links without a parent joint
+    are roots, so a forest is solved tree by tree. Every link is solved once: linear in the number of links, without
+    recursion.
     """
 
     known: Robot
     robot: Robot
     is_guarded: bool
-    positions: Mapping[str, Position]
+    positions: Mapping[str, float]
     parent_joints: Mapping[str, Joint]
     shown: dict[str, tuple[Visual, ...]]  # a cache for the checks of what a link shows
     holding: Mapping[str, Joint]  # the parent joints as they are known
@@ -37,7 +37,7 @@ class Configuration:
     def __init__(
         self,
         robot: Robot,
-        positions: Mapping[str, Position] | None = None,
+        positions: Mapping[str, float] | None = None,
         *,
         holding: Mapping[str, Joint] | None = None,
         is_guarded: bool = False,
@@ -46,7 +46,7 @@ class Configuration:
 
         `holding` is parent_joints(robot), if it is known already; positions are not validated then.
 
-        Raises MissingElement for a joint that is not there, ValueError for a position of the wrong shape.
+        Raises MissingElement for a joint that is not there, ValueError for a position that it cannot have.
         """
         known, positions = robot, dict(positions or {})
         parents = found = parent_joints(known) if holding is None else holding
@@ -176,13 +176,13 @@ class Configuration:
         message, at = f"the joint that moves {quoted(link)} has {kind}", joint.location
         raise MissingElement("moving joint", link, message=message, location=at and at._replace(attribute="type"))
 
-    def moved(self, joint: str | Joint, position: Position) -> "Configuration":
+    def moved(self, joint: str | Joint, position: float) -> "Configuration":
         """Return the same robot with one joint elsewhere; raises ValueError for a position that it cannot have."""
         found = self.joint(joint) if isinstance(joint, str) else joint
         check_position(found, position)
         return self.at({**self.positions, found.name: position})
 
-    def at(self, positions: Mapping[str, Position]) -> "Configuration":
+    def at(self, positions: Mapping[str, float]) -> "Configuration":
         """Return the same robot with its joints at other positions, which are not validated."""
         return Configuration(self.known, positions, holding=self.holding, is_guarded=self.is_guarded)
 
@@ -197,12 +197,10 @@ class Configuration:
             T_relative_joint = self.pose(joint.child, relative_to=relative_to)
             turn = motion_of(joint, angle) or IDENTITY  # everything below the joint turns together
             return T_relative_joint @ turn @ T_relative_joint.inverse()
-        position = self.position(joint)
-        assert isinstance(position, int | float)  # its position is one number
-        moved = self.moved(joint, position + angle).pose(link, relative_to=relative_to)
+        moved = self.moved(joint, self.position(joint) + angle).pose(link, relative_to=relative_to)
         return moved @ self.pose(link, relative_to=relative_to).inverse()
 
-    def position(self, joint: Joint) -> Position:
+    def position(self, joint: Joint) -> float:
         """Return the position of a joint: its own, that of the joint that it mimics, or 0."""
         return self._frames.position(self.as_known(joint))
 

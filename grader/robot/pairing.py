@@ -6,6 +6,7 @@ from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 from grader.errors import NotDecided
+from grader.robot.frames import SINGLE
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint, Robot
 from grader.robot.transforms import Transform
@@ -16,7 +17,6 @@ _MAX_CHAIN = 500  # joints that lead to a link
 _LEAST = 1e-9  # of a tolerance: below it, only rounding differs
 # The poses of links of references, by what they are relative to, their names, and the joints with their positions.
 _EXPECTED: WeakKeyDictionary[Configuration, dict[Hashable, tuple[Transform, ...]]] = WeakKeyDictionary()
-SINGLE = ("revolute", "continuous", "prismatic")  # the types of joints whose position is one number
 _SEED = 20_260_115
 _BETWEEN = 0.3  # of a range: a position that is neither an end nor the middle
 

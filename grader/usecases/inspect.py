@@ -1,11 +1,10 @@
 """Read a URDF as ROS 2 does, with its joints at given positions."""
 
 from collections.abc import Sequence
-from math import isfinite
+from math import isfinite, nan
 
 from grader.errors import GraderError, InputError, MissingElement, NotDecided
 from grader.report.inspection import Inspection, main_root
-from grader.robot.frames import Position
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading
 from grader.submission.opening import open_submission
@@ -56,13 +55,13 @@ def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None
         raise GraderError(f"--joint: {error}") from None
 
 
-def _read_position(text: str) -> tuple[str, Position]:
+def _read_position(text: str) -> tuple[str, float]:
     """Return the joint and its position in radians or metres that `--joint` gives. Raises GraderError."""
     name, equals, value = text.rpartition("=")
     try:
-        values = tuple(map(float, value.split(",")))
+        position = float(value)
     except ValueError:
-        values = (float("nan"),)
-    if not equals or not all(map(isfinite, values)):
+        position = nan
+    if not equals or not isfinite(position):
         raise GraderError(f"--joint takes NAME=VALUE with a number in radians or metres, not {text!r}")
-    return name, values if len(values) > 1 else values[0]
+    return name, position

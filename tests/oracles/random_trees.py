@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from grader.robot.frames import SINGLE
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
 from grader.robot.reader import read_urdf
@@ -17,7 +18,6 @@ pin: Any = pytest.importorskip("pinocchio", reason=MISSING)
 
 KINDS = ("fixed", "continuous", "revolute", "prismatic", "planar", "floating")
 _CIRCLE = 2  # how many numbers pinocchio keeps for a joint that turns without limits: cosine and sine
-_SIZES = {"fixed": 0, "planar": 3, "floating": 6}
 
 
 def _numbers(random: Random, size: float) -> str:
@@ -30,7 +30,7 @@ def random_tree(random: Random) -> str:
     elements, leading = ['<link name="l0"/>'], list[str]()
     for child in range(1, count):
         kind = random.choice(KINDS)
-        is_single = kind in ("continuous", "revolute", "prismatic")
+        is_single = kind in SINGLE
         rule = ""
         if is_single and leading and random.random() < 0.4:
             rule = f'<mimic joint="{random.choice(leading)}" multiplier="{random.uniform(-2, 2)!r}" offset="{random.uniform(-1, 1)!r}"/>'
@@ -65,14 +65,14 @@ def difference(text: str, random: Random, count: int) -> str | None:
     model = pin.buildModelFromXML(text)
     types = {joint.name: joint.type for joint in robot.joints}
     for _ in range(count):
-        given: dict[str, Any] = {}
+        given: dict[str, float] = {}
         for joint in robot.joints:
-            values = [random.uniform(-3.0, 3.0) for _ in range(_SIZES.get(joint.type, 1))]
-            if values and joint.mimic is None:
-                given[joint.name] = values[0] if len(values) == 1 else tuple(values)
+            if joint.type in SINGLE and joint.mimic is None:
+                given[joint.name] = random.uniform(-3.0, 3.0)
         positions, state = followed(robot, given), pin.neutral(model)
         for name, moving in joints_of(model).items():
-            _set(state, moving, types[name], positions[name])
+            if types[name] in SINGLE:
+                _set(state, moving, positions[name])
         data, configuration = model.createData(), Configuration(robot, given)
         pin.framesForwardKinematics(model, data, state)
         for link in robot.links:
@@ -82,13 +82,7 @@ def difference(text: str, random: Random, count: int) -> str | None:
     return None
 
 
-def _set(state: Any, joint: Any, kind: str, position: Any) -> None:
-    """Write the position of a joint as pinocchio keeps it: cosine and sine of an angle, a quaternion of a rotation."""
-    start, values = joint.idx_q, position
-    if kind == "floating":
-        values = (*position[:3], *pin.Quaternion(pin.rpy.rpyToMatrix(*position[3:])).coeffs())
-    elif kind == "planar":
-        values = (*position[:2], cos(position[2]), sin(position[2]))
-    elif joint.nq == _CIRCLE:
-        values = (cos(position), sin(position))
-    state[start : start + joint.nq] = values
+def _set(state: Any, joint: Any, position: float) -> None:
+    """Write the position of a joint as pinocchio keeps it: cosine and sine of an angle without limits."""
+    values = (cos(position), sin(position)) if joint.nq == _CIRCLE else position
+    state[joint.idx_q : joint.idx_q + joint.nq] = values
