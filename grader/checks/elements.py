@@ -149,7 +149,7 @@ def _no_attributes(reading: Reading, tags: Sequence[Element], wanted: WantedElem
     detail = f"; the file has {enumerated([*shown], _MAX_NAMED)}"
     for key, value in wanted.attributes.items():
         found = [one[key] or "" for one in given]
-        detail += _case(found, [value]) or did_you_mean(xml_text(value), filter(None, found))
+        detail += did_you_mean(xml_text(value), filter(None, found))
     return failed(f"there is no {wanted.element}", _place(reading, tags[0]), detail=detail)
 
 
@@ -165,12 +165,9 @@ def _no_path(reading: Reading, element: Element, wanted: WantedElement) -> Outco
 def _no_identity(reading: Reading, above: Element, found: Sequence[Element], wanted: WantedElement) -> Outcome:
     """Return the failure of elements of which none has the identifying attribute."""
     names = [text.text for element in found for text in texts_at(element, wanted.identity)]
-    value = str(wanted.values[wanted.identity])
     detail = f"; the file has {enumerated([*map(quoted, names)], _MAX_NAMED)}" if names else ""
-    detail += _case(names, [value])
-    return failed(
-        f"no {wanted.inner} has the {wanted.identity!r} {quoted(value)}", _place(reading, above), detail=detail
-    )
+    message = f"no {wanted.inner} has the {wanted.identity!r} {quoted(str(wanted.values[wanted.identity]))}"
+    return failed(message, _place(reading, above), detail=detail)
 
 
 def _fault(key: str, found: Sequence[FoundElement], expected: Content) -> str:
@@ -180,14 +177,7 @@ def _fault(key: str, found: Sequence[FoundElement], expected: Content) -> str:
     if not found:
         return f"{key!r} is missing; {should}"
     texts = [readable(text.text) for text in found]
-    return f"{key!r} is {enumerated([*map(_value_text, texts)], _MAX_NAMED)}; {should}{_case(texts, wanted)}"
-
-
-def _case(texts: Sequence[str], wanted: Sequence[Scalar]) -> str:
-    """Return a note that a text differs from a wanted one in upper and lower case only."""
-    lower = {text.lower() for text in texts if text not in wanted}
-    is_alike = any(isinstance(value, str) and value not in texts and value.lower() in lower for value in wanted)
-    return " (upper and lower case differ)" if is_alike else ""
+    return f"{key!r} is {enumerated([*map(_value_text, texts)], _MAX_NAMED)}; {should}"
 
 
 def _value_text(value: Scalar) -> str:
