@@ -1,7 +1,6 @@
 """The frames of a whole robot: whether everything in it is turned or moved alike, in comparison with a reference.
 
-It finds any quarter turn and any move, for a note that each report has, without hints too. `robot.edits.conventions`
-makes the edits of the few conventions that can be corrected in the text, and the units.
+It finds any quarter turn and any move, for a note that each report has, without hints too.
 """
 
 from collections.abc import Iterator
