@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import hypot, inf
 
 from grader.checks.check import About
-from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, passed, pending, place, point
+from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millimetres, passed, place, point
 from grader.checks.toml_types import NonNegative, RadiusAndLength, Size
 from grader.checks.visuals import MAX_SHAPES, file_name, visuals
 from grader.errors import MissingElement, NotDecided, RubricError
@@ -170,7 +170,7 @@ def _unlike(link: str, lonely: Sequence[Visual], others: Sequence[Collision], to
         if unknown is not None:
             cause = "mesh files are not opened"
             what = f"whether the collision mesh {file_name(unknown.filename)} of {link!r} has the shape that is shown"
-            return pending(f"{what} cannot be determined: {cause}; needs manual grading", cause)
+            raise NotDecided(f"{what} cannot be determined: {cause}", cause)
     pairs = [(_mismatch(visual, other, tolerance), visual, other) for visual in lonely for other in others]
     off, visual, nearest = min(pairs, key=lambda pair: _rank(pair[0]))
     return _differs(f"no collision shape of {link!r} is {_description(visual)}, as shown", nearest, off, tolerance)

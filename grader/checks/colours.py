@@ -1,9 +1,10 @@
 """Checks of the colour in which a link is shown."""
 
 from grader.checks.check import About
-from grader.checks.outcome import SLACK, Outcome, failed, judged, pending, place, point, within
+from grader.checks.outcome import SLACK, Outcome, failed, judged, place, point, within
 from grader.checks.toml_types import Colour, NonNegative
 from grader.checks.visuals import VISIBLE, ShapeName, all_within, main_visual
+from grader.errors import NotDecided
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Material, Visual
 
@@ -86,8 +87,7 @@ def _has_only_texture(material: Material) -> bool:
 
 def _colourless(link: str, visual: Visual) -> Outcome:
     if visual.material is not None:
-        message = f"{link!r} is shown with a texture, which the grader does not open; needs manual grading"
-        return pending(message, "textures are not opened")
+        raise NotDecided(f"{link!r} is shown with a texture, which the grader does not open", "textures are not opened")
     if visual.has_unreadable_colour:
         at = place(visual.location, None, "material")
         return failed(f"{link!r} has no colour: ROS 2 cannot read that of its material {visual.material_name!r}", at)

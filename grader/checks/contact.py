@@ -4,9 +4,10 @@ from itertools import product
 from operator import itemgetter
 
 from grader.checks.check import About
-from grader.checks.outcome import SLACK, Outcome, difference, in_millimetres, judged, pending, place, point, within
+from grader.checks.outcome import SLACK, Outcome, difference, in_millimetres, judged, place, point, within
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose, visuals
+from grader.errors import NotDecided
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Geometry, Mesh
 from grader.robot.overlap import penetration
@@ -57,7 +58,7 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
     own = [(visual, visual_pose(robot, link, visual, of)) for visual in visuals(robot, link)]
     others = [(visual.geometry, visual_pose(robot, of, visual, of)) for visual in visuals(robot, of)]
     if len(own) * len(others) > _MAX_PAIRS:
-        return pending(f"{link!r} and {of!r} show too many shapes to compare; needs manual grading", "too many shapes")
+        raise NotDecided(f"{link!r} and {of!r} show too many shapes to compare", "too many shapes")
     deepest, culprit = 0.0, own[0][0]
     unknown: Mesh | None = None
     for (visual, pose), (geometry, other) in product(own, others):

@@ -6,8 +6,8 @@ from fnmatch import fnmatch
 from typing import TYPE_CHECKING, Literal
 
 from grader.checks.check import About
-from grader.checks.outcome import Outcome, failed, passed, pending
-from grader.errors import MissingElement
+from grader.checks.outcome import Outcome, failed, passed
+from grader.errors import MissingElement, NotDecided
 from grader.names import closest
 from grader.package.package import MANIFEST, SETUP, Package
 from grader.text import enumerated, first_lines
@@ -61,12 +61,11 @@ def installs_files(package: Package, *, files: list[str]) -> Outcome:
 
 def setup_imports(package: Package) -> Outcome:
     """A build of the package succeeds: Python runs `setup.py` to its end, and colcon accepts what it says."""
-    setup = _readable_setup(package)
-    return setup if isinstance(setup, Outcome) else _build_error(package, setup) or passed("setup.py builds")
+    return _build_error(package, _readable_setup(package)) or passed("setup.py builds")
 
 
 def _build_error(package: Package, setup: "Setup") -> Outcome | None:
-    """Return why a build of the package fails, or that this cannot be determined; None if it succeeds."""
+    """Return why a build of the package fails; None if it succeeds. Raises NotDecided."""
     if package.ignored_by:
         message = f"colcon does not build the package, because there is a file {package.ignored_by}"
         return failed(message, problem=message)
@@ -83,8 +82,8 @@ def _build_error(package: Package, setup: "Setup") -> Outcome | None:
         return failed(message, setup.location(setup.called_at), problem=message)
     if setup.doubt is not None:
         reason = f"{setup.doubt.reason} (line {setup.doubt.at.line} of setup.py)"
-        message = f"cannot determine statically whether setup.py builds: {reason}"
-        return pending(f"{message}; needs manual grading", "cannot determine statically whether setup.py builds")
+        cause = "cannot determine statically whether setup.py builds"
+        raise NotDecided(f"{cause}: {reason}", cause)
     return None
 
 
@@ -104,15 +103,14 @@ def files_of(package: Package, kind: FileKind, name: str) -> Sequence[str]:
     return [path for path in paths if path not in parts] or paths
 
 
-def _readable_setup(package: Package) -> "Setup | Outcome":
-    """Return the package's setup.py, or the outcome that says why it needs manual grading.
+def _readable_setup(package: Package) -> "Setup":
+    """Return the package's setup.py.
 
-    Raises MissingElement if there is none, or if Python cannot read it.
+    Raises MissingElement if there is none, or if Python cannot read it; NotDecided if it needs manual grading.
     """
     setup = package.setup
     if package.is_cmake:
-        reason = "the grader does not evaluate CMakeLists.txt, which lists what is installed"
-        return pending(f"{reason}; needs manual grading", reason)
+        raise NotDecided("the grader does not evaluate CMakeLists.txt, which lists what is installed")
     if setup is None:
         message = "the package has no setup.py, so a build of an ament_python package installs nothing"
         raise MissingElement("setup.py", package.folder, message=message)
@@ -120,9 +118,7 @@ def _readable_setup(package: Package) -> "Setup | Outcome":
         message = f"Python cannot read setup.py: {setup.fault.message}"
         raise MissingElement("setup.py", package.folder, message=message, location=setup.fault.location)
     if setup.fault is not None:
-        return pending(
-            f"setup.py cannot be read ({setup.fault.message}); needs manual grading", "setup.py cannot be read"
-        )
+        raise NotDecided(f"setup.py cannot be read ({setup.fault.message})", "setup.py cannot be read")
     return setup
 
 
@@ -130,15 +126,11 @@ def _require_installed(
     package: Package, files: Sequence[str], kind: FileKind | None, *, despite_errors: bool
 ) -> Outcome:
     setup = _readable_setup(package)
-    if isinstance(setup, Outcome):
-        return setup
     error = _build_error(package, setup)
-    if error is not None and error.status == "failed" and despite_errors:
-        error = passed(f"setup.py has an entry for {files[0]}") if _stops_at(package, setup, files, kind) else None
-    elif error is not None and error.status == "failed":
-        error = error._replace(message=f"a build fails: {error.message}")
-    if error is not None:
-        return error
+    if error is not None and not despite_errors:
+        return error._replace(message=f"a build fails: {error.message}")
+    if error is not None and _stops_at(package, setup, files, kind):
+        return passed(f"setup.py has an entry for {files[0]}")
     copies = [copy for copy in setup.copies if copy.source in files]
     inside = [copy for copy in copies if copy.target.startswith(package.share)]
     twice = sorted({copy.target for copy in inside if posixpath.basename(copy.target) == posixpath.basename(files[0])})
@@ -150,7 +142,7 @@ def _require_installed(
     if setup.unknown:
         reason = f"{setup.unknown[0].reason} (line {setup.unknown[0].at.line} of setup.py)"
         message = f"cannot determine statically whether a build installs {files[0]}: {reason}"
-        return pending(f"{message}; needs manual grading", "cannot determine statically what setup.py installs")
+        raise NotDecided(message, "cannot determine statically what setup.py installs")
     if copies:
         message = f"a build installs {copies[0].source} as {copies[0].target}"
         message += f"; ROS 2 looks for the package's files below {package.share}"

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from grader.checks.check import About
 from grader.checks.launch_places import ENDINGS, WORDS, FilePlace, fault_that_stops, launch_of, path_of, place_of
-from grader.checks.outcome import Outcome, failed, judged, passed, pending
-from grader.errors import MissingElement
+from grader.checks.outcome import Outcome, failed, judged, passed
+from grader.errors import MissingElement, NotDecided
 from grader.package.launch.places import is_launch_named, is_of_one_machine, one_machine_only
 from grader.package.package import Package
 from grader.source import Location
@@ -66,29 +66,24 @@ def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool 
         reason, at = _why_missing(launch, {node for choice in missing for node in choice})
         what, detail = f"the launch file does not start {listed}", f"; it {message}{reason}"
         return judged(False, what, tuple(sorted(started)), tuple(nodes), at=at, detail=detail)
-    if launch.doubts:
-        return _doubtful(launch)
+    _check_starts(launch)
+    if missing:
+        reason = f": {launch.unknown[0].message}" if launch.unknown else ""
+        message = f"cannot determine statically whether {listed} is started{reason}"
+        raise NotDecided(message, "cannot determine statically which nodes the launch file starts")
     unknown = next((it.text for it in places if it.state == "unknown" and _stops(it.file) and it.file.path), "")
-    if missing or unknown:
-        return _undecided(launch, listed, unknown)
+    if unknown:
+        cause = "cannot determine statically whether the files that it reads are installed"
+        raise NotDecided(f"{unknown}, and the launch file reads it", cause)
     return judged(True, f"the launch file starts {', '.join(sorted(started))}", tuple(sorted(started)), tuple(nodes))
 
 
-def _undecided(launch: "Launch", missing: str, unknown: str) -> Outcome:
-    """Return that whether nodes are started is not known, or whether a file that the launch file reads is there."""
-    if not missing:
-        message = f"{unknown}, and the launch file reads it; needs manual grading"
-        return pending(message, "cannot determine statically whether the files that it reads are installed")
-    reason = f": {launch.unknown[0].message}" if launch.unknown else ""
-    message = f"cannot determine statically whether {missing} is started{reason}; needs manual grading"
-    return pending(message, "cannot determine statically which nodes the launch file starts")
-
-
-def _doubtful(launch: "Launch") -> Outcome:
-    """Return that whether the launch file starts is not known, and why."""
-    reason, at = launch.doubts[0].message, launch.doubts[0].location
-    what = "cannot determine statically whether ros2 launch starts the file"
-    return pending(f"{what}: line {at.line}: {reason}; needs manual grading", what)
+def _check_starts(launch: "Launch") -> None:
+    """Raise NotDecided if it is not known whether the launch file starts."""
+    if launch.doubts:
+        message, at = launch.doubts[0].message, launch.doubts[0].location
+        what = "cannot determine statically whether ros2 launch starts the file"
+        raise NotDecided(f"{what}: line {at.line}: {message}", what)
 
 
 def _places(package: Package, launch: "Launch", *purposes: "Purpose", built: bool) -> list[FilePlace]:
@@ -149,11 +144,11 @@ def launch_finds_files(package: Package, *, name: str, built: bool = True, start
     if launch.faults and (unknown or all(it.file.purpose == "include" for it in places)):
         raise fault_that_stops(package, name, launch)
     if all(it.file.purpose == "include" for it in places):
-        return _no_files(launch)
+        raise _no_files(launch)
     if unknown is not None:
-        return pending(f"{unknown.text}; needs manual grading", _UNKNOWN_FILES)
-    if launch.doubts and not launch.faults:
-        return _doubtful(launch)
+        raise NotDecided(unknown.text, _UNKNOWN_FILES)
+    if not launch.faults:
+        _check_starts(launch)
     return _found(places)
 
 
@@ -185,12 +180,12 @@ def _wrong(package: Package, wrong: Sequence[FilePlace]) -> Outcome:
     return failed(message, first.location, problem=problem, mistake=mistake)
 
 
-def _no_files(launch: "Launch") -> Outcome:
+def _no_files(launch: "Launch") -> NotDecided | MissingElement:
     """Return why a launch file names neither a URDF nor an RViz file."""
     unknown = launch.doubts or launch.unknown
     if unknown:
-        return pending(f"{_UNKNOWN_FILES}: {unknown[0].message}; needs manual grading", _UNKNOWN_FILES)
-    raise MissingElement("named file", "", message="the launch file names neither a URDF nor an RViz file")
+        return NotDecided(f"{_UNKNOWN_FILES}: {unknown[0].message}", _UNKNOWN_FILES)
+    return MissingElement("named file", "", message="the launch file names neither a URDF nor an RViz file")
 
 
 def _missing(package: Package, place: FilePlace) -> MissingElement:

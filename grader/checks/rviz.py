@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from grader.checks.check import About
-from grader.checks.outcome import Outcome, Status, failed, judged, passed, pending
+from grader.checks.outcome import Outcome, Status, failed, judged, passed
 from grader.errors import MissingElement, NotDecided
 from grader.names import did_you_mean
 from grader.package.package import Package
@@ -24,6 +24,7 @@ ABOUT = {
 }
 
 _PLUGINS = "rviz_default_plugins"
+_UNKNOWN_PREFIX = "the frame_prefix of robot_state_publisher is known only at run time"
 
 
 def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
@@ -38,8 +39,8 @@ def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
     if path.rpartition("/")[2] == name or (opened is not None and path == package.rviz_opened(opened)):
         return passed(f"the RViz file is {path}")
     if opened is not None and (opened.syntax or opened.unknown or not all(file.sure for file in opened.named("rviz"))):
-        message = f"cannot determine statically whether the launch file opens {path}; needs manual grading"
-        return pending(message, "cannot determine statically which files the launch file names")
+        message = f"cannot determine statically whether the launch file opens {path}"
+        raise NotDecided(message, "cannot determine statically which files the launch file names")
     return failed(f"there is no RViz file {name!r}", detail=f"; the package has {path}{package.built('rviz', name)}")
 
 
@@ -60,7 +61,7 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
     if not actual:
         return failed(f"the RViz file sets no Fixed Frame; it should be {expected!r}", rviz.frame_location)
     if None in frames and actual.endswith(frame):
-        return _unknown_prefix()
+        raise NotDecided(_UNKNOWN_PREFIX)
     robot = submission.urdf.reading.robot if isinstance(submission.urdf, Read) else None
     links = [it for link in robot.links for it in _frames(opened, link.name) if it] if robot is not None else []
     message, detail = f"the Fixed Frame is {actual!r}", ""
@@ -150,11 +151,6 @@ def _by_prefix(frame: str, link: str) -> str:
     return f", because the frame_prefix of robot_state_publisher is {prefix!r}" if prefix else ""
 
 
-def _unknown_prefix() -> Outcome:
-    message = "the frame_prefix of robot_state_publisher is known only at run time"
-    return pending(f"{message}; needs manual grading", message)
-
-
 def _fault_of(model: "Display", topic: str, opened: "Launch | None") -> tuple[Status, str]:
     """Return whether a RobotModel display shows the robot, and if not, why."""
     fault = _class_of_ros1(model) or _off(model)
@@ -184,7 +180,7 @@ def _fault_of_prefix(model: "Display", opened: "Launch | None") -> tuple[Status,
     if found in prefixes:
         return "passed", ""
     if None in prefixes:
-        return "pending", _unknown_prefix().message
+        return "pending", f"{_UNKNOWN_PREFIX}; needs manual grading"
     expected = prefixes[0] or ""
     message = f"the TF Prefix of the RobotModel display is {own!r}, so it looks for frames like '{found}LINK'; "
     return "failed", f"{message}robot_state_publisher publishes '{expected}LINK'"
