@@ -5,21 +5,17 @@ from random import Random
 
 import pytest
 
-from grader.grading.grade import grade
 from grader.grading.hints.search import HintSearch
-from grader.grading.hints.trials import FoundHint, Trials
-from grader.grading.report import Result
-from grader.robot.edits.draft import Draft
-from grader.robot.reader import read_urdf
+from grader.grading.hints.trials import FoundHint
 from grader.submission.editing import edited_files
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from tests.grading.broken_urdfs import BROKEN, REFERENCE, Broken
-from tests.samples import LAB6, LAB6_SAMPLES, SAMPLES, opened
+from tests.hints.trials import graded, search_for
+from tests.samples import LAB6_SAMPLES, SAMPLES, opened
 
 # Samples whose text is what is wrong; an empty file has no hint.
-REFERENCE_DRAFT = Draft.of(read_urdf(REFERENCE.encode()))
 REJECTED = [
     name
     for name, sample in LAB6_SAMPLES.items()
@@ -34,14 +30,9 @@ _NOT_UNDONE = {
 }  # fmt: skip
 
 
-def results_of(submission: Submission) -> dict[str, Result]:
-    """Return the results of a submission by criterion."""
-    return {result.criterion.id: result for result in grade(LAB6, submission).results}
-
-
 def searched(submission: Submission) -> HintSearch:
     """Return the finished search for a submission."""
-    return HintSearch(Trials(LAB6, submission, results_of(submission)), REFERENCE_DRAFT).run()
+    return search_for(submission, graded(submission))
 
 
 def written(folder: Path, text: str | bytes) -> Submission:
@@ -107,9 +98,9 @@ def test_no_hint_loses_a_point(tmp_path: Path) -> None:
             at = random.randrange(len(text))
             text = text[:at] + random.choice(("", "", '"', "<", ">", "/", "=", ",", "</link>")) + text[at + 1 :]
         submission = written(tmp_path, text)
-        before = results_of(submission)
+        before = graded(submission)
         for found in searched(submission).found:
-            after = results_of(written(tmp_path, fixed_text(submission, found)))
+            after = graded(written(tmp_path, fixed_text(submission, found)))
             assert all(after[name].outcome.status == "passed" for name in found.gains), text
             assert all(after[name].points >= result.points for name, result in before.items()), text
 
@@ -119,5 +110,5 @@ def test_the_misspelt_name_of_an_attribute_is_corrected() -> None:
     text = REFERENCE.replace('<child link="lidar"/>', '<child lnik="lidar"/>')
     assert text != REFERENCE
     submission = read_submission(text.encode(), identity="ash", path="my_robot.urdf")
-    [found] = HintSearch(Trials(LAB6, submission, results_of(submission)), REFERENCE_DRAFT).run().found
+    [found] = searched(submission).found
     assert [(edit.old, edit.new) for edit in found.edits] == [('lnik="lidar"', 'link="lidar"')]

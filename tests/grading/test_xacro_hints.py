@@ -8,19 +8,15 @@ import pytest
 from grader.edits import edited
 from grader.errors import InputError
 from grader.files.tree import Tree
-from grader.grading.grade import grade
 from grader.grading.hints.search import HintSearch
 from grader.grading.hints.trials import Trials
-from grader.grading.report import Result
-from grader.robot.edits.draft import Draft
 from grader.source import Edit
 from grader.submission.editing import overlaid
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
-from grader.submission.urdf import Read
-from tests.samples import LAB6, SAMPLES, reference
+from tests.hints.trials import graded, search_for
+from tests.samples import LAB6, SAMPLES
 
-REFERENCE = reference()
 INERTIALS = SAMPLES["equivalent-xacro-inertials"].alone
 MACROS = SAMPLES["equivalent-xacro-macros"]
 WHEEL = "my_robot/urdf/wheel.xacro"
@@ -28,15 +24,9 @@ URDF = "my_robot/urdf/my_robot.urdf"
 PROCESSED = ["import xacro\n", "xacro.process_file(os.path.join(share, 'my_robot.urdf')).toxml()"]
 
 
-def results_of(submission: Submission) -> dict[str, Result]:
-    """Return the results of a submission by criterion."""
-    return {result.criterion.id: result for result in grade(LAB6, submission).results}
-
-
 def search(submission: Submission) -> HintSearch:
     """Return the finished search for edits of a submission."""
-    assert isinstance(REFERENCE.urdf, Read)
-    return HintSearch(Trials(LAB6, submission, results_of(submission)), Draft.of(REFERENCE.urdf.reading)).run()
+    return search_for(submission, graded(submission))
 
 
 def failed(search: HintSearch) -> list[str]:
@@ -130,7 +120,7 @@ def test_edits_after_which_nothing_can_be_read() -> None:
         raise InputError(f"{tree.name} is too large")
 
     edit = search(submission).found[0].edits[0]
-    results = results_of(submission)
+    results = graded(submission)
     trials = Trials(LAB6, replace(submission, reopen=refuse), results)
     assert trials.graded((edit,), list(results), whole=True) == {}
 
