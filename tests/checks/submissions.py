@@ -9,8 +9,6 @@ from pathlib import Path
 
 from grader.errors import InputError
 from grader.files.tree import File, IgnoredFile, make_tree
-from grader.package.package import Package
-from grader.robot.kinematics import Configuration
 from grader.submission.opening import submission_of
 from grader.submission.submission import Lab, Submission
 
@@ -46,20 +44,6 @@ class Submitted:
             generated=[path for path in self.files if path.startswith("install/")],
         )
         return submission_of(tree, "submission", Lab("urdf/my_robot.urdf", FOLDER))
-
-    @property
-    def package(self) -> Package:
-        """Return the package that is graded; there must be one."""
-        package = self.submission.package
-        assert package is not None, sorted(self.files)
-        return package
-
-    @property
-    def robot(self) -> Configuration:
-        """Return the robot in the URDF that is graded; there must be one."""
-        robot = self.submission.needed_urdf().robot
-        assert robot is not None, sorted(self.files)
-        return Configuration(robot)
 
     def data(self, path: str) -> bytes:
         """Return the bytes of a file."""

@@ -111,11 +111,6 @@ class Base(NamedTuple):
     path: str
     text: str
 
-    @property
-    def is_xacro(self) -> bool:
-        """Whether xacro is run on it."""
-        return isinstance(self.submission.urdf, Read) and self.submission.urdf.is_expanded
-
     def changed(self, text: str) -> Submission:
         """Return the submission with another text of the file."""
         data = text.encode("utf-8", "surrogateescape")

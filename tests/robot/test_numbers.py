@@ -186,7 +186,7 @@ def test_only_number_errors_are_raised(text: str) -> None:
         ("1,5", "comma"),
         ("1, 2", "comma"),
         ("${pi}", "xacro"),
-        ("1 ", "tab or a line break|space"),
+        ("1 ", "^(?!.*tab).*space"),
         ("1\t", "tab or a line break"),
         ("\u22121", "ASCII"),
         ("1\u00a0", "ASCII"),
@@ -202,14 +202,6 @@ def test_reasons(text: str, reason: str) -> None:
     """The message says what is wrong with the text."""
     with pytest.raises(NumberError, match=reason):
         number(text)
-
-
-def test_a_space_after_a_number_is_reported_as_a_space() -> None:
-    """`radius="1 "` contains no tab and no line break, and the message mentions none."""
-    with pytest.raises(NumberError) as caught:
-        number("1 ")
-    assert "tab" not in str(caught.value)
-    assert "space" in str(caught.value)
 
 
 @pytest.mark.parametrize("count", [0, 1, 2, 4, 7])
