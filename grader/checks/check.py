@@ -18,6 +18,9 @@ EQUIVALENTS = (
     "frames moved",
     "links renamed",
     "joints renamed",
+    "layout of the text",
+    "xacro properties",
+    "xacro macro",
 )
 BreaksUnder = Callable[[Mapping[str, Any]], Collection[str]]
 _SECTION = r"(?m)^(Args|Arguments|Examples?|Notes?|Raises|Returns):\s*$"

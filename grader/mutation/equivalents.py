@@ -1,5 +1,7 @@
 """Equivalents of a reference: the same robot in another file, one of each family. Each must keep full marks."""
 
+import re
+from collections import Counter
 from collections.abc import Callable, Collection, Iterator
 from typing import NamedTuple
 
@@ -7,6 +9,7 @@ from lxml import etree
 
 from grader.checks.check import EQUIVALENTS
 from grader.mutation.trees import (
+    XACRO,
     add_joint,
     copied,
     end,
@@ -22,9 +25,13 @@ from grader.mutation.trees import (
 )
 from grader.robot.transforms import Transform, unit
 from grader.xml.parsing import Element
+from grader.xml.urdf_format import PARTS
 from grader.xml.wanted_element import words_of_foreign
 
 _SORTED = ("link", "joint", "material", "visual", "collision")  # of these the order does not matter
+_COMMENTS = ("", " a robot ", ' <link name="ghost"/> ', "\n  0.6 / 4\n  ", " $ & % ")
+_NUMBER = re.compile(r"(?<![\w.+-])-?(?:0|[1-9]\d*)(?:\.\d+)?(?![\w.])")  # that xacro writes as it is
+_MAX_DIGITS = 12  # that survive the conversion to a float and back
 _MOVED = origin((0.31, -0.17, 0.23), (0.4, -0.7, 1.1))
 _SLIDE = 0.19  # metres
 
@@ -35,6 +42,7 @@ class Equivalent(NamedTuple):
     family: str
     text: str
     before: str
+    is_xacro: bool
 
 
 class RewritingRules(NamedTuple):
@@ -54,7 +62,8 @@ def equivalents(root: Element, rules: RewritingRules) -> Iterator[Equivalent]:
     for family, rewriting in REWRITINGS.items():
         tree = copied(root)
         if rewriting(tree, rules):
-            yield Equivalent(family, text_of(tree), before)
+            text = text_of(tree, "\t" if family == LAYOUT else "  ")
+            yield Equivalent(family, text, before, family in AS_XACRO)
 
 
 def reorder(tree: Element, _: RewritingRules) -> bool:
@@ -153,6 +162,54 @@ def _rename(tree: Element, rules: RewritingRules, tag: str) -> bool:
     return bool(chosen)
 
 
-REWRITINGS: dict[str, Rewriting] = dict(
-    zip(EQUIVALENTS, (reorder, split_joints, move_frames, rename_links, rename_joints), strict=True)
-)
+def change_layout(tree: Element, _: RewritingRules) -> bool:
+    """Reverse the order of attributes, and add comments; `text_of` changes the white space."""
+    for index, element in enumerate([*own_elements(tree, "*")]):
+        attributes = [*reversed(element.attrib.items())]
+        element.attrib.clear()
+        element.attrib.update(attributes)
+        if index % 5 == 0:
+            element.addprevious(etree.Comment(_COMMENTS[index // 5 % len(_COMMENTS)]))
+    return True
+
+
+def use_properties(tree: Element, _: RewritingRules) -> bool:
+    """Write numbers that occur more than once as properties of xacro."""
+    values = [(it, str(key)) for it in own_elements(tree, "*") for key in it.attrib if PARTS.get(str(key))]
+    counts = Counter(number for it, key in values for number in _NUMBER.findall(it.get(key, "")))
+    repeated = [number for number, count in counts.items() if count > 1 and len(number) <= _MAX_DIGITS]
+    if not repeated or _has_dollar(tree):
+        return False
+    names = {number: f"number_{index}" for index, number in enumerate(repeated)}
+
+    def use(found: re.Match[str]) -> str:
+        return f"${{{names[found[0]]}}}" if found[0] in names else found[0]
+
+    for it, key in values:
+        it.set(key, _NUMBER.sub(use, it.get(key, "")))
+    for number, name in names.items():
+        tree.insert(0, etree.Element(f"{{{XACRO}}}property", {"name": name, "value": number}))
+    return True
+
+
+def use_macro(tree: Element, _: RewritingRules) -> bool:
+    """Write the first link as a macro of xacro."""
+    link = next((link for link in tree.iterchildren("link") if link.get("name")), None)
+    if link is None or _has_dollar(tree):
+        return False
+    tree.replace(link, etree.Element(f"{{{XACRO}}}part", {"name": link.get("name", "")}))
+    macro = etree.Element(f"{{{XACRO}}}macro", {"name": "part", "params": "name"})
+    link.set("name", "${name}")
+    macro.append(link)
+    tree.insert(0, macro)
+    return True
+
+
+def _has_dollar(tree: Element) -> bool:
+    """Return whether xacro would evaluate something in a tree."""
+    return b"$" in etree.tostring(tree)
+
+
+LAYOUT, *AS_XACRO = EQUIVALENTS[-3:]
+_ALL = (reorder, split_joints, move_frames, rename_links, rename_joints, change_layout, use_properties, use_macro)
+REWRITINGS: dict[str, Rewriting] = dict(zip(EQUIVALENTS, _ALL, strict=True))

@@ -10,23 +10,29 @@ from grader.xacro.texts import INSTALLED
 from grader.xml.parsing import Element
 from grader.xml.wanted_element import FOREIGN
 
+XACRO = "http://www.ros.org/wiki/xacro"
 _FOUND = re.compile(rf"\Afile:/*{INSTALLED}/([^/]+)/share/\1/")
 
 
 def copied(root: Element) -> Element:
-    """Return a copy of a tree without comments; paths of meshes that $(find package) gave become package:// ones."""
+    """Return a copy of a tree without comments; paths of meshes that $(find package) gave become package:// ones.
+
+    Its root declares the namespace of xacro.
+    """
     plain = etree.XMLParser(remove_comments=True, remove_pis=True, remove_blank_text=True)
-    copy = etree.fromstring(etree.tostring(root, with_tail=False), plain)
+    found = etree.fromstring(etree.tostring(root, with_tail=False), plain)
+    copy = etree.Element(found.tag, dict(found.attrib), nsmap={"xacro": XACRO})
+    copy.extend(list(found))
     for mesh in copy.iter("mesh"):
         if mesh.get("filename"):
             mesh.set("filename", _FOUND.sub(r"package://\1/", mesh.get("filename", "")))
     return copy
 
 
-def text_of(tree: Element) -> str:
+def text_of(tree: Element, indent: str = "  ") -> str:
     """Return a tree as text, without namespaces that are not used."""
     etree.cleanup_namespaces(tree)
-    etree.indent(tree)
+    etree.indent(tree, indent)
     return etree.tostring(tree, encoding="unicode")
 
 

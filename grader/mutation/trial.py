@@ -1,7 +1,7 @@
 """The reference of a rubric, and what becomes of its criteria for changed copies: mutants and equivalents."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -20,6 +20,7 @@ from grader.mutation.package_mutants import package_mutants
 from grader.mutation.sameness import is_same_robot
 from grader.package.package import MANIFEST
 from grader.submission.editing import content, with_files, with_urdf
+from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
@@ -147,15 +148,28 @@ class Trial:
             return
         has_places = any(name.startswith("@") for name in _names_in(self.rubric))
         for found in equivalents(urdf.reading.root, RewritingRules(self.kept, has_places)):
-            submission = with_urdf(self.reference, {urdf.path: found.text.encode()})
-            must_pass = (it for it in self.tested if it.check.subject != "package" and not breaks(it, found.family))
-            results = decide(self.rubric, submission, [it.id for it in must_pass])
+            submission = _rewritten(self.reference, urdf, found)
+            results = decide(self.rubric, submission, self._must_pass(submission, found.family))
             yield found, {it.criterion.id: it.outcome.message for it in results if self.is_lost(it)}
+
+    def _must_pass(self, submission: Submission, family: str) -> Collection[str]:
+        """Return the criteria on the robot that must still pass; for a URDF on its own, those that need no package."""
+        others = ("package", "submission") if submission.is_single else ("package",)
+        return [it.id for it in self.tested if it.check.subject not in others and not breaks(it, family)]
 
 
 def breaks(criterion: Criterion, family: str) -> bool:
     """Return whether a criterion may fail under a family of equivalents, as its check declares."""
     return family in criterion.check.about.breaks_under(criterion.arguments)
+
+
+def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Submission:
+    """Return the reference with another text of its robot; a URDF that becomes xacro is graded on its own."""
+    data = equivalent.text.encode()
+    if not equivalent.is_xacro or (urdf.is_expanded and urdf.as_it_stands is None):
+        return with_urdf(reference, {urdf.path: data})
+    name = urdf.path.rpartition("/")[2]
+    return read_submission(data, identity=reference.id, path=f"{name.removesuffix('.xacro')}.xacro")
 
 
 def _names_in(rubric: Rubric) -> Iterator[str]:

@@ -33,9 +33,11 @@ def made(kept: set[str] | None = None, text: str = ARM, *, placed: bool = False)
 
 def read(equivalent: Equivalent) -> Robot:
     """Return the robot of an equivalent, which ROS 2 loads without any problem."""
-    urdf = read_submission(equivalent.text.encode(), identity="a", path="birch.urdf").urdf
+    path = "birch.urdf.xacro" if equivalent.is_xacro else "birch.urdf"
+    urdf = read_submission(equivalent.text.encode(), identity="a", path=path).urdf
     assert isinstance(urdf, Read)
     assert urdf.loaded.verdict == "clean", urdf.problems
+    assert urdf.is_expanded == equivalent.is_xacro
     assert urdf.reading.robot is not None
     return urdf.reading.robot
 
@@ -93,13 +95,18 @@ def limits(robot: Robot) -> list[object]:
 
 def test_each_family_changes_what_it_says() -> None:
     """Each differs from the reference in the thing that gives it its name."""
-    arm, robots = read_arm(), {equivalent.family: read(equivalent) for equivalent in made()}
+    first = {equivalent.family: equivalent for equivalent in made()}
+    arm, robots = read_arm(), {family: read(equivalent) for family, equivalent in first.items()}
     assert [link.name for link in robots["order of elements"].links] != [link.name for link in arm.links]
     assert len(robots["fixed joints split"].links) > len(arm.links)
     assert [joint.origin for joint in robots["frames moved"].joints] != [joint.origin for joint in arm.joints]
     assert len(robots["frames moved"].links) == len(arm.links)
     assert {joint.name for joint in robots["joints renamed"].joints} != {joint.name for joint in arm.joints}
     assert {link.name for link in robots["links renamed"].links} != {link.name for link in arm.links}
+    assert robots["layout of the text"] == arm == robots["xacro properties"] == robots["xacro macro"]
+    assert "<!--" in first["layout of the text"].text
+    assert "${number_0}" in first["xacro properties"].text
+    assert "<xacro:part name=" in first["xacro macro"].text
 
 
 def test_names_that_something_refers_to_stay(tmp_path: Path) -> None:
