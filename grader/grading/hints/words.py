@@ -73,9 +73,13 @@ def _at(place: Location | Edit, main: str | None) -> str:
 
 
 def _moves(edits: Sequence[Edit], submission: Submission) -> list[str]:
-    """Return two changes in words if they move a text: it is removed at one place and added at another."""
+    """Return two changes in words if they exchange texts, or if a text is removed at one place and added at another."""
     if len(edits) != 2:
         return []
+    first, second = edits
+    if first.old and (first.old, first.new) == (second.new, second.old):
+        places = (f"{_quote(edit.old)} ({_where(edit, submission)})" for edit in edits)
+        return [f"exchange {' and '.join(places)}"]
     texts = {" ".join((edit.old + edit.new).split()) for edit in edits}
     if len(texts) > 1 or {bool(edit.old) for edit in edits} != {True, False}:
         return []
