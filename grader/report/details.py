@@ -118,7 +118,7 @@ def hint_text(entry: Entry, message: str) -> str:
     skipped = (result.criterion.id for one in (entry, *entry.also) for result in one.skipped)
     left = [name for name in skipped if name not in hint.gains]
     texts = [message.removesuffix(".")]
-    texts += ["Other edits are as good"] if hint.certainty == "one of several" else []
+    texts += ["Other edits are as good"] if hint.certainty == "one of several" and hint.gains else []
     texts += [f"Also fixes {enumerated(also, _MAX_CRITERIA)}"] if also else []
     texts += [f"Then look at {enumerated(left, _MAX_CRITERIA)}"] if left else []
     return f"{'. '.join(texts)}."

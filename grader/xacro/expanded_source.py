@@ -45,6 +45,11 @@ class ExpandedSource(Source):
         return self._expander.files.followed
 
     @property
+    def is_refused(self) -> bool:
+        """Whether xacro refuses something, without which it was expanded."""
+        return bool(self._expander.problems)
+
+    @property
     def open_reason(self) -> str:
         """Why something could not be expanded; empty if everything was."""
         return next((found.reason for found in self._expander.undetermined), "")

@@ -300,6 +300,7 @@ def test_what_is_missing_costs_no_other_hint(name: str, tmp_path: Path) -> None:
     [
         ("grader.package.edits.candidates.package_names", ()),
         ("grader.grading.hints.families.of_siblings", ("base-green",)),
+        ("grader.grading.hints.search.missing_hints", ()),
     ],
 )
 def test_a_fault_of_one_family_costs_no_other_hint(

@@ -142,3 +142,16 @@ def test_an_edit_gains_nothing_by_a_word_that_is_undone() -> None:
     gains = {found.edits[0].new: set(found.gains) for found in hints.found}
     assert "right-wheel-shape" in gains['name="right_wheel"']
     assert not any(name.startswith("right") for name in gains['type="continuous"'])
+
+
+def test_nothing_is_missing_where_xacro_refuses_something() -> None:
+    """The joint is written in the macro that is called with an unknown parameter, so no words ask for it."""
+    defined = '<xacro:macro name="hold" params="link *at"><joint name="base_${link}_joint" type="fixed"><parent link="base_link"/>'
+    defined += '<child link="${link}"/><xacro:insert_block name="at"/></joint></xacro:macro>'
+    joint = re.search(r'<joint name="base_lidar_joint".*?</joint>', REFERENCE, re.DOTALL)
+    assert joint is not None
+    call = '<xacro:hold link="lidar" number="7"><origin xyz="0.15 0 0.225"/></xacro:hold>'
+    submission = robot((joint[0], call), defined=defined)
+    results = hinted(grade(LAB6, submission), submission, "edit").report.results
+    assert any(result.is_lost for result in results)
+    assert not [result.hint for result in results if result.hint is not None and result.hint.message.startswith("Add")]

@@ -1,14 +1,17 @@
 """What a hint may say: the cause first, alone if possible, never to please a tolerance, and nothing that makes the robot worse."""
 
 import re
+from dataclasses import replace
 
 import pytest
 
+from grader.grading.grade import grade
+from grader.grading.hints.hinting import hinted
 from grader.grading.hints.trials import Trials
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from tests.hints.trials import BASES, Hints, hints_for
-from tests.samples import SAMPLES
+from tests.samples import LAB6, SAMPLES
 
 REFERENCE = BASES["reference"].text
 MACROS = BASES["equivalent-xacro-macros"]
@@ -103,8 +106,13 @@ def test_hints_that_do_not_hold_from_scratch_are_taken_back(monkeypatch: pytest.
     assert not hints_for(submission).found
 
 
-def test_a_link_without_a_joint_is_not_removed() -> None:
-    """The URDF would load without it; and a missing joint is not written."""
+def test_a_missing_joint_is_only_said() -> None:
+    """A link without a joint is not removed, though the URDF would load without it, and the joint is not written."""
     joint = re.search(r'  <joint name="base_lidar_joint".*?</joint>\n', REFERENCE, re.DOTALL)
     assert joint is not None
-    assert not edits_of(hints_for(changed((joint[0], ""))))
+    submission = changed((joint[0], ""))
+    report = grade(replace(LAB6, criteria=LAB6.criteria[:1]), submission)
+    hint = hinted(report, submission, "edit").report.results[0].hint
+    assert hint is not None
+    assert hint.message.startswith("Add a fixed joint from 'base_link' to 'lidar'")
+    assert not hint.edits

@@ -42,6 +42,12 @@ class Families:
         )
         self.difference = RobotDifference(self.draft, both) if self.draft is not None and both else None
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether the robot is read from well-formed XML, of which xacro refuses nothing."""
+        is_read = self._reading is not None and self._reading.root is not None
+        return is_read and self.draft is not None and not self.draft.is_refused
+
     def of_reference(self, lost: list[Criterion]) -> Iterator[Proposal]:
         """Yield what undoes a slip, then what differs from the other side of the robot, and from the reference."""
         subjects = {criterion.check.subject for criterion in lost}

@@ -55,14 +55,14 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> HintedRe
     shown = {name: found for found in reversed(search.found) for name in found.gains}
     entries = {id(found): _entry(found, shown, results, costs) for found in search.found}
     hints: dict[str, Hint] = {}
-    for name, one in shown.items():
+    for name, one in {**search.missing, **shown}.items():
         with trials.isolated():
-            entry = entries[id(one)]
+            entry = entries.get(id(one), name)
             before = search.found[: search.found.index(one)] if one.is_late else []
             found = _first_at(one, results[entry].outcome.location)
             earlier = tuple(dict.fromkeys(entries[id(it)] for it in before))
             text = message(found, level, submission, earlier)
-            hint = _hint(found, text, entry, keeps_edits=level == "edit")
+            hint = _hint(found, text, entry, results[name], keeps_edits=level == "edit")
             hints[name] = hint._replace(after=earlier)
     left = [name for name in costs if name not in hints and name in search.results and not search.results[name].is_lost]
     for name in left if level == "edit" else ():
@@ -108,10 +108,11 @@ def _first_at(found: FoundHint, where: Location | None) -> FoundHint:
     return found._replace(proposal=found.proposal._replace(edits=tuple(edits)))
 
 
-def _hint(found: FoundHint, text: str, shown_by: str, *, keeps_edits: bool) -> Hint:
-    first = found.edits[0]
+def _hint(found: FoundHint, text: str, shown_by: str, result: Result, *, keeps_edits: bool) -> Hint:
+    places = [Location(edit.path, edit.line, edit.column) for edit in found.proposal.edits]
+    at = next(iter(places), result.outcome.location or Location("", 1, 1))
     shown = (found.edits, found.proposal.cause) if keeps_edits else ((), "")
-    return Hint(text, Location(first.path, first.line, first.column), found.gains, *shown, shown_by, found.certainty)
+    return Hint(text, at, found.gains, *shown, shown_by, found.certainty)
 
 
 def _draft(reference: ReferenceSolution | None) -> Draft | None:

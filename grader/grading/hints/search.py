@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.edits import Proposal
 from grader.grading.criterion import Criterion
 from grader.grading.hints.families import Families
+from grader.grading.hints.missing import missing_hints
 from grader.grading.hints.targets import leaves_others
-from grader.grading.hints.trials import FoundHint, NoTrialsLeft, Results, Trials, gains_of
+from grader.grading.hints.trials import FoundHint, NoTrialsLeft, Results, Trials, costs_of, gains_of
 from grader.robot.edits.draft import Draft
 from grader.robot.edits.pieces import REFERENCE, STRUCTURE
 from grader.source import Edits
@@ -48,8 +49,9 @@ class HintSearch:
         self.trials, self._families = trials, Families(trials, reference, package)
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
         self.found: list[FoundHint] = []
+        self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing, or two edits
         self._refused = set[Edits]()  # after all hints so far
-        self._told = {*told}  # also criteria of which two edits cannot be told apart
+        self._told = {*told}  # also criteria for which two edits are told that cannot be told apart
         self._taken: dict[str, Edits] = {}  # the edits after which a family was tried last
         self.results: Results = trials.results  # with all edits
         self._after: Results = self.results
@@ -72,6 +74,11 @@ class HintSearch:
         self.trials.left = max(self.trials.left, 1 + self.trials.submission.cost)  # for the last one
         with self.trials.isolated():
             self._verify()
+        with self.trials.isolated():
+            known = {name for found in self.found for name in found.gains} | self.missing.keys()
+            lost = {name: points for name, points in costs_of(self.trials.results).items() if name not in known}
+            if self._families.is_whole:
+                self.missing |= missing_hints(self._families.difference, self._criteria, lost)
         return self
 
     def _verify(self) -> None:
@@ -134,6 +141,8 @@ class HintSearch:
         equal = self._equal_to(best, together, wanted, tried)
         is_of_robot = all(path.endswith((".urdf", ".xacro")) for path in {edit.path for edit in best.proposal.edits})
         if equal is not None and is_of_robot:
+            name = max((it for it in self._criteria if it in wanted), key=lambda name: self._criteria[name].points)
+            self.missing[name] = FoundHint(best.proposal, {}, "one of several", alternative=equal.proposal)
             self._told |= wanted
             return False
         self.found.append(FoundHint(best.proposal, gains, "one of several" if equal else "preferred", is_late))

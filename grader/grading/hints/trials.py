@@ -22,20 +22,23 @@ _HARMFUL = ("rejects", "drops", "undetermined")
 
 
 class FoundHint(NamedTuple):
-    """A proven edit, and the points of the criteria that pass with it.
+    """A proven edit, and the points of the criteria that pass with it; without edits, `words` say what is missing.
 
-    `is_late` says that the gains are those after the edits of earlier hints.
+    `is_late` says that the gains are those after the edits of earlier hints. With an `alternative`, two edits cannot be
+    told apart: both are named, and neither is made.
     """
 
     proposal: Proposal
     gains: Mapping[str, Decimal]
     certainty: Certainty = "preferred"
     is_late: bool = False
+    words: str = ""
+    alternative: Proposal | None = None
 
     @property
     def edits(self) -> Edits:
         """The edits to make."""
-        return self.proposal.edits
+        return self.proposal.edits if self.alternative is None else ()
 
 
 class NoTrialsLeft(Exception):

@@ -21,7 +21,13 @@ _MAX_TEXT = 240  # characters of a changed text
 
 def message(found: FoundHint, level: HintLevel, submission: Submission, earlier: Sequence[str]) -> str:
     """Return the hint in a sentence, which need not name the URDF. `earlier` are criteria whose hints come first."""
-    if level == "edit":
+    if found.words:
+        text = found.words if level == "edit" else found.proposal.cause if level == "cause" else "a part is missing"
+    elif found.alternative is not None:
+        each = [found._replace(proposal=it, alternative=None) for it in (found.proposal, found.alternative)]
+        one, other = (message(it, level, submission, ()).removesuffix(".") for it in each)
+        text = f"{one}, or {other[0].lower()}{other[1:]}: both work, so look which one is meant"
+    elif level == "edit":
         edits = found.edits
         changes = _moves(edits, submission) or [_change(edit, submission) for edit in edits[:_MAX_NAMED]]
         changes += [counted(len(edits) - _MAX_NAMED, "more edit")] * (len(edits) > _MAX_NAMED)

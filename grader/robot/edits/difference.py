@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
+from typing import NamedTuple
 
 from grader.difference import Node, Step, steps
 from grader.names import near
@@ -18,12 +19,22 @@ _TAG = TagFormat()
 _MAX_LINKS = 400  # of a robot: more are not compared
 
 
+class MissingPart(NamedTuple):
+    """A link or joint of the reference that a robot does not have: nothing writes it."""
+
+    tag: str
+    link: str  # that it is, or that the joint moves
+    joint_type: str = ""
+    parent: str = ""
+
+
 class RobotDifference(PieceMaker):
     """A robot and the reference's, paired; `known` are names that may be told, because the reference has them."""
 
     def __init__(self, draft: Draft, reference: Draft) -> None:
         super().__init__(draft, reference)
         self._names = translation(draft, reference)
+        self.missing: list[MissingPart] = []
 
     @property
     def names(self) -> list[str]:
@@ -100,8 +111,17 @@ class RobotDifference(PieceMaker):
                     yield self.moved(own.of, step.parent.of)
                 case "add" if like is not None and own.tag != "robot":
                     yield from self._inner(own.of, like.of)
+                case "add" if like is not None and like.tag in ("link", "joint"):
+                    self._miss(like.of)
                 case "remove":
                     yield from self._remove(own)
+
+    def _miss(self, like: Element) -> None:
+        if like.tag == "link":
+            self.missing.append(MissingPart("link", like.get("name") or ""))
+        else:
+            ends = (end_of(like, "child"), like.get("type") or "", end_of(like, "parent"))
+            self.missing.append(MissingPart("joint", *ends))
 
     def _of_values(self, found: Sequence[Step]) -> Iterator[Piece]:
         """Yield the values of one element: each alone, and all together."""

@@ -30,6 +30,11 @@ class Draft(RobotElements):
         """The source if xacro expanded it: an element is not written there as it is read."""
         return self.source if self.source.is_expanded else None
 
+    @property
+    def is_refused(self) -> bool:
+        """Whether xacro refuses something, so that elements may be missing for that."""
+        return self._expanded is not None and bool(self._expanded.is_refused)
+
     def corrections(self, names: Sequence[str]) -> list[Proposal]:
         """Return edits that may correct what xacro refuses; `names` are those that may be meant."""
         found: list[Proposal] = self._expanded.corrections(names) if self._expanded is not None else []

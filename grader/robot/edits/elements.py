@@ -112,6 +112,10 @@ class RobotElements:
         source, start = self.source.element(self._tags[element])
         return _COMMENT.sub("", element_text(source, start))
 
+    def line(self, element: Element) -> int:
+        """Return the line of an element, from 1."""
+        return self.source.tag(self._tags[element]).line
+
 
 def end_of(joint: Element, role: str) -> str:
     """Return the name of the link that is the parent or child of a joint."""
