@@ -3,7 +3,7 @@
 import json
 import os
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from datetime import datetime
 from pathlib import Path
@@ -51,7 +51,7 @@ class ClassSettings:
         """Return the deadline. Raises InputError."""
         return read_time(self.due, f"{printable_path(folder / CLASS_FILE)}: ") if self.due else None
 
-    def with_roots(self, folder: Path, paths: tuple[Path, ...]) -> "ClassSettings":
+    def with_roots(self, folder: Path, paths: Iterable[Path]) -> "ClassSettings":
         """Return the settings with other submissions, relative to the gradebook where that is possible."""
         return replace(self, submissions=tuple(relative(path, folder) for path in paths))
 

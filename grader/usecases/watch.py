@@ -77,9 +77,9 @@ def _watched(request: GradeRequest) -> list[Path]:
     """Return what is watched: the submission, and a rubric that is no shipped one. Raises GraderError."""
     if request.path in ("", "-"):
         raise GraderError("--watch takes a file or folder: standard input is read only once")
-    if request.format is not Format.TERMINAL:
+    if request.output_format is not Format.TERMINAL:
         raise GraderError(
-            f"--watch prints in the format terminal only: use --save {request.format.value}=FILE instead of --format"
+            f"--watch prints in the format terminal only: use --save {request.output_format}=FILE instead of --format"
         )
     if request.fix is not None:
         raise GraderError("--watch writes no fix: use --fix without it")
