@@ -17,7 +17,7 @@ _MAX_MISTAKES, _MAX_GROUPS = 10, 20
 _MAX_NAMED = 12
 EQUAL_NOTE = (
     "The same robot may differ in names, order, comments and the spelling of numbers. This is no verdict: students who"
-    " follow the handout and make the same mistake have the same robot or files."
+    " follow the handout and make the same mistake have the same robot."
 )
 SHARE_NOTE = "Share: the mean share of the points that students earned."
 

@@ -130,7 +130,7 @@ def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
     for path in files:
         hashes = hashes_of(open_submission(str(path), rubric.lab))
         if not hashes:
-            raise InputError(f"--ignore-file {printable_path(path)}: there is no URDF and no package in it")
+            raise InputError(f"--ignore-file {printable_path(path)}: there is no URDF in it")
         yield from hashes
 
 
