@@ -21,7 +21,7 @@ from grader.classroom.submissions import Intake, read_class
 from grader.classroom.tables import write_table
 from grader.errors import InputError
 from grader.files.reading import sha256_of
-from grader.report.class_table import ClassTable
+from grader.report.class_terminal import ClassTable
 from grader.report.formats import Format, OutputFormat
 from grader.report.screen import draw
 from grader.text import counted, enumerated, first_lines, format_points, printable, printable_path

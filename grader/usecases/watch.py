@@ -15,7 +15,7 @@ from grader.errors import GraderError, InputError, MachineError, RubricError
 from grader.files.folder import read_folder
 from grader.grading.report import Report, Result
 from grader.grading.rubric import find_rubric, shipped_rubrics
-from grader.report.console import wrapped
+from grader.report.console import Page
 from grader.report.criteria import alike
 from grader.report.formats import Format, render
 from grader.report.screen import draw
@@ -96,9 +96,10 @@ def _show(report: Report, last: Report | None, terminal: Terminal, *, verbose: b
     lines = comparison_lines(last, report) if last is not None else []
 
     def print_lines(console: Console) -> None:
-        console.print()
+        page = Page(console, [Text()])
         for line in lines:
-            wrapped(console, Text(line, style="bold"), 0)
+            page.inset(line, "bold", 0)
+        page.print()
 
     changes = draw(print_lines, screen) if lines else ""
     terminal.print(render(report, Format.TERMINAL, screen=screen, verbose=verbose) + changes)
