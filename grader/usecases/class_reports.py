@@ -12,7 +12,6 @@ from grader.checks.outcome import Outcome
 from grader.classroom import folder as names
 from grader.classroom.graded import Graded
 from grader.classroom.grades import Class
-from grader.classroom.reopening import reopened
 from grader.classroom.student_grade import StudentGrade
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
 from grader.files.reading import sha256_of
@@ -111,7 +110,7 @@ def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
 
 def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
     """Return the report on a submission as it was graded, with its details if it is still there."""
-    submission = reopened(book, graded) if graded.verdict != "errored" else None
+    submission = book.reopened(graded) if graded.verdict != "errored" else None
     if submission is None:
         return book.report(graded)._replace(notes=(_MOVED,) * (graded.verdict == "graded"))
     report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
