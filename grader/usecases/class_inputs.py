@@ -11,7 +11,7 @@ from grader.classroom.equal_work import hashes_of
 from grader.classroom.lateness import read_time, time_text
 from grader.classroom.roster import Roster, read_roster
 from grader.classroom.run.worker import reference_hashes
-from grader.classroom.settings import CLASS_FILE, ClassSettings, read_settings, settings_text
+from grader.classroom.settings import CLASS_FILE, ClassSettings, read_settings, relative, settings_text
 from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import InputError
 from grader.files.reading import read_capped, sha256_of
@@ -80,7 +80,7 @@ class ClassInputs:
 def read_inputs(options: ClassRequest, warn: Warn) -> ClassInputs:
     """Return the inputs of a run; raise InputError and RubricError. Nothing is written."""
     rubric = load_rubric(options.rubric) if options.rubric is not None else None
-    folder = options.gradebook or names.default_folder(rubric.id if rubric is not None else DEFAULT_RUBRIC)
+    folder = options.gradebook or Path(f"{rubric.id if rubric is not None else DEFAULT_RUBRIC}-grades")
     is_new = not names.is_gradebook(folder)
     names.check_free(folder)
     settings = ClassSettings() if is_new else read_settings(folder)
@@ -117,12 +117,13 @@ def _updated(options: ClassRequest, settings: ClassSettings, folder: Path, rubri
         "parts": tuple(options.part) if options.part else None,
         "arguments": read_arguments(options.arg or ()) or None,
         "max_size": options.max_size,
+        "submissions": tuple(relative(path, folder) for path in options.paths or ()) or None,
     }
     settings = replace(settings, **{name: value for name, value in given.items() if value is not None})
     if options.ignore_file or not settings.handed_out:
         own = tuple(_handed_out(options.ignore_file or (), rubric))
         settings = replace(settings, handed_out=(*own, *reference_hashes(rubric.data, str(rubric.path))))
-    return settings.with_roots(folder, options.paths) if options.paths else settings
+    return settings
 
 
 def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import NamedTuple
+from urllib.parse import quote
 
 from grader.checks.outcome import Outcome
 from grader.classroom import folder as names
@@ -30,7 +31,6 @@ from grader.text import (
     printable_path,
     without_commands,
 )
-from grader.usecases.saves import address
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import make_folder, refuse_symlinks, save
 from grader.workers.pool import Processes, WorkerError, processors
@@ -215,5 +215,5 @@ def write_class_page(book: Class, folder: Path, pages: Mapping[str, str]) -> Non
     from grader.report.pages.class_page import render_class_page
 
     grades = list(book)
-    links = {key: address(f"{name}.{Format.HTML.ending}") for key, name in pages.items()}
+    links = {key: quote(f"{name}.{Format.HTML.ending}") for key, name in pages.items()}
     save(folder / "index.html", without_commands(render_class_page(book, grades, statistics(book, grades), links)))
