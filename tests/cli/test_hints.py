@@ -15,7 +15,6 @@ from tests.samples import ROOT
 
 MISTAKES = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 REFERENCE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
-ROLL = {"path": "my_robot.urdf", "line": 73, "column": 34, "old": 'rpy="1.57 0 0"', "new": 'rpy="-1.57 0 0"'}
 
 
 def graded(*arguments: object) -> dict[str, Any]:
@@ -37,24 +36,6 @@ def lab(folder: Path, level: str) -> Path:
     text = text.replace('reference = "', f'reference = "{ROOT}/rubrics/lab6/').replace("answers =", "# answers =")
     (folder / "lab.toml").write_text(text)
     return folder / "lab.toml"
-
-
-def test_a_hint_gives_the_edit_and_what_it_gains() -> None:
-    """Criteria that one edit makes pass have the same hint."""
-    found = hints(MISTAKES)
-    [hint] = found["right-wheel-forward"]
-    assert found["right-wheel-axis"] == [hint]
-    assert hint["edits"][0] == ROLL
-    assert hint["gains"] == {"right-wheel-forward": 6, "right-wheel-axis": 1}
-    assert hint["verified"] is True
-    assert hint["message"] == (
-        'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 73) and change `xyz="0 0 0.025"` to `xyz="0 0 -0.025"` (line 65).'
-    )
-
-
-def test_no_hints_for_what_passes() -> None:
-    """A flawless robot has none."""
-    assert hints(REFERENCE) == {}
 
 
 @pytest.mark.parametrize(
@@ -88,11 +69,6 @@ def test_a_long_hint_says_no_more_than_its_level(level: str) -> None:
     assert "--verbose shows the edits" in " ".join(run(("grade", MISTAKES), COLUMNS="24").stdout.decode().split())
 
 
-def test_level_none() -> None:
-    """It has no hints, and searches none."""
-    assert hints(MISTAKES, "--hints", "none") == {}
-
-
 @pytest.mark.parametrize("wanted", LEVELS)
 @pytest.mark.parametrize("allowed", ["", *LEVELS])
 def test_an_option_never_exceeds_the_rubric(allowed: str, wanted: str, tmp_path: Path) -> None:
@@ -100,6 +76,7 @@ def test_an_option_never_exceeds_the_rubric(allowed: str, wanted: str, tmp_path:
     level = min(allowed or "cause", wanted, key=LEVELS.index)
     found = hints(MISTAKES, "--rubric", lab(tmp_path, allowed), "--hints", wanted)
     expected = hints(MISTAKES, "--hints", level)
+    assert bool(found) == (level != "none")
     assert {name: [hint["message"] for hint in some] for name, some in found.items()} == {
         name: [hint["message"] for hint in some] for name, some in expected.items()
     }

@@ -16,8 +16,6 @@ from tests.classroom.repositories.writing import write_class
 from tests.command_line import run
 
 Report = dict[str, Any]
-
-SINGLE = [row for row in ROWS if len(row.works) == 1]
 TEAMS = [row for row in ROWS if len(row.works) > 1]
 WITHOUT = [row for row in ROWS if not row.works]
 WORKS = [(row, folder) for row in ROWS for folder in row.works]
