@@ -2,12 +2,10 @@
 
 import json
 import re
-import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
 import jsonschema
-import pytest
 
 from grader.report.formats import Format
 from tests.classroom.gradebooks import batch, grader, lab_text
@@ -99,27 +97,6 @@ def test_an_excused_student_has_no_points_in_the_headline(top: Path) -> None:
     assert grader("mark", "anna", "total", "excused", "--gradebook", top / "book").returncode == 0
     expected = {"points": None, "late": 0, "final": False}
     assert_headlines(reports(top, "anna"), "Excused", "Excused; the criteria give 6 automatic points.", 6, expected)
-
-
-@pytest.mark.parametrize("kind", [Format.MARKDOWN, Format.HTML])
-def test_feedback_and_pages_have_the_same_headline(top: Path, kind: Format) -> None:
-    """The zip for an LMS, and the student's page of `export html`."""
-    assert grader("mark", "anna", "total", "3.5", "--gradebook", top / "book").returncode == 0
-    worksheet = top / "sheet.csv"
-    worksheet.write_text(
-        "Identifier,Full name,Email address,Status,Grade,Maximum Grade\nParticipant 7,Anna Ek,anna@example.org,,,11\n"
-    )
-    done = grader(
-        "export", "moodle", "--gradebook", top / "book", "--into", worksheet, "--output", top / "up.csv",
-        "--feedback", top / "feedback.zip", "--feedback-format", kind,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    with zipfile.ZipFile(top / "feedback.zip") as archive:
-        (text,) = (archive.read(name).decode() for name in archive.namelist())
-    assert headline(kind, " ".join(text.split())) == "3.5 / 11"
-    assert grader("export", "html", "--gradebook", top / "book", "--output", top / "pages").returncode == 0
-    page = " ".join((top / "pages" / "anna.html").read_text("utf-8").split())
-    assert headline(Format.HTML, page) == "3.5 / 11"
 
 
 def test_points_that_need_manual_grading_are_a_dash(top: Path) -> None:
