@@ -15,10 +15,10 @@ FORMATS = [kind for kind in Format if kind is not Format.CLASSROOM50]
 WITH_HEADLINE = [kind for kind in FORMATS if kind is not Format.JSON]
 
 
-def reports(top: Path, key: str, *more: object) -> Mapping[Format, str]:
+def reports(top: Path, key: str, rubric: Path | None = None) -> Mapping[Format, str]:
     """Return the report on a student in every format that a class's run writes, with single spaces."""
     options = [option for kind in FORMATS for option in ("--report-format", kind)]
-    done = batch(top, "--reports", top / "out", *options, *more)
+    done = batch(top, "--reports", top / "out", *options, rubric=rubric)
     assert done.returncode == 0, done.stderr
     return {kind: " ".join((top / "out" / f"{key}.{kind.ending}").read_text("utf-8").split()) for kind in FORMATS}
 
@@ -82,12 +82,7 @@ def test_the_late_penalty_is_in_the_headline(top: Path) -> None:
         for number, line in enumerate(roster)
     ]
     (top / "roster.csv").write_text("\n".join(lines) + "\n")
-    options = [option for kind in FORMATS for option in ("--report-format", kind)]
-    done = batch(top, "--reports", top / "out", *options, rubric=top / "late.toml")
-    assert done.returncode == 0, done.stderr
-    found: Mapping[Format, str] = {
-        kind: " ".join((top / "out" / f"anna.{kind.ending}").read_text("utf-8").split()) for kind in FORMATS
-    }
+    found = reports(top, "anna", top / "late.toml")
     expected = {"points": 3.8, "late": -2.2, "final": False}
     assert_headlines(found, "3.8 / 11", "Points: 6 automatic - 2.2 late.", 6, expected)
 

@@ -138,19 +138,6 @@ def test_a_folder_with_saved_reports_in_it(tmp_path: Path, watch: Watch) -> None
     assert '"lidar-frame"' in (folder / "report.json").read_text()
 
 
-def test_a_replaced_folder(tmp_path: Path, watch: Watch) -> None:
-    """A submission that is unpacked again is watched from then on."""
-    folder = tmp_path / "lab6"
-    for name, source in (("lab6", SHORT), ("other", URDF)):
-        (tmp_path / name).mkdir()
-        shutil.copy(source, tmp_path / name / "my_robot.urdf")
-    edits = partial(folder.rename, tmp_path / "old"), partial((tmp_path / "other").rename, folder)
-    done = watch([folder, "--part", "task1"], *edits, partial(put, SHORT, folder / "my_robot.urdf"))
-    assert "does not exist" in done.err[1]
-    assert BETTER in done.out[2]
-    assert WORSE in done.out[3]
-
-
 def test_a_rubric_in_a_file_is_watched(robot: Path, tmp_path: Path, watch: Watch) -> None:
     """Its mistakes are reported line by line and waited out; the URDF is graded by the current rubric."""
     rubric = tmp_path / "rules" / "lab.toml"
