@@ -148,3 +148,8 @@ def mark_file(folder: Path, by: str) -> Path:
         digest = sha256_of(name.encode("utf-8", "surrogateescape"))[:16]
         name = f"{re.sub('[^a-z0-9_]+', '-', name).strip('-')[:40] or '_'}-{digest}"
     return folder / f"{name}.csv"
+
+
+def is_open_in_libreoffice(path: Path) -> bool:
+    """Return whether LibreOffice has a file open, and may replace it: there is its lock."""
+    return os.path.lexists(path.with_name(f".~lock.{path.name}#"))

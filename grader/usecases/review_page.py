@@ -8,6 +8,7 @@ from http import HTTPStatus
 from typing import Any
 
 from grader.classroom.grades import Class
+from grader.classroom.mark_files import is_open_in_libreoffice
 from grader.classroom.review_items import STATES, ReviewFilter
 from grader.documents.pictures import PDF, EmbeddedPicture
 from grader.errors import GraderError
@@ -129,9 +130,13 @@ def review_in_browser(session: ReviewSession, port: int, terminal: Terminal) -> 
     if not session.places:
         return "nothing needs manual grading\n"
     page = ReviewPage(session)
-    with LocalServer(page, port) as server, suppress(KeyboardInterrupt):
-        terminal.print(f"{server.url}{page.address(session.following())}\n")
-        terminal.warn("open this address in a browser on this machine; Ctrl-C ends the review, all marks are kept")
-        server.serve_forever()
+    with LocalServer(page, port) as server:
+        if is_open_in_libreoffice(session.file):
+            shown = printable_path(session.file)
+            terminal.warn(f"{shown} is open in LibreOffice: close it, because saving it there would remove new marks")
+        with suppress(KeyboardInterrupt):
+            terminal.print(f"{server.url}{page.address(session.following())}\n")
+            terminal.warn("open this address in a browser on this machine; Ctrl-C ends the review, all marks are kept")
+            server.serve_forever()
     write_grades(Class(session.folder))
     return f"{len(session.own)} marked, {session.left} left\n"

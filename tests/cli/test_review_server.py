@@ -283,6 +283,7 @@ def test_a_request_without_end_is_disconnected(book: Path, monkeypatch: pytest.M
 
 def test_the_command(book: Path) -> None:
     """It prints the address, marks, and ends with Ctrl-C: it writes the grades and says what is left; a port is free."""
+    (book / "marks" / ".~lock.kim.csv#").touch()
     options = ("--gradebook", str(book), "--criterion", "picture", "--by", "Kim")
     command = [sys.executable, "-m", "grader", "review", *options]
     with subprocess.Popen(
@@ -299,6 +300,7 @@ def test_the_command(book: Path) -> None:
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=HANG_TIMEOUT)
     assert (process.returncode, out) == (0, "1 marked, 2 left\n")
+    assert f"grader: {book}/marks/kim.csv is open in LibreOffice: close it" in err
     assert err.endswith(
         "grader: open this address in a browser on this machine; Ctrl-C ends the review, all marks are kept\n"
     )

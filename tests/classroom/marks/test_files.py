@@ -17,7 +17,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from grader.classroom import mark_files
-from grader.classroom.mark_files import COLUMNS, WITHDRAWN, mark_file
+from grader.classroom.mark_files import COLUMNS, WITHDRAWN, is_open_in_libreoffice, mark_file
 from grader.classroom.marks import EXCUSED, Mark, append_marks
 from grader.classroom.tables import protected, unprotected
 from grader.errors import InputError
@@ -263,6 +263,9 @@ def test_files_are_private_and_symlinks_are_not_followed(tmp_path: Path) -> None
         read(folder)
     with pytest.raises(InputError, match=r"cannot write marks/kim\.csv"):
         append_marks(folder / "kim.csv", [])
+    assert not is_open_in_libreoffice(folder / "lee.csv")
+    (folder / ".~lock.lee.csv#").touch()
+    assert is_open_in_libreoffice(folder / "lee.csv")
 
 
 @given(
