@@ -15,11 +15,6 @@ RUBRIC, MARKS, REPORTS = "rubric", "marks", "reports"
 _LOCK = ".lock"
 
 
-def default_folder(rubric_id: str) -> Path:
-    """Return the gradebook of a lab in the current folder."""
-    return Path(f"{rubric_id}-grades")
-
-
 def is_gradebook(folder: Path) -> bool:
     """Return whether a folder is a gradebook."""
     return (folder / CLASS_FILE).is_file()

@@ -18,10 +18,10 @@ class Graded(NamedTuple):
 
     `root` is the position of its path in the settings of the class, `paths` are below that. `person` is what the
     names of the files say of the student. `context` is the hash of all that a result depends on besides the
-    submission. `work` are hashes of the robot and the package in several forms, for equal work; `answers` are the
-    keys of what a person looks at for a criterion: students with the same answer have the same one, and it is empty
-    without an answer. `texts` are those of Word and PDF files by path, in a new result only. `no_documents` says why
-    its documents were not read. Without a `digest` the submission could not be read at all.
+    submission. `work` are hashes of the robot in several forms, for equal work; `answers` are the keys of what a person
+    looks at for a criterion: students with the same answer have the same one, and it is empty without an answer.
+    `texts` are those of Word and PDF files by path, in a new result only. `no_documents` says why its documents were
+    not read. Without a `digest` the submission could not be read at all.
     """
 
     student: str
@@ -38,7 +38,7 @@ class Graded(NamedTuple):
     person: Mapping[str, str] = {}
     parts: tuple[str, ...] = ()
     results: Mapping[str, Entry] = {}
-    work: Mapping[str, Any] = {}
+    work: Mapping[str, str] = {}
     answers: Mapping[str, str] = {}
     no_documents: str = ""
     texts: Mapping[str, str] = {}

@@ -8,9 +8,10 @@ from typing import Any
 from grader import __version__
 from grader.checks.outcome import Outcome, Status
 from grader.classroom import folder as names
-from grader.classroom.graded import Graded, Run
+from grader.classroom.graded import Graded, Run, digest_of
 from grader.classroom.lateness import Lateness, lateness
 from grader.classroom.marks import Mark, Marks, read_marks
+from grader.classroom.opening import open_class_submission
 from grader.classroom.results import Results
 from grader.classroom.roster import Roster, Student, read_roster
 from grader.classroom.settings import read_settings
@@ -22,6 +23,7 @@ from grader.grading.criterion import DEADLINE, TOTAL, Criterion
 from grader.grading.graded_submission import GradedSubmission
 from grader.grading.report import ManualComment, ManualMark, Report, without_gifts
 from grader.grading.rubric import load_rubric
+from grader.submission.submission import Opening, Submission
 from grader.text import printable_path
 
 _NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
@@ -87,6 +89,21 @@ class Class:
         results = (self._result(name, status, words or why, by) for name, (_, status, words, by) in entries)
         submission = GradedSubmission(graded.student, unread=unread)
         return Report(submission, self.rubric, graded.parts, without_gifts(results, submission))
+
+    def reopened(self, graded: Graded) -> Submission | None:
+        """Return a submission as it was graded; None if it has moved or changed since, or cannot be read."""
+        settings, roots = self.settings, self.settings.roots(self.folder)
+        if graded.root >= len(roots) or not graded.paths:
+            return None
+        root = str(roots[graded.root].resolve())
+        try:
+            opened = open_class_submission(root, graded.paths, graded.names, graded.student, settings.max_size)
+            if digest_of(opened.digest) != graded.digest:
+                return None
+            known = Opening(0, settings.arguments, graded.no_documents, converted=self.results.texts(graded))
+            return opened.submission(self.rubric, known)
+        except InputError:
+            return None
 
     def _new_result(self, name: str, status: Status, words: str, carried: str) -> ClassResult:
         return ClassResult(self._rows[name], Outcome(status, words), carried=carried)

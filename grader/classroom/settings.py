@@ -4,7 +4,7 @@ import json
 import os
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -50,10 +50,6 @@ class ClassSettings:
     def deadline(self, folder: Path) -> datetime | None:
         """Return the deadline. Raises InputError."""
         return read_time(self.due, f"{printable_path(folder / CLASS_FILE)}: ") if self.due else None
-
-    def with_roots(self, folder: Path, paths: tuple[Path, ...]) -> "ClassSettings":
-        """Return the settings with other submissions, relative to the gradebook where that is possible."""
-        return replace(self, submissions=tuple(relative(path, folder) for path in paths))
 
 
 def relative(path: Path, folder: Path) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from contextlib import nullcontext, redirect_stderr, suppress
 from importlib import import_module
 from io import StringIO
-from itertools import dropwhile
+from itertools import dropwhile, pairwise
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -94,29 +94,25 @@ def run(arguments: Sequence[str]) -> int:
 def _discard_reports(words: Sequence[str]) -> None:
     """Remove what `--save` names in the arguments of a `grade` that is refused, whatever is wrong with them.
 
-    A report that lies there already may be forged by a student, and would count as the result of this run. The
-    arguments are parsed again, because the refusal may be about one of them.
+    A report that lies there already may be forged by a student, and would count as the result of this run. The refusal
+    may be about any of the arguments, so they are not parsed again.
     """
-    from typer.main import get_command
-
     from grader.usecases.grade import remove_reports
     from grader.usecases.rubrics import files_of
     from grader.usecases.saves import read_saves
 
-    command: Any = get_command(make_app(["grade"]))
-    command = command.commands["grade"]
-    command.ignore_unknown_options = True
-    flags = {name for option in command.params if getattr(option, "is_flag", False) for name in option.opts}
-    # --verbose=yes would end the parsing.
-    known = [name if (name := word.partition("=")[0]) in flags else word for word in words]
-    given = command.make_context("grade", known, resilient_parsing=True).params
+    def values(option: str) -> list[str]:
+        joined = [word.removeprefix(f"{option}=") for word in words if word.startswith(f"{option}=")]
+        return joined + [value for word, value in pairwise(words) if word == option]
+
     saves: list[tuple[Any, Path]] = []
-    for text in given["save"] or ():
+    for text in values("--save"):
         with suppress(GraderError, OSError):
             saves += read_saves([text])
     with suppress(GraderError, OSError):
-        rubric = files_of(given["rubric"] or DEFAULT_RUBRIC, given["answers"])
-        remove_reports(tuple(saves), rubric, *(word for word in words if word[:1] != "-"))
+        rubric = [file for name in values("--rubric") or [DEFAULT_RUBRIC] for file in files_of(name)]
+        answers = map(Path, values("--answers"))
+        remove_reports(tuple(saves), [*rubric, *answers], *(word for word in words if word[:1] != "-"))
 
 
 def _run(arguments: Sequence[str]) -> int:

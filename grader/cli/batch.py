@@ -6,13 +6,7 @@ from typing import Annotated, Literal, get_args
 
 import typer
 
-from grader.cli.options import (
-    AnswersOption,
-    ArgOption,
-    DueOption,
-    FormatOption,
-    PartOption,
-)
+from grader.cli.options import AnswersOption, ArgOption, FormatOption, PartOption
 from grader.cli.terminal import TERMINAL
 from grader.errors import GraderError
 from grader.report.formats import Format, OutputFormat
@@ -49,7 +43,9 @@ def batch(
         list[Format] | None, typer.Option(metavar="FORMAT", help="Write a report for each student; repeatable.")
     ] = None,
     reports: Annotated[Path | None, typer.Option(metavar="DIR", help=_REPORTS)] = None,
-    due: DueOption = None,
+    due: Annotated[
+        str | None, typer.Option(metavar="TIME", help="The deadline, such as 2026-11-20T23:59+01:00.")
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Grade unchanged submissions again.")] = False,
     cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="A Dask cluster, as tcp://host:8786.")] = None,
     max_size: Annotated[int | None, typer.Option(metavar="BYTES", min=1, help="Maximum size of a URDF.")] = None,
@@ -83,30 +79,14 @@ def batch(
 
       See https://urdf-grader.github.io/urdf-grader/grade-a-class.html for more.
     """
+    options = locals()  # named like the fields of the request
     if cluster is None and paths:  # a class that is graded may need no workers
         with suppress(OSError):  # it is started again when it is needed
             forks.start_server()  # it loads what grades a submission, while this process loads what the class needs
-    from grader.usecases.class_inputs import ClassOptions
-    from grader.usecases.grade_class import ClassRequest, grade_class
+    from grader.usecases.class_inputs import ClassRequest
+    from grader.usecases.grade_class import grade_class
 
-    formats = tuple(report_format or [Format.TERMINAL] * (reports is not None))
-    for kind in formats:
+    for kind in report_format or ():
         if kind.needs == "identity":
             raise GraderError(f"{kind} is for one repository: use `grader grade` there")
-    options = ClassOptions(
-        paths=tuple(paths or ()),
-        gradebook=gradebook,
-        rubric=rubric,
-        roster=roster,
-        due=due,
-        layout=layout,
-        assignment=assignment,
-        part=tuple(part or ()),
-        argument=tuple(arg or ()),
-        ignore_file=tuple(ignore_file or ()),
-        max_size=max_size,
-    )
-    request = ClassRequest(
-        options, jobs, timeout, force, cluster, reports, formats, answers, verbose=verbose, output_format=output_format
-    )
-    return grade_class(request, TERMINAL)
+    return grade_class(ClassRequest(**options), TERMINAL)

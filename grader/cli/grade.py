@@ -67,22 +67,10 @@ def grade(
 
       grader grade lab6.zip --save markdown=report.md --save junit=report.xml
     """
+    options = locals()  # named like the fields of the request
+    del options["save"], options["watch"]
     try:
-        request = GradeRequest(
-            path=path,
-            rubric=rubric,
-            expected_rubric=expect_rubric,
-            parts=tuple(part or ()),
-            format=output_format,
-            saves=read_saves(save or ()),
-            fail_under=fail_under,
-            max_size=max_size,
-            answers=answers,
-            arguments=tuple(arg or ()),
-            verbose=verbose,
-            hints=hints,
-            fix=fix,
-        )
+        request = GradeRequest(**options, saves=read_saves(save or ()))
         if watch:
             from grader.usecases.watch import watch as grade_on_change
 
@@ -99,12 +87,12 @@ def grade(
 def _grade_once(request: GradeRequest) -> int:
     """Grade, and print the report; in a job of GitHub Actions also publish it. Return the exit code."""
     run = grade_and_save(request, warn)
-    text = render(run.report, request.format, run.base, screen(), verbose=request.verbose)
-    write_stdout(text if request.format.needs == "console" else text.encode("utf-8", "backslashreplace"))
+    text = render(run.report, request.output_format, run.base, screen(), verbose=request.verbose)
+    write_stdout(text if request.output_format.needs == "console" else text.encode("utf-8", "backslashreplace"))
     if _is_github_job():
         from grader.usecases.github import publish_report  # late: most runs are no such job
 
-        annotate = write_stderr if request.format is not Format.GITHUB else None
+        annotate = write_stderr if request.output_format is not Format.GITHUB else None
         publish_report(run.report, run.base, annotate, warn)
     elif run.reason:
         warn(run.reason)

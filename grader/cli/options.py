@@ -21,8 +21,5 @@ ArgOption = Annotated[
     list[str] | None,
     typer.Option("--arg", metavar="NAME=VALUE", help="The value of an argument of a xacro file; repeatable."),
 ]
-DueOption = Annotated[
-    str | None, typer.Option("--due", metavar="TIME", help="The deadline, such as 2026-11-20T23:59+01:00.")
-]
 ByOption = Annotated[str, typer.Option("--by", metavar="NAME", help="Your name in reports; default: none.")]
 FormatOption = Annotated[OutputFormat, typer.Option("--format", help="Output format.")]

@@ -176,6 +176,4 @@ def bundle(
 
       grader bundle gradescope autograder.zip --rubric my_lab.toml
     """
-    from grader.usecases.bundle import write_bundle
-
-    return write_bundle(platform, output, rubric)
+    return rubrics.bundle(platform, output, rubric)

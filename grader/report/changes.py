@@ -9,7 +9,7 @@ from rich.text import Text
 from grader.classroom.changes import Change, PointsChange
 from grader.classroom.graded import Run
 from grader.classroom.lateness import time_text
-from grader.report.console import wrapped
+from grader.report.console import Page
 from grader.report.criteria import alike
 from grader.report.json_data import (
     COUNT,
@@ -58,16 +58,18 @@ def render_changes_json(changes: Sequence[Change], runs: tuple[Run, Run]) -> str
 def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Console) -> None:
     """Print the two runs, and by reason whose grade changed, by how much, and in which criteria."""
     before, after = (f"run {run.run} of {time_text(run.time)}" for run in runs)
-    wrapped(console, Text(printable(f"From {before} to {after}"), style="dim"), 0)
+    page = Page(console, [])
+    page.inset(printable(f"From {before} to {after}"), "dim", 0)
     if not changes:
-        wrapped(console, Text("nothing changed"), 0)
+        page.inset("nothing changed", indent=0)
     for why, found in sorted(alike(changes, lambda change: change.why), key=lambda group: -len(group[1])):
-        console.print()
-        wrapped(console, Text(printable(f"{'; '.join(why)} ({counted(len(found), 'student')})"), style="bold"), 0)
+        page.leave_row()
+        page.inset(printable(f"{'; '.join(why)} ({counted(len(found), 'student')})"), "bold", 0)
         for one in found:
             steps = [f"{step.id} {_span(step, 'none')}" for step in one.criteria]
             total = f"{named(one.key, one.name)}: {_span(one, 'not final')}"
-            wrapped(console, Text(printable("; ".join([total, *first_lines(steps, _MAX_NAMED)]))), 4, Text("  "))
+            page.inset(printable("; ".join([total, *first_lines(steps, _MAX_NAMED)])), indent=4, head=Text("  "))
+    page.print()
 
 
 def _span(change: Change | PointsChange, nothing: str) -> str:

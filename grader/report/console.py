@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple, get_args
+from typing import TYPE_CHECKING, NamedTuple, get_args
 
 from rich.console import Console
 from rich.text import Text
@@ -13,6 +13,9 @@ from grader.report.details import ASCII_SYMBOLS, STYLES, SYMBOLS, hint_text
 from grader.report.locations import diff_lines, excerpt, location_text
 from grader.source import Location, Source
 from grader.text import counted, printable
+
+if TYPE_CHECKING:
+    from rich.table import Table
 
 INDENT = 2
 LOOKS: Mapping[Role, str] = {
@@ -71,9 +74,15 @@ class Page(NamedTuple):
         """Return the symbol of a status in its colour."""
         return Text(symbol(self.console, SYMBOLS[status], ASCII_SYMBOLS[status]), STYLES[status])
 
+    def table(self, table: "Table") -> None:
+        """Add a table, which a terminal may be too narrow for."""
+        self.print()
+        self.console.print(table)
+
     def print(self) -> None:
-        """Print the rows, all at once: a print costs more than a row."""
-        put(self.console, Text("\n").join(self.rows))
+        """Print the rows so far, all at once: a print costs more than a row."""
+        self.console.print(Text("\n").join(self.rows), overflow="ignore", no_wrap=True, crop=False)
+        self.rows.clear()
 
 
 def show_entry(entry: Entry, report: Report, page: Page, number: int = 0) -> None:
@@ -147,13 +156,11 @@ def _short_hint(entry: Entry, text: str, page: Page) -> str:
     return hint_text(entry, f"Wrong: {hint.cause}. --verbose shows the edits.")
 
 
-def wrapped(console: Console, text: Text, indent: int, head: Text | None = None) -> None:
-    """Print text that keeps its indent when it wraps; `head` replaces the indent of the first line."""
-    put(console, block(console, text, indent, head))
-
-
 def block(console: Console, text: Text, indent: int, head: Text | None = None, most: int | None = None) -> Text:
-    """Return text that keeps its indent when it wraps; of more than `most` lines the first ones, with an ellipsis."""
+    """Return text that keeps its indent when it wraps; `head` is in place of the indent of the first line.
+
+    Of more than `most` lines it is the first ones, with an ellipsis.
+    """
     lines = text.wrap(console, max(8, console.width - indent))
     for line in lines:
         line.rstrip()
@@ -165,11 +172,6 @@ def block(console: Console, text: Text, indent: int, head: Text | None = None, m
         kept[-1].truncate(min(room, len(_LAST_NUMBER.sub("", words))))
         kept[-1].append(ellipsis)
     return (Text(" " * indent) if head is None else head) + Text("\n" + " " * indent).join(kept)
-
-
-def put(console: Console, text: Text) -> None:
-    """Print lines that are wrapped already."""
-    console.print(text, overflow="ignore", no_wrap=True, crop=False)
 
 
 def excerpt_block(

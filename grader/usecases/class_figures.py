@@ -30,7 +30,7 @@ def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *,
         from grader.report.class_json import render_class_json
 
         return render_class_json(book)
-    from grader.report.class_summary import render_class
+    from grader.report.class_terminal import render_class
 
     return draw(partial(render_class, statistics(book, book), verbose=verbose), terminal.screen())
 

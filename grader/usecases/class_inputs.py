@@ -11,11 +11,12 @@ from grader.classroom.equal_work import hashes_of
 from grader.classroom.lateness import read_time, time_text
 from grader.classroom.roster import Roster, read_roster
 from grader.classroom.run.worker import reference_hashes
-from grader.classroom.settings import CLASS_FILE, ClassSettings, read_settings, settings_text
+from grader.classroom.settings import CLASS_FILE, ClassSettings, read_settings, relative, settings_text
 from grader.classroom.tables import SIZE_LIMIT
 from grader.errors import InputError
 from grader.files.reading import read_capped, sha256_of
 from grader.grading.rubric import Rubric, load_rubric
+from grader.report.formats import Format, OutputFormat
 from grader.submission.opening import open_submission
 from grader.text import enumerated, printable_path
 from grader.usecases.rubrics import DEFAULT_RUBRIC, files_of
@@ -27,20 +28,32 @@ _PRIVATE = 0o600
 
 
 @dataclass(frozen=True, slots=True)
-class ClassOptions:
-    """The options of `grader batch` that its gradebook keeps. `max_size` is in bytes; None stands for what is kept."""
+class ClassRequest:
+    """The options of `grader batch`. `timeout` is in seconds, `max_size` in bytes.
 
-    paths: tuple[Path, ...] = ()
-    gradebook: Path | None = None
-    rubric: str | None = None
-    roster: Path | None = None
-    due: str | None = None
-    layout: str | None = None
-    assignment: str | None = None
-    part: tuple[str, ...] = ()
-    argument: tuple[str, ...] = ()
-    ignore_file: tuple[Path, ...] = ()
-    max_size: int | None = None
+    None stands for what the gradebook keeps of the last run; it keeps no options from `jobs` on.
+    """
+
+    paths: Sequence[Path] | None
+    gradebook: Path | None
+    rubric: str | None
+    roster: Path | None
+    due: str | None
+    layout: str | None
+    assignment: str | None
+    part: Sequence[str] | None
+    arg: Sequence[str] | None
+    ignore_file: Sequence[Path] | None
+    max_size: int | None
+    jobs: int | None
+    timeout: float
+    force: bool
+    cluster: str | None
+    reports: Path | None
+    report_format: Sequence[Format] | None
+    answers: Path | None
+    verbose: bool
+    output_format: OutputFormat
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,10 +77,10 @@ class ClassInputs:
         return tuple(root.relative_to(here) if root.is_relative_to(here) else root for root in self.roots)
 
 
-def read_inputs(options: ClassOptions, warn: Warn) -> ClassInputs:
+def read_inputs(options: ClassRequest, warn: Warn) -> ClassInputs:
     """Return the inputs of a run; raise InputError and RubricError. Nothing is written."""
     rubric = load_rubric(options.rubric) if options.rubric is not None else None
-    folder = options.gradebook or names.default_folder(rubric.id if rubric is not None else DEFAULT_RUBRIC)
+    folder = options.gradebook or Path(f"{rubric.id if rubric is not None else DEFAULT_RUBRIC}-grades")
     is_new = not names.is_gradebook(folder)
     names.check_free(folder)
     settings = ClassSettings() if is_new else read_settings(folder)
@@ -93,23 +106,24 @@ def read_inputs(options: ClassOptions, warn: Warn) -> ClassInputs:
     return inputs
 
 
-def _updated(options: ClassOptions, settings: ClassSettings, folder: Path, rubric: Rubric) -> ClassSettings:
+def _updated(options: ClassRequest, settings: ClassSettings, folder: Path, rubric: Rubric) -> ClassSettings:
     """Return the settings with the options of the command."""
-    for name in options.part:
+    for name in options.part or ():
         rubric.part(name)
     given: dict[str, Any] = {
         "due": read_time(options.due).isoformat() if options.due else None,
         "layout": options.layout,
         "assignment": options.assignment,
-        "parts": options.part or None,
-        "arguments": read_arguments(options.argument) or None,
+        "parts": tuple(options.part) if options.part else None,
+        "arguments": read_arguments(options.arg or ()) or None,
         "max_size": options.max_size,
+        "submissions": tuple(relative(path, folder) for path in options.paths or ()) or None,
     }
     settings = replace(settings, **{name: value for name, value in given.items() if value is not None})
     if options.ignore_file or not settings.handed_out:
-        own = tuple(_handed_out(options.ignore_file, rubric))
+        own = tuple(_handed_out(options.ignore_file or (), rubric))
         settings = replace(settings, handed_out=(*own, *reference_hashes(rubric.data, str(rubric.path))))
-    return settings.with_roots(folder, options.paths) if options.paths else settings
+    return settings
 
 
 def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
@@ -117,11 +131,11 @@ def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
     for path in files:
         hashes = hashes_of(open_submission(str(path), rubric.lab))
         if not hashes:
-            raise InputError(f"--ignore-file {printable_path(path)}: there is no URDF and no package in it")
+            raise InputError(f"--ignore-file {printable_path(path)}: there is no URDF in it")
         yield from hashes
 
 
-def keep_inputs(inputs: ClassInputs, options: ClassOptions, warn: Warn) -> ClassInputs:
+def keep_inputs(inputs: ClassInputs, options: ClassRequest, warn: Warn) -> ClassInputs:
     """Write the settings and the copies of the roster and the rubric into the gradebook. Raises InputError."""
     folder, settings, rubric = inputs.folder, inputs.settings, inputs.rubric
     if options.roster is not None:

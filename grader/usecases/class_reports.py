@@ -7,12 +7,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import NamedTuple
+from urllib.parse import quote
 
 from grader.checks.outcome import Outcome
 from grader.classroom import folder as names
 from grader.classroom.graded import Graded
 from grader.classroom.grades import Class
-from grader.classroom.reopening import reopened
 from grader.classroom.student_grade import StudentGrade
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
 from grader.files.reading import sha256_of
@@ -31,7 +31,6 @@ from grader.text import (
     printable_path,
     without_commands,
 )
-from grader.usecases.saves import address
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import make_folder, refuse_symlinks, save
 from grader.workers.pool import Processes, WorkerError, processors
@@ -111,7 +110,7 @@ def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
 
 def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
     """Return the report on a submission as it was graded, with its details if it is still there."""
-    submission = reopened(book, graded) if graded.verdict != "errored" else None
+    submission = book.reopened(graded) if graded.verdict != "errored" else None
     if submission is None:
         return book.report(graded)._replace(notes=(_MOVED,) * (graded.verdict == "graded"))
     report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
@@ -216,5 +215,5 @@ def write_class_page(book: Class, folder: Path, pages: Mapping[str, str]) -> Non
     from grader.report.pages.class_page import render_class_page
 
     grades = list(book)
-    links = {key: address(f"{name}.{Format.HTML.ending}") for key, name in pages.items()}
+    links = {key: quote(f"{name}.{Format.HTML.ending}") for key, name in pages.items()}
     save(folder / "index.html", without_commands(render_class_page(book, grades, statistics(book, grades), links)))

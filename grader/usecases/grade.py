@@ -16,7 +16,7 @@ from grader.source import Base
 from grader.text import printable
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
 from grader.usecases.rubrics import files_of, load
-from grader.usecases.saves import Saves
+from grader.usecases.saves import Saves, read_arguments
 from grader.usecases.terminal import Warn
 from grader.usecases.writing import CHECKOUTS, refuse_inputs, refuse_symlinks, remove_previous, save
 
@@ -30,21 +30,24 @@ _SHA256 = r"[0-9a-fA-F]{64}"
 
 
 class GradeRequest(NamedTuple):
-    """A submission to grade, its rubric, and the reports to make."""
+    """The options of `grader grade`: a submission to grade, its rubric, and the reports to make.
+
+    `hints` is the most that hints tell, None for what the rubric allows.
+    """
 
     path: str
     rubric: str
-    expected_rubric: str | None
-    parts: tuple[str, ...]
-    format: Format
+    expect_rubric: str | None
+    part: Sequence[str] | None
+    output_format: Format
     saves: Saves
     fail_under: str | None
     max_size: int
-    answers: Path | None = None  # the file with the model answers, which the report then shows
-    arguments: tuple[str, ...] = ()  # of xacro, as NAME=VALUE
-    verbose: bool = False
-    hints: HintLevel | None = None  # the most that hints tell; None for what the rubric allows
-    fix: Path | None = None  # where to write the submission with the edits of all hints
+    arg: Sequence[str] | None
+    answers: Path | None
+    verbose: bool
+    hints: HintLevel | None
+    fix: Path | None
 
     @property
     def threshold(self) -> tuple[Decimal, bool] | None:
@@ -86,29 +89,21 @@ def grade_and_save(request: GradeRequest, warn: Warn) -> GradeRun:
     return run
 
 
-def _arguments(request: GradeRequest) -> dict[str, str]:
-    if not request.arguments:
-        return {}
-    from grader.usecases.saves import read_arguments  # late: most URDFs are no xacro
-
-    return read_arguments(request.arguments)
-
-
 def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
     """Grade a submission. Raises GraderError."""
     threshold = request.threshold  # before grading, to refuse a wrong one at once
-    for kind in (request.format, *(kind for kind, _ in request.saves)):
+    for kind in (request.output_format, *(kind for kind, _ in request.saves)):
         inputs_of(kind)  # as well
     from grader.grading.grade import grade
     from grader.submission.opening import open_submission
     from grader.submission.submission import Opening
 
     rubric = requested_rubric(request)
-    opening = Opening(request.max_size, _arguments(request))
+    opening = Opening(request.max_size, read_arguments(request.arg or ()))
     submission = open_submission(request.path, rubric.lab, opening, with_neighbours=True)
     if submission.several:
         warn(submission.several)
-    report = grade(rubric, submission, request.parts)
+    report = grade(rubric, submission, tuple(request.part or ()))
     for result in report.results:
         if result.traceback:
             warn(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
@@ -162,7 +157,7 @@ def save_reports(request: GradeRequest, run: GradeRun, modes: Mapping[Path, int]
 
 def requested_rubric(request: GradeRequest) -> "Rubric":
     """Return the rubric. Raises GraderError if it is not the expected one or lacks a part that is named."""
-    expected = request.expected_rubric
+    expected = request.expect_rubric
     if expected is not None and not re.fullmatch(_SHA256, expected):
         raise GraderError(
             f"--expect-rubric takes the 64 digits that `grader rubric show` prints as sha256, not {expected!r}"
@@ -172,7 +167,7 @@ def requested_rubric(request: GradeRequest) -> "Rubric":
         raise InputError(
             f"the rubric {rubric.id} is not the expected one: its sha256 is {rubric.sha256}, not {expected.lower()}"
         )
-    for name in request.parts:
+    for name in request.part or ():
         rubric.part(name)
     return rubric
 

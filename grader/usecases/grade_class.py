@@ -4,7 +4,6 @@ import gc
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from math import isfinite
 from pathlib import Path
@@ -22,12 +21,12 @@ from grader.classroom.submissions import Intake, read_class
 from grader.classroom.tables import write_table
 from grader.errors import InputError
 from grader.files.reading import sha256_of
-from grader.report.class_table import ClassTable
+from grader.report.class_terminal import ClassTable
 from grader.report.formats import Format, OutputFormat
 from grader.report.screen import draw
 from grader.text import counted, enumerated, first_lines, format_points, printable, printable_path
 from grader.usecases.class_figures import warn_of_ignored
-from grader.usecases.class_inputs import ClassInputs, ClassOptions, keep_inputs, read_inputs
+from grader.usecases.class_inputs import ClassInputs, ClassRequest, keep_inputs, read_inputs
 from grader.usecases.class_reports import ReportRun, refuse_report_folder, write_reports
 from grader.usecases.terminal import Terminal
 from grader.usecases.writing import refuse_symlinks, save
@@ -39,22 +38,6 @@ _LEAST_SECONDS = 15.0  # in which hints are searched, and a few reports written
 _PRIVATE = 0o600
 
 
-@dataclass(frozen=True, slots=True)
-class ClassRequest:
-    """A class to grade, and how. `timeout` is in seconds; without `reports`, the reports are in the gradebook."""
-
-    options: ClassOptions = field(default_factory=ClassOptions)
-    jobs: int | None = None
-    timeout: float = 60.0
-    force: bool = False
-    cluster: str | None = None
-    reports: Path | None = None
-    report_format: tuple[Format, ...] = ()
-    answers: Path | None = None
-    verbose: bool = False
-    output_format: OutputFormat = OutputFormat.TERMINAL
-
-
 def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     """Grade a class and return its table. Raises InputError and RubricError."""
     gc.freeze()  # loaded modules are not garbage
@@ -62,9 +45,9 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     gc.enable()  # unlike other commands, this one may run for long
     if not isfinite(request.timeout):
         raise InputError(f"--timeout takes a number of seconds, not {request.timeout}")
-    warn, inputs = terminal.warn, read_inputs(request.options, terminal.warn)
+    warn, inputs = terminal.warn, read_inputs(request, terminal.warn)
     folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
-    if request.options.due and rubric.late is None:
+    if request.due and rubric.late is None:
         no_late = f"because the rubric {rubric.id} has no [late]: only the days late are shown"
         warn(f"--due has no effect on grades, {no_late}")
     if request.reports is not None:
@@ -81,10 +64,10 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     with names.batch_lock(folder):
         results = Results(folder / names.RESULTS)
         _check_same_class(folder, results, intake)
-        inputs = keep_inputs(inputs, request.options, warn)
+        inputs = keep_inputs(inputs, request, warn)
         table, done = _grade(request, inputs, results, intake, terminal)
-    if request.report_format:
-        run = ReportRun(folder, request.reports or folder / names.REPORTS, request.report_format, request.answers)
+    if formats := tuple(request.report_format or [Format.TERMINAL] * (request.reports is not None)):
+        run = ReportRun(folder, request.reports or folder / names.REPORTS, formats, request.answers)
         write_reports(run, terminal, request.jobs, max(request.timeout, _LEAST_SECONDS))
     if request.output_format is OutputFormat.JSON:
         from grader.report.class_json import render_class_json

@@ -9,7 +9,6 @@ from itertools import starmap
 from pathlib import Path
 
 from grader.classroom.grades import Class
-from grader.classroom.reopening import reopened
 from grader.classroom.review_items import ReviewItem
 from grader.classroom.tables import write_table
 from grader.documents.pictures import EmbeddedPicture, NotShown
@@ -33,7 +32,7 @@ _MAX_TEXT = 30_000  # characters; a cell of Excel has at most 32,767
 def _graded_again(book: Class, key: str) -> tuple[Submission, Report]:
     """Return a student's submission as it was graded, and its report. Raises InputError."""
     graded = book.results.of(key)
-    submission = reopened(book, graded) if graded is not None else None
+    submission = book.reopened(graded) if graded is not None else None
     if submission is None:
         command = f"`grader batch NEWPATH --gradebook {shell_quoted(book.folder)}` with its class folder"
         raise InputError(f"the submission has moved or changed since it was graded: run {command}")

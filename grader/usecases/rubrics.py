@@ -1,4 +1,4 @@
-"""Load, list and check rubrics."""
+"""Load, list, copy, check and bundle rubrics."""
 
 import os
 from collections.abc import Iterator
@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import GraderError, MissingElement, NotDecided, RubricError
-from grader.text import counted, printable, printable_path, shell_quoted
+from grader.text import counted, format_points, printable, printable_path, shell_quoted
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.terminal import Warn
-from grader.usecases.writing import make_folder
+from grader.usecases.writing import make_folder, save_bytes
 
 if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
@@ -127,3 +127,29 @@ def _unresolved_lines(rubric: "Rubric") -> Iterator[str]:
                 yield (
                     f"{criterion.id} names a link by its place in the tree, and the reference has no such link: {error}"
                 )
+
+
+def bundle(platform: str, output: Path, name: str) -> str:
+    """Write the autograder zip for a platform; return what to do next, in two lines. Raises GraderError."""
+    from grader.bundle.gradescope import autograder_zip
+
+    if output.suffix.lower() != ".zip":
+        raise GraderError(f"{platform} takes a zip: give a name that ends in .zip, not {str(output)!r}")
+    rubric = load(name)
+    save_bytes(output, autograder_zip(rubric))
+    lines = f"wrote {output}: {rubric_summary(rubric)}", f"next: {_next_step(rubric)}"
+    return "".join(f"{printable(line)}\n" for line in lines)
+
+
+def _next_step(rubric: "Rubric") -> str:
+    from grader.checks.manual import MANUAL_CHECKS
+    from grader.grading.criterion import worth
+
+    asked = (criterion for criterion in rubric.criteria if criterion.check.function in MANUAL_CHECKS)
+    manual = [criterion for criterion in asked if criterion.adjustment is None]
+    points = worth(manual)
+    step = f"upload it under Configure Autograder; autograder points: {format_points(rubric.points - points.points)}"
+    if not manual:
+        return step
+    listed = ", ".join(f"{criterion.id} ({worth((criterion,)).short})" for criterion in manual)
+    return f"{step}; manual grading: {points.text} for {listed}"

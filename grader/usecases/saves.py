@@ -3,7 +3,6 @@
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from urllib.parse import quote
 
 from grader.errors import GraderError
 from grader.report.formats import Format
@@ -27,11 +26,6 @@ def _read_save(text: str) -> tuple[Format, Path]:
         raise GraderError(f"--save takes FORMAT=FILE with one of the formats {', '.join(Format)}, not {text!r}")
     # The shell expands no ~ after `=`; Path.expanduser raises for an unknown user.
     return Format(kind), Path(os.path.expanduser(file))  # noqa: PTH111
-
-
-def address(path: str) -> str:
-    """Return a relative path as an address, with special characters escaped."""
-    return quote(os.fsencode(path.replace(os.sep, "/")))
 
 
 def read_arguments(texts: Sequence[str]) -> dict[str, str]:

@@ -15,7 +15,7 @@ from grader.errors import GraderError, InputError, MachineError, RubricError
 from grader.files.folder import read_folder
 from grader.grading.report import Report, Result
 from grader.grading.rubric import find_rubric, shipped_rubrics
-from grader.report.console import wrapped
+from grader.report.console import Page
 from grader.report.criteria import alike
 from grader.report.formats import Format, render
 from grader.report.screen import draw
@@ -77,9 +77,9 @@ def _watched(request: GradeRequest) -> list[Path]:
     """Return what is watched: the submission, and a rubric that is no shipped one. Raises GraderError."""
     if request.path in ("", "-"):
         raise GraderError("--watch takes a file or folder: standard input is read only once")
-    if request.format is not Format.TERMINAL:
+    if request.output_format is not Format.TERMINAL:
         raise GraderError(
-            f"--watch prints in the format terminal only: use --save {request.format.value}=FILE instead of --format"
+            f"--watch prints in the format terminal only: use --save {request.output_format}=FILE instead of --format"
         )
     if request.fix is not None:
         raise GraderError("--watch writes no fix: use --fix without it")
@@ -96,9 +96,10 @@ def _show(report: Report, last: Report | None, terminal: Terminal, *, verbose: b
     lines = comparison_lines(last, report) if last is not None else []
 
     def print_lines(console: Console) -> None:
-        console.print()
+        page = Page(console, [Text()])
         for line in lines:
-            wrapped(console, Text(line, style="bold"), 0)
+            page.inset(line, "bold", 0)
+        page.print()
 
     changes = draw(print_lines, screen) if lines else ""
     terminal.print(render(report, Format.TERMINAL, screen=screen, verbose=verbose) + changes)

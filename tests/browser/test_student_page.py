@@ -8,13 +8,10 @@ import pytest
 
 from tests.browser.conftest import OpenPage
 from tests.command_line import run
-from tests.report.hostile import HOSTILE
 from tests.samples import SAMPLES
 
 pytestmark = pytest.mark.exhaustive
 Open = Callable[..., OpenPage]
-PIECES = (*HOSTILE["html"], *HOSTILE["links"], *HOSTILE["xml"])
-ATTACK = "".join(("</script><script>document.title='run'</script>", *PIECES)) + "\"onerror='x' javascript:"
 BACKGROUND = "name => getComputedStyle(document.querySelector(name)).backgroundColor"
 
 

@@ -1,10 +1,8 @@
 """An autograder on Gradescope grades submissions: results.json always exists and is what Gradescope accepts."""
 
-import io
 import json
 import os
 import shutil
-import tarfile
 from pathlib import Path
 
 import pytest
@@ -13,9 +11,6 @@ from tests.bundle.gradescope import Autograder
 from tests.classroom.gradebooks import PNG, grader
 from tests.samples import ROOT
 
-LAUGHS = '<!DOCTYPE r [<!ENTITY a "ha">' + "".join(
-    f'<!ENTITY {b} "{f"&{a};" * 10}">' for a, b in zip("abcdefghi", "bcdefghij", strict=True)
-)
 # Modules that Python, the autograder or the grader imports.
 MODULES = (
     "json",
@@ -30,15 +25,6 @@ MODULES = (
     "typer",
     "yaml",
 )
-
-
-@pytest.mark.exhaustive
-def test_a_submission_that_passes(autograder: Autograder) -> None:
-    """The reference gets all automatic points, and each criterion is a test."""
-    autograder.submit("reference")
-    results = autograder.run()
-    assert results["score"] == sum(test.get("score", 0) for test in results["tests"]) == 90
-    assert all(test["status"] == "passed" for test in results["tests"] if "score" in test)
 
 
 def test_a_submission_with_mistakes(autograder: Autograder) -> None:
@@ -60,14 +46,6 @@ def test_the_same_submission_gives_the_same_bytes(autograder: Autograder) -> Non
     (autograder.root / "results" / "results.json").write_text("of yesterday")
     autograder.run(TZ="Asia/Tokyo", LANG="de_DE.ISO-8859-1", COLUMNS="40")
     assert (autograder.root / "results" / "results.json").read_bytes() == before
-
-
-@pytest.mark.exhaustive
-def test_an_archive_that_is_not_unpacked(autograder: Autograder) -> None:
-    """Gradescope unpacks zips but not tars; a tar is read in place."""
-    with tarfile.open(autograder.submission / "lab6.tar.gz", "w:gz") as archive:
-        archive.add(ROOT / "submissions/lab6/reference", "lab6")
-    assert autograder.run()["score"] == 90
 
 
 @pytest.mark.exhaustive
@@ -94,19 +72,6 @@ def test_a_changed_rubric_is_refused(tmp_path: Path, autograder: Autograder, sou
     results = autograder.run()
     assert (results["score"], results["tests"]) == (0, [])
     assert "rubric" in results["output"]
-
-
-def deep(folder: Path) -> None:
-    """Write XML with multiplying entities, and XML with a hundred thousand nested tags."""
-    (folder / "laughs.urdf").write_text(f"{LAUGHS}]><robot name='r'>&j;</robot>")
-    (folder / "deep.urdf").write_text("<robot name='r'>" + "<link>" * 100_000)
-
-
-def huge(folder: Path) -> None:
-    """Write sparse files of several gigabytes."""
-    for name in ("my_robot.urdf", "package.xml", "answers.md", "lab6.zip"):
-        with (folder / name).open("wb") as file:
-            file.truncate(4 << 30)
 
 
 def named(folder: Path) -> None:
@@ -136,19 +101,7 @@ def linked(folder: Path) -> None:
     os.mkfifo(folder / "pipe.urdf")
 
 
-def damaged(folder: Path) -> None:
-    """Write damaged archives, documents and pictures."""
-    for name in ("a.zip", "b.tar.gz", "c.docx", "d.pdf", "e.png"):
-        (folder / name).write_bytes(b"PK\x03\x04" + bytes(100))
-    bomb = io.BytesIO()
-    with tarfile.open(fileobj=bomb, mode="w:gz") as archive:
-        entry = tarfile.TarInfo("../../evil.urdf")
-        entry.size = 64 << 20
-        archive.addfile(entry, io.BytesIO(bytes(64 << 20)))
-    (folder / "bomb.tar.gz").write_bytes(bomb.getvalue())
-
-
-_IN_CI = [pytest.param(hostile, marks=pytest.mark.exhaustive) for hostile in (deep, huge, named, linked, damaged)]
+_IN_CI = [pytest.param(hostile, marks=pytest.mark.exhaustive) for hostile in (named, linked)]
 
 
 @pytest.mark.parametrize("hostile", _IN_CI, ids=lambda make: make.__name__)

@@ -97,16 +97,6 @@ def test_several_files_are_one_submission(tmp_path: Path) -> None:
     assert len(digests) == 4
 
 
-def test_symlinks_among_several_files_are_refused(tmp_path: Path) -> None:
-    """A symlink that leads out of the class or to another student's file is refused."""
-    (tmp_path / "a.urdf").write_bytes(URDF)
-    for target in ("/etc/passwd", "a.urdf"):
-        (tmp_path / "b.txt").unlink(missing_ok=True)
-        (tmp_path / "b.txt").symlink_to(target)
-        with pytest.raises(InputError, match=r"b\.txt is a symlink, and was not followed"):
-            open_class_submission(str(tmp_path), ("a.urdf", "b.txt"), (), "ann")
-
-
 @pytest.mark.parametrize("opens_in_folders", [True, False])
 @pytest.mark.parametrize("swapped", ["ann", "ann/urdf", "ann/urdf/my_robot.urdf"])
 def test_a_symlink_that_replaces_a_file_is_not_followed(
@@ -134,23 +124,6 @@ def test_nothing_outside_of_the_class_is_opened(tmp_path: Path) -> None:
     """A path that leads elsewhere is refused before it is opened."""
     with pytest.raises(InputError, match="it is outside of the submission"):
         reading.read_start("/etc/passwd", 10, "x", str(tmp_path))
-
-
-UNREADABLE: dict[str, Callable[[Path], object]] = {
-    "a pipe": os.mkfifo,
-    "missing": lambda _: None,
-    "too large": lambda path: path.write_bytes(b" " * (1024 * 1024 + 1)),
-    "a circle": lambda path: path.symlink_to(path),
-}
-
-
-@pytest.mark.parametrize("make", UNREADABLE.values(), ids=UNREADABLE)
-def test_unreadable_submissions_are_one_line(make: Callable[[Path], object], tmp_path: Path) -> None:
-    """They raise an InputError, in a class as alone."""
-    make(tmp_path / "ann.urdf")
-    with pytest.raises(InputError) as caught:
-        open_class_submission(str(tmp_path), ("ann.urdf",), (), "ann")
-    assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize("name", ["ann.pdf", "ann.docx", "ann.md", "ann.txt", "ann.png"])

@@ -27,11 +27,6 @@ def rubric(folder: Path, text: str, name: str = "lab.toml") -> Path:
     return folder / name
 
 
-def result(data: Any, name: str) -> Any:
-    """Return a criterion of a report."""
-    return next(row for row in data["results"] if row["id"] == name)
-
-
 def students(top: Path) -> dict[str, Any]:
     """Return the current grades by student."""
     done = grader("stats", "--gradebook", top / "book", "--format", "json")
@@ -165,25 +160,6 @@ def test_a_mutant_is_not_caught_by_an_adjusted_criterion(tmp_path: Path) -> None
     ]
     caught = [found["mutants"]["caught"] for found in data]
     assert caught[0] == caught[1] > caught[2]
-
-
-def test_comments_are_in_reports_of_the_class(top: Path) -> None:
-    """Without points, with the grader's name; the points are those of the check."""
-    for name in ("loads", "box", "essay"):
-        done = grader("mark", "emil", name, "--comment", f"see {name}", "--by", "Kim", "--gradebook", top / "book")
-        assert done.returncode == 0
-    assert scores(top)["emil"] == (3, 11, 5)
-    batch(
-        top,
-        "--reports",
-        top / "reports",
-        *(word for kind in ("terminal", "json") for word in ("--report-format", kind)),
-    )
-    shown = " ".join((top / "reports" / "emil.txt").read_text().split())
-    assert all(f"Comment by Kim: see {name}." in shown for name in ("loads", "box", "essay"))
-    data = json.loads((top / "reports" / "emil.json").read_text())
-    assert result(data, "box")["comment"] == {"text": "see box", "by": "Kim"}
-    assert result(data, "box")["points"] == 0
 
 
 @pytest.mark.usefixtures("hostile_checks")

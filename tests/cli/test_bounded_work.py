@@ -166,9 +166,7 @@ def test_a_rubric_of_thousands_of_rows(kind: str, tmp_path: Path) -> None:
 
 
 DOCUMENTS = {
-    "blank lines": ("\n" * MIB, 1),
     "many files of blank lines": ("\n" * MIB, 30),
-    "headings": ("# Task 1 Step 1\n" * 60_000, 1),
     "many files of headings": ("# Task 1 Step 1\n" * 60_000, 30),
     "headings that end nothing": ("foo bar step 15 and more words here so\n" * 26_000, 30),
     "one line": ("a1 " * 340_000, 30),
@@ -293,12 +291,3 @@ def test_a_compressed_tar_is_read_to_a_limit(tmp_path: Path) -> None:
     packed.write_bytes(gzip.compress(gzip.decompress(path.read_bytes())))
     output = bounded("grade", packed, calls=_FEW_CALLS, code=2)
     assert "would unpack to more than 33554432 bytes, the limit for an archive, and was not read" in output
-
-
-def test_a_zip_bomb_is_ignored_by_its_declared_size(tmp_path: Path) -> None:
-    """Nothing of it is unpacked."""
-    with zipfile.ZipFile(tmp_path / "lab6.zip", "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("bomb.txt", bytes(100 * MIB))
-        archive.writestr("my_robot.urdf", URDF)
-    output = bounded("grade", tmp_path / "lab6.zip", "--part", "task1", calls=_FEW_CALLS, code=0)
-    assert "bomb.txt (105 MB) is larger than 64 MiB" in output

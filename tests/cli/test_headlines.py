@@ -2,12 +2,10 @@
 
 import json
 import re
-import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
 import jsonschema
-import pytest
 
 from grader.report.formats import Format
 from tests.classroom.gradebooks import batch, grader, lab_text
@@ -17,10 +15,10 @@ FORMATS = [kind for kind in Format if kind is not Format.CLASSROOM50]
 WITH_HEADLINE = [kind for kind in FORMATS if kind is not Format.JSON]
 
 
-def reports(top: Path, key: str, *more: object) -> Mapping[Format, str]:
+def reports(top: Path, key: str, rubric: Path | None = None) -> Mapping[Format, str]:
     """Return the report on a student in every format that a class's run writes, with single spaces."""
     options = [option for kind in FORMATS for option in ("--report-format", kind)]
-    done = batch(top, "--reports", top / "out", *options, *more)
+    done = batch(top, "--reports", top / "out", *options, rubric=rubric)
     assert done.returncode == 0, done.stderr
     return {kind: " ".join((top / "out" / f"{key}.{kind.ending}").read_text("utf-8").split()) for kind in FORMATS}
 
@@ -84,12 +82,7 @@ def test_the_late_penalty_is_in_the_headline(top: Path) -> None:
         for number, line in enumerate(roster)
     ]
     (top / "roster.csv").write_text("\n".join(lines) + "\n")
-    options = [option for kind in FORMATS for option in ("--report-format", kind)]
-    done = batch(top, "--reports", top / "out", *options, rubric=top / "late.toml")
-    assert done.returncode == 0, done.stderr
-    found: Mapping[Format, str] = {
-        kind: " ".join((top / "out" / f"anna.{kind.ending}").read_text("utf-8").split()) for kind in FORMATS
-    }
+    found = reports(top, "anna", top / "late.toml")
     expected = {"points": 3.8, "late": -2.2, "final": False}
     assert_headlines(found, "3.8 / 11", "Points: 6 automatic - 2.2 late.", 6, expected)
 
@@ -99,27 +92,6 @@ def test_an_excused_student_has_no_points_in_the_headline(top: Path) -> None:
     assert grader("mark", "anna", "total", "excused", "--gradebook", top / "book").returncode == 0
     expected = {"points": None, "late": 0, "final": False}
     assert_headlines(reports(top, "anna"), "Excused", "Excused; the criteria give 6 automatic points.", 6, expected)
-
-
-@pytest.mark.parametrize("kind", [Format.MARKDOWN, Format.HTML])
-def test_feedback_and_pages_have_the_same_headline(top: Path, kind: Format) -> None:
-    """The zip for an LMS, and the student's page of `export html`."""
-    assert grader("mark", "anna", "total", "3.5", "--gradebook", top / "book").returncode == 0
-    worksheet = top / "sheet.csv"
-    worksheet.write_text(
-        "Identifier,Full name,Email address,Status,Grade,Maximum Grade\nParticipant 7,Anna Ek,anna@example.org,,,11\n"
-    )
-    done = grader(
-        "export", "moodle", "--gradebook", top / "book", "--into", worksheet, "--output", top / "up.csv",
-        "--feedback", top / "feedback.zip", "--feedback-format", kind,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    with zipfile.ZipFile(top / "feedback.zip") as archive:
-        (text,) = (archive.read(name).decode() for name in archive.namelist())
-    assert headline(kind, " ".join(text.split())) == "3.5 / 11"
-    assert grader("export", "html", "--gradebook", top / "book", "--output", top / "pages").returncode == 0
-    page = " ".join((top / "pages" / "anna.html").read_text("utf-8").split())
-    assert headline(Format.HTML, page) == "3.5 / 11"
 
 
 def test_points_that_need_manual_grading_are_a_dash(top: Path) -> None:

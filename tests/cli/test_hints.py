@@ -15,7 +15,6 @@ from tests.samples import ROOT
 
 MISTAKES = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
 REFERENCE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
-ROLL = {"path": "my_robot.urdf", "line": 73, "column": 34, "old": 'rpy="1.57 0 0"', "new": 'rpy="-1.57 0 0"'}
 
 
 def graded(*arguments: object) -> dict[str, Any]:
@@ -37,24 +36,6 @@ def lab(folder: Path, level: str) -> Path:
     text = text.replace('reference = "', f'reference = "{ROOT}/rubrics/lab6/').replace("answers =", "# answers =")
     (folder / "lab.toml").write_text(text)
     return folder / "lab.toml"
-
-
-def test_a_hint_gives_the_edit_and_what_it_gains() -> None:
-    """Criteria that one edit makes pass have the same hint."""
-    found = hints(MISTAKES)
-    [hint] = found["right-wheel-forward"]
-    assert found["right-wheel-axis"] == [hint]
-    assert hint["edits"][0] == ROLL
-    assert hint["gains"] == {"right-wheel-forward": 6, "right-wheel-axis": 1}
-    assert hint["verified"] is True
-    assert hint["message"] == (
-        'Change `rpy="1.57 0 0"` to `rpy="-1.57 0 0"` (line 73) and change `xyz="0 0 0.025"` to `xyz="0 0 -0.025"` (line 65).'
-    )
-
-
-def test_no_hints_for_what_passes() -> None:
-    """A flawless robot has none."""
-    assert hints(REFERENCE) == {}
 
 
 @pytest.mark.parametrize(
@@ -88,11 +69,6 @@ def test_a_long_hint_says_no_more_than_its_level(level: str) -> None:
     assert "--verbose shows the edits" in " ".join(run(("grade", MISTAKES), COLUMNS="24").stdout.decode().split())
 
 
-def test_level_none() -> None:
-    """It has no hints, and searches none."""
-    assert hints(MISTAKES, "--hints", "none") == {}
-
-
 @pytest.mark.parametrize("wanted", LEVELS)
 @pytest.mark.parametrize("allowed", ["", *LEVELS])
 def test_an_option_never_exceeds_the_rubric(allowed: str, wanted: str, tmp_path: Path) -> None:
@@ -100,6 +76,7 @@ def test_an_option_never_exceeds_the_rubric(allowed: str, wanted: str, tmp_path:
     level = min(allowed or "cause", wanted, key=LEVELS.index)
     found = hints(MISTAKES, "--rubric", lab(tmp_path, allowed), "--hints", wanted)
     expected = hints(MISTAKES, "--hints", level)
+    assert bool(found) == (level != "none")
     assert {name: [hint["message"] for hint in some] for name, some in found.items()} == {
         name: [hint["message"] for hint in some] for name, some in expected.items()
     }
@@ -129,28 +106,23 @@ def test_fix_writes_the_robot_with_all_edits(tmp_path: Path) -> None:
 
 
 def test_fix_of_several_files_needs_a_folder(tmp_path: Path) -> None:
-    """Each file is written under its path in the submission."""
-    submission = ROOT / "submissions/lab6/setup-as-created"
-    (tmp_path / "in").mkdir()
-    for name in ("my_robot/setup.py", "my_robot/urdf/my_robot.urdf"):
-        assert (submission / name).is_file()
-    copy = tmp_path / "in"
-    for file in submission.rglob("*"):
-        if file.is_file() and file.name != "expected.toml":
-            target = copy / file.relative_to(submission)
-            target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_bytes(file.read_bytes())
+    """Each file is written under its path in the submission; the folder is made, and a file that exists is no target."""
+    copy = shutil.copytree(ROOT / "submissions/lab6/setup-as-created", tmp_path / "in")
     urdf = copy / "my_robot/urdf/my_robot.urdf"
     urdf.write_text(urdf.read_text().replace("0 0.6 0 1", "0 1 0 1"))
-    done = run(("grade", copy, "--fix", tmp_path / "fixed.urdf"))
-    assert (done.returncode, b"fixed.urdf names a file: " in done.stderr, done.stdout) == (2, True, b"")
-    run(("grade", copy, "--fix", tmp_path / "out"))
-    written = sorted(path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*.*"))
+    (tmp_path / "taken").write_text("mine")
+    for name in ("fixed.urdf", "taken"):
+        done = run(("grade", copy, "--fix", tmp_path / name))
+        assert (done.returncode, f"{name} names a file: " in done.stderr.decode(), done.stdout) == (2, True, b"")
+    assert (tmp_path / "taken").read_text() == "mine"
+    out = tmp_path / "new/out"
+    run(("grade", copy, "--fix", out))
+    written = sorted(path.relative_to(out).as_posix() for path in out.rglob("*.*"))
     assert written == ["my_robot/setup.py", "my_robot/urdf/my_robot.urdf"]
-    assert "0 0.6 0 1" in (tmp_path / "out/my_robot/urdf/my_robot.urdf").read_text()
-    (tmp_path / "taken").mkdir()
-    (tmp_path / "taken/my_robot").touch()
-    done = run(("grade", copy, "--fix", tmp_path / "taken"))
+    assert "0 0.6 0 1" in (out / "my_robot/urdf/my_robot.urdf").read_text()
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other/my_robot").touch()
+    done = run(("grade", copy, "--fix", tmp_path / "other"))
     assert (done.returncode, b"cannot make the folder " in done.stderr) == (2, True)
 
 
@@ -183,21 +155,6 @@ def test_fix_of_nothing(tmp_path: Path) -> None:
     assert done.returncode == 0
     assert done.stderr == b"grader: --fix: nothing was written: no criterion failed\n"
     assert not (tmp_path / "fixed.urdf").exists()
-
-
-def test_fix_of_a_folder_writes_one_file_under_its_path(tmp_path: Path) -> None:
-    """The folder is made; a file that exists is no target, and nothing is graded then."""
-    (tmp_path / "lab/urdf").mkdir(parents=True)
-    shutil.copy(MISTAKES, tmp_path / "lab/urdf/my_robot.urdf")
-    (tmp_path / "taken").write_text("mine")
-    done = run(("grade", tmp_path / "lab", "--part", "task1", "--fix", tmp_path / "taken"))
-    assert (done.returncode, b"taken names a file: " in done.stderr, done.stdout) == (2, True, b"")
-    assert (tmp_path / "taken").read_text() == "mine"
-    done = run(("grade", tmp_path / "lab", "--part", "task1", "--fix", tmp_path / "new/fixed"))
-    assert done.returncode == 1
-    assert [path.relative_to(tmp_path).as_posix() for path in (tmp_path / "new").rglob("*.*")] == [
-        "new/fixed/urdf/my_robot.urdf"
-    ]
 
 
 @pytest.mark.parametrize(("steps", "reserve", "written"), [(0, 20, False), (26, 20, True), (4, 0, False)])
@@ -268,19 +225,6 @@ def test_a_rubric_that_shows_no_edits_writes_no_fix(tmp_path: Path) -> None:
     done = run(("grade", MISTAKES, "--rubric", lab(tmp_path, "cause"), "--fix", tmp_path / "f.urdf", "--hints", "edit"))
     assert done.returncode == 2
     assert b"the rubric lab6 allows cause" in done.stderr
-
-
-def test_a_fault_of_the_search_costs_no_report(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The report has no hints then, and standard error says so."""
-
-    def fail(self: HintSearch) -> HintSearch:
-        raise ZeroDivisionError
-
-    monkeypatch.setattr(HintSearch, "run", fail)
-    done = run(("grade", MISTAKES, "--format", "json"))
-    assert done.returncode == 1
-    assert json.loads(done.stdout)["score"] == 43
-    assert done.stderr == b"grader: no hints: the grader itself failed (ZeroDivisionError); please report it\n"
 
 
 MISSPELT_FRAME = ROOT / "submissions/lab6/rviz-fixed-frame-misspelt"

@@ -1,14 +1,37 @@
 """In a job of GitHub Actions: annotations on standard error and the report in the job's summary; nothing else differs."""
 
+import shutil
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
-from tests.cli.jobs import ELSEWHERE, GithubJob
+from tests.command_line import Done, run_with_input
 from tests.report.readers import read_as_github
 from tests.report.workflow_commands import commands
+from tests.samples import ROOT
 
 MAX_SUMMARY = 1024 * 1024  # bytes that GitHub accepts for a summary
+MISTAKEN = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
+ELSEWHERE: Mapping[str, str] = {"GITHUB_ACTIONS": ""}
+
+
+class GithubJob:
+    """A checkout with a submission in it, and the file that becomes the job's summary."""
+
+    def __init__(self, folder: Path) -> None:
+        self.checkout, self.summary = folder / "checkout", folder / "summary.md"
+        (self.checkout / ".git").mkdir(parents=True)
+        shutil.copy(MISTAKEN, self.checkout)
+
+    def run(self, *arguments: str, around: Mapping[str, str] = {}) -> Done:
+        """Run the command line in the checkout, as a step does; `around` overrides variables of the runner."""
+        job = {
+            "GITHUB_ACTIONS": "true",
+            "GITHUB_WORKSPACE": str(self.checkout),
+            "GITHUB_STEP_SUMMARY": str(self.summary),
+        }
+        return run_with_input((*arguments, "--hints", "none"), b"", {**job, **around}, self.checkout)
 
 
 @pytest.fixture

@@ -81,14 +81,6 @@ def test_a_rubric_uses_it(project: Path) -> None:
     assert result["location"] == {"path": "short.urdf", "line": 4, "column": 3}
 
 
-def test_the_schema_describes_its_arguments(project: Path) -> None:
-    """An editor completes and checks the arguments of an installed check."""
-    schema = json.loads(grader(project, "schema", "rubric").stdout)
-    arguments = schema["$defs"]["distance_between"]["properties"]
-    assert arguments["distance"] == {"type": "number", "minimum": 0, "description": "The distance, in metres."}
-    assert "distance_between" in schema["properties"]["criterion"]["items"]["properties"]["check"]["enum"]
-
-
 def test_the_page_shows_the_template() -> None:
     """The check on the page is that of the template, and every file of the template is in the page's table."""
     shown = re.findall(r"```python\n(def .*?)```", PAGE, re.DOTALL)

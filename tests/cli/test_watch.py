@@ -15,7 +15,6 @@ from typing import NamedTuple
 
 import pytest
 
-from grader.usecases.watch import stamps
 from tests.classroom.class_runs import shell_code, started
 from tests.command_line import HANG_TIMEOUT, ROOT, clean_environment, run
 
@@ -139,19 +138,6 @@ def test_a_folder_with_saved_reports_in_it(tmp_path: Path, watch: Watch) -> None
     assert '"lidar-frame"' in (folder / "report.json").read_text()
 
 
-def test_a_replaced_folder(tmp_path: Path, watch: Watch) -> None:
-    """A submission that is unpacked again is watched from then on."""
-    folder = tmp_path / "lab6"
-    for name, source in (("lab6", SHORT), ("other", URDF)):
-        (tmp_path / name).mkdir()
-        shutil.copy(source, tmp_path / name / "my_robot.urdf")
-    edits = partial(folder.rename, tmp_path / "old"), partial((tmp_path / "other").rename, folder)
-    done = watch([folder, "--part", "task1"], *edits, partial(put, SHORT, folder / "my_robot.urdf"))
-    assert "does not exist" in done.err[1]
-    assert BETTER in done.out[2]
-    assert WORSE in done.out[3]
-
-
 def test_a_rubric_in_a_file_is_watched(robot: Path, tmp_path: Path, watch: Watch) -> None:
     """Its mistakes are reported line by line and waited out; the URDF is graded by the current rubric."""
     rubric = tmp_path / "rules" / "lab.toml"
@@ -211,44 +197,3 @@ def test_ctrl_c_and_a_closed_standard_output_end_the_process(robot: Path) -> Non
         2,
         [b"grader: cannot write the report: standard output: Broken pipe"],
     )
-
-
-def counts(path: Path, changed: Path, *own: Path) -> bool:
-    """Return whether a change of this path concerns the graded path."""
-    real = frozenset(map(os.path.realpath, own))
-    before = stamps([path], real)
-    changed.parent.mkdir(parents=True, exist_ok=True)
-    parents = stamps([path], real)
-    changed.write_text("new")
-    after = stamps([path], real)
-    changed.unlink()
-    assert before.items() <= parents.items()
-    return parents != after
-
-
-def test_which_changes_count_in_a_folder(tmp_path: Path) -> None:
-    """All but ignored files and the grader's own output."""
-    (tmp_path / "env").mkdir()
-    (tmp_path / "env" / "pyvenv.cfg").touch()
-    for name in ("my_robot.urdf", "a/b/c.txt", "a/b~", "building/x", "a/env/x", "report.txt", os.fsdecode(b"\xff.txt")):
-        assert counts(tmp_path, tmp_path / name), name
-    ignored = "ws/build/x.urdf install/a log .git/index .hidden a/.b.swp a/__pycache__/b.pyc node_modules/a env/lib/a.py Thumbs.db"
-    for name in ignored.split():
-        assert not counts(tmp_path, tmp_path / name), name
-    (tmp_path / "link").symlink_to(tmp_path / "a")
-    assert not counts(tmp_path, tmp_path / "a" / "r.json", tmp_path / "link" / "r.json")
-    assert not counts(tmp_path, tmp_path / "link" / "r.json", tmp_path / "a" / "r.json")
-
-
-def test_which_changes_count_for_a_file(tmp_path: Path) -> None:
-    """Only changes of that file and of its symlink's target."""
-    for name in ("a", "b"):
-        (tmp_path / name).mkdir()
-    (tmp_path / "b" / "real.urdf").touch()
-    (tmp_path / "a" / "link.urdf").symlink_to(tmp_path / "b" / "real.urdf")
-    path = tmp_path / "a" / "link.urdf"
-    before = stamps([path])
-    path.write_text("<robot/>")
-    assert stamps([path]) != before
-    assert not counts(path, tmp_path / "a" / "other.urdf")
-    assert not counts(path, tmp_path / "b" / "link.urdf")

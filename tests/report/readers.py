@@ -208,23 +208,9 @@ def page_text(text: str) -> str:
 
 _SVG_ELEMENTS = {"svg", "title", "desc", "style", "rect", "g", "path", "polygon", "text", "circle"}
 _SVG_ATTRIBUTES = {
-    "cx",
-    "cy",
-    "r",
-    "transform",
-    "class",
-    "d",
-    "fill",
-    "fill-opacity",
-    "height",
-    "points",
-    "role",
-    "stroke",
-    "viewBox",
-    "width",
-    "x",
-    "y",
-}
+    "cx", "cy", "r", "transform", "class", "d", "fill", "fill-opacity", "height", "points", "role", "stroke", "viewBox",
+    "width", "x", "y",
+}  # fmt: skip
 
 
 def read_svg(text: str) -> Any:

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from zipfile import ZipFile
 
 from hypothesis import example, given
 from hypothesis import strategies as st
@@ -47,21 +46,3 @@ def test_every_format_renders_every_graph(links: dict[str, bool], graph: list[tu
             done = run(["inspect", urdf, "--relative-to", min(links), "--format", kind])
             assert done.returncode in (0, 1)
             assert (bool(done.stdout), done.stderr) == (True, b"")
-
-
-def test_a_class_has_the_page_of_a_robot_with_a_loop(tmp_path: Path) -> None:
-    """`batch --reports`, the class page and the feedback zip contain the student."""
-    folder = tmp_path / "class/Ada Lee_7_assignsubmission_file"
-    folder.mkdir(parents=True)
-    (folder / "r.urdf").write_text(robot(dict.fromkeys(("base_link", "lidar", "w"), True), LOOP))
-    gradebook = ("--gradebook", tmp_path / "g")
-    done = run(["batch", folder.parent, *gradebook, "--reports", tmp_path / "reports", "--report-format", "html"])
-    assert (done.returncode, len([*(tmp_path / "reports").glob("*7*.html")])) == (0, 1), done.stderr
-    done = run(["export", "html", *gradebook, "--output", tmp_path / "pages"])
-    assert (done.returncode, len([*(tmp_path / "pages").glob("*7*.html")])) == (0, 1), done.stderr
-    worksheet, feedback = tmp_path / "moodle.csv", tmp_path / "feedback.zip"
-    worksheet.write_text("Identifier,Full name,Grade,Maximum grade\nParticipant 7,Ada Lee,,100.00\n")
-    into = ("--into", worksheet, "--output", tmp_path / "out.csv", "--feedback", feedback)
-    assert run(["export", "moodle", *gradebook, *into]).returncode == 0
-    with ZipFile(feedback) as pages:
-        assert len(pages.namelist()) == 1

@@ -23,13 +23,6 @@ from tests.robot.edge_cases import EDGE_CASES
 RUBRIC = load_rubric("lab6")
 
 
-def valid(text: str, schema: dict[str, Any]) -> Any:
-    """Return the data of a JSON text, which must be valid and without NaN."""
-    data = json.loads(text, parse_constant=pytest.fail)
-    jsonschema.Draft202012Validator(schema).validate(data)
-    return data
-
-
 def inspected(data: bytes) -> str:
     """Return the inspection of a file's bytes as JSON."""
     reading = read_urdf(data, "a.urdf")
@@ -74,13 +67,3 @@ def test_lines_are_only_layout(values: list[tuple[str, Any]]) -> None:
     text = to_json({"rows": rows})
     assert json.loads(text) == {"rows": rows}
     assert text.count("\n") == len(rows) + 4
-
-
-@given(st.text(max_size=30))
-def test_a_students_text_is_data(name: str) -> None:
-    """Quotes, control characters, lone surrogates: the JSON is valid UTF-8 and valid JSON."""
-    escaped = name.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
-    data = f'<robot name="{escaped}"><link name="{escaped}"/><link name="b"/></robot>'.encode("utf-8", "surrogatepass")
-    report = grade(RUBRIC, read_submission(data, identity="a", path="a.urdf"))
-    valid(render_json(report).encode().decode(), json_schema("report"))
-    valid(inspected(data).encode().decode(), json_schema("inspect"))

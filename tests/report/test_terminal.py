@@ -12,7 +12,7 @@ from rich.text import Text
 from grader.grading.grade import grade
 from grader.grading.report import ManualMark, Report
 from grader.grading.rubric import load_rubric
-from grader.report.console import block, excerpt_block, put
+from grader.report.console import Page, block, excerpt_block
 from grader.report.inspection import Inspection, inspection_terminal, main_root
 from grader.report.terminal import render_terminal
 from grader.robot.kinematics import Configuration
@@ -118,7 +118,7 @@ def test_the_location_is_underlined(line: str, column: int, underlined: str) -> 
     """The marks are below the attribute or tag, from its first character to its last."""
     out = StringIO()
     console = Console(file=out, width=80)
-    put(console, excerpt_block(console, Source("a.urdf", f"\n{line}\n"), Location("a.urdf", 2, column), 4))
+    Page(console, [excerpt_block(console, Source("a.urdf", f"\n{line}\n"), Location("a.urdf", 2, column), 4)]).print()
     text, marks = out.getvalue().splitlines()
     start, end = marks.index("\u2500"), marks.rindex("\u2500") + 1
     assert text[start:end] == underlined
@@ -129,7 +129,7 @@ def test_a_long_line_is_cut_around_the_location() -> None:
     out = StringIO()
     line = "<a>" * 500 + '<b c="d"/>'
     console = Console(file=out, width=60)
-    put(console, excerpt_block(console, Source("a.urdf", line), Location("a.urdf", 1, 1504), 4))
+    Page(console, [excerpt_block(console, Source("a.urdf", line), Location("a.urdf", 1, 1504), 4)]).print()
     text, marks = out.getvalue().splitlines()
     assert 'c="d"' in text
     assert max(len(text), len(marks)) <= 60

@@ -81,8 +81,8 @@ def _grade_one(context: ClassContext, task: Task) -> Graded:
         reason = str(error) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
         reason = NO_MEMORY if isinstance(error, MemoryError) else reason
         return undecided(context, result._replace(verdict="errored", reason=reason))
-    found = _entries_of(report), _answers_of(report, result.digest)
-    result = result._replace(parts=report.parts, results=found[0], answers=found[1])
+    entries = {one.criterion.id: _entry(one) for one in report.results}
+    result = result._replace(parts=report.parts, results=entries, answers=_answers_of(report, result.digest))
     if fault := report.fault:
         return result._replace(verdict="errored", reason=fault)
     is_handed_out = bool(report.submission.another_robot)  # by the course, so that it is no equal work
@@ -93,12 +93,8 @@ def _grade_one(context: ClassContext, task: Task) -> Graded:
     return result if is_handed_out else result._replace(work=forms_of(submission))
 
 
-def _entries_of(report: Report) -> dict[str, Entry]:
-    """Return what a line keeps of each criterion of a report."""
-    return {one.criterion.id: _entry(one) for one in report.results}
-
-
 def _entry(result: Result) -> Entry:
+    """Return what a line keeps of a criterion."""
     outcome = result.outcome
     is_open = outcome.status in ("pending", "errored") and not result.is_adjusted
     words = outcome.mistake or (outcome.message if outcome.status in ("failed", "errored") else "")

@@ -9,7 +9,7 @@ from grader import __version__
 from grader.classroom.grades import Class
 from grader.classroom.statistics import ClassStatistics
 from grader.classroom.student_grade import StudentGrade
-from grader.report import class_summary as words
+from grader.report import class_terminal as words
 from grader.report.pages.shell import Assets, render_page
 from grader.text import counted, enumerated, format_points, printable
 

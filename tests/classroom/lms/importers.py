@@ -1,4 +1,4 @@
-"""What each LMS does with an uploaded file, as small models written from its source or documentation.
+"""What Canvas and Moodle do with an uploaded file, as small models written from its source or documentation.
 
 A state is the grades in the LMS by assignment, by the id of the student there; an absent grade is an empty text.
 """
@@ -14,9 +14,9 @@ from decimal import Decimal
 State = dict[str, dict[str, str]]
 
 
-def rows_of(data: bytes, encoding: str = "utf-8", delimiter: str = ",") -> list[list[str]]:
+def rows_of(data: bytes, encoding: str = "utf-8") -> list[list[str]]:
     """Return the rows of a file as a CSV reader sees them."""
-    return list(csv.reader(io.StringIO(data.decode(encoding), newline=""), delimiter=delimiter))
+    return list(csv.reader(io.StringIO(data.decode(encoding), newline="")))
 
 
 def canvas_import(data: bytes, state: State) -> State:
@@ -46,31 +46,6 @@ def moodle_import(data: bytes, state: State) -> State:
         if values["Grade"] and values["Grade can be changed"] == "Yes":
             grades["Lab"] = values["Grade"]
         grades["comment"] = values["Feedback comments"]
-    return after
-
-
-def blackboard_import(data: bytes, state: State) -> State:
-    """Blackboard Learn, "Work offline with grade data": by Username; the number behind the last | is the column."""
-    header, *rows = rows_of(data, "utf-16", "\t")
-    after = deepcopy(state)
-    columns = {index: title.rpartition("|")[2] for index, title in enumerate(header) if "|" in title}
-    for row in rows:
-        for index, number in columns.items():
-            after[row[header.index("Username")]][number] = row[index]
-    return after
-
-
-def brightspace_import(data: bytes, state: State) -> State:
-    """Brightspace, "Importing grades": by OrgDefinedId without its #; a header `X Points Grade <...>` is the item X."""
-    header, *rows = rows_of(data, "utf-8-sig")
-    assert header[-1] == "End-of-Line Indicator"
-    after = deepcopy(state)
-    for row in rows:
-        assert row[-1] == "#"
-        for title, cell in zip(header, row, strict=True):
-            item, points, _ = title.partition(" Points Grade <Numeric MaxPoints:")
-            if points:
-                after[row[header.index("OrgDefinedId")].removeprefix("#")][item] = cell
     return after
 
 

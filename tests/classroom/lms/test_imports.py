@@ -1,42 +1,17 @@
-"""There and back with a class of 120: what each LMS imports are the class's grades, and nothing else changes."""
+"""There and back with a class of 120: what Canvas and Moodle import are the class's grades, and nothing else changes."""
 
-from collections.abc import Callable, Mapping
 from decimal import Decimal
-from typing import NamedTuple
-
-import pytest
 
 from grader.classroom.lms.feedback_zip import canvas_names, moodle_names, write_feedback
 from grader.classroom.lms.fill import Filled, FillOptions, fill
 from grader.classroom.lms.forms import FORMS
-from grader.classroom.roster import Student
-from tests.classroom.lms import importers, lms_class
-from tests.classroom.lms.importers import State
+from tests.classroom.lms import importers
 from tests.classroom.lms.lms_class import CELLS, CLASS, STUDENTS, canvas_file, moodle_file
 
 KEPT = "Please come to my office."  # a comment that a person wrote in Moodle
 WITHOUT_EXCUSES = {key: cell for key, cell in CELLS.items() if cell}
 WITH_EXCUSES = {one.student.key: "EX" if one.is_excused else CELLS[one.student.key] for one in CLASS}
 OPTIONS = FillOptions(Decimal(11), ("A small lab", "small"))
-
-
-class Lms(NamedTuple):
-    """How to write a file of an LMS, what it does with one, its id of a student, and what it calls the lab."""
-
-    file: Callable[[Mapping[str, str]], bytes]
-    imports: Callable[[bytes, State], State]
-    id_of: Callable[[Student], str]
-    column: str
-    other: str
-
-
-SYSTEMS = {
-    "canvas": Lms(canvas_file, importers.canvas_import, lambda one: one.canvas, "A small lab", "Prelab"),
-    "blackboard": Lms(lms_class.blackboard_file, importers.blackboard_import, lambda one: one.key, "222", "111"),
-    "brightspace": Lms(
-        lms_class.brightspace_file, importers.brightspace_import, lambda one: one.sis, "A small lab", "Prelab"
-    ),
-}
 
 
 def old_grades() -> dict[str, str]:
@@ -48,19 +23,17 @@ def fill_lms(lms: str, data: bytes, options: FillOptions = OPTIONS) -> Filled:
     return fill(data, CLASS, FORMS[lms], options)
 
 
-@pytest.mark.parametrize("lms", SYSTEMS)
-def test_an_lms_imports_the_grades(lms: str) -> None:
-    """Every grade is in the LMS afterwards, every other cell there is as it was, and the file is otherwise unchanged."""
-    system, before = SYSTEMS[lms], old_grades()
-    grades = {key: cell for key, cell in (WITH_EXCUSES if lms == "canvas" else CELLS).items() if cell}
-    filled = fill_lms(lms, system.file(before))
-    assert filled.data == system.file(grades)  # byte for byte
+def test_canvas_imports_the_grades() -> None:
+    """Every grade is there afterwards, every other cell is as it was, and the file is otherwise unchanged."""
+    before, grades = old_grades(), {key: cell for key, cell in WITH_EXCUSES.items() if cell}
+    filled = fill_lms("canvas", canvas_file(before))
+    assert filled.data == canvas_file(grades)  # byte for byte
     assert filled.is_complete
-    state = {system.id_of(one): {system.column: before[one.key], system.other: "9.00"} for one in STUDENTS}
-    after = system.imports(filled.data, state)
+    state = {one.canvas: {"A small lab": before[one.key], "Prelab": "9.00"} for one in STUDENTS}
+    after = importers.canvas_import(filled.data, state)
     for one in STUDENTS:
-        found = after[system.id_of(one)]
-        assert (found[system.column], found[system.other]) == (grades.get(one.key, before[one.key]), "9.00")
+        found = after[one.canvas]
+        assert (found["A small lab"], found["Prelab"]) == (grades.get(one.key, before[one.key]), "9.00")
 
 
 def test_moodle_imports_grades_and_comments() -> None:

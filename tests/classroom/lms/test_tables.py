@@ -103,16 +103,6 @@ def test_encodings(data: bytes, encoding: str) -> None:
     assert table.encoded() == data
 
 
-@pytest.mark.parametrize(
-    "text", ["a,b\r\n1,2\n3,4\r5,6", "a,b\n\n\r\n1,2\n\n", 'a,b\n"x\r\ny\n",2\n', "a,b\n1,", "", "\n", "a"]
-)
-def test_line_breaks_are_kept(text: str) -> None:
-    """Mixed line breaks, blank lines, breaks inside quotes and a missing last one are unchanged."""
-    table = read_table(text.encode(), "x.csv")
-    assert table.encoded() == text.encode()
-    assert values(table) == by_csv(text, ",")
-
-
 def test_delimiter_outside_quotes() -> None:
     """Commas inside a quoted header, or later in a header without quotes, are no delimiter."""
     assert read_table(b'"a,b";c;d', "x.csv").delimiter == ";"

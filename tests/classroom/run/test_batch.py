@@ -1,7 +1,6 @@
-"""A class gets the same marks as each submission alone, with any number of workers; a second run grades only changes."""
+"""A class gets the same marks as each submission alone, with any number of workers."""
 
 import json
-import os
 import shutil
 import zipfile
 from pathlib import Path
@@ -16,7 +15,6 @@ from tests.classroom.class_runs import (
     contents,
     counted,
     grader,
-    lines_of,
     mixed_class,
     newest,
     report_in_process,
@@ -161,90 +159,6 @@ def test_several_files_are_graded_like_a_folder(tmp_path: Path) -> None:
             assert alone == reports[key]
             several += 1
     assert several > 1
-
-
-# --- What has not changed ---------------------------------------------------------------------------------------------
-
-
-PACKAGE = ROOT / "submissions/lab6/reference/roscourse_sim_ws/src/my_robot"
-PACKED = ("more", "fewer", "emptier", "renamed", "packed")
-SIZE = 6 + len(PACKED) + 1
-
-
-@pytest.fixture
-def graded(tmp_path: Path) -> Path:
-    """Grade a class of files, packages and a zip once."""
-    folder = urdf_class(tmp_path / "class", 6)
-    for key in PACKED:
-        shutil.copytree(PACKAGE, folder / key)
-    _pack(PACKAGE, folder / "zipped.zip")
-    assert again(folder) == f"{SIZE} graded, 0 unchanged"
-    return folder
-
-
-def again(folder: Path, *arguments: str) -> str:
-    """Run into the same gradebook again and return the output."""
-    done = grader("batch", folder, "--gradebook", folder.parent / "lab6", *arguments)
-    assert done.returncode == 0
-    return counted(done)
-
-
-def results(folder: Path) -> dict[str, list[str]]:
-    """Return the digests of each student's results."""
-    found: dict[str, list[str]] = {}
-    for line in lines_of(folder.parent / "lab6"):
-        found.setdefault(line["student"], []).append(line["digest"])
-    return found
-
-
-def _files(folder: Path) -> list[Path]:
-    return sorted(path for path in folder.rglob("*") if path.is_file())
-
-
-def test_the_same_bytes_are_not_graded_again(graded: Path) -> None:
-    """Other times or inodes change nothing."""
-    before = results(graded)
-    assert again(graded) == f"0 graded, {SIZE} unchanged"
-    for path in _files(graded):
-        os.utime(path, (1, 1))
-    assert again(graded) == f"0 graded, {SIZE} unchanged"
-    for path in _files(graded):
-        data = path.read_bytes()
-        path.unlink()
-        path.write_bytes(data)
-    assert again(graded) == f"0 graded, {SIZE} unchanged"
-    assert results(graded) == before
-
-
-def _change_one_byte(path: Path) -> None:
-    """Change a number without changing the size or the time of the file."""
-    before = path.stat()
-    data = bytearray(path.read_bytes())
-    data[data.index(b"link")] = ord("x")
-    path.write_bytes(data)
-    os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
-    assert (path.stat().st_size, path.stat().st_mtime_ns) == (before.st_size, before.st_mtime_ns)
-
-
-def test_exactly_the_changed_submissions_are_graded_again(graded: Path, tmp_path: Path) -> None:
-    """One byte, name or file more or less: the report equals a first grading, and the old result is kept."""
-    byte, ending, attempt, *_ = sorted(graded.glob("*.urdf"))
-    _change_one_byte(byte)
-    ending.rename(ending.with_suffix(".urdf.xacro"))
-    shutil.copy(attempt, attempt.with_stem(f"{attempt.stem} (1)"))
-    (graded / "more/notes.txt").write_text("new")
-    (graded / "fewer/setup.cfg").unlink()
-    (graded / "emptier/empty").mkdir()
-    (graded / "renamed/setup.cfg").rename(graded / "renamed/setup.cfg.old")
-    with zipfile.ZipFile(graded / "zipped.zip", "a") as archive:
-        archive.writestr("notes.txt", "new")
-    before = results(graded)
-    assert again(graded, "--reports", str(tmp_path / "reports"), *JSON) == f"8 graded, {SIZE - 8} unchanged"
-    after = results(graded)
-    changed = {byte.stem, ending.stem, attempt.stem, "more", "fewer", "emptier", "renamed", "zipped"}
-    assert {path for path in after if after[path] != before[path]} == changed
-    assert all(after[path][:-1] == before[path] for path in changed)
-    assert reports_of(tmp_path / "lab6", tmp_path / "reports") == batch(graded, tmp_path / "fresh")
 
 
 # --- Reports ----------------------------------------------------------------------------------------------------------

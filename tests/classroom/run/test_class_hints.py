@@ -91,22 +91,6 @@ def test_reports_have_hints_for_the_students_own_text(top: Path) -> None:
         assert json.loads(alone)["results"] == found[name]["results"]
 
 
-def test_the_number_of_jobs_does_not_matter(tmp_path: Path) -> None:
-    """The same class gives the same output and the same reports."""
-    make(tmp_path / "class")
-    outputs: list[str] = []
-    files: list[dict[str, bytes]] = []
-    for jobs in ("1", "3"):
-        done = grader(
-            "batch", tmp_path / "class", "--gradebook", tmp_path / f"g{jobs}", "--jobs", jobs, "--format", "json",
-            "--reports", tmp_path / jobs, "--report-format", "json", "--report-format", "markdown",
-        )  # fmt: skip
-        outputs.append(done.stdout)
-        files.append({path.name: path.read_bytes() for path in (tmp_path / jobs).iterdir()})
-    assert outputs[0] == outputs[1]
-    assert files[0] == files[1]
-
-
 @pytest.mark.parametrize("level", ["none", "place", "cause"])
 def test_the_rubric_says_how_much_reports_tell(tmp_path: Path, level: str) -> None:
     """Below the level edit reports have no edit."""

@@ -1,5 +1,9 @@
-"""The statistics of a class on a terminal, and the words for them that other outputs share."""
+"""A class on a terminal: the table that `batch` prints, the statistics, and the words that other outputs share.
 
+Text of submissions is never interpreted as markup or control codes.
+"""
+
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
 
@@ -7,32 +11,95 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from grader.classroom.statistics import ClassStatistics, CriterionFigures
-from grader.classroom.student_grade import Reason
-from grader.report.console import wrapped
-from grader.text import counted, format_points, named, people_text, printable
+from grader.classroom.statistics import ClassStatistics, CriterionFigures, summary
+from grader.classroom.student_grade import Reason, StudentGrade
+from grader.grading.rubric import Rubric
+from grader.report.console import INDENT, Page
+from grader.text import counted, counted_points, format_points, named, people_text, printable
 
+_MAX_ROWS = 40
+_MAX_COSTS = 3  # criteria named in a row
 _BAR_WIDTH = 40
 _MAX_MISTAKES, _MAX_GROUPS = 10, 20
 _MAX_NAMED = 12
 EQUAL_NOTE = (
     "The same robot may differ in names, order, comments and the spelling of numbers. This is no verdict: students who"
-    " follow the handout and make the same mistake have the same robot or files."
+    " follow the handout and make the same mistake have the same robot."
 )
 SHARE_NOTE = "Share: the mean share of the points that students earned."
 
 
+class ClassTable:
+    """One row a student, then the mean and what needs attention.
+
+    `add` takes the grades one by one, so that a large class is never held whole.
+    """
+
+    def __init__(self, rubric: Rubric, *, verbose: bool = False) -> None:
+        self.rubric, self.verbose = rubric, verbose
+        self.rows: list[Sequence[str]] = []
+        self.count = 0
+        self._totals = Counter[Decimal]()
+        self._concerns: defaultdict[Reason, list[tuple[str, str]]] = defaultdict(list)
+
+    def add(self, grade: StudentGrade) -> None:
+        """Add the next student."""
+        self.count += 1
+        name = grade.student.name or grade.student.key
+        if self.verbose or len(self.rows) < _MAX_ROWS:
+            pending = counted_points(grade.pending) if grade.obstacle is Reason.PENDING else ""
+            self.rows.append((name, grade.total_text or "–", _costs(grade), pending or grade.obstacle or ""))
+        if grade.total is not None and grade.is_counted:
+            self._totals[grade.total] += 1
+        for reason, detail in grade.concerns.items():
+            self._concerns[reason].append((name, detail))
+
+    def print(self, console: Console) -> None:
+        """Print the table."""
+        page = Page(console, [])
+        page.inset(printable(self.rubric.title), "bold", 0)
+        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
+        table.add_column("student", overflow="fold")
+        table.add_column(f"of {format_points(self.rubric.points)}", justify="right", no_wrap=True)
+        table.add_column("lost", overflow="fold", ratio=1)
+        table.add_column("open", overflow="fold")
+        for row in self.rows:
+            table.add_row(*(Text(printable(cell)) for cell in row))
+        page.table(table)
+        if rest := self.count - len(self.rows):
+            page.inset(f"... and {counted(rest, 'more student')} (--verbose lists all)", "dim", 0)
+        page.leave_row()
+        if self._totals:
+            found = summary(self._totals.elements())
+            words = means(found.mean, found.median).capitalize()
+            page.inset(f"{words} ({counted(found.students, 'student')})", indent=0)
+        for reason in filter(self._concerns.get, Reason):
+            page.inset(printable(attention_line(reason, self._concerns[reason], verbose=self.verbose)))
+        page.print()
+
+
+def _costs(grade: StudentGrade) -> str:
+    """Return the criteria that cost most, with their points, and the late penalty."""
+    costs = [*grade.losses[:_MAX_COSTS]]
+    if rest := grade.losses[_MAX_COSTS:]:
+        costs.append((sum((points for points, _ in rest), Decimal(0)), f"{len(rest)} more"))
+    if grade.late.points:
+        costs.append((-grade.late.points, "late"))
+    return ", ".join(f"{name} {format_points(-points)}" for points, name in costs)
+
+
 def render_class(found: ClassStatistics, console: Console, *, verbose: bool = False) -> None:
-    """Print the statistics. Text of submissions is never interpreted as markup or control codes."""
-    wrapped(console, Text(printable(found.rubric.title), style="bold"), 0)
+    """Print the statistics."""
+    page = Page(console, [])
+    page.inset(printable(found.rubric.title), "bold", 0)
     for line in head_lines(found):
-        wrapped(console, Text(printable(line)), 0)
+        page.inset(printable(line), indent=0)
     most = max(map(len, found.tenths))
     for tenth, keys in enumerate(found.tenths if most else ()):
         bar = "#" * -(-len(keys) * min(_BAR_WIDTH, console.width - 30) // most)
-        console.print(Text(f"  {span(found, tenth):>14} {len(keys):>6}  {bar}"), no_wrap=True, crop=False)
+        page.rows.append(Text(f"  {span(found, tenth):>14} {len(keys):>6}  {bar}"))
     if most:
-        _print_criteria(found.criteria, console)
+        _show_criteria(found.criteria, page)
 
     def name(key: str) -> str:
         return named(key, found.names[key])
@@ -50,12 +117,12 @@ def render_class(found: ClassStatistics, console: Console, *, verbose: bool = Fa
     )
     for title, lines, indent, note in sections:
         if lines:
-            console.print()
-            console.print(Text(title, style="bold"))
+            page.title(title)
             if note:
-                wrapped(console, Text(note, style="dim"), 2)
+                page.inset(note, "dim")
         for line in lines:
-            wrapped(console, Text(printable(line)), indent, Text("  "))
+            page.inset(printable(line), indent=indent, head=Text(" " * INDENT))
+    page.print()
 
 
 def head_lines(found: ClassStatistics) -> Iterator[str]:
@@ -94,7 +161,7 @@ def attention_line(reason: Reason, who: Sequence[tuple[str, str]], *, verbose: b
     return f"{reason[:1].upper()}{reason[1:]} ({len(who)}): {people_text(names, len(who) if verbose else _MAX_NAMED)}"
 
 
-def _print_criteria(rows: Sequence[CriterionFigures], console: Console) -> None:
+def _show_criteria(rows: Sequence[CriterionFigures], page: Page) -> None:
     optional = [name for name in ("carried", "marked", "pending", "errored") if any(row.counts[name] for row in rows)]
     columns = ["passed", "failed", *optional]
     table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), header_style="bold")
@@ -107,6 +174,6 @@ def _print_criteria(rows: Sequence[CriterionFigures], console: Console) -> None:
         counts = (str(row.counts[column]) for column in columns)
         share = percent(row.share) if row.share is not None else ""
         table.add_row(name, format_points(row.criterion.points), *counts, share)
-    console.print()
-    console.print(table)
-    wrapped(console, Text(SHARE_NOTE, style="dim"), 0)
+    page.leave_row()
+    page.table(table)
+    page.inset(SHARE_NOTE, "dim", 0)
