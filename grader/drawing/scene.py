@@ -1,6 +1,6 @@
 """The content of a picture of a robot: shapes in their colours, frames, and driving directions of wheels."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import isfinite
@@ -10,7 +10,7 @@ from grader.checks.motion import travel_of, turning_joint
 from grader.errors import MissingElement, NotDecided
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Box, Cylinder, Mesh, Sphere, Visual
+from grader.robot.model import Box, Cylinder, Link, Mesh, Sphere, Visual
 from grader.robot.shapes import Shape, UnknownShape, is_empty
 from grader.robot.transforms import Z_AXIS, Transform, Vector
 from grader.text import counted, enumerated, quoted
@@ -21,7 +21,7 @@ _MAX_BODIES = 500  # in software, a browser draws more only in seconds
 _MAX_COORDINATE = 1e4  # metres
 _MAX_NAMED = 4
 _WITHOUT_MATERIAL: Rgba = (1.0, 0.0, 0.0, 1.0)  # RViz shows such a shape in red
-_WHY = "a mesh, a link to which no joints lead, or a size or place that is zero, too large or not known"
+_MESHES, _UNKNOWN = "mesh files are not opened", "the size or place of a shape is zero, too large or not known"
 _NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
 
 
@@ -79,36 +79,49 @@ class Scene:
 
 def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> Scene:
     """Return the content of a picture of a robot, in the frame of a link; `wheels` are links that are meant to roll."""
-    found = ((link.name, _pose(robot, link.name, frame)) for link in robot.robot.links)
-    poses = {name: pose for name, pose in found if pose is not None}
+    omitted: dict[str, dict[str, None]] = {}  # the links that are not shown, or not wholly, by reason
+    poses: dict[str, Transform] = {}
     bodies: dict[Body, None] = {}  # each once
-    omitted: list[str] = []  # the links that are not shown, or not wholly
     for link in robot.robot.links:
-        own = [_body(link.name, visual, poses.get(link.name)) for visual in link.visuals]
-        bodies |= dict.fromkeys(filter(None, own))
-        if None in own or link.unresolved.keys() & {"visual", ""}:
-            omitted.append(quoted(link.name))
-    missing = [f"Not shown: {enumerated(omitted, _MAX_NAMED)}: {_WHY}"] if omitted else []
+        pose = _pose(robot, link.name, frame)
+        if isinstance(pose, Transform):
+            poses[link.name] = pose
+        for found in _bodies(link, pose):
+            if isinstance(found, Body):
+                bodies[found] = None
+            else:
+                omitted.setdefault(found, {})[link.name] = None
+    missing = [f"Not shown: {enumerated([*map(quoted, names)], _MAX_NAMED)}: {why}" for why, names in omitted.items()]
     if len(bodies) > _MAX_BODIES:
         missing.append(f"Not shown: {counted(len(bodies) - _MAX_BODIES, 'more shape')}")
     scene = Scene(robot, frame, poses, (*bodies,)[:_MAX_BODIES], (), (*missing,))
     return replace(scene, wheels=(*filter(None, (_wheel(scene, link) for link in wheels)),))
 
 
-def _pose(robot: Configuration, link: str, frame: str) -> Transform | None:
-    """Return the pose of a link; None if it has none that can be drawn."""
-    with suppress(*_NOT_KNOWN):
+def _pose(robot: Configuration, link: str, frame: str) -> Transform | str:
+    """Return the pose of a link, or why it has none that can be drawn."""
+    try:
         pose = robot.pose(link, relative_to=frame)
-        return pose if _is_drawable(pose.translation) else None
-    return None
+    except _NOT_KNOWN as error:
+        return str(error)
+    return pose if _is_drawable(pose.translation) else "it is too far away"
 
 
-def _body(link: str, visual: Visual, pose: Transform | None) -> Body | None:
-    """Return a visual of a link with this pose; None if it cannot be drawn."""
+def _bodies(link: Link, pose: Transform | str) -> Iterator[Body | str]:
+    """Yield the bodies of a link, and why the others are not drawn."""
+    if isinstance(pose, str):
+        yield from [pose] if link.visuals else ()
+        return
+    yield from (_body(link.name, visual, pose) for visual in link.visuals)
+    if link.unresolved.keys() & {"visual", ""}:
+        yield _UNKNOWN
+
+
+def _body(link: str, visual: Visual, pose: Transform) -> Body | str:
     drawn: Shape
     match visual.geometry:
         case Mesh():
-            return None
+            return _MESHES
         case Box(size=(x, y, z)):
             sizes, drawn = (x, y, z), Box((abs(x), abs(y), abs(z)))
         case Cylinder(radius=radius, length=length):
@@ -116,8 +129,8 @@ def _body(link: str, visual: Visual, pose: Transform | None) -> Body | None:
         case Sphere(radius=radius):
             sizes, drawn = (radius, 0.0, 0.0), Sphere(abs(radius))
     own = placed_by(Transform(), visual.origin)
-    if pose is None or is_empty(visual.geometry) or not (_is_drawable(sizes) and _is_drawable(own.translation)):
-        return None
+    if is_empty(visual.geometry) or not _is_drawable(sizes) or not _is_drawable(own.translation):
+        return _UNKNOWN
     rgba = visual.material.rgba if visual.material is not None else _WITHOUT_MATERIAL
     red, green, blue, alpha = (min(1.0, max(0.0, value)) if isfinite(value) else 0.0 for value in rgba)
     return Body(link, drawn, pose @ own, (red, green, blue, alpha))
