@@ -21,13 +21,14 @@ from grader.report.document import Document, document
 from grader.text import counted, enumerated, printable
 
 _ROWS = 24  # of a common terminal
+_TRIED = (False, False), (True, False), (True, True), (True, False)  # without blank rows? with shortened sentences?
 _MAX_NAMES, _MAX_PROBLEMS, _MAX_FILES = 3, 3, 2
 
 
 def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
     """Print a report, with `verbose` everything in it, else in 24 rows as far as possible."""
     found = document(report, everything=verbose)
-    for is_tight, is_cut in [(False, False)] if verbose else [(False, False), (True, True), (True, False)]:
+    for is_tight, is_cut in [(False, False)] if verbose else _TRIED:
         page = Page(console, [], verbose, is_tight, is_cut)
         (_show_everything if verbose else _show_brief)(report, found, page)
         _show_end(report, page)
