@@ -37,14 +37,21 @@ def quiet_interrupts() -> Iterator[None]:
         yield
         return
     arrived: list[int] = []
+    is_in_hook = False
 
     def interrupt(number: int, frame: FrameType | None) -> None:
         arrived.append(number)
-        signal.default_int_handler(number, frame)
+        if is_in_hook:  # the machine is so busy that the repeated one is early
+            Timer(_DELAY, _interrupt).start()
+        else:
+            signal.default_int_handler(number, frame)
 
     def ignored(found: "sys.UnraisableHookArgs") -> None:
+        nonlocal is_in_hook
         if issubclass(found.exc_type, KeyboardInterrupt):
+            is_in_hook = True
             Timer(_DELAY, _interrupt).start()  # not here: an exception in a hook is printed, too
+            is_in_hook = False
         elif not (arrived and issubclass(found.exc_type, ResourceWarning)):
             hook(found)
 
