@@ -69,11 +69,11 @@ class UnknownName(NamedTuple):
 
 
 class XacroFails(ExpressionFails):
-    """Something that xacro refuses, perhaps for a name that it does not know, or values that a call lacks."""
+    """Something that xacro refuses, perhaps for a name that it does not know."""
 
-    def __init__(self, message: str, unknown: UnknownName | None = None, lacking: tuple[str, ...] = ()) -> None:
+    def __init__(self, message: str, unknown: UnknownName | None = None) -> None:
         super().__init__(message)
-        self.unknown, self.lacking = unknown, lacking
+        self.unknown = unknown
 
 
 class Reported(ExpressionFails):
