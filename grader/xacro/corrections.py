@@ -1,4 +1,4 @@
-"""Edits that correct what xacro refuses: near names, and the prefix xacro."""
+"""Edits that correct what xacro refuses: near names, the prefix xacro, arguments that other calls of a macro give."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -9,14 +9,14 @@ from grader.edits import Proposal
 from grader.names import closest
 from grader.source import Edit, Edits, Source
 from grader.xacro.nodes import XacroNode
-from grader.xacro.scopes import ScopePlace, UnknownName
+from grader.xacro.scopes import ScopePlace, UnknownName, XacroFails
 
 _MAX_NAMES, _MAX_NODES = 8, 2000
 _PREFIXED = ("property", "arg", "macro", "include", "if", "unless")
 _NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
-# A name that xacro refuses, and where: in an attribute, or without one in the tag itself.
-Refusal = tuple[UnknownName, ScopePlace, str | None]
+# What xacro refuses, and where: in an attribute, or without one in the tag itself.
+Refusal = tuple[XacroFails, ScopePlace, str | None]
 
 
 def corrections(document: Source, files: Mapping[str, XacroNode], refusals: Sequence[Refusal]) -> Iterator[Proposal]:
@@ -33,9 +33,14 @@ def corrections(document: Source, files: Mapping[str, XacroNode], refusals: Sequ
         if node.tag in _PREFIXED or node.tag in macros:
             edits = tuple(_tags(node.place, node.tag, f"xacro:{node.tag}"))
             yield Proposal(edits, f"<{node.tag}> without xacro:")
-    for unknown, place, attribute in refusals[:_MAX_NAMES]:
-        for edits in _respell(place, attribute, unknown):
+    for error, place, attribute in refusals[:_MAX_NAMES]:
+        for edits in _respell(place, attribute, error.unknown) if error.unknown is not None else ():
             yield Proposal(edits, "a name that xacro does not know")
+        own = next((node for node in nodes if node.place[:2] == place[:2]), None)
+        others = [node.attributes for node in nodes if own is not None and node is not own and node.tag == own.tag]
+        for given in [it for it in others if set(error.lacking) <= it.keys()] if error.lacking else ():
+            for values in ({name: given[name] for name in error.lacking}, _negated(given, error.lacking)):
+                yield Proposal(_give(place, values), f"this call gives no value for {' and '.join(values)}")
 
 
 def _walk(node: XacroNode) -> Iterator[XacroNode]:
@@ -52,6 +57,16 @@ def _respell(place: ScopePlace, attribute: str | None, unknown: UnknownName) -> 
         ways = [_rename(place, attribute, unknown.name, near)]
         ways += [_rename(at, where, near, unknown.name)] if where is not None else []
         yield from filter(None, ways)
+
+
+def _negated(given: Mapping[str, str], names: Sequence[str]) -> Mapping[str, str]:
+    return {name: re.sub(r"^(-?)(?=\d)", lambda it: "" if it[1] else "-", given[name]) for name in names}
+
+
+def _give(place: ScopePlace, values: Mapping[str, str]) -> Edits:
+    source, start = place.source.element(place.tag)
+    ends = [markup.name_end(source.text, start), *(it.end for it in markup.attributes(source.text, start))]
+    return (source.edit(ends[-1], ends[-1], "".join(f' {name}="{text}"' for name, text in values.items())),)
 
 
 def _rename(place: ScopePlace, attribute: str | None, old: str, new: str) -> Edits:

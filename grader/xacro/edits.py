@@ -1,14 +1,16 @@
 """The ways to give expanded elements other values: edits of the xacro texts that they come from.
 
 A value is changed where it is defined, if a name alone gives it: in a property, in the argument of a macro call, in the
-default of an argument. Else it is replaced where it is used. Nothing inside an expression is changed.
+default of an argument. Else it is replaced where it is used, or given in a macro call that lacks it. Nothing inside an
+expression is changed.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
-from grader.edits import merged
-from grader.source import Edits
+from grader import markup
+from grader.edits import merged, with_attribute
+from grader.source import Edits, Source
 from grader.xacro.scopes import Definition, ScopePlace, XacroScope
 from grader.xacro.texts import Texts
 from grader.xacro.written import TextChange, Use, Written, definition_text, edits_of, find_text
@@ -51,7 +53,17 @@ class Rewriter:
         by_place = {change.written[:3]: change for change in found}
         is_one = all(by_place[change.written[:3]].new == change.new for change in found)
         edits = edits_of(by_place.values()) if has_definition and is_one else None
-        return [*filter(None, [edits]), *self._literal(text, changed)]
+        return [*filter(None, [edits]), *self._literal(text, changed), *self._in_calls(text, changed)]
+
+    def _in_calls(self, text: Written, changed: Sequence[Use]) -> list[Edits]:
+        """Return the edits that give a parameter, of which a text is the default, in the calls of its macro."""
+        name = text.text[2:-1].strip() if text.text.startswith("${") else ""
+        definition = self._of_name(name, changed[0].scope)
+        if definition is None or definition.attribute != "params":
+            return []
+        calls = {use.call: use.new for use in changed if use.call is not None}
+        each = ((*call.source.element(call.tag), new) for call, new in calls.items())
+        return [tuple(with_attribute(source, start, name, new) for source, start, new in each)]
 
     def _literal(self, text: Written, changed: Sequence[Use]) -> list[Edits]:
         """Return the edit that writes a value where it is used; none where uses differ."""
@@ -148,3 +160,17 @@ def is_equal(one: str, other: str) -> bool:
         return one == other or abs(float(one) - float(other)) < 1e-9
     except ValueError:
         return False
+
+
+def conditions(source: Source, known: Sequence[str], near: Callable[[str, Sequence[str]], str | None]) -> list[Edits]:
+    """Return the edits that correct a text in quotes in the condition of an <xacro:if> or <xacro:unless>: 'rigth'."""
+    found: list[Edits] = []
+    for tag in re.finditer(r"<xacro:(?:if|unless)\b", source.text):
+        value = markup.attribute(source.text, tag.start(), "value")
+        text = source.text[value.value_start : value.value_end] if value is not None else ""
+        for word in re.findall(r"'(\w+)'|\"(\w+)\"", text):
+            meant = near(word[0] or word[1], known) if (word[0] or word[1]) not in known else None
+            if value is not None and meant is not None:
+                new = re.sub(rf"\b{word[0] or word[1]}\b", meant, text)
+                found.append((with_attribute(source, tag.start(), "value", new),))
+    return found

@@ -1,6 +1,6 @@
 """The source of an expanded xacro file: where each element comes from, and the edits of what it comes from."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -74,7 +74,8 @@ class ExpandedSource(Source):
         for tag in self.siblings(next(iter(wanted))):
             node = self._nodes[tag]
             text = node.attributes.get(attribute, "") if attribute else "".join(map(str, node.children)).strip()
-            uses.append(Use(node.place.scope or scope, *wanted.get(tag, (text, text))))
+            call = node.place.calls[-1][1] if node.place.calls else None
+            uses.append(Use(node.place.scope or scope, *wanted.get(tag, (text, text)), call))
         return self._rewriter.ways(place, attribute, uses)
 
     def numbers(self, tag: int, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
@@ -100,12 +101,23 @@ class ExpandedSource(Source):
             found.setdefault((node.place.source.path, node.place.tag), []).append(index)
         return found
 
-    def corrections(self) -> "list[Proposal]":
-        """Return edits that may correct undeclared and undefined names."""
-        from grader.xacro.corrections import corrections
+    def corrections(self, names: Sequence[str]) -> "list[Proposal]":
+        """Return edits that may correct undeclared and undefined names, calls of macros, and conditions.
 
-        found = corrections(Source(self.path, self.text), self.documents, self._expander.refused)
-        return list({correction.edits: correction for correction in reversed([*found])}.values())[::-1]
+        `names` are those that the reference and the format have.
+        """
+        from grader.edits import Proposal
+        from grader.names import near
+        from grader.xacro.corrections import corrections
+        from grader.xacro.edits import conditions
+
+        found = [*corrections(Source(self.path, self.text), self.documents, self._expander.refused)]
+        words = {word for name in names for word in name.split("_")}
+        given = sorted(words)
+        for document in self.documents.values():
+            edited = conditions(document.place.source, given, near)
+            found += [Proposal(edits, "a text in a condition") for edits in edited]
+        return list({correction.edits: correction for correction in reversed(found)}.values())[::-1]
 
     def calls(self, edit: Edit) -> dict[str, list[Location]]:
         """Return the calls of the macros that an edit is in, by their names."""

@@ -12,7 +12,7 @@ from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.macros import MacroError
 from grader.xacro.nodes import XacroNode
 from grader.xacro.respelling import Misspelt, Respelling
-from grader.xacro.scopes import Reported, ScopePlace, UnknownName, XacroFails, XacroScope
+from grader.xacro.scopes import Reported, ScopePlace, XacroFails, XacroScope
 from grader.xacro.texts import Texts
 
 _MAX_DOCUMENT = 1024 * 1024  # characters of the values and texts in the expanded document
@@ -72,7 +72,7 @@ class Expander:
         self.problems: list[Problem] = []
         self.misspelt: list[Misspelt] = []
         self.undetermined: list[Open] = []
-        self.refused: list[tuple[UnknownName, ScopePlace, str | None]] = []  # what may be corrected, and where
+        self.refused: list[tuple[XacroFails, ScopePlace, str | None]] = []  # what may be corrected, and where
         self.calls: tuple[tuple[str, ScopePlace], ...] = ()
         self._listed: set[tuple[str, str, int, str | None]] = set()
         self._length = 0  # of the expanded document
@@ -157,9 +157,9 @@ class Expander:
         joint = " " if message.endswith("?") else "; "
         kind = _KINDS.get(type(error), catalogue.XACRO_EXPRESSION)
         self.problems.append(Problem(kind, f"{message}{joint}{STOPS}", location))
-        if isinstance(error, XacroFails) and error.unknown is not None:
-            self.refused.append((error.unknown, place, attribute))
-            if error.unknown.meant is not None:
+        if isinstance(error, XacroFails) and (error.unknown is not None or error.lacking):
+            self.refused.append((error, place, attribute))
+            if error.unknown is not None and error.unknown.meant is not None:
                 self.misspelt.append(Misspelt(error.unknown, place, location))
         return ""
 

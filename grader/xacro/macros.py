@@ -105,7 +105,10 @@ def bind_blocks(macro: Macro, blocks: list[XacroNode], left: list[MacroParameter
     for parameter in left:
         if parameter.is_block:
             if not waiting:
-                raise MacroError(f"this call of the macro {macro.name} has no element for {parameter.name}")
+                raise MacroError(
+                    f"this call of the macro {macro.name} has no element for {parameter.name}",
+                    lacking=(parameter.name,),
+                )
             definition = Definition(parameter.name, "", macro.body.place, "params", inner)
             inner.bind(parameter.name, waiting.pop(0), definition=definition)
     if waiting:
@@ -129,4 +132,6 @@ def bind_defaults(
         else:
             missing.append(parameter.name)
     if missing:
-        raise MacroError(f"this call of the macro {macro.name} gives no value for {', '.join(missing)}")
+        raise MacroError(
+            f"this call of the macro {macro.name} gives no value for {', '.join(missing)}", lacking=tuple(missing)
+        )

@@ -69,11 +69,11 @@ class UnknownName(NamedTuple):
 
 
 class XacroFails(ExpressionFails):
-    """Something that xacro refuses, perhaps for a name that it does not know."""
+    """Something that xacro refuses, perhaps for a name that it does not know, or values that a call lacks."""
 
-    def __init__(self, message: str, unknown: UnknownName | None = None) -> None:
+    def __init__(self, message: str, unknown: UnknownName | None = None, lacking: tuple[str, ...] = ()) -> None:
         super().__init__(message)
-        self.unknown = unknown
+        self.unknown, self.lacking = unknown, lacking
 
 
 class Reported(ExpressionFails):

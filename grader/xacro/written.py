@@ -32,11 +32,12 @@ class Written(NamedTuple):
 
 
 class Use(NamedTuple):
-    """A use of a text: the scope in which it is evaluated, what it is and should be."""
+    """A use of a text: the scope in which it is evaluated, what it is and should be, the call of the macro it is in."""
 
     scope: XacroScope
     old: str
     new: str
+    call: ScopePlace | None = None
 
 
 class TextChange(NamedTuple):

@@ -76,6 +76,18 @@ TURNED: Changes = (
             id="two definitions that are exchanged",
         ),
         pytest.param(
+            '<xacro:macro name="turn" params="type"><xacro:if value="${type == \'continous\'}"><axis xyz="0 0 1"/></xacro:if></xacro:macro>',
+            (('<axis xyz="0 0 1"/>', '<xacro:turn type="continuous"/>'),),
+            [("value=\"${type == 'continous'}\"", "value=\"${type == 'continuous'}\"")],
+            id="the type of a joint in a condition",
+        ),
+        pytest.param(
+            '<xacro:macro name="paint" params="name:=gray"><material name="${name}"/></xacro:macro>',
+            (('<material name="gray"/>', "<xacro:paint/>"), ('<material name="white"/>', "<xacro:paint/>")),
+            [("<xacro:paint", '<xacro:paint name="white"')],
+            id="a parameter that a call of a macro does not give",
+        ),
+        pytest.param(
             "",
             (('<material name="gray">', '<material name="Gray">'),),
             [('name="Gray"', 'name="gray"')],

@@ -30,6 +30,16 @@ def changed(*changes: tuple[str, str], text: str = REFERENCE) -> Submission:
     return read_submission(text.encode(), identity="robot", path="my_robot.urdf")
 
 
+def test_a_call_without_its_parameter_gets_the_parameter() -> None:
+    """A macro call that lacks a parameter is completed; no link is added beside it."""
+    call = next(line for line in MACROS.text.split("\n") if "<xacro:wheel" in line and "right" in line)
+    name, value = next(pair.split("=") for pair in call.rstrip("/> ").split()[1:] if "right" not in pair)
+    hints = hints_for(MACROS.changed(MACROS.text.replace(call, call.replace(f" {name}={value}", ""))))
+    assert hints.is_full
+    (edits,) = edits_of(hints)
+    assert [new.strip() for _, new in edits] == [f"{name}={value}"]
+
+
 def test_each_hint_is_alone() -> None:
     """Two mistakes have a hint each, which contains nothing of the other one."""
     hints = hints_for(changed(('xyz="0.15 0 0.225"', 'xyz="0.15 0 0.025"'), ('rgba="0 0.6 0 1"', 'rgba="0 1 0 1"')))

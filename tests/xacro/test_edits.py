@@ -153,7 +153,7 @@ def test_the_calls_of_a_macro_that_an_edit_is_in() -> None:
 def test_a_name_that_is_not_defined_is_corrected(body: str, expected: list[str]) -> None:
     """A misspelt property, macro, parameter, block or file is corrected where it is used, or where it is defined."""
     document = Document(robot(f"{SIZES}\n{body}"), {"urdf/parts/wheel.xacro": part("<a/>")})
-    ways = [correction.edits for correction in expand(document).source.corrections()]
+    ways = [correction.edits for correction in expand(document).source.corrections(())]
     assert sorted("|".join(edit.new for edit in way) for way in ways) == sorted(expected)
     for way in ways:
         changed = expand(after(document, way))
@@ -173,7 +173,7 @@ def test_a_file_that_xacro_cannot_parse_is_corrected(wrong: tuple[str, str], exp
     """The prefix xacro is declared."""
     document = Document(robot(SIZES).replace(*wrong))
     assert expand(document).problems
-    [correction] = expand(document).source.corrections()
+    [correction] = expand(document).source.corrections(())
     corrected = after(document, correction.edits)
     assert expected in corrected.text
     assert not expand(corrected).problems

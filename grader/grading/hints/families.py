@@ -18,6 +18,7 @@ from grader.robot.reader import Reading
 from grader.source import Edit, Edits
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
+from grader.xml.urdf_format import JOINT_TYPES
 
 if TYPE_CHECKING:
     from grader.package.package import Package
@@ -54,7 +55,7 @@ class Families:
             yield from _undone(self._reading)
             yield from _raw_xacro(self._trials.submission)
         if self.difference is not None and self.draft is not None and subjects & {"urdf", "robot"}:
-            yield from self.draft.corrections()
+            yield from self.draft.corrections([*self.difference.names, *JOINT_TYPES])
             links = self._links(lost)
             yield from self._proposals(in_another_unit(self.difference))
             yield from self._proposals(of_siblings(self.difference, links or ()))

@@ -1,6 +1,6 @@
 """The edits of the elements of a robot in the text that they are written in."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 from grader import markup
@@ -35,9 +35,9 @@ class Draft(RobotElements):
         """Whether xacro refuses something, so that elements may be missing for that."""
         return self._expanded is not None and bool(self._expanded.is_refused)
 
-    def corrections(self) -> list[Proposal]:
-        """Return edits that may correct what xacro refuses."""
-        found: list[Proposal] = self._expanded.corrections() if self._expanded is not None else []
+    def corrections(self, names: Sequence[str]) -> list[Proposal]:
+        """Return edits that may correct what xacro refuses; `names` are those that may be meant."""
+        found: list[Proposal] = self._expanded.corrections(names) if self._expanded is not None else []
         return found
 
     def numbers(self, element: Element, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
