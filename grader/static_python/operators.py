@@ -19,7 +19,7 @@ _NUMBERS = (float, int)
 
 
 def attribute(owner: py.Value, name: str, budget: Budget) -> py.Value:
-    """Return the value of an attribute: of a namespace, or a method of a plain value."""
+    """Return the value of an attribute: of a namespace, of a dict from YAML, or a method of a plain value."""
     if name.startswith("__"):
         raise py.ExpressionFails(f"names that begin with two underscores are not allowed: {name}")
     if isinstance(owner, py.Namespace):
@@ -31,6 +31,8 @@ def attribute(owner: py.Value, name: str, budget: Budget) -> py.Value:
         return found
     if has_attribute(owner, name):
         raise py.Undetermined(f"the attribute {name} is not supported")
+    if isinstance(owner, py.DottedDict) and name in owner:
+        return owner[name]
     if isinstance(owner, py.PLAIN):
         raise py.ExpressionFails(f"{type(owner).__name__!r} has no attribute {name!r}")
     raise py.Undetermined(f"the attribute {name} of this value is not supported")

@@ -182,6 +182,10 @@ class Items:
 Items.__name__ = "iterator"  # as Python's messages name it
 
 
+class DottedDict(dict[Value, Value]):
+    """A dict whose items are also attributes, as xacro makes them of YAML."""
+
+
 OPAQUE = (Unknown, QualifiedName, BoundMethod, Call, Function, PlainFunction, Namespace, Items)
 
 

@@ -2,7 +2,7 @@
 
 A value is changed where it is defined, if a name alone gives it: in a property, in the argument of a macro call, in the
 default of an argument. Else it is replaced where it is used, or given in a macro call that lacks it. Nothing inside an
-expression is changed.
+expression is changed, and nothing that a YAML file gives.
 """
 
 import re
@@ -27,6 +27,7 @@ _ALONE = re.compile(
     (?P<after>[^$]*)""",
     re.VERBOSE,
 )
+_LOADED = re.compile(r"\$\{\s*(?:xacro\.)?load_yaml\(")
 _MAX_DEPTH = 4  # definitions that lead to one another
 _MAX_DEFINITIONS = 12
 
@@ -48,6 +49,8 @@ class Rewriter:
         for use in changed if "$" in text.text else ():
             for part, old, new in _parts(text, use):
                 changes = self._definitions(part, use.scope, old, new)
+                if not changes and self._is_loaded(part):
+                    return []
                 has_definition |= bool(changes)
                 found += changes or [TextChange(part, new)]
         by_place = {change.written[:3]: change for change in found}
@@ -66,12 +69,12 @@ class Rewriter:
         return [tuple(with_attribute(source, start, name, new) for source, start, new in each)]
 
     def _literal(self, text: Written, changed: Sequence[Use]) -> list[Edits]:
-        """Return the edit that writes a value where it is used; none where uses differ."""
+        """Return the edit that writes a value where it is used; none where uses differ, or a YAML file gives it."""
         around = {_around(text, use) for use in changed}
         if len(around) == 1 and "" not in around:
             edits = edits_of([TextChange(text, around.pop())])
             return [edits] if edits else []
-        if len({use.new for use in changed}) != 1:
+        if len({use.new for use in changed}) != 1 or self._is_loaded(text):
             return []
         parts = _parts(text, changed[0])
         if len(parts) == 2 and parts[0][1:] == parts[1][:0:-1]:  # two expressions are exchanged
@@ -104,6 +107,10 @@ class Rewriter:
             return [change for several in changes for change in several] if all(changes) else []
         is_quoted = own.text[:1] == "'" == own.text[-1:]
         return [TextChange(own, f"'{inner}'" if is_quoted else merged(own.text, inner))]
+
+    def _is_loaded(self, text: Written) -> bool:
+        """Return whether a YAML file gives a text."""
+        return any(_LOADED.match(it.text) for it in self.definitions(text))
 
     def _of_name(self, name: str, scope: XacroScope) -> Definition | None:
         holder = scope.holder(name)

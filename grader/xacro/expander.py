@@ -6,9 +6,10 @@ from typing import NamedTuple
 from grader.problems import Kind, Problem
 from grader.source import Location
 from grader.static_python.budget import CHARACTERS, Budget, OutOfBudget
-from grader.static_python.values import ExpressionFails, Undetermined
+from grader.static_python.values import ExpressionFails, Undetermined, Value
 from grader.xacro import catalogue
 from grader.xacro.files import FileFails, Files, XmlFails
+from grader.xacro.functions import document_functions, read_yaml_values
 from grader.xacro.macros import MacroError
 from grader.xacro.nodes import XacroNode
 from grader.xacro.respelling import Misspelt, Respelling
@@ -66,7 +67,9 @@ class Expander:
         """`handlers` expand xacro's own tags, and `other` every other tag that begins with xacro: a macro call."""
         self.files = files
         self.budget = budget
-        self.texts = Texts(dict(arguments), self.budget, self.report, files.has_package)
+        # `texts` is set below, so that the lambda is needed.
+        own = document_functions(self._load_yaml, lambda name: self.texts.argument(name))  # noqa: PLW0108
+        self.texts = Texts(dict(arguments), self.budget, self.report, own, files.has_package)
         self.texts.respelt, self._respelling = respelling.names, respelling
         self.own_tags = [tag.removeprefix("xacro:") for tag in handlers]
         self.problems: list[Problem] = []
@@ -75,6 +78,7 @@ class Expander:
         self.refused: list[tuple[XacroFails, ScopePlace, str | None]] = []  # what may be corrected, and where
         self.calls: tuple[tuple[str, ScopePlace], ...] = ()
         self._listed: set[tuple[str, str, int, str | None]] = set()
+        self._is_expanded = False
         self._length = 0  # of the expanded document
         self._stopped: ScopePlace | None = None  # where the budget was spent
         self._handlers = handlers
@@ -89,6 +93,7 @@ class Expander:
             self.content(source, out, scopes)
         except OutOfBudget as error:
             out.open = self.report(error, self._stopped or source.place)
+        self._is_expanded = True
         return out
 
     def content(self, source: XacroNode, out: XacroNode, scopes: Scopes) -> None:
@@ -191,3 +196,9 @@ class Expander:
         except (ExpressionFails, Undetermined) as error:
             out.unresolved[name] = self.report(error, out.place, name)
         return text
+
+    def _load_yaml(self, name: Value) -> Value:
+        if self._is_expanded:
+            raise Undetermined("a YAML file is not read again for each edit")
+        data = self.files.read(self.files.path(self.texts.written(name)))
+        return read_yaml_values(data, lambda name: self.texts.find(name, XacroScope()), self.budget)

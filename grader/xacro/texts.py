@@ -9,7 +9,7 @@ from grader.static_python.budget import Budget
 from grader.static_python.expressions import evaluate
 from grader.static_python.knowledge import str_of
 from grader.static_python.values import MAX_TEXT, ExpressionFails, Undetermined, Value, too_large
-from grader.xacro.functions import known_names
+from grader.xacro.functions import GLOBALS
 from grader.xacro.scopes import (
     Definition,
     Known,
@@ -46,16 +46,17 @@ class Texts:
         arguments: dict[str, str | None],
         budget: Budget,
         report: ReportFailure,
+        own: dict[str, Value],
         is_own: Callable[[str], bool],
     ) -> None:
-        """`is_own`: whether a package was submitted."""
+        """`own` are functions that need the document, such as load_yaml; `is_own`: whether a package was submitted."""
         self.arguments = arguments
         self.defaults: dict[str, Definition] = {}  # of arguments that have no other value
         self.names_open: ExpressionFails | Undetermined | None = None  # why a name may be bound that is not known
         self._budget = budget
         self._is_own = is_own
         self._report = report
-        self._globals = known_names(self.argument)
+        self._globals = {**GLOBALS, **own}
         self.respelt: Mapping[str, str] = {}  # names in expressions, and the names that they are read as
         # What is said of a name, and the name that it stands for, by this name and those that are known.
         self._similar: dict[tuple[str, ...], tuple[str, str | None]] = {}

@@ -19,7 +19,7 @@ from grader.source import Source
 from grader.static_python.budget import Budget, OutOfBudget
 from grader.static_python.expressions import evaluate
 from grader.static_python.values import ExpressionFails, Undetermined
-from grader.xacro.functions import GLOBALS, namespace
+from grader.xacro.functions import GLOBALS, namespace, read_yaml_values
 from grader.xml.tinyxml2.recovery import Recovery
 from grader.xml.tinyxml2.scanner import Scanner
 from tests.fuzz.harness import check_location, check_message, decoded, files_of
@@ -127,3 +127,10 @@ def refusals() -> Iterator[None]:
         yield
     except (ExpressionFails, Undetermined, OutOfBudget) as error:
         check_message(str(error))
+
+
+def yaml_values(data: bytes) -> None:
+    """The values that xacro loads from YAML are plain and of bounded size."""
+    budget = Budget(_WORK)
+    with refusals():
+        budget.measure(read_yaml_values(data, namespace("", _NAMES).find, budget))

@@ -34,6 +34,12 @@ def expressions() -> Iterator[bytes]:
     yield from (text.replace("&lt;", "<").replace("&quot;", '"').encode() for text in texts)
 
 
+def yaml_files() -> Iterator[bytes]:
+    """Yield the YAML files beside them."""
+    files = (file for document in _documents() for file in document.files.items())
+    yield from dict.fromkeys(_bytes(content) for path, content in files if path.endswith(".yaml"))
+
+
 def _documents() -> Iterator[Document]:
     tables: Iterable[Mapping[str, Document]] = (*GROUPS.values(), HOSTILE)
     yield from (document for table in tables for document in table.values())

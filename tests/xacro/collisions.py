@@ -28,7 +28,7 @@ _EXPRESSIONS = (
     "-7 % 3", "7.5 // 2", "True + 1", "None", "1.0", "100.0", "1e-5", "1e5", "123456789.123456789", "0.1 + 0.2", "'%s' % a", "'%g' % 0.1", "'%5.2f|%d' % (1, 2.7)",
     "pi", "math.pi", "radians(180)", "sin(a)", "sqrt(2)", "round(2.5)", "round(2.675, 2)", "int(2.9)", "float('1e3')", "bool('')", "max(1, 2.0)", "min([3, 1])",
     "'a' + 'b'", "'a' * 3", "'${a}'", "\"it's\"", "'x' in 'xy'", "sorted([3, 1, 2])", "list(range(3))", "[v * 2 for v in range(3)]", "str([1, 'a'])", "repr(1)",
-    "xacro.arg('a')", "'a b'.split()", "'1 2'.split()[1]", "float(a)", "int(a)", "a[0]", "a[-1]", "a.upper()", "'ß'.upper()", "floor(2.7)",
+    "xacro.arg('a')", "xacro.dotify(dict(q=1)).q", "'a b'.split()", "'1 2'.split()[1]", "float(a)", "int(a)", "a[0]", "a[-1]", "a.upper()", "'ß'.upper()", "floor(2.7)",
     "1 if a else", "a b", "undefined", "", " ", "a +", "1 < 2 < 3", "0 or ''", "(1, 2)[0]", "{'x': 1}['x']", "[1, 2][::-1]", "1 == 1.0", "'1' == 1", "1_000", "0b11",
 )  # fmt: skip
 _CONDITIONS = (

@@ -44,6 +44,7 @@ class _Writer(Definitions):
                 lambda names: self._condition(names, depth),
                 lambda names: self._macro(names, depth),
                 self._include,
+                self._yaml,
             ]
         return self._random.choice(pieces)(names)
 

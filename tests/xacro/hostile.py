@@ -148,6 +148,8 @@ _OUTSIDE = merged(
         long_path=_included("a/" * 50_000 + "b"),
         optional="<xacro:include filename='/etc/passwd' optional='true'/><xacro:none/>",
         yaml_absolute=shown("${xacro.load_yaml('/etc/passwd')}"),
+        yaml_parents=shown("${xacro.load_yaml('../../../../../../etc/passwd')}"),
+        yaml_device=shown("${xacro.load_yaml('/dev/zero')}"),
         abs_filename=shown("${xacro.load_yaml(xacro.abs_filename('/etc/passwd'))}"),
         itself=_included("robot.urdf.xacro"),
         itself_twice=_included("robot.urdf.xacro") * 2,
@@ -173,6 +175,35 @@ _OUTSIDE = merged(
     },
 )  # fmt: skip
 
+_YAML: dict[str, str | bytes] = {
+    "aliases": "a0: &a0 [x, x]\n" + "".join(f"a{n}: &a{n} [*a{n - 1}, *a{n - 1}]\n" for n in range(1, 40)),
+    "aliases-of-dicts": "a0: &a0 {k: x}\n"
+    + "".join(f"a{n}: &a{n} {{k: *a{n - 1}, l: *a{n - 1}}}\n" for n in range(1, 40)),
+    "merges": "a0: &a0 {k0: x}\n"
+    + "".join(f"a{n}: &a{n} {{<<: [*a{n - 1}, *a{n - 1}], k{n}: x}}\n" for n in range(1, 30)),
+    "alias-of-itself": "&a [*a, *a]\n",
+    "dict-of-itself": "&a {k: *a}\n",
+    "nested": "[" * 20_000 + "]" * 20_000,
+    "nested-blocks": "".join(" " * n + f"k{n}:\n" for n in range(1_000)) + " " * 1_000 + "v",
+    "python-apply": "!!python/object/apply:os.system ['id']\n",
+    "python-name": "!!python/name:os.system\n",
+    "python-module": "!!python/module:os\n",
+    "python-new": "!!python/object/new:subprocess.Popen [['id']]\n",
+    "unit-power": "a: !degrees 9**9**9\n",
+    "unit-import": "a: !degrees __import__('os').getpid()\n",
+    "unit-class": "a: !meters ().__class__.__base__.__subclasses__()\n",
+    "large-number": "a: " + "9" * 100_000 + "\n",
+    "large-power": "a: 0b" + "1" * 100_000 + "\n",
+    "sexagesimal": "a: 1" + ":59" * 50_000 + "\n",
+    "large-key": "? " + "[" * 500 + "a" + "]" * 500 + "\n: b\n",
+    "many-entries": "".join(f"k{n}: {n}\n" for n in range(100_000)),
+    "not-text": b"\xff\xfe\x00\x00",
+}
+_YAML_DOCUMENTS: Documents = {
+    f"yaml-{name}": Document(robot(named("y", "${xacro.load_yaml('a.yaml')}") + shown("${y}", "${python.repr(y)}") + "<xacro:none/>"), {"urdf/a.yaml": text})
+    for name, text in _YAML.items()
+}  # fmt: skip
+
 _GIVEN: Documents = {
     "argument-is-code": Document(robot(shown("$(eval ${'$(arg a)'})")), arguments={"a": "open('/etc/passwd')"}),
     "argument-is-expression": Document(robot(shown("${$(arg a)}")), arguments={"a": "__import__('os')"}),
@@ -181,4 +212,4 @@ _GIVEN: Documents = {
     "argument-is-class": Document(robot(shown("$(eval a.__class__)")), arguments={"a": "1"}),
 }
 
-HOSTILE: Documents = merged(_ESCAPES, _FORMATS, _SIZES, _CHAINS, _MULTIPLIED, _OUTSIDE, _GIVEN)
+HOSTILE: Documents = merged(_ESCAPES, _FORMATS, _SIZES, _CHAINS, _MULTIPLIED, _OUTSIDE, _YAML_DOCUMENTS, _GIVEN)

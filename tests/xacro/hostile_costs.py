@@ -32,6 +32,10 @@ def _filled(text: str) -> str:
     return text * (_MIB // len(text) - 1)
 
 
+def _yaml(text: str, *uses: str) -> tuple[str, dict[str, str]]:
+    return named("y", "${xacro.load_yaml('a.yaml')}") + shown(*(uses or ("${y}",))), {"urdf/a.yaml": text}
+
+
 _PRIME = 2**61 - 1
 _START = '<robot name="r"><link name="l"/><xacro:if value="1"/>'
 _ROWS: dict[str, str | tuple[str, dict[str, str]]] = {
@@ -165,6 +169,25 @@ _ROWS: dict[str, str | tuple[str, dict[str, str]]] = {
     "broken-file-again": ("<xacro:include filename='b.xacro'/>" * 9000, {"urdf/b.xacro": part("<a>" + "x" * 9000)}),
     "too-large-file-again": ("<xacro:include filename='b.xacro'/>" * 9000, {"urdf/b.xacro": part(f"<!--{'x' * 12_000_000}-->")}),
     "endings": ("<xacro:include filename='none.xacro'/>" * 0 + _many(9000, "<xacro:include filename='c{n}'/>"), {}),
+    # YAML
+    "yaml-base60": _yaml("a: 1" + ":1" * 50_000),
+    "yaml-merge": _yaml("a0: &a0 {k0: x}\n" + "".join(f"a{n}: &a{n}\n  <<: [{', '.join([f'*a{n - 1}'] * 10)}]\n" for n in range(1, 16))),
+    "yaml-again": _yaml("a: 1\n" * 5000, *["${xacro.load_yaml('a.yaml')['a']}"] * 5000),
+    "yaml-aliases": _yaml("a: &a [" + "1," * 9000 + "]\nb: [" + "*a," * 90_000 + "]"),
+    "yaml-sequences": _yaml("- " * 500_000),
+    "yaml-questions": _yaml("? " * 500_000),
+    "yaml-brackets": _yaml("[" * 1_000_000),
+    "yaml-flow-keys": _yaml("[" + "{a: " * 900 + "1" + "}" * 900 + "]"),
+    "yaml-empty": _yaml("[" + "{}," * 340_000 + "]"),
+    "yaml-lines": _yaml("a: x" + "\n x" * 340_000),
+    "yaml-quoted": _yaml('a: "' + "\\x41" * 250_000 + '"'),
+    "yaml-digits": _yaml("a: 0x" + "f" * 1_000_000),
+    "yaml-comments": _yaml("#\n" * 500_000),
+    "yaml-anchors": _yaml("".join(f"- &a{n} x\n" for n in range(80_000))),
+    "yaml-anchor-long": _yaml("- &" + "a" * 500_000 + " x\n- *" + "a" * 500_000),
+    "yaml-units": _yaml("".join(f"- !degrees {n}*pi/180+sin(1)\n" for n in range(30_000))),
+    "yaml-tags": _yaml("%TAG !a! !" + "d" * 400_000 + "\n---\n" + "- !a!x 1\n" * 60_000),
+    "yaml-timestamps": _yaml("- " + "1" * 99 + "\n" + ("- " + "1_" * 49 + ":\n") * 9000),
 }  # fmt: skip
 
 # Documents that are XML only in part, and those with a document type: all of the text.

@@ -12,7 +12,7 @@ from typing import Any
 from grader.static_python.budget import READING
 from tests.work import TooMuchWork, limited_work
 from tests.xacro.comparing import expand
-from tests.xacro.documents.document import Document, robot, shown
+from tests.xacro.documents.document import Document, named, robot, shown
 from tests.xacro.hostile import HOSTILE, LARGE
 from tests.xacro.hostile_costs import COSTS
 
@@ -72,9 +72,11 @@ def _watched(document: Document, paths: list[str], parts: int = READING, limit: 
 
 def main(step: int) -> None:
     """Print a line of JSON for each document, or for every third and so on: first its name, then what happened."""
-    files = {"urdf/b.xacro": robot(""), "urdf/c.xacro": robot("")}
-    warm = '<xacro:include filename="b.xacro"/><xacro:include filename="c.xacro"/>' + shown(
-        "${sin(1)}", "${1 +}", "$(eval 1)"
+    files = {"urdf/a.yaml": "a: !degrees 1\n", "urdf/b.xacro": robot("")}
+    warm = (
+        named("y", "${xacro.load_yaml('a.yaml')}")
+        + '<xacro:include filename="b.xacro"/>'
+        + shown("${y.a + sin(1)}", "${1 +}", "$(eval 1)")
     )
     expand(Document(robot(warm), files))  # everything is imported before the events count
     expand(Document("<robot"))

@@ -1,4 +1,4 @@
-"""Random definitions: properties and arguments, whose names can be used after them."""
+"""Random definitions: properties, arguments and values of YAML, whose names can be used after them."""
 
 from random import Random
 from xml.sax.saxutils import quoteattr
@@ -6,6 +6,7 @@ from xml.sax.saxutils import quoteattr
 from tests.xacro.documents.document import named
 from tests.xacro.random_expressions import Expressions, Names
 
+_YAML = "radius: 0.1\nname: left\nsizes: [0.6, 0.4, 0.2]\ninner: {mass: 5, ok: true}\nangle: !degrees 90\n"
 _USES = (
     "$(arg {})",
     "a $(arg {}) b",
@@ -90,3 +91,12 @@ class Definitions:
         declared = f"<xacro:arg name='{name}' default={quoteattr(self._value(names, 'numbers'))}/>"
         used = self._random.choice(_USES)
         return f"{declared}<used x={quoteattr(used.format(name))}/>"
+
+    def _yaml(self, names: Names) -> str:
+        self._files["config/values.yaml"] = _YAML
+        name = self._name("y")
+        names.numbers += [f"{name}.radius", f"{name}['inner']['mass']", f"{name}.angle", f"{name}.sizes[1]"]
+        names.texts.append(f"{name}.name")
+        names.lists.append(f"{name}.sizes")
+        names.flags.append(f"{name}.inner.ok")
+        return named(name, "${xacro.load_yaml('../config/values.yaml')}")
