@@ -7,10 +7,11 @@ from itertools import islice
 from typing import Any
 
 from grader.edits import Proposal
+from grader.package.edits.entries import as_lists, missing_entries
 from grader.package.edits.paths import launch_paths, setup_paths
 from grader.package.edits.python_file import PythonFile
 from grader.package.edits.task import WHAT, PackageTask, file_proposals, package_names
-from grader.package.edits.wording import imports, other_values, reword
+from grader.package.edits.wording import other_values, respellings, reword, undefined_names
 from grader.package.package import SETUP, Package
 from grader.source import Edits, Source
 
@@ -62,17 +63,21 @@ def _of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
 
 
 def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str | None) -> Iterator[Proposal]:
-    """Yield the edits of a file: its difference to the reference, its imports, its values and its paths."""
+    """Yield the edits of a file: its difference to the reference, its syntax, its names, its paths and its words."""
     what, wanted = WHAT.get(kind, kind), task.wanted(like) or ""
+    own = PythonFile(source)
     ending, other = (posixpath.splitext(it or "")[1] for it in (path, like))
     is_python = ending in (".py", "")
     if wanted and (ending == other or is_python):
         yield from reword(source, wanted, what)
     if is_python:
-        yield from imports(PythonFile(source), what)
+        yield from missing_entries(own, PythonFile(Source(source.path, wanted)), what)
+        yield from as_lists(own, what)
+        yield from undefined_names(own, what)
     elif ending == other:
         yield from other_values(source, wanted, what)
     if kind == "launch":
         yield from launch_paths(task, task.launch(path, source), source)
     elif kind == SETUP:
         yield from setup_paths(task)
+    yield from respellings(source, [wanted, *(task.files if kind == SETUP else task.package.installed)], what)

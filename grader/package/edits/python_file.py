@@ -2,7 +2,7 @@
 
 import ast
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Container, Iterable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
@@ -22,6 +22,8 @@ _STRING = re.compile(
     re.DOTALL | re.VERBOSE,
 )
 _QUOTES = re.compile("[rRbBfFuU]*(\"\"\"|'''|\"|')")
+_MAX_DEPTH = 4  # of names that are replaced by their values
+_MAX_CODE = 2000  # characters
 _USE = re.compile(r"\bglob\.glob\b")
 _CAT = re.compile(r"\bcat(?=\s)")
 
@@ -41,6 +43,7 @@ class PythonFile:
         self.source = source
         self.text = source.text
         self.newline = "\r\n" if "\r\n" in source.text else "\n"
+        self._plain: dict[ast.expr, str] = {}
 
     @cached_property
     def parsed(self) -> Code | SyntaxFault:
@@ -93,6 +96,38 @@ class PythonFile:
                     found[name] = value
         return found
 
+    def meant(self, node: ast.expr) -> ast.expr:
+        """Return the expression that a name is bound to; any other expression itself."""
+        for _ in range(_MAX_DEPTH):
+            if not isinstance(node, ast.Name) or node.id not in self.values:
+                break
+            node = self.values[node.id]
+        return node
+
+    def written(self, node: ast.expr, bound: Container[str] = (), depth: int = _MAX_DEPTH) -> str:
+        """Return an expression in which the names that are not `bound` have their values."""
+        start, _ = self.span(node)
+        text = self.segment(node)
+        names = [inner for inner in ast.walk(node) if isinstance(inner, ast.Name)]
+        for name in sorted(names, key=lambda inner: self.span(inner)[0], reverse=True) if depth else ():
+            if name.id not in bound and name.id in self.values and len(text) <= _MAX_CODE:
+                at, end = (offset - start for offset in self.span(name))
+                text = text[:at] + self.written(self.values[name.id], bound, depth - 1) + text[end:]
+        return text
+
+    def plain(self, node: ast.expr) -> str:
+        """Return the code of an expression without names for its parts and in one style, to compare it."""
+        if node not in self._plain:
+            code = self.written(node)
+            tree = _expression(code)
+            self._plain[node] = ast.unparse(tree) if tree is not None else code
+        return self._plain[node]
+
+    def names_in(self, code: str) -> set[str]:
+        """Return the names in an expression."""
+        tree = _expression(code)
+        return {it.id for it in ast.walk(tree) if isinstance(it, ast.Name)} if tree else set()
+
     @cached_property
     def bound(self) -> frozenset[str]:
         """The names that the file binds anywhere."""
@@ -132,6 +167,13 @@ class PythonFile:
         return f"from {module} import {own}{self.newline}" if module else f"import {own}{self.newline}"
 
 
+def _expression(code: str) -> ast.Expression | None:
+    try:
+        return ast.parse(code.strip(), mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+
+
 def called(call: ast.Call) -> str:
     """Return the last part of the name of the function that is called."""
     return call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
@@ -148,7 +190,7 @@ def with_xacro(source: Source) -> Iterator[Edits]:
         yield (source.edit(found.start(), found.end(), "xacro"),)
     file = PythonFile(source)
     for call in [*file.calls("read"), *file.calls("read_text")] if source.path.endswith(".py") else ():
-        owner = call.func.value if isinstance(call.func, ast.Attribute) else call
+        owner = file.meant(call.func.value) if isinstance(call.func, ast.Attribute) else call
         owner = file.values.get(owner.id, owner) if isinstance(owner, ast.Name) else owner
         is_open = isinstance(owner, ast.Call) and called(owner) == "open" and owner.args
         if is_open or called(call) == "read_text":
