@@ -11,22 +11,42 @@ from grader.files.tree import File
 
 MAX_BYTES = 20 * 1024 * 1024
 _MAX_DOCUMENT = 32 * 1024 * 1024
-PDF = "application/pdf"
+# Sizes of the second header of a BMP file. The signature "BM" alone could also begin a text.
+_DIB_SIZES = frozenset({12, 40, 52, 56, 64, 108, 124})
+
+
+class ImageType(NamedTuple):
+    """A format that every browser shows: its name, its media type, and its file name extension."""
+
+    name: str
+    media_type: str
+    ending: str
+
+
+_PNG, _JPEG, _GIF, _WEBP, _BMP, PDF = (
+    ImageType("PNG", "image/png", "png"),
+    ImageType("JPEG", "image/jpeg", "jpg"),
+    ImageType("GIF", "image/gif", "gif"),
+    ImageType("WebP", "image/webp", "webp"),
+    ImageType("BMP", "image/bmp", "bmp"),
+    ImageType("PDF", "application/pdf", "pdf"),
+)
 _SIGNATURES = (
-    (re.compile(rb"\x89PNG\r\n\x1a\n"), "image/png"),
-    (re.compile(rb"\xff\xd8\xff"), "image/jpeg"),
-    (re.compile(rb"GIF8[79]a"), "image/gif"),
-    (re.compile(rb"RIFF.{4}WEBPVP8[ LX]", re.DOTALL), "image/webp"),
+    (re.compile(rb"\x89PNG\r\n\x1a\n"), _PNG),
+    (re.compile(rb"\xff\xd8\xff"), _JPEG),
+    (re.compile(rb"GIF8[79]a"), _GIF),
+    (re.compile(rb"RIFF.{4}WEBPVP8[ LX]", re.DOTALL), _WEBP),
+    (re.compile(rb"BM", re.DOTALL), _BMP),
     (re.compile(rb"%PDF-"), PDF),
 )
-_OTHER = "it is not a PNG, JPEG, GIF or WebP picture, nor a PDF: open it yourself, with care"
+_OTHER = "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF: open it yourself, with care"
 
 
 class EmbeddedPicture(NamedTuple):
-    """A picture or PDF of a submission: where it is, its media type, and its bytes; `page` of a PDF is shown first."""
+    """A picture or PDF of a submission: where it is, its type, and its bytes; `page` of a PDF is shown first."""
 
     where: str
-    media_type: str
+    kind: ImageType
     data: bytes
     page: int = 1
 
@@ -41,9 +61,12 @@ class NotShown(NamedTuple):
         return f"{self.where}: {self.reason}"
 
 
-def media_type_of(data: bytes) -> str | None:
-    """Return the media type of a picture, by its signature; None for everything that is not shown."""
-    return next((kind for signature, kind in _SIGNATURES if signature.match(data)), None)
+def image_type(data: bytes) -> ImageType | None:
+    """Return the format of a picture, by its signature; None for everything that is not shown."""
+    kind = next((kind for signature, kind in _SIGNATURES if signature.match(data)), None)
+    if kind is _BMP and int.from_bytes(data[14:18], "little") not in _DIB_SIZES:
+        return None
+    return kind
 
 
 def read_picture(file: File) -> EmbeddedPicture | NotShown:
@@ -59,7 +82,7 @@ def read_picture(file: File) -> EmbeddedPicture | NotShown:
 
 def verified(data: bytes, where: str) -> EmbeddedPicture | NotShown:
     """Return a picture after its format is verified, or why it is not shown."""
-    kind = media_type_of(data)
+    kind = image_type(data)
     if kind is None:
         return NotShown(where, _OTHER)
     if len(data) > MAX_BYTES:

@@ -58,7 +58,7 @@ class ReviewPage:
                 found = {str(which): one for which, one in pictures}.get(number)
                 if isinstance(found, EmbeddedPicture):
                     return Response(
-                        found.data, found.media_type, policy=_PDF_POLICY if found.media_type == PDF else SANDBOX
+                        found.data, found.kind.media_type, policy=_PDF_POLICY if found.kind is PDF else SANDBOX
                     )
         return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
 

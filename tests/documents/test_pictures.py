@@ -5,13 +5,13 @@ import struct
 import pytest
 
 from grader.documents import pictures
-from grader.documents.pictures import EmbeddedPicture, NotShown, media_type_of, read_picture, verified
+from grader.documents.pictures import EmbeddedPicture, NotShown, image_type, read_picture, verified
 from grader.errors import FileError
 from grader.files.tree import File
 
 SHOWN = {
     "PNG": b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "JPEG": b"\xff\xd8\xff\xe0", "GIF": b"GIF89a\x80\2\xe0\1",
-    "WebP": b"RIFF\0\0\0\0WEBPVP8 ",
+    "WebP": b"RIFF\0\0\0\0WEBPVP8 ", "BMP": b"BM" + bytes(12) + (40).to_bytes(4, "little"),
 }  # fmt: skip
 SCRIPT = b"<script>alert(1)</script>"
 NOT_SHOWN = {
@@ -21,10 +21,10 @@ NOT_SHOWN = {
     "HEIC": b"\0\0\0\x18ftypheic\0\0\0\0mif1heic",
     "a video": b"\0\0\0\x18ftypisom\0\0\0\0isomavc1",
     "a shell script": b"#!/bin/sh\nrm -rf ~\n",
-    "BMP": b"BM" + bytes(12) + (40).to_bytes(4, "little"),
+    "text that begins like a BMP": b"BMW" + b" drives" * 20,
     "nothing": b"",
 }
-WHY = "it is not a PNG, JPEG, GIF or WebP picture, nor a PDF: open it yourself, with care"
+WHY = "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF: open it yourself, with care"
 
 
 def png(width: int, height: int) -> bytes:
@@ -48,7 +48,8 @@ def test_pictures_are_shown(name: str) -> None:
     """Every format of browsers has its own media type, and its bytes unchanged."""
     found = read_picture(file_of(SHOWN[name]))
     assert isinstance(found, EmbeddedPicture)
-    assert found.media_type == f"image/{name.lower()}"
+    assert found.kind.name in name
+    assert found.kind.media_type == f"image/{found.kind.name.lower()}"
     assert (found.where, found.data) == ("screen.png", SHOWN[name])
 
 
@@ -70,4 +71,6 @@ def test_large_files_are_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_picture_with_markup_in_it_keeps_its_type() -> None:
     """A GIF that is a script as well is served as a GIF, which a browser never runs."""
-    assert media_type_of(b"GIF89a" + struct.pack("<HH", 10, 10) + b"/*" + SCRIPT) == "image/gif"
+    kind = image_type(b"GIF89a" + struct.pack("<HH", 10, 10) + b"/*" + SCRIPT)
+    assert kind is not None
+    assert kind.media_type == "image/gif"

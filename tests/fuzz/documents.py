@@ -155,7 +155,7 @@ def picture(data: bytes) -> None:
     """A picture has a format and a size, or the reason why it is not shown."""
     found = verified(data, "a.png")
     if isinstance(found, EmbeddedPicture):
-        assert found.media_type
+        assert found.kind.media_type
     else:
         check_message(str(found))
 

@@ -97,7 +97,7 @@ def test_files_with_the_label() -> None:
     files = {"Task1_Step8.png": STEP_8, "Task1_Step8 (1).gif": gif(32, 24), "Task1_Step8.jpg": b"<svg onload='x'/>"}
     assert shown({**files, "Task1_Step18.png": STEP_18}, ["task 1 step 8"]) == [
         "Task1_Step8 (1).gif",
-        "Task1_Step8.jpg: it is not a PNG, JPEG, GIF or WebP picture, nor a PDF: open it yourself, with care",
+        "Task1_Step8.jpg: it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF: open it yourself, with care",
         "Task1_Step8.png",
     ]
 
@@ -136,13 +136,13 @@ def test_a_pdf_opens_on_the_page_of_its_heading() -> None:
         (
             "Task1_Step8.pdf",
             b"no PDF",
-            "it is not a PNG, JPEG, GIF or WebP picture, nor a PDF: open it yourself, with care",
+            "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF: open it yourself, with care",
         ),
         ("Task1_Step8.docx", b"no zip", "cannot be read as an archive: File is not a zip file"),
         (
             "Task1_Step8.mp4",
             b"\0\0\0\x18ftypisom",
-            "it is not a PNG, JPEG, GIF or WebP picture, nor a PDF: open it yourself, with care",
+            "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF: open it yourself, with care",
         ),
     ],
 )
