@@ -32,12 +32,9 @@ _REQUIREMENT = re.compile(
 )
 _TEXTS = ("name", "description", "long_description", "author", "author_email", "maintainer", "maintainer_email", "url",
           "license", "download_url", "long_description_content_type", "python_requires", "test_suite")  # fmt: skip
-_LISTS = ("keywords", "classifiers", "platforms")
-_FLAGS = ("zip_safe", "include_package_data")
-# The arguments that are checked below.
-_CHECKED = ("version", "packages", "py_modules", "data_files", "entry_points", "extras_require", "setup_requires")
-_REQUIREMENTS = ("install_requires", "tests_require")
-_AT_HAND = ("setuptools", "wheel")  # what setup_requires may name without a download
+# The arguments whose faults are found below.
+_CHECKED = ("version", "packages", "py_modules", "data_files", "entry_points")
+_AT_HAND = frozenset({"setuptools", "wheel"})  # what setup_requires may name without a download
 # The sections of setup.cfg that concern a build: of these, the options that are known to be accepted.
 _SECTIONS = {"develop": {"script_dir", "install_scripts"}, "install": {"install_scripts", "install-scripts"}}
 _OF_TOOLS = re.compile(
@@ -54,10 +51,10 @@ def argument_findings(
 ) -> Iterator[Finding]:
     """Yield what is wrong with the arguments of setup() besides data_files, and what of them is not evaluated."""
     for name, value in kwargs.items():
-        if name not in (*_CHECKED, *_REQUIREMENTS) and not _is_usual(name, value):
+        if name not in _CHECKED and value is not None and not _USUAL.get(name, _is_unusual)(value):
             yield unknown_in(value) or unknown(f"this value of {name} in setup() is not evaluated")
-    for check in (_version, _entry_points, _requirements):
-        yield from check(kwargs, unknown)
+    yield from _version(kwargs, unknown)
+    yield from _entry_points(kwargs, unknown)
     yield from _packages(kwargs, listing, unknown)
     modules = kwargs.get("py_modules") or []
     if not _is_list(modules) or any(f"{name.replace('.', '/')}.py" not in listing.files for name in modules):
@@ -66,21 +63,30 @@ def argument_findings(
         yield from _discovery(listing)
 
 
-def _is_usual(name: str, value: Value) -> bool:
-    """Return whether setuptools certainly accepts an argument."""
-    if value is None:
-        return True
-    if name in _TEXTS:
-        return isinstance(value, str | Unknown)
-    if name == "package_data":
-        return isinstance(value, dict) and all(isinstance(key, str) and _is_list(it) for key, it in value.items())
-    if name in _LISTS:
-        return isinstance(value, str) or _is_list(value)
-    return name in _FLAGS and isinstance(value, bool)
-
-
 def _is_list(value: Value) -> bool:
     return isinstance(value, list | tuple) and all(isinstance(item, str) for item in value)
+
+
+def _are_requirements(value: Value) -> bool:
+    if isinstance(value, str):
+        value = [value] if value else []
+    return _is_list(value) and all(map(_REQUIREMENT.fullmatch, value))
+
+
+def _is_unusual(_: Value) -> bool:
+    return False
+
+
+# Whether setuptools certainly accepts the value of an argument.
+_USUAL: Mapping[str, Callable[[Value], bool]] = {
+    **dict.fromkeys(_TEXTS, lambda it: isinstance(it, str | Unknown)),
+    **dict.fromkeys(("keywords", "classifiers", "platforms"), lambda it: isinstance(it, str) or _is_list(it)),
+    **dict.fromkeys(("zip_safe", "include_package_data"), lambda it: isinstance(it, bool)),
+    **dict.fromkeys(("install_requires", "tests_require"), _are_requirements),
+    "setup_requires": lambda it: _are_requirements(it) and _AT_HAND.issuperset([it] if isinstance(it, str) else it),
+    "extras_require": lambda it: isinstance(it, dict) and all(map(_are_requirements, it.values())),
+    "package_data": lambda it: isinstance(it, dict) and all(map(_is_list, it.values())) and _is_list([*it]),
+}
 
 
 def _version(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> Iterator[Finding]:
@@ -105,22 +111,6 @@ def _entry_points(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]
             yield unknown("an entry point that is no string is not evaluated")
         elif "=" not in line or not _ENTRY_POINT.fullmatch(line):
             yield f"the entry point {line!r} is not valid: write name = package.module:function"
-
-
-def _requirements(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> Iterator[Finding]:
-    for name in (*_REQUIREMENTS, "setup_requires"):
-        given = kwargs.get(name)
-        listed = [given] if isinstance(given, str) else given if isinstance(given, list | tuple) else []
-        fits = all(isinstance(it, str) and _REQUIREMENT.fullmatch(it) for it in listed)
-        if given and (not listed or not fits):
-            yield unknown_in(given) or unknown(f"this value of {name} is not evaluated")
-        elif name == "setup_requires" and not {*listed} <= {*_AT_HAND}:
-            yield unknown("whether the packages in setup_requires can be installed is not evaluated")
-    if kwargs.get("extras_require"):
-        groups = kwargs["extras_require"]
-        lists = [*groups.values()] if isinstance(groups, dict) else [[None]]
-        if not all(isinstance(it, str) and _REQUIREMENT.fullmatch(it) for group in lists for it in group or [None]):
-            yield unknown("this value of extras_require is not evaluated")
 
 
 def _packages(

@@ -14,7 +14,7 @@ from grader.static_python.values import too_large
 
 _MAX_DIGITS = 400  # that round leaves
 _OF_SIGNATURE = re.compile(r"positional argument|keyword argument|required keyword")
-_MAX_SMALL = 200  # arguments of factorial and its like
+_FAST_GROWING = ("factorial", "comb", "perm", "prod", "lcm")
 
 # Calls a function value with arguments, for the functions that call others: map, filter, sorted.
 Apply = Callable[[py.Value, list[py.Value]], py.Value]
@@ -86,18 +86,6 @@ def _round(number: py.Value, ndigits: py.Value = None) -> py.Value:
     return round(number, ndigits)
 
 
-def _small(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
-    """Return a function of integers whose results grow fast, for small arguments only."""
-
-    def bounded(*args: py.Value, **kwargs: py.Value) -> py.Value:
-        parts = [part for value in args for part in (value if isinstance(value, list | tuple | range) else [value])]
-        if len(parts) > _MAX_SMALL or any(isinstance(part, int) and abs(part) > _MAX_SMALL for part in parts):
-            too_large("number")
-        return function(*args, **kwargs)
-
-    return bounded
-
-
 def _range(*bounds: int) -> range:
     numbers = range(*bounds)
     if numbers[py.MAX_PARTS :]:
@@ -137,20 +125,17 @@ def truth(value: py.Value) -> bool:
     return bool(call_plain(bool, value))
 
 
-def _keyed(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
-    """Return sorted, min or max: of the items of a value, or of several values, by a key."""
+def _ordering(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
+    """Return sorted, min or max: of the items of a value, or of several values."""
 
-    def by_key(apply: Apply, *args: py.Value, key: py.Value = None, **named: py.Value) -> py.Value:
+    def of_known(*args: py.Value, **named: py.Value) -> py.Value:
+        if "key" in named:
+            _refuse("a key of sorted, min or max")
         items = items_of(args[0]) if len(args) == 1 else list(args)
         known([*items, *named.values()])
-        arguments = [items] if len(args) == 1 else items
-        if key is None or (function is sorted and len(args) != 1):
-            return function(*arguments, **named)
-        keys = [known(apply(key, [item])) for item in items]
-        order = function(range(len(items)), key=keys.__getitem__, **named)
-        return [items[index] for index in order] if isinstance(order, list) else items[order]
+        return function(*([items] if len(args) == 1 else items), **named)
 
-    return by_key
+    return of_known
 
 
 _HOLDING: dict[str, Callable[..., Any]] = {
@@ -159,11 +144,10 @@ _HOLDING: dict[str, Callable[..., Any]] = {
     "bool": lambda *args: truth(*args) if args else False, "iter": lambda value: py.Items(iterate(value)),
     "enumerate": lambda value, start=0: py.Items(enumerate(iterate(value), known(start))),
     "zip": lambda *values: py.Items(zip(*map(iterate, values), strict=False)),
+    "sorted": _ordering(sorted), "min": _ordering(min), "max": _ordering(max),
     "any": lambda items: any(map(truth, iterate(items))), "all": lambda items: all(map(truth, iterate(items))),
 }  # fmt: skip
-_APPLYING: dict[str, Callable[..., Any]] = {
-    "map": _map, "filter": _filter, "sorted": _keyed(sorted), "min": _keyed(min), "max": _keyed(max),
-}  # fmt: skip
+_APPLYING: dict[str, Callable[..., Any]] = {"map": _map, "filter": _filter}
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "float": float, "int": int, "abs": abs, "ord": ord, "round": _round, "range": _range, "sum": _sum,
     **{
@@ -183,7 +167,7 @@ BUILTINS: Mapping[str, py.PlainFunction] = {
 MATH: Mapping[str, py.Value] = {
     **{name: getattr(math, name) for name in ("pi", "e", "tau", "inf", "nan")},
     **{
-        name: py.PlainFunction(name, _small(value) if name in ("factorial", "comb", "perm", "prod", "lcm") else value)
+        name: py.PlainFunction(name, _refuse_function(name) if name in _FAST_GROWING else value)
         for name, value in vars(math).items()
         if callable(value) and not name.startswith("_")
     },

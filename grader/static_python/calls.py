@@ -14,8 +14,8 @@ from grader.static_python.parse import Position, position_of
 
 _MAX_DEPTH = 30
 _CHANGING: Mapping[type, tuple[str, ...]] = {
-    list: ("append", "extend", "insert", "sort", "reverse", "clear", "remove", "pop", "index", "count"),
-    dict: ("update", "setdefault", "pop", "clear"),
+    list: ("append", "extend", "insert", "sort", "reverse", "pop"),
+    dict: ("update", "pop"),
 }
 _TEXT_METHODS = frozenset(name for name in dir(str) if not name.startswith("_"))
 
@@ -131,10 +131,7 @@ class Calls(Evaluation):
             if name in ("extend", "update"):
                 args = [value if isinstance(value, dict) else list(iterate(value)) for value in args]
             elif name != "append":
-                known(args if name not in ("insert", "setdefault") else args[:1])
-            if name in ("remove", "index", "count"):
-                self.budget.measure(owner, "holds")
-                known(owner)
+                known(args if name != "insert" else args[:1])
             return self.budget.checked(call_plain(getattr(owner, name), *args, **kwargs))
         except py.Undetermined as error:
             raise EvaluationStopped(f"the method {name} {NOT_EVALUATED} here: {error}", made.at) from None

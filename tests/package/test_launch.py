@@ -4,12 +4,10 @@ import re
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from grader.package.launch.model import Launch
-from tests.examples import examples, light
-from tests.package.launch_samples import FOLDER, INNER, SAMPLES, read, summarize, summarize_sample
+from tests.examples import light
+from tests.package.launch_samples import FOLDER, SAMPLES, read, summarize, summarize_sample
 from tests.work import limited_work
 
 # What is found in each sample: its nodes, and with their lines the files that it names, its faults and what is unknown.
@@ -241,40 +239,6 @@ def test_arguments_of_an_include_stay_set() -> None:
 """
     launch = read(text.encode(), "x.launch.xml")
     assert [node.path for node in launch.named("rviz")] == ["/opt/given.rviz", "/opt/own.rviz"]
-
-
-PIECES = st.sampled_from(
-    [piece for path in SAMPLES.values() for piece in path.read_bytes().split(b"\n")]
-    + [b"$(", b")", b"'", b'"', b"\\", b"[", b"]", b"{", b"}", b"&a ", b"*a", b"<launch>", b"</launch>", b"\0", b"\xff", b"\xed\xa0\x80"]
-)  # fmt: skip
-
-
-@examples(20)
-@given(
-    st.sampled_from(sorted(SAMPLES)),
-    st.lists(
-        st.tuples(st.integers(0, 3000), st.integers(0, 40), PIECES | st.binary(max_size=6)), min_size=1, max_size=5
-    ),
-)
-def test_changed_files(sample: str, changes: list[tuple[int, int, bytes]]) -> None:
-    """A sample with some text removed and other text inserted is evaluated without an exception."""
-    data = SAMPLES[sample].read_bytes()
-    for at_location, length, piece in changes:
-        at = at_location % (len(data) + 1)
-        data = data[:at] + piece + data[at + length :]
-    with limited_work(60_000):
-        assert is_well_formed(read(data, sample, {**INNER, f"{FOLDER}/{sample}": data}))
-
-
-@examples(20)
-@given(
-    st.binary(max_size=300) | st.lists(PIECES, max_size=20).map(b"\n".join),
-    st.sampled_from([".py", ".xml", ".yaml", ""]),
-)
-def test_random_files(data: bytes, ending: str) -> None:
-    """Any bytes are evaluated without an exception."""
-    with limited_work(20_000):
-        assert is_well_formed(read(data, f"x.launch{ending}"))
 
 
 def test_an_included_file_is_read_again() -> None:

@@ -1,7 +1,6 @@
 """Any Python file is evaluated without an exception and in little time; what would stop Python is a fault."""
 
 import ast
-import random
 from typing import Any
 
 import pytest
@@ -12,7 +11,7 @@ from grader.files.tree import File, make_tree
 from grader.package.setup_py import Setup, read_setup
 from grader.static_python.parse import Code, parse
 from tests.examples import examples, spread
-from tests.package.my_robot import FILES, SAMPLES
+from tests.package.my_robot import FILES
 from tests.work import limited_work
 
 
@@ -22,7 +21,6 @@ def read_nothing(limit: int, *, first: bool = False) -> bytes:
 
 
 _TREE = make_tree("my_robot", [File(path, 0, read_nothing) for path in FILES], [])
-_TEXTS = [path.read_text(encoding="utf-8") for path in SAMPLES.values()]
 
 
 def evaluated(text: str | bytes) -> Setup:
@@ -136,28 +134,6 @@ _START = "import os\nfrom glob import glob\nfrom pathlib import Path\nfrom setup
 def test_any_program_is_evaluated(program: str) -> None:
     """No program raises an exception in the evaluation."""
     evaluated(_START + program)
-
-
-@examples(30)
-@given(text=st.sampled_from(_TEXTS), seed=st.integers(0, 10**6), count=st.integers(1, 4), of_lines=st.booleans())
-def test_a_damaged_sample_is_evaluated(text: str, seed: int, count: int, of_lines: bool) -> None:
-    """A file whose lines or characters were lost, doubled or swapped is evaluated without an exception."""
-    chance = random.Random(seed)
-    parts = text.splitlines(keepends=True) if of_lines else list(text)
-    for _ in range(count):
-        one, other, change = chance.randrange(len(parts)), chance.randrange(len(parts)), chance.randrange(3)
-        lost_or_kept = parts[one] if change == 1 else parts.pop(one)
-        if change:
-            parts.insert(other, lost_or_kept)
-        parts = parts or [text]
-    evaluated("".join(parts))
-
-
-@examples(30)
-@given(data=st.binary(max_size=200) | st.text(max_size=200).map(lambda text: text.encode("utf-8", "replace")))
-def test_any_bytes_are_evaluated(data: bytes) -> None:
-    """Bytes that are no program are evaluated without an exception."""
-    evaluated(data)
 
 
 # --- Too much ---------------------------------------------------------------------------------------------------------

@@ -108,8 +108,6 @@ def test_every_tier() -> None:
         ("urdf/my_robot.urdf", "x/urdf/my_robot.urdf", DEEPER),
         ("a/urdf/my_robot.urdf", "b/urdf/my_robot.urdf", LATER),
         ("urdf/my_robot.urdf", "urdf/My_Robot.urdf", LESS_LIKE),
-        ("deep/down/my_robot.urdf", "my_robot.urdf.bak.txt", BACKUP),
-        ("src/my_robot.urdf", "backup/urdf/my_robot.urdf", BACKUP),
         ("x/y/my_robot_v2.urdf", "my_robotOld.urdf", BACKUP),
         ("deep/down/my_robot.urdf", "my_robot.urdf.txt", LESS_LIKE),
         ("x/my_robot.urdf.xacro", "robot.urdf", LESS_LIKE),

@@ -78,31 +78,6 @@ def test_a_name_that_says_xacro_means_expansion() -> None:
     assert state(single(REFERENCE, "a.xacro")) == "read"
 
 
-def test_xacro_that_is_loaded_without_xacro_loses_its_loading_alone() -> None:
-    """ROS 2's verdict on the text as it stands costs urdf-loads; all else is graded on the expansion."""
-    found = single(PLAIN, "my_robot.urdf")
-    lost = {name: status for name, status in statuses(found).items() if status != "passed"}
-    assert lost == {"urdf-loads": "failed"}
-    report = grade(LAB6, found, ["task1"])
-    assert any("loaded without xacro" in note for note in report.notes)
-    message = report.results[0].outcome.message
-    assert "ros2 run xacro" in message
-    assert "${-pi/2}" in message
-
-
-def test_xacro_that_ros_loads_in_part_is_graded_on_its_expansion() -> None:
-    """ROS 2 loads a text without the links that macros make: that costs urdf-loads, whatever the name of the file."""
-    start, end = PLAIN.index('<link name="lidar">'), PLAIN.index('<link name="left_wheel">')
-    macro = f'<xacro:macro name="m">{PLAIN[start:end]}</xacro:macro><xacro:m/>'
-    text = (PLAIN[:start] + macro + PLAIN[end:]).replace("${-pi/2}", "-1.57")
-    for name in ("my_robot.urdf", "robot.urdf.txt"):
-        found = single(text, name)
-        assert (state(found), found.verdict) == ("both", "degraded")
-        assert {it: status for it, status in statuses(found).items() if status != "passed"} == {"urdf-loads": "failed"}
-    message = grade(LAB6, found, ["task1"]).results[0].outcome.message
-    assert message.endswith("ROS 2 ignores its tags, and the robot lacks what they stand for")
-
-
 def test_xacro_that_makes_no_difference_is_read_as_it_stands() -> None:
     """Macros for masses alone, and an include that is missing, take nothing away from what ROS 2 loads and RViz shows."""
     mass = '<xacro:macro name="m"><inertial><mass value="${1}"/></inertial></xacro:macro>'
@@ -125,32 +100,6 @@ def test_launch_arguments_reach_xacro(tmp_path: Path) -> None:
     assert set(statuses(given).values()) == {"passed"}
     default = package_with(tmp_path / "b", text, command="'xacro ', share + '/my_robot.urdf'")
     assert statuses(default)["lidar-shape"] == "failed"
-
-
-def test_a_missing_include_of_the_submission_fails_its_loading_alone(tmp_path: Path) -> None:
-    """A file of the submission that does not exist fails urdf-loads; what is there is graded."""
-    text = inserted('<xacro:include filename="inertia.xacro"/>')
-    found = package_with(tmp_path, text, name="my_robot.urdf.xacro")
-    lost = {name: status for name, status in statuses(found).items() if status != "passed"}
-    assert lost == {"urdf-loads": "failed"}
-    results = grade(LAB6, found, ["task1"]).results
-    assert "there is no file" in results[0].outcome.message
-    assert results[0].outcome.location is not None
-    assert results[0].outcome.location.path.endswith("my_robot.urdf.xacro")
-
-
-def test_an_include_of_another_package_leaves_only_what_depends_on_it_undecided(tmp_path: Path) -> None:
-    """$(find other_package) leaves urdf-loads undecided, and whatever is missing; a base that is there is graded."""
-    include = '<xacro:include filename="$(find other_robot)/urdf/inertia.xacro"/>'
-    found = package_with(tmp_path / "a", inserted(include), name="my_robot.urdf.xacro")
-    assert {name for name, status in statuses(found).items() if status != "passed"} == {"urdf-loads"}
-    assert statuses(found)["urdf-loads"] == "pending"
-    lidar = re.compile(r'<link name="lidar">.*?</link>|<joint name="base_lidar_joint".*?</joint>', re.DOTALL)
-    without = package_with(tmp_path / "b", lidar.sub("", inserted(include)), name="my_robot.urdf.xacro")
-    undecided = {name for name, status in statuses(without).items() if status == "pending"}
-    assert undecided >= {"urdf-loads", "lidar-shape", "lidar-white", "lidar-fixed", "lidar-frame", "lidar-on-top"}
-    assert statuses(without)["base-box"] == statuses(without)["left-wheel-forward"] == "passed"
-    assert "failed" not in statuses(without).values()
 
 
 def test_an_unknown_macro_of_a_missing_include_hides_nothing_of_its_link(tmp_path: Path) -> None:
