@@ -28,6 +28,7 @@ _TOKEN = r"""(?sx)
 _LONG_KEY = re.compile(
     rf"""(?m)(?:^|[\[{{,])[ \t]*+((?:(?:[\w-]++|"(?:[^"\\\n]|\\.)*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){{{_MAX_DEPTH}}})"""
 )
+_MAX_COMPLAINTS = 1000  # lines about one file
 _MAX_WIDTH = 100  # characters of a line that are shown on each side of a mistake
 _PLACE = r" \(at (?:line (\d+), column (\d+)|end of document)\)$"
 
@@ -42,8 +43,7 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
             raise RubricError((f"{shown}:{line}: a key has more than {_MAX_DEPTH} parts",))
         return text, tomllib.loads(text, parse_float=Decimal)
     except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise RubricError((f"{shown}:{line}: this is not UTF-8 text; save it as UTF-8",)) from None
+        raise RubricError((f"{shown}{_encoding(data, error.start)}",)) from None
     except tomllib.TOMLDecodeError as error:
         raise RubricError((f"{shown}:{_mistake(str(error), text)}",)) from None
     except RecursionError:
@@ -57,7 +57,9 @@ def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Pat
     if complaints:
         lines = key_lines(text)
         found = sorted((line_of(lines, where), order, what) for order, (where, what) in enumerate(complaints))
-        raise RubricError(tuple(f"{printable_path(path)}:{line}: {what}" for line, _, what in found))
+        shown, more = printable_path(path), len(found) - _MAX_COMPLAINTS
+        listed = tuple(f"{shown}:{line}: {what}" for line, _, what in found[:_MAX_COMPLAINTS])
+        raise RubricError((*listed, f"{shown}: {more} more mistakes are not listed") if more > 0 else listed)
 
 
 def _mistake(error: str, text: str) -> str:
@@ -67,6 +69,14 @@ def _mistake(error: str, text: str) -> str:
     row, at = (int(line), int(column)) if line else (len(lines), len(lines[-1]) + 1)
     around = lines[row - 1][max(0, at - _MAX_WIDTH) : at + _MAX_WIDTH].strip() or "an empty line"
     return f"{row}:{at}: {said[0].lower()}{said[1:]}: {printable(around)}"
+
+
+def _encoding(data: bytes, at: int) -> str:
+    """Return why bytes are not UTF-8 text, after a line if that is known."""
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return ": this is UTF-16 text; save it as UTF-8"
+    line = data.count(b"\n", 0, at) + 1
+    return f":{line}: this is not UTF-8 text; save it as UTF-8"
 
 
 def key_lines(text: str) -> dict[TomlPath, int]:

@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from grader.checks.toml_types import TomlType, WrongValue, simple_type
@@ -10,6 +10,7 @@ from grader.grading.toml_file import TomlPath
 from grader.names import did_you_mean
 from grader.text import cut
 
+_MAX_GUESSES = 50  # searches for a similar name in one rubric: each takes its time
 _MAX_SHOWN = 40  # characters of a value
 _MAX_BITS = 1000  # of a whole number that is written out
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
@@ -57,13 +58,14 @@ class TomlRowReader:
 
     def __init__(self) -> None:
         self.complaints: list[tuple[TomlPath, str]] = []
+        self._guesses = _MAX_GUESSES
 
     def row(self, where: TomlPath, row: TomlRow, table: KeyTable, defaults: Mapping[str, Any] = _NOTHING) -> TomlRow:
         """Return the valid values of a table, converted; complain of the others and of missing ones."""
         parsed: TomlRow = {**defaults}
         for key, value in row.items():
             if key not in table.keys:
-                hint = did_you_mean(key, table.keys) or f"; it has: {', '.join(table.keys)}"
+                hint = self.guess(key, table.keys) or f"; it has: {', '.join(table.keys)}"
                 self.complain((*where, key), f"a {table.name} has no key {key!r}{hint}")
                 continue
             try:
@@ -74,6 +76,11 @@ class TomlRowReader:
             if key not in row and key not in defaults:
                 self.complain(where, f"this {table.name} has no {key}")
         return parsed
+
+    def guess(self, name: str, known: Iterable[str]) -> str:
+        """Return which known name a misspelt one may mean, as a clause; empty if none is similar."""
+        self._guesses -= 1
+        return did_you_mean(name, known) if self._guesses >= 0 else ""
 
     def complain(self, where: TomlPath, message: str) -> None:
         """Add a mistake in the value of a key."""

@@ -13,7 +13,6 @@ from grader.grading import keys
 from grader.grading.criterion import DEADLINE, TOTAL
 from grader.grading.toml_file import TomlPath
 from grader.grading.toml_rows import KeyTable, TomlRow, TomlRowReader, shorten_value
-from grader.names import did_you_mean
 from grader.robot.selectors import is_selector, texts_in
 from grader.text import enumerated
 
@@ -32,7 +31,7 @@ class Validation:
 
     def __init__(self, table: TomlRow) -> None:
         self._reader = TomlRowReader()
-        self._row, self._complain = self._reader.row, self._reader.complain
+        self._row, self._guess, self._complain = self._reader.row, self._reader.guess, self._reader.complain
         self.bound: list[BoundCheck] = []
         self.carried: list[list[BoundCarried]] = []
         self._find_check, self._check_names = cache(find_check), cache(check_names)
@@ -118,7 +117,7 @@ class Validation:
     def _check_part(self, where: TomlPath, row: TomlRow, parts: Collection[str]) -> None:
         part = row.get("part")
         if part is not None and part not in parts:
-            hint = did_you_mean(part, parts) or f"; there are: {enumerated(parts, _MAX_LISTED) or 'none'}"
+            hint = self._guess(part, parts) or f"; there are: {enumerated(parts, _MAX_LISTED) or 'none'}"
             self._complain((*where, "part"), f"there is no part {part!r}{hint}")
 
     def _check_order(self, where: TomlPath, row: TomlRow, positions: Mapping[str, int]) -> None:
@@ -136,7 +135,7 @@ class Validation:
             elif name in positions:
                 message = f"{verb} {name!r}, which is below: a criterion can only {action} those above it"
             else:
-                message = f"{verb} {name!r}, which does not exist{did_you_mean(name, positions)}"
+                message = f"{verb} {name!r}, which does not exist{self._guess(name, positions)}"
             self._complain(where, message)
 
     def _bind_carried(
@@ -151,7 +150,7 @@ class Validation:
         """Return the adjustments by criterion."""
         for name in (adjusted := self.rubric.get("adjust", {})):
             if name not in positions:
-                hint = did_you_mean(name, positions)
+                hint = self._guess(name, positions)
                 self._complain(("adjust", name), f"adjusts {name!r}, which does not exist{hint}")
             elif not isinstance(adjusted[name], dict):
                 message = f"the adjustment of {name} must be a table, not {shorten_value(adjusted[name])}"
@@ -182,7 +181,7 @@ class Validation:
             parameter = check.parameters.get(key)
             if parameter is None:
                 known = [parameter for parameter in check.parameters if parameter not in given]
-                hint = did_you_mean(key, known) or f"; it takes: {', '.join(check.parameters) or 'nothing'}"
+                hint = self._guess(key, known) or f"; it takes: {', '.join(check.parameters) or 'nothing'}"
                 self._complain((*where, key), f"the check {check.name} takes no {key!r}{hint}")
                 continue
             try:
@@ -198,7 +197,7 @@ class Validation:
             self._complain(where, str(error))
             return None
         if check is None:
-            hint = did_you_mean(name, self._check_names()) or "; `grader rubric checks` lists them"
+            hint = self._guess(name, self._check_names()) or "; `grader rubric checks` lists them"
             self._complain(where, f"there is no check {name!r}{hint}")
         return check
 
