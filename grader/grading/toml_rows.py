@@ -1,6 +1,5 @@
 """Read the tables of a rubric: values are converted, and every mistake is collected with the path of its key."""
 
-import json
 import re
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
@@ -101,6 +100,8 @@ def toml_literal(value: Any) -> str:
             text = repr(value)
             text = f"{value:.15f}".rstrip("0") if "e" in text and 1e-15 < abs(value) < 1 else text
         case str():
+            import json  # late: for a rubric with a mistake, or a new one
+
             text = json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
         case Mapping():
             text = f"{{ {', '.join(assignment(key, item) for key, item in value.items())} }}" if value else "{}"

@@ -75,7 +75,8 @@ class GradeRun(NamedTuple):
 
 def grade_and_save(request: GradeRequest, warn: Warn) -> GradeRun:
     """Grade a submission and save its reports. Raises GraderError."""
-    modes = remove_reports(request.saves, files_of(request.rubric, request.answers), request.path)
+    rubric = files_of(request.rubric, request.answers) if request.saves else ()
+    modes = remove_reports(request.saves, rubric, request.path)
     run = grade_submission(request, warn)
     if request.fix is None or run.fix is None:
         save_reports(request, run, modes)

@@ -48,7 +48,8 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
             a report that cannot be saved.
     """
     watched = _watched(request)
-    modes = remove_reports(request.saves, files_of(request.rubric, request.answers), request.path)
+    rubric = files_of(request.rubric, request.answers) if request.saves else ()
+    modes = remove_reports(request.saves, rubric, request.path)
     _ = request.threshold  # refuse a wrong one at once
     gc.enable()  # unlike other commands, this one may run for hours
     code: ExitCode | None = None

@@ -10,8 +10,6 @@ from typing import Any
 
 from grader.package.launch.actions import CIRCULAR_INCLUDE, KINDS
 from grader.package.launch.api import DESCRIPTION, is_a
-from grader.package.launch.frontend import read_frontend
-from grader.package.launch.frontend_actions import actions_of
 from grader.package.launch.model import Context, Findings, Launch, LaunchFault, StartedNode, Surroundings
 from grader.package.launch.places import PREFIX
 from grader.package.launch.python_file import PythonLaunchFile
@@ -130,6 +128,9 @@ class _LaunchReader:
 
 
 def _frontend(data: bytes, path: str, context: Context, include: Include, *, is_yaml: bool) -> Launch:
+    from grader.package.launch.frontend import read_frontend  # late: most launch files are Python
+    from grader.package.launch.frontend_actions import actions_of
+
     source = Source(path, data.decode("utf-8", "replace"))
     findings = Findings(lambda position: Location(path, position.line, position.column))
     root = read_frontend(data, source, is_yaml=is_yaml)
