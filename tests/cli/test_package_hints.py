@@ -88,8 +88,11 @@ def test_the_cause_gives_no_answer_away(name: str, tmp_path: Path) -> None:
 def test_the_reference_is_not_pasted_over_the_student(tmp_path: Path) -> None:
     """A launch file that is written in another way keeps its calls: only the path is replaced."""
     shutil.copytree(ROOT / "submissions/sensors/launch-home-path/sensor_robot", tmp_path / "sensor_robot")
-    [hint] = hints(graded(tmp_path / "sensor_robot", "--rubric", "sensors", "--hints", "edit"))
-    assert hint["edits"] == [] or [edit["old"] for edit in hint["edits"]] == [
+    shutil.copytree(ROOT / "rubrics/sensors", tmp_path / "lab")
+    rubric = tmp_path / "lab/rubric.toml"
+    rubric.write_text(f'hints = "edit"\n{rubric.read_text(encoding="utf-8")}', encoding="utf-8")
+    [hint] = hints(graded(tmp_path / "sensor_robot", "--rubric", str(rubric)))
+    assert [edit["old"] for edit in hint["edits"]] == [
         "'/home/student/ros2_ws/src/sensor_robot/urdf/sensor_robot.urdf.xacro'"
     ]
     assert "ParameterValue" not in hint["message"]
