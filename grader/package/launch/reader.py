@@ -25,7 +25,6 @@ _NODE = "launch_ros.actions.node.Node"
 _MAX_INCLUDES = 10
 # What a launch file shares with those that it includes.
 _JOINED = ("nodes", "references", "faults", "unknown", "doubts")
-
 _MAX_KEPT = 4  # launch files
 # The results of launch files that are read again: those of a handout, or while hints are searched. Each with what it
 # asked, and the answers.
