@@ -37,6 +37,15 @@ def test_an_interrupt_in_a_finalizer_is_not_lost() -> None:
 
 
 @pytest.mark.exhaustive
+def test_an_interrupt_that_is_repeated_too_early_is_not_lost() -> None:
+    """On a busy machine it arrives in the hook that has asked for it."""
+    start = "lambda self: Timer.start(self) if early else (early.append(1), signal.raise_signal(2))"
+    timer = f"early = []; from threading import Timer; ending.Timer = type('Early', (Timer,), {{'start': {start}}})"
+    body = f"from grader.cli import ending; {timer}; Interrupted(); time.sleep(10)"
+    assert ran(body) == ("interrupted\n", "")
+
+
+@pytest.mark.exhaustive
 def test_a_file_that_an_interrupt_leaves_open_is_no_mistake() -> None:
     """A warning about it would be printed while the exception is on its way; without an interrupt it is."""
     leaves_open = "file = open(sys.executable); file = None"
