@@ -97,8 +97,8 @@ def plain(word: str) -> str:
     """Return an id, name or group without differences of case, spaces, `_` and `-`: `Doe, Jane` is Jane Doe."""
     if not word.isascii():
         word = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", word).casefold())
-    last, comma, first = word.casefold().translate(_ALIKE).partition(",")
-    return " ".join((f"{first} {last}" if comma else last).split())
+    last, _, first = word.casefold().translate(_ALIKE).partition(",")
+    return " ".join(f"{first} {last}".replace(",", " ").split())
 
 
 def read_roster(data: bytes, shown: str) -> Roster:

@@ -61,10 +61,10 @@ def test_times(time: object) -> None:
     assert iso_time(f"on {text}") == ""
 
 
-@given(st.text(), st.text())
+@given(st.text() | st.text("aB,-_ "), st.text())
 def test_normalising_again_changes_nothing(one: str, other: str) -> None:
     """A normalised word is its own; case, separators and the order of `last, first` make no difference."""
     word = plain(one)
-    assert plain(word.upper().lower()) in (word, plain(word.upper().lower()))
+    assert not word.isascii() or plain(word.upper()) == word
     assert plain(f"{word}_{plain(other)}") == plain(f"{word} - {plain(other)}")
     assert plain(word) == word
