@@ -69,6 +69,13 @@ TURNED: Changes = (
             id="the names of two values that are exchanged",
         ),
         pytest.param(
+            properties(base="0.4", track="0.3")
+            + '<xacro:macro name="at" params="side"><origin xyz="${-base/2} ${side*track/2} 0" rpy="-1.57 0 0"/></xacro:macro>',
+            ((f"<origin {LEFT}/>", '<xacro:at side="1"/>'), (f"<origin {RIGHT}/>", '<xacro:at side="-1"/>')),
+            [('value="0.4"', 'value="0.3"'), ('value="0.3"', 'value="0.4"')],
+            id="two definitions that are exchanged",
+        ),
+        pytest.param(
             '<xacro:macro name="turn" params="type"><xacro:if value="${type == \'continous\'}"><axis xyz="0 0 1"/></xacro:if></xacro:macro>',
             (('<axis xyz="0 0 1"/>', '<xacro:turn type="continuous"/>'),),
             [("value=\"${type == 'continous'}\"", "value=\"${type == 'continuous'}\"")],

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 _RESERVE = 20  # gradings for proofs
 _AROUND = " ,\r\n"  # of a text that is added
+_MAX_PARTS = 5  # edits of a hint of which each is tried without
 
 
 class _Tried(NamedTuple):
@@ -128,6 +129,8 @@ class HintSearch:
         lost = set(self._lost)
         wanted = best.passes & lost
         together = self._gains(self.edits, edits, self.results)
+        if together and best.proposal.rank in (REFERENCE, STRUCTURE) and 1 < len(edits) <= _MAX_PARTS:
+            edits, together = self._needed(edits, together)
         after, best = self._after, best._replace(proposal=best.proposal._replace(edits=edits))
         alone = self._gains((), edits, self.trials.results) if self.found else {}
         is_late = bool(self.found) and not wanted & alone.keys()
@@ -149,6 +152,17 @@ class HintSearch:
         self.results = after
         self._refused = set()
         return True
+
+    def _needed(self, edits: Edits, gains: dict[str, Decimal]) -> tuple[Edits, dict[str, Decimal]]:
+        """Leave out changes of values without which the others gain as much, and return what the rest gains."""
+        after = self._after
+        for edit in [it for it in edits if it.old and it.new]:
+            rest = tuple(it for it in edits if it is not edit)
+            left = self._gains(self.edits, rest, self.results) if rest else {}
+            if gains.keys() <= left.keys():
+                edits, gains, after = rest, left, self._after
+        self._after = after
+        return edits, gains
 
     def _equal_to(
         self, best: _Tried, gains: Mapping[str, Decimal], wanted: frozenset[str], tried: Iterable[_Tried]

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator
+from itertools import combinations
 from math import inf
 
 from grader.robot.edits.difference import RobotDifference
@@ -96,6 +97,10 @@ def _of_number(difference: RobotDifference, element: Element, name: str) -> Iter
             if edits and value > least and not is_length and not is_side:
                 cause = f"a number from which the {name} of {{}} is computed"
                 yield difference.piece(element, cause, edits, rank=OWN)
+    lengths = [it for it in defined if abs(values_of(it[0])[0]) != 1.0]
+    for (one, with_one), (other, with_other) in combinations(lengths, 2):
+        edits = (*with_one(other), *with_other(one)) if one != other else ()
+        yield difference.piece(element, f"the numbers from which the {name} of {{}} is computed", edits, rank=OWN)
 
 
 def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
