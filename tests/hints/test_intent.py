@@ -103,6 +103,12 @@ TURNED: Changes = (
             "", (('<material name="white"/>', "<material name=‘white’/>"),), [("<material name=‘white’/>", '<material name="white"/>')],
             id="single quotes of a word processor",
         ),
+        pytest.param(
+            "",
+            ((RIGHT, RIGHT.replace("-1.57", "1.57")), ('xyz="0 0 -0.025"', 'xyz="0 0 0.025"'), ('xyz="0 0 1"', 'xyz="0 0 0.5"')),
+            [('xyz="0 0 0.025"', 'xyz="0 0 -0.025"'), ('rpy="1.57 0 0"', 'rpy="-1.57 0 0"')],
+            id="a mirrored wheel whose axis is of another length",
+        ),
     ],
 )  # fmt: skip
 def test_what_is_meant_is_written(defined: str, changes: Changes, expected: list[tuple[str, str]]) -> None:
