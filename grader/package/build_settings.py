@@ -51,7 +51,7 @@ def argument_findings(
 ) -> Iterator[Finding]:
     """Yield what is wrong with the arguments of setup() besides data_files, and what of them is not evaluated."""
     for name, value in kwargs.items():
-        if name not in _CHECKED and value is not None and not _USUAL.get(name, _is_unusual)(value):
+        if name not in _CHECKED and value is not None and not (name in _USUAL and _USUAL[name](value)):
             yield unknown_in(value) or unknown(f"this value of {name} in setup() is not evaluated")
     yield from _version(kwargs, unknown)
     yield from _entry_points(kwargs, unknown)
@@ -71,10 +71,6 @@ def _are_requirements(value: Value) -> bool:
     if isinstance(value, str):
         value = [value] if value else []
     return _is_list(value) and all(map(_REQUIREMENT.fullmatch, value))
-
-
-def _is_unusual(_: Value) -> bool:
-    return False
 
 
 # Whether setuptools certainly accepts the value of an argument.
