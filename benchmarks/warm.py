@@ -18,7 +18,7 @@ from timing import PACKAGE, ROOT, URDF, in_turn, repeated
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
-from grader.static_python.budget import Budget
+from grader.python.budget import Budget
 from grader.submission.opening import open_submission, read_submission
 from grader.submission.surroundings import Surroundings
 from grader.xacro.expansion import expand

@@ -10,10 +10,10 @@ from rich.text import Text
 
 from grader.checks.registry import own_checks
 from grader.grading.grade import grade
-from grader.grading.hints.hinting import hinted
 from grader.grading.keys import ADJUSTMENT, CARRIED, CRITERION, DEFAULTS, EVIDENCE, IGNORE, LATE, PART, RUBRIC, TEST
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
+from grader.hints.hinting import hinted
 from grader.report.rubrics import EFFECTS, EVERY_KIND, default_text, example_blocks, explanation_of
 from grader.report.terminal import render_terminal
 from grader.submission.opening import open_submission

@@ -5,7 +5,7 @@ import os
 import sys
 from types import ModuleType
 
-_NOT_GRADED, _FAULT, _INTERRUPTED = 2, 3, 130  # as in grader.usecases.exit_codes, which is not imported for --version
+_NOT_GRADED, _FAULT, _INTERRUPTED = 2, 3, 130  # as in grader.commands.exit_codes, which is not imported for --version
 
 # Libraries import these modules of the standard library, and most commands use nothing of them.
 _LATE = ("bz2", "ipaddress", "linecache", "lzma", "subprocess", "textwrap", "tokenize")

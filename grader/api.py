@@ -4,12 +4,12 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
+from grader.commands.hints import add_hints
+from grader.commands.rubrics import DEFAULT_RUBRIC
 from grader.grading.grade import grade as grade_submission
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric, load_rubric
 from grader.submission.opening import open_submission
-from grader.usecases.hints import add_hints
-from grader.usecases.rubrics import DEFAULT_RUBRIC
 
 
 def grade(path: str | Path, rubric: str | Path | Rubric = DEFAULT_RUBRIC, *, parts: Iterable[str] = ()) -> Report:

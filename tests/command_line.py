@@ -136,8 +136,8 @@ def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[
         patch.object(sys, "argv", ["grader", *words]),
         patch("grader.grading.rubric._validated", validated_once),
         patch("grader.documents.collection.DocumentCollection._run", convert_here),
-        patch("grader.workers.pool.ProcessPool", _Pool),
-        patch("grader.workers.forks.start_server", bool),
+        patch("grader.classroom.workers.pool.ProcessPool", _Pool),
+        patch("grader.classroom.workers.forks.start_server", bool),
         patch("os.fsync", os.fsync if is_preloaded() else bool),
         patch("grader.cli.terminal._LINE_SECONDS", inf),  # no line depends on how busy the machine is
         _redirected(0, files[0]),

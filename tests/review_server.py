@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 
 from grader.classroom.grades import Class
 from grader.classroom.review_items import ReviewFilter
-from grader.usecases.local_server import HOST, LocalServer
-from grader.usecases.review_page import ReviewPage
-from grader.usecases.review_session import ReviewSession
+from grader.commands.local_server import HOST, LocalServer
+from grader.commands.review_page import ReviewPage
+from grader.commands.review_session import ReviewSession
 
 _TIMEOUT = 60.0  # seconds, of a machine that is busy
 

@@ -12,8 +12,8 @@ from random import Random
 from hypothesis import strategies as st
 from lxml import etree
 
-from grader.mutation.equivalents import split_joint as split
-from grader.mutation.trees import (
+from grader.authoring.equivalents import split_joint as split
+from grader.authoring.trees import (
     add_joint,
     attribute_numbers,
     attribute_text,

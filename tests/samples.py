@@ -4,11 +4,11 @@ from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
+from grader.authoring.samples import Sample as ExpectedSample
+from grader.authoring.samples import read_samples
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric, load_rubric, shipped_rubrics
-from grader.mutation.samples import Sample as ExpectedSample
-from grader.mutation.samples import read_samples
 from grader.submission.opening import open_submission
 from grader.submission.submission import Submission
 

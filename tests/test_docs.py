@@ -14,17 +14,17 @@ import yaml
 from typer.main import get_command
 
 from grader import __version__
+from grader.authoring import testing
+from grader.classroom.workers import pool
 from grader.cli import ending
 from grader.cli.app import COMMANDS, make_app
 from grader.documents import collection, converter, document, pictures
 from grader.files import limits
 from grader.grading.rubric import load_rubric, shipped_rubrics
-from grader.mutation import testing
 from grader.package import package
+from grader.python import budget, expressions, values
 from grader.robot import diagnostics
-from grader.static_python import budget, expressions, values
 from grader.submission import packages
-from grader.workers import pool
 from tests.command_line import ROOT, run
 
 MIB = 1024 * 1024

@@ -6,8 +6,8 @@ from decimal import Decimal
 
 import pytest
 
+from grader.commands.rubrics import DEFAULT_RUBRIC
 from grader.grading.rubric import Rubric
-from grader.usecases.rubrics import DEFAULT_RUBRIC
 from tests.samples import ROOT, RUBRICS, SAMPLES
 from tests.test_architecture import MODULES
 
@@ -47,7 +47,7 @@ def test_the_code_knows_no_lab() -> None:
         for text in constants(ast.parse(path.read_text(encoding="utf-8")))
         if text in made_up
     ]
-    assert found == [("grader.usecases.rubrics", DEFAULT_RUBRIC)]
+    assert found == [("grader.commands.rubrics", DEFAULT_RUBRIC)]
 
 
 @every_rubric

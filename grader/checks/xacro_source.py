@@ -9,10 +9,10 @@ from grader.checks.toml_types import Count
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.files.reading import URDF_LIMIT
 from grader.names import did_you_mean
+from grader.python.budget import OutOfBudget
 from grader.robot.catalogue import RAW_XACRO
 from grader.robot.reader import find_xacro
 from grader.source import LazyLocation, Location, Source
-from grader.static_python.budget import OutOfBudget
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import counted, enumerated, quoted

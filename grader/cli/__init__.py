@@ -1,4 +1,4 @@
 """The commands: parse arguments, call one use case, print, exit.
 
-It imports `usecases`, and is the only package with typer. Begin with `app.py`.
+It imports `commands`, and is the only package with typer. Begin with `app.py`.
 """

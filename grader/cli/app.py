@@ -15,11 +15,11 @@ import typer
 from grader import __version__
 from grader.cli.ending import outer_limits, quiet_interrupts
 from grader.cli.terminal import warn
+from grader.commands.exit_codes import ExitCode
+from grader.commands.rubrics import DEFAULT_RUBRIC
+from grader.commands.writing import write_stdout
 from grader.errors import GraderError
 from grader.text import printable_path, shell_quoted
-from grader.usecases.exit_codes import ExitCode
-from grader.usecases.rubrics import DEFAULT_RUBRIC
-from grader.usecases.writing import write_stdout
 
 # In the order of the help, with the module of each: it holds a function, or a group of commands, of this name.
 COMMANDS = {
@@ -97,9 +97,9 @@ def _discard_reports(words: Sequence[str]) -> None:
     A report that lies there already may be forged by a student, and would count as the result of this run. The refusal
     may be about any of the arguments, so they are not parsed again.
     """
-    from grader.usecases.grade import remove_reports
-    from grader.usecases.rubrics import files_of
-    from grader.usecases.saves import read_saves
+    from grader.commands.grade import remove_reports
+    from grader.commands.rubrics import files_of
+    from grader.commands.saves import read_saves
 
     def values(option: str) -> list[str]:
         joined = [word.removeprefix(f"{option}=") for word in words if word.startswith(f"{option}=")]

@@ -6,11 +6,11 @@ from typing import Annotated, Literal, get_args
 
 import typer
 
+from grader.classroom.workers import forks
 from grader.cli.options import AnswersOption, ArgOption, FormatOption, PartOption
 from grader.cli.terminal import TERMINAL
 from grader.errors import GraderError
 from grader.report.formats import Format, OutputFormat
-from grader.workers import forks
 
 Layout = Literal["auto", "folders", "canvas", "moodle", "teams", "nbgrader"]
 _PATH = "A folder with an entry for each student, or the zip of an LMS; name those of all sections."
@@ -83,8 +83,8 @@ def batch(
     if cluster is None and paths:  # a class that is graded may need no workers
         with suppress(OSError):  # it is started again when it is needed
             forks.start_server()  # it loads what grades a submission, while this process loads what the class needs
-    from grader.usecases.class_inputs import ClassRequest
-    from grader.usecases.grade_class import grade_class
+    from grader.commands.class_inputs import ClassRequest
+    from grader.commands.grade_class import grade_class
 
     for kind in report_format or ():
         if kind.needs == "identity":

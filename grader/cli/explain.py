@@ -5,7 +5,7 @@ from typing import Annotated, Literal, get_args
 import typer
 
 from grader.cli.options import RubricOption
-from grader.usecases.rubrics import DEFAULT_RUBRIC
+from grader.commands.rubrics import DEFAULT_RUBRIC
 
 _NAME = "For example URDF051, frame_at or lidar-frame."
 

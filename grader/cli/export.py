@@ -8,7 +8,7 @@ import typer
 from grader.classroom.lms.forms import FORMS
 from grader.cli.options import GradebookOption
 from grader.cli.terminal import TERMINAL
-from grader.usecases.writing import write_stdout
+from grader.commands.writing import write_stdout
 
 _TARGETS = ("csv", *FORMS, "json", "html")
 _INTO = "The gradebook or worksheet that the LMS exported."
@@ -71,8 +71,8 @@ def export(
       Feedback in Moodle: --feedback, then "Upload multiple feedback files in a zip".
     """
     options = locals()  # named like the fields of the request
-    from grader.usecases.export import ExportRequest
-    from grader.usecases.export import export as export_grades
+    from grader.commands.export import ExportRequest
+    from grader.commands.export import export as export_grades
 
     data, code = export_grades(ExportRequest(**options), TERMINAL)
     write_stdout(data)

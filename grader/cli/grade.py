@@ -8,14 +8,14 @@ import typer
 
 from grader.cli.options import AnswersOption, ArgOption, MaxSizeOption, PartOption, RubricOption
 from grader.cli.terminal import TERMINAL, screen, warn, write_stderr
+from grader.commands.grade import GradeRequest, grade_and_save
+from grader.commands.rubrics import DEFAULT_RUBRIC
+from grader.commands.saves import read_saves
+from grader.commands.writing import write_stdout
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.levels import HintLevel
 from grader.report.formats import Format, render
-from grader.usecases.grade import GradeRequest, grade_and_save
-from grader.usecases.rubrics import DEFAULT_RUBRIC
-from grader.usecases.saves import read_saves
-from grader.usecases.writing import write_stdout
 
 _PATH = "A .urdf file, package, workspace, repository, .zip or .tar.gz, or - for standard input."
 _SAVE = "Also write a report to a file; repeatable."
@@ -72,13 +72,13 @@ def grade(
     try:
         request = GradeRequest(**options, saves=read_saves(save or ()))
         if watch:
-            from grader.usecases.watch import watch as grade_on_change
+            from grader.commands.watch import watch as grade_on_change
 
             return grade_on_change(request, TERMINAL)
         return _grade_once(request)
     except GraderError as error:
         if _is_github_job():
-            from grader.usecases.github import publish_refusal  # late: most runs are no such job
+            from grader.commands.github import publish_refusal  # late: most runs are no such job
 
             publish_refusal(str(error), write_stderr, warn)
         raise
@@ -90,7 +90,7 @@ def _grade_once(request: GradeRequest) -> int:
     text = render(run.report, request.output_format, run.base, screen(), verbose=request.verbose)
     write_stdout(text if request.output_format.needs == "console" else text.encode("utf-8", "backslashreplace"))
     if _is_github_job():
-        from grader.usecases.github import publish_report  # late: most runs are no such job
+        from grader.commands.github import publish_report  # late: most runs are no such job
 
         annotate = write_stderr if request.output_format is not Format.GITHUB else None
         publish_report(run.report, run.base, annotate, warn)

@@ -35,7 +35,7 @@ def stats(
 
       A criterion that is wrong: fix the rubric, and rerun `grader batch --rubric FILE`.
     """
-    from grader.usecases.class_figures import class_statistics
+    from grader.commands.class_figures import class_statistics
 
     return class_statistics(gradebook, output_format, TERMINAL, verbose=verbose)
 
@@ -69,7 +69,7 @@ def diff(
 
       What changed since the grades were published: --before with the number of that run.
     """
-    from grader.usecases.class_figures import compare
+    from grader.commands.class_figures import compare
 
     books = [gradebook, *(gradebooks or ())] if gradebook is not None else gradebooks or []
     return compare(tuple(books), before, after, output_format, screen())

@@ -6,10 +6,10 @@ import typer
 
 from grader.cli.options import ArgOption, MaxSizeOption
 from grader.cli.terminal import screen, warn
+from grader.commands.exit_codes import ExitCode
+from grader.commands.writing import write_stdout
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import InspectFormat, render_inspection
-from grader.usecases.exit_codes import ExitCode
-from grader.usecases.writing import write_stdout
 
 _PATH = "A .urdf file, a folder or archive with one in it, or - for standard input."
 _JOINT = "Position of a joint, in radians or metres; repeatable."
@@ -41,7 +41,7 @@ def inspect(
 
       grader inspect my_robot.urdf --format html > my_robot.html
     """
-    from grader.usecases.inspect import inspect as read
+    from grader.commands.inspect import inspect as read
 
     inspection = read(path, joint or [], relative_to, max_size, arg or [], warn)
     write_stdout(render_inspection(inspection, output_format, screen()))

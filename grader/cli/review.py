@@ -46,7 +46,7 @@ def mark(
 
       grader mark --import marks.csv --gradebook lab6-grades
     """
-    from grader.usecases.manual_marks import give_mark, import_marks, mark_missing
+    from grader.commands.manual_marks import give_mark, import_marks, mark_missing
 
     if file is not None:
         if student or criterion or points or comment or missing:
@@ -86,9 +86,9 @@ def review(
       grader review --gradebook lab6-grades --sheet sheet.csv
     """
     from grader.classroom.review_items import ReviewFilter
-    from grader.usecases.review_page import review_in_browser
-    from grader.usecases.review_pictures import write_sheet
-    from grader.usecases.review_session import ReviewSession
+    from grader.commands.review_page import review_in_browser
+    from grader.commands.review_pictures import write_sheet
+    from grader.commands.review_session import ReviewSession
 
     if section is not None and not section.strip():
         raise InputError("--section is empty: name a section, or omit it to review all")

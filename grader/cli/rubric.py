@@ -7,10 +7,10 @@ import typer
 
 from grader.cli.options import AnswersOption, FormatOption, RubricOption
 from grader.cli.terminal import TERMINAL, warn
+from grader.commands import rubrics
+from grader.commands.rubrics import DEFAULT_RUBRIC
+from grader.commands.writing import write_stdout
 from grader.report.formats import OutputFormat
-from grader.usecases import rubrics
-from grader.usecases.rubrics import DEFAULT_RUBRIC
-from grader.usecases.writing import write_stdout
 
 _HELP = """List, show, write, check and test rubrics, and list the checks.
 
@@ -97,7 +97,7 @@ def new_rubric(
 
       grader rubric new my_lab.toml --from solution.urdf --force
     """
-    from grader.usecases.rubric_making import write_rubric
+    from grader.commands.rubric_making import write_rubric
 
     return write_rubric(file, reference, warn, force=force)
 
@@ -153,7 +153,7 @@ def run_test(
 
       grader rubric test my_lab.toml samples --fail-under 100%
     """
-    from grader.usecases.rubric_making import test_rubric
+    from grader.commands.rubric_making import test_rubric
 
     is_json = output_format is OutputFormat.JSON
     text, code = test_rubric(name, folder, fail_under, is_json, TERMINAL)

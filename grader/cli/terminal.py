@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
+from grader.commands.terminal import Terminal
+from grader.commands.writing import write_stdout
 from grader.report.screen import Screen, columns
 from grader.text import without_commands
-from grader.usecases.terminal import Terminal
-from grader.usecases.writing import write_stdout
 
 if TYPE_CHECKING:
-    from grader.workers.progress import Progress
+    from grader.classroom.workers.progress import Progress
 
 _LINE_SECONDS, _TERMINAL_SECONDS = 10.0, 0.1
 

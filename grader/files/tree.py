@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple, Protocol
 
-from grader.errors import FileError
+from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.names import ignored_part
 
@@ -165,3 +165,19 @@ def parents(path: str) -> Iterator[str]:
     """Yield the folders that a path is in, the nearest first."""
     while path := path.rpartition("/")[0]:
         yield path
+
+
+def overlaid(tree: Tree, files: Mapping[str, bytes | None]) -> Tree:
+    """Return a file tree with other content of some files; None for one that is no longer there."""
+    kept = [file for path, file in tree.files.items() if path not in files]
+    new = [_file_of(path, data) for path, data in files.items() if data is not None]
+    return make_tree(tree.name, (*kept, *new), tree.folders, tree.ignored, tree.generated, tree.unseen, (tree,))
+
+
+def _file_of(path: str, data: bytes) -> File:
+    def read(limit: int, *, first: bool = False) -> bytes:
+        if not first and len(data) > limit:
+            raise InputError(f"{path} is larger than {limit} bytes")
+        return data[:limit]
+
+    return File(path, len(data), read)

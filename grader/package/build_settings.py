@@ -7,8 +7,8 @@ from configparser import ConfigParser, Error
 
 from grader.errors import InputError
 from grader.package.globbing import PackageListing
-from grader.static_python.knowledge import unknown_in
-from grader.static_python.values import Unknown, Value
+from grader.python.knowledge import unknown_in
+from grader.python.values import Unknown, Value
 from grader.text import enumerated
 
 # The arguments that name the Python packages; without one, setuptools searches for packages, but not in the folders

@@ -11,9 +11,9 @@ from pathlib import PurePosixPath
 from grader.errors import InputError
 from grader.files.names import ignored_part
 from grader.package.globbing import PackageListing, SearchError
-from grader.static_python.evaluation import Evaluation, EvaluationStopped
-from grader.static_python.knowledge import known, path_text
-from grader.static_python.values import Call, ExpressionFails, FunctionTable, Items, Undetermined, Unknown, Value
+from grader.python.evaluation import Evaluation, EvaluationStopped
+from grader.python.knowledge import known, path_text
+from grader.python.values import Call, ExpressionFails, FunctionTable, Items, Undetermined, Unknown, Value
 
 _OUTSIDE = "it reads files outside of the package"
 _GLOB_OPTIONS = ("pathname", "recursive", "root_dir", "include_hidden", "dir_fd")

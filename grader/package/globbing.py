@@ -9,9 +9,9 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from grader.files.tree import IS_LINK, Tree
-from grader.static_python.budget import Budget
-from grader.static_python.parse import Position
-from grader.static_python.values import Value
+from grader.python.budget import Budget
+from grader.python.parse import Position
+from grader.python.values import Value
 
 # The file system lists a folder, and Python a set, in any order: a result that depends on the order differs between
 # these.

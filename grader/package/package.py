@@ -10,8 +10,8 @@ from grader.errors import InputError, MissingElement, NotDecided
 from grader.files.tree import IS_LINK, Tree
 from grader.names import closest
 from grader.package.launch.places import ENDINGS, PREFIX, SHARE, is_in_launch_folder, is_launch_named, launch_stem
+from grader.python.budget import PYTHON_LIMIT, Budget
 from grader.source import Location, Source
-from grader.static_python.budget import PYTHON_LIMIT, Budget
 from grader.text import enumerated, was_not_committed
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.

@@ -9,13 +9,13 @@ from grader.package.build_settings import argument_findings, file_findings
 from grader.package.data_files import DataFiles, InstalledFile, InstallError
 from grader.package.file_functions import file_functions
 from grader.package.globbing import ORDERS, EmptyGlob, PackageListing
+from grader.python.budget import PYTHON_LIMIT, Budget
+from grader.python.evaluation import Evaluation, EvaluationStopped, PythonError
+from grader.python.interpreter import Interpreter
+from grader.python.library import PACKAGE_FOLDER, standard_functions
+from grader.python.parse import START, Code, Position, SyntaxFault, parse, position_of
+from grader.python.values import Call, ExpressionFails, QualifiedName, Unknown, Value
 from grader.source import Location, Source
-from grader.static_python.budget import PYTHON_LIMIT, Budget
-from grader.static_python.evaluation import Evaluation, EvaluationStopped, PythonError
-from grader.static_python.interpreter import Interpreter
-from grader.static_python.library import PACKAGE_FOLDER, standard_functions
-from grader.static_python.parse import START, Code, Position, SyntaxFault, parse, position_of
-from grader.static_python.values import Call, ExpressionFails, QualifiedName, Unknown, Value
 
 _ROOT = f"/{PACKAGE_FOLDER}"
 _SETUPS = ("setuptools.setup", "distutils.core.setup", "?.setup")

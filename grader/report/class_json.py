@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from grader import __version__
 from grader.classroom.grades import Class
 from grader.classroom.statistics import COUNTS, CriterionFigures, statistics
+from grader.classroom.workers.progress import Progress
 from grader.report.json_data import (
     COUNT,
     FLAG,
@@ -28,7 +29,6 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
-from grader.workers.progress import Progress
 
 _STATUSES = ("errored", "excused", "graded", "missing", "unreadable")
 _SUMMARY = Record({"students": TOTAL, **each(nullable(POINTS), "mean median")})

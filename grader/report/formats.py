@@ -47,7 +47,7 @@ class Format(_Row):
     GRADESCOPE = "gradescope", "platforms:render_gradescope", "", "gradescope.json"
     CLASSROOM50 = "classroom50", "platforms:render_classroom50", "identity", "classroom50.json"
     HTML = "html", "pages.student:render_html"
-    SVG = "svg", "drawing:render_svg"
+    SVG = "svg", "svg:render_svg"
 
 
 class InspectFormat(_Row):
@@ -55,7 +55,7 @@ class InspectFormat(_Row):
 
     TERMINAL = "terminal", "inspection:inspection_terminal", "console"
     JSON = "json", "inspection:inspection_json"
-    SVG = "svg", "drawing:inspection_svg"
+    SVG = "svg", "svg:inspection_svg"
     HTML = "html", "pages.student:inspection_html"
 
 

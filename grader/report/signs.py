@@ -8,9 +8,9 @@ from html import escape
 from itertools import compress
 from math import cos, hypot, sin, tau
 
-from grader.drawing.picture import Picture
-from grader.drawing.scene import Body, Wheel
-from grader.drawing.views import PANEL, FreePlaces, Panel, Place, frames_of, from_back_to_front
+from grader.report.drawing.picture import Picture
+from grader.report.drawing.scene import Body, Wheel
+from grader.report.drawing.views import PANEL, FreePlaces, Panel, Place, frames_of, from_back_to_front
 from grader.robot.transforms import AXES, Z_AXIS, Transform
 from grader.text import printable
 

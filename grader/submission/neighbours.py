@@ -6,10 +6,9 @@ from pathlib import Path
 
 from grader.errors import InputError, MachineError
 from grader.files.folder import read_folder
-from grader.files.tree import File, Tree
+from grader.files.tree import File, Tree, overlaid
 from grader.package.package import MANIFEST
-from grader.static_python.budget import Budget
-from grader.submission.editing import overlaid
+from grader.python.budget import Budget
 from grader.submission.packages import read_packages
 from grader.submission.submission import Lab, Opening, Submission
 from grader.submission.surroundings import Surroundings

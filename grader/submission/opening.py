@@ -7,7 +7,7 @@ from grader.errors import InputError
 from grader.files.opening import open_tree, tree_name
 from grader.files.reading import read_capped, read_standard_input, read_start
 from grader.files.tree import Tree
-from grader.static_python.budget import Budget
+from grader.python.budget import Budget
 from grader.submission.submission import DEFAULTS, Lab, Opening, Submission
 from grader.submission.urdf import Absent, Unreadable, Urdf, read_as_ros
 from grader.text import printable_path

@@ -9,8 +9,8 @@ from grader.files.tree import Tree
 from grader.names import folded
 from grader.package.launch.places import SHARE
 from grader.package.package import Package
+from grader.python.budget import Budget
 from grader.robot.model import Robot
-from grader.static_python.budget import Budget
 from grader.submission.labs import Belonging, LabFolders
 from grader.submission.packages import BACKUP, DEEPER, LATER, is_backup, package_around, read_packages
 from grader.submission.robots import RobotFile, parts_of

@@ -11,9 +11,9 @@ from grader.files.names import ROBOT_ENDINGS
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.files.tree import File, Tree, make_tree
 from grader.package.package import NO_PACKAGE, Package
+from grader.python.budget import Budget
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
-from grader.static_python.budget import Budget
 from grader.submission.urdf import Absent, OtherCandidate, Read, Unreadable, Urdf
 from grader.text import was_not_committed
 

@@ -9,8 +9,8 @@ from grader.errors import InputError, NotDecided
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree, parents
 from grader.package.package import Package
-from grader.static_python.budget import Budget
-from grader.static_python.values import Undetermined
+from grader.python.budget import Budget
+from grader.python.values import Undetermined
 
 if TYPE_CHECKING:
     from grader.package.launch.model import NamedFile

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.names import closest
 from grader.problems import Problem, causes, in_order
+from grader.python.budget import Budget
 from grader.robot.catalogue import RAW_XACRO
 from grader.robot.model import Robot
 from grader.robot.reader import Reading, find_xacro, read_robot, read_urdf
 from grader.source import Source
-from grader.static_python.budget import Budget
 from grader.xml.catalogue import DOCTYPE, NOT_WELL_FORMED
 
 if TYPE_CHECKING:

@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from grader.problems import Kind, Problem
+from grader.python.budget import CHARACTERS, Budget, OutOfBudget
+from grader.python.values import ExpressionFails, Undetermined, Value
 from grader.source import Location
-from grader.static_python.budget import CHARACTERS, Budget, OutOfBudget
-from grader.static_python.values import ExpressionFails, Undetermined, Value
 from grader.xacro import catalogue
 from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions, read_yaml_values
@@ -42,6 +42,8 @@ class Scopes(NamedTuple):
     symbols: XacroScope
 
 
+# What xacro refuses, and where: in an attribute, or without one in the tag itself.
+Refusal = tuple[XacroFails, ScopePlace, str | None]
 # Expands one xacro tag: its element, the expanded element that the result goes into, and the scopes.
 Handler = Callable[["Expander", XacroNode, XacroNode, Scopes], None]
 _KINDS: Mapping[type[ExpressionFails], Kind] = {
@@ -75,7 +77,7 @@ class Expander:
         self.problems: list[Problem] = []
         self.misspelt: list[Misspelt] = []
         self.undetermined: list[Open] = []
-        self.refused: list[tuple[XacroFails, ScopePlace, str | None]] = []  # what may be corrected, and where
+        self.refused: list[Refusal] = []  # what may be corrected, and where
         self.calls: tuple[tuple[str, ScopePlace], ...] = ()
         self._listed: set[tuple[str, str, int, str | None]] = set()
         self._is_expanded = False

@@ -12,9 +12,9 @@ from itertools import groupby
 from typing import NamedTuple
 
 from grader.problems import Problem
+from grader.python.budget import Budget, OutOfBudget
+from grader.python.values import ExpressionFails, Undetermined
 from grader.source import Source
-from grader.static_python.budget import Budget, OutOfBudget
-from grader.static_python.values import ExpressionFails, Undetermined
 from grader.xacro import catalogue
 from grader.xacro.expanded_source import ExpandedSource
 from grader.xacro.expander import STOPS, Expander, Open

@@ -6,8 +6,8 @@ from collections.abc import Callable, Collection
 from typing import NamedTuple
 
 from grader.errors import InputError, NotDecided
-from grader.static_python.budget import Budget
-from grader.static_python.values import ExpressionFails, Undetermined
+from grader.python.budget import Budget
+from grader.python.values import ExpressionFails, Undetermined
 from grader.xacro.nodes import XacroNode, read_nodes
 from grader.xacro.scopes import UnknownName, XacroFails
 from grader.xacro.texts import INSTALLED

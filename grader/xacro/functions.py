@@ -6,11 +6,11 @@ from typing import Any
 
 import yaml
 
-from grader.static_python.budget import Budget
-from grader.static_python.builtins import BUILTINS, MATH, make_dict
-from grader.static_python.expressions import evaluate
-from grader.static_python.knowledge import call_plain, checked_key, str_of
-from grader.static_python.values import DottedDict, ExpressionFails, Namespace, PlainFunction, Undetermined, Value
+from grader.python.budget import Budget
+from grader.python.builtins import BUILTINS, MATH, make_dict
+from grader.python.expressions import evaluate
+from grader.python.knowledge import call_plain, checked_key, str_of
+from grader.python.values import DottedDict, ExpressionFails, Namespace, PlainFunction, Undetermined, Value
 
 _OLD_BUILTINS = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")
 _NOT_IN_XACRO = ("iter", "next")

@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from grader.static_python.budget import Budget
-from grader.static_python.values import ExpressionFails, Undetermined
+from grader.python.budget import Budget
+from grader.python.values import ExpressionFails, Undetermined
 from grader.xacro.macros import read_parameters
 from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import ScopePlace

@@ -1,7 +1,7 @@
 """The tags of xacro that define macros and call them, and that insert the elements which a call gives."""
 
 from grader.names import near
-from grader.static_python.values import Undetermined
+from grader.python.values import Undetermined
 from grader.xacro.expander import Expander, Scopes, TagFails
 from grader.xacro.macros import (
     Macro,

@@ -4,8 +4,8 @@ import re
 from typing import NamedTuple
 
 from grader.names import near
-from grader.static_python.budget import Budget
-from grader.static_python.values import Undetermined
+from grader.python.budget import Budget
+from grader.python.values import Undetermined
 from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import Definition, UnknownName, XacroFails, XacroScope
 from grader.xacro.texts import Texts

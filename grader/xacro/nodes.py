@@ -3,10 +3,10 @@
 import re
 
 from grader.problems import Problem
+from grader.python.budget import Budget
+from grader.python.values import ExpressionFails, Undetermined
 from grader.reuse import reuse
 from grader.source import Source
-from grader.static_python.budget import Budget
-from grader.static_python.values import ExpressionFails, Undetermined
 from grader.xacro.scopes import ScopePlace
 from grader.xml.parsing import Element, parse_xml
 from grader.xml.tinyxml2.recovery import Recovery

@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from grader.names import MAX_LENGTH
+from grader.python.values import ExpressionFails, Undetermined, Value
 from grader.source import Location, Source
-from grader.static_python.values import ExpressionFails, Undetermined, Value
 
 # What a scope needs to evaluate a text in it, and to report that xacro refuses one, or that it cannot be determined.
 Evaluate = Callable[[str, "XacroScope"], Value]

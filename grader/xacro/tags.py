@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 from keyword import iskeyword
 
-from grader.static_python.values import Undetermined, Value
+from grader.python.values import Undetermined, Value
 from grader.xacro.expander import Expander, Handler, Scopes, TagFails
 from grader.xacro.files import FileFails
 from grader.xacro.macro_tags import call_dynamically, call_macro, define_macro, insert_block, needed, renamed

@@ -5,10 +5,10 @@ from collections.abc import Callable, Iterable, Mapping
 from keyword import iskeyword
 
 from grader.names import did_you_mean, near
-from grader.static_python.budget import Budget
-from grader.static_python.expressions import evaluate
-from grader.static_python.knowledge import str_of
-from grader.static_python.values import MAX_TEXT, ExpressionFails, Undetermined, Value, too_large
+from grader.python.budget import Budget
+from grader.python.expressions import evaluate
+from grader.python.knowledge import str_of
+from grader.python.values import MAX_TEXT, ExpressionFails, Undetermined, Value, too_large
 from grader.xacro.functions import GLOBALS
 from grader.xacro.scopes import (
     Definition,

@@ -118,7 +118,7 @@ def test_an_element_with_too_much_in_it_is_omitted(tag: str, item: str, omitted:
 
 def test_a_rubric_that_is_too_large_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The loader reads rubrics up to a size, so no larger one is written."""
-    monkeypatch.setattr("grader.usecases.rubric_making.URDF_LIMIT", 1000)
+    monkeypatch.setattr("grader.commands.rubric_making.URDF_LIMIT", 1000)
     done = new(tmp_path, ARM)
     assert (done.returncode, b"too many facts for a rubric" in done.stderr) == (2, True)
     assert not (tmp_path / "lab.toml").exists()

@@ -9,7 +9,7 @@ import pytest
 from pypdf import PdfReader
 
 from grader.classroom.grades import Class
-from grader.usecases.class_reports import write_class_page
+from grader.commands.class_reports import write_class_page
 from tests.browser.conftest import OpenPage
 from tests.classroom.gradebooks import batch, lab_text, make_class, write_submission
 from tests.samples import ROOT

@@ -10,8 +10,8 @@ import pytest
 from grader.classroom.graded import digest_of
 from grader.classroom.grades import Class
 from grader.classroom.review_items import ReviewFilter, review_items
+from grader.commands.review_session import ReviewSession
 from grader.errors import InputError
-from grader.usecases.review_session import ReviewSession
 from tests.checks.submissions import jpeg
 from tests.classroom.gradebooks import PNG, batch, grader, lab_text, urdf, write_submission
 from tests.documents.files import docx, pdf

@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
+from grader.classroom.workers.pool import WorkerError
 from grader.cli.terminal import TERMINAL
+from grader.commands import class_reports
+from grader.commands.class_reports import ReportRun, write_reports
 from grader.errors import InputError
 from grader.report.formats import Format
-from grader.usecases import class_reports
-from grader.usecases.class_reports import ReportRun, write_reports
-from grader.workers.pool import WorkerError
 from tests.classroom.gradebooks import grader, refusal
 from tests.report.class_pages import ClassPageReader
 from tests.samples import ROOT

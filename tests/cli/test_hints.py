@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from grader.grading.hints.families import Families
-from grader.grading.hints.search import HintSearch
 from grader.grading.levels import LEVELS
+from grader.hints.families import Families
+from grader.hints.search import HintSearch
 from tests.command_line import run
 from tests.samples import ROOT
 
@@ -162,8 +162,8 @@ def test_a_search_that_is_cut_off_is_reported(
     steps: int, reserve: int, written: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A note of every report, and the words of `--fix`, say that the budget ended the search."""
-    monkeypatch.setattr("grader.grading.hints.trials._MAX_GRADINGS", steps)
-    monkeypatch.setattr("grader.grading.hints.search._RESERVE", reserve)
+    monkeypatch.setattr("grader.hints.trials._MAX_GRADINGS", steps)
+    monkeypatch.setattr("grader.hints.search._RESERVE", reserve)
     note = "the search for hints ended at its limit: there may be more"
     assert note in graded(MISTAKES)["notes"]
     assert f"Note: {note}" in run(("grade", MISTAKES)).stdout.decode()
@@ -242,9 +242,9 @@ def test_what_is_missing_costs_no_other_hint(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("place", "lost"),
     [
-        ("grader.package.edits.candidates.package_names", ()),
-        ("grader.grading.hints.families.of_siblings", ("base-green",)),
-        ("grader.grading.hints.search.missing_hints", ()),
+        ("grader.hints.package.candidates.package_names", ()),
+        ("grader.hints.families.of_siblings", ("base-green",)),
+        ("grader.hints.search.missing_hints", ()),
     ],
 )
 def test_a_fault_of_one_family_costs_no_other_hint(

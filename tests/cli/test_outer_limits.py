@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-import grader.grading.hints.hinting
+import grader.commands.hints
+import grader.commands.inspect
 import grader.grading.subjects
+import grader.hints.hinting
 import grader.submission.opening
-import grader.usecases.hints
-import grader.usecases.inspect
 from grader.cli import ending
 from grader.errors import OutOfTime
 from tests.command_line import ROOT, run
@@ -68,7 +68,7 @@ def test_a_search_for_hints_costs_no_report(
     def stop(*_: object, **__: object) -> None:
         raise fault
 
-    monkeypatch.setattr(grader.usecases.hints, "hinted", stop)
+    monkeypatch.setattr(grader.commands.hints, "hinted", stop)
     wrong = tmp_path / "my_robot.urdf"
     wrong.write_bytes(URDF.read_bytes().replace(b"0.15 0 0.225", b"0.15 0 0.3"))
     done = run(("grade", wrong))

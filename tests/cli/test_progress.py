@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
+from grader.classroom.workers.progress import Progress as State
 from grader.cli import terminal
-from grader.workers.progress import Progress as State
 from tests.classroom.gradebooks import ENVIRONMENT, make_class
 from tests.samples import ROOT
 

@@ -13,8 +13,8 @@ from urllib.request import urlopen
 import pytest
 
 from grader.classroom.grades import Class
-from grader.usecases import local_server
-from grader.usecases.local_server import HOST, MAX_BODY
+from grader.commands import local_server
+from grader.commands.local_server import HOST, MAX_BODY
 from tests.classroom.gradebooks import ENVIRONMENT, PNG, batch, grader, lab_text, refusal, write_submission
 from tests.command_line import HANG_TIMEOUT
 from tests.documents.files import pdf

@@ -12,8 +12,8 @@ from grader.checks.outcome import Outcome, judged
 from grader.checks.registry import find_check
 from grader.grading.rubric import shipped_rubrics
 from grader.robot.kinematics import Configuration
+from tests.authoring.robots import TOP, write_rubric
 from tests.command_line import Done, run
-from tests.mutation.robots import TOP, write_rubric
 from tests.samples import SAMPLES
 
 LINKS = '<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/>'

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from grader.commands.writing import save
 from grader.report.formats import Format
-from grader.usecases.writing import save
 from tests.command_line import run
 from tests.report.reports import CLASSROOM50
 

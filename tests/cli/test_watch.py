@@ -54,7 +54,7 @@ def watch(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Rounds]:
                     raise KeyboardInterrupt
                 edit()
 
-        monkeypatch.setattr("grader.usecases.watch.time", SimpleNamespace(sleep=sleep, monotonic=time.monotonic))
+        monkeypatch.setattr("grader.commands.watch.time", SimpleNamespace(sleep=sleep, monotonic=time.monotonic))
         done = run(("grade", "--watch", *map(str, arguments)))
         out, err = (stream.decode().split(NEXT) for stream in (done.stdout, done.stderr))
         assert (len(out), out[-1], err[-1]) == (len(edits) + 2, "", ""), done

@@ -6,8 +6,8 @@ from decimal import Decimal
 import pytest
 
 from grader.checks.outcome import Status
+from grader.commands.watch import comparison_lines
 from grader.grading.report import Report, Result
-from grader.usecases.watch import comparison_lines
 from tests.samples import SAMPLES
 
 SHORT = SAMPLES["lidar-offset-in-visual"].alone.grade()  # 64 of 70: lidar-frame fails

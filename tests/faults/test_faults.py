@@ -15,8 +15,8 @@ import pytest
 
 from grader.classroom.opening import open_class_submission
 from grader.classroom.run import worker
-from grader.workers import pool
-from grader.workers.pool import Processes, WorkerError
+from grader.classroom.workers import pool
+from grader.classroom.workers.pool import Processes, WorkerError
 from tests.classroom.class_runs import newest
 from tests.classroom.gradebooks import batch, grader, make_class
 from tests.command_line import HANG_TIMEOUT, ROOT

@@ -14,13 +14,13 @@ from grader.classroom.lms.forms import FORMS
 from grader.classroom.people import People
 from grader.classroom.roster import read_roster
 from grader.classroom.tables import Table, TableRow, _rows, read_table
+from grader.commands import local_server
+from grader.commands.local_server import LocalServer
+from grader.commands.review_page import ReviewPage
+from grader.commands.review_session import ReviewSession
 from grader.errors import RubricError
 from grader.grading.grade import grade
 from grader.grading.rubric import read_rubric
-from grader.usecases import local_server
-from grader.usecases.local_server import LocalServer
-from grader.usecases.review_page import ReviewPage
-from grader.usecases.review_session import ReviewSession
 from tests.classroom.gradebooks import ROSTER, batch, lab_text, make_class
 from tests.classroom.lms.lms_class import CLASS, blackboard_file, brightspace_file, canvas_file, moodle_file
 from tests.fuzz.harness import GUARD, check_message, user_errors

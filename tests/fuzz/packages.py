@@ -10,8 +10,8 @@ from grader.package.manifest import read_manifest
 from grader.package.rviz import read_rviz
 from grader.package.setup_py import read_setup
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.python.parse import Position, parse
 from grader.source import Location
-from grader.static_python.parse import Position, parse
 from tests.checks.submissions import file_of
 from tests.fuzz.harness import check_location, check_message, decoded
 from tests.package.my_robot import FILES

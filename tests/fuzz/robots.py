@@ -8,17 +8,18 @@ from zlib import crc32
 
 from lxml import etree
 
-from grader.edits import edited
 from grader.errors import MissingElement, NotDecided
+from grader.hints.edits import edited
+from grader.hints.xacro.expanded_edits import ExpandedEdits
+from grader.python.budget import Budget, OutOfBudget
+from grader.python.expressions import evaluate
+from grader.python.values import ExpressionFails, Undetermined
 from grader.report.formats import InspectFormat, render_inspection
 from grader.report.inspection import Inspection, main_root
 from grader.report.screen import Screen
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading, read_urdf
 from grader.source import Source
-from grader.static_python.budget import Budget, OutOfBudget
-from grader.static_python.expressions import evaluate
-from grader.static_python.values import ExpressionFails, Undetermined
 from grader.xacro.functions import GLOBALS, namespace, read_yaml_values
 from grader.xml.tinyxml2.recovery import Recovery
 from grader.xml.tinyxml2.scanner import Scanner
@@ -103,11 +104,11 @@ def xacro(data: bytes) -> None:
     etree.tostring(found.root)
     for index, element in islice(enumerate(found.root.iter()), crc32(data) % 7, _MAX_WAYS):
         for name in islice(element.keys(), 2):
-            ways = found.source.rewrites(name, {index: (element.get(name), "0.5 0.25")})
+            ways = ExpandedEdits(found.source).rewrites(name, {index: (element.get(name), "0.5 0.25")})
             for way in islice(ways, _MAX_WAYS):
                 for path in {edit.path for edit in way}:
                     assert edited(texts[path], path, [edit for edit in way if edit.path == path]) is not None, way
-    for correction in islice(found.source.corrections(("base_link",)), _MAX_WAYS):
+    for correction in islice(ExpandedEdits(found.source).corrections(("base_link",)), _MAX_WAYS):
         for path in {edit.path for edit in correction.edits}:
             assert edited(texts[path], path, [edit for edit in correction.edits if edit.path == path]) is not None
 

@@ -5,9 +5,9 @@ from random import Random
 
 import pytest
 
-from grader.grading.hints.search import HintSearch
-from grader.grading.hints.trials import FoundHint
-from grader.submission.editing import edited_files
+from grader.hints.editing import edited_files
+from grader.hints.search import HintSearch
+from grader.hints.trials import FoundHint
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read

@@ -5,13 +5,12 @@ from dataclasses import replace
 
 import pytest
 
-from grader.edits import edited
 from grader.errors import InputError
-from grader.files.tree import Tree
-from grader.grading.hints.search import HintSearch
-from grader.grading.hints.trials import Trials
+from grader.files.tree import Tree, overlaid
+from grader.hints.edits import edited
+from grader.hints.search import HintSearch
+from grader.hints.trials import Trials
 from grader.source import Edit
-from grader.submission.editing import overlaid
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from tests.hints.trials import graded, search_for

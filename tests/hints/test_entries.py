@@ -3,7 +3,7 @@
 import pytest
 
 from grader.grading.grade import grade
-from grader.grading.hints.hinting import hinted
+from grader.hints.hinting import hinted
 from grader.report.document import failures
 from grader.submission.opening import read_submission
 from tests.hints.trials import BASES

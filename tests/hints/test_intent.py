@@ -6,7 +6,7 @@ from itertools import starmap
 import pytest
 
 from grader.grading.grade import grade
-from grader.grading.hints.hinting import hinted
+from grader.hints.hinting import hinted
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from tests.hints.trials import BASES, hints_for

@@ -7,13 +7,13 @@ from random import Random
 
 import pytest
 
+from grader.authoring.mutants import mutants
 from grader.grading.grade import grade
-from grader.grading.hints.hinting import fixed, hinted
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric
-from grader.mutation.mutants import mutants
+from grader.hints.editing import content
+from grader.hints.hinting import fixed, hinted
 from grader.source import Edit
-from grader.submission.editing import content
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from tests.hints.students import MISTAKES

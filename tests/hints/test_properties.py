@@ -6,9 +6,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from grader.authoring.mutants import mutants
 from grader.grading.report import Result
-from grader.mutation.mutants import mutants
-from grader.submission.editing import edited_files
+from grader.hints.editing import edited_files
 from grader.submission.opening import read_submission
 from tests.examples import examples
 from tests.hints.trials import BASES, applied, graded, search_for, with_edits

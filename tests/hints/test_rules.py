@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 
 from grader.grading.grade import grade
-from grader.grading.hints.hinting import hinted
-from grader.grading.hints.trials import Trials
+from grader.hints.hinting import hinted
+from grader.hints.trials import Trials
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from tests.hints.trials import BASES, Hints, hints_for

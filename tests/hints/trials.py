@@ -7,13 +7,13 @@ from itertools import count
 from typing import NamedTuple
 
 from grader.grading.grade import grade
-from grader.grading.hints.search import HintSearch
-from grader.grading.hints.trials import FoundHint, Trials
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric, load_rubric
-from grader.robot.edits.draft import Draft
+from grader.hints.editing import content, with_files
+from grader.hints.robot.draft import Draft
+from grader.hints.search import HintSearch
+from grader.hints.trials import FoundHint, Trials
 from grader.source import Edit
-from grader.submission.editing import content, with_files
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read

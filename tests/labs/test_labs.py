@@ -12,11 +12,11 @@ from typing import Any, NamedTuple
 
 import pytest
 
+from grader.authoring.testing import run_rubric_test
+from grader.authoring.trial import Trial
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric, load_rubric
-from grader.mutation.testing import run_rubric_test
-from grader.mutation.trial import Trial
 from grader.submission.opening import open_submission
 from tests.command_line import run
 from tests.examples import spread

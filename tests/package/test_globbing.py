@@ -17,10 +17,10 @@ from hypothesis import strategies as st
 from grader.files.tree import File, Tree, make_tree
 from grader.package.file_functions import file_functions
 from grader.package.globbing import ORDERS, PackageListing, SearchError
-from grader.static_python.interpreter import Interpreter
-from grader.static_python.library import standard_functions
-from grader.static_python.parse import Code, parse
-from grader.static_python.values import Unknown, Value
+from grader.python.interpreter import Interpreter
+from grader.python.library import standard_functions
+from grader.python.parse import Code, parse
+from grader.python.values import Unknown, Value
 from tests.examples import examples, spread
 from tests.work import limited_work
 

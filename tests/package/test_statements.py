@@ -9,7 +9,7 @@ import pytest
 
 from grader.files.folder import read_folder
 from grader.package.setup_py import Setup, read_setup
-from grader.static_python.parse import parse
+from grader.python.parse import parse
 from tests.oracles.python_setups import Ran, run_all
 from tests.package.my_robot import write_package
 

@@ -7,8 +7,8 @@ from urllib.parse import unquote
 import pytest
 
 from grader.classroom.grades import Class
+from grader.commands.class_reports import write_class_page
 from grader.report.class_terminal import percent
-from grader.usecases.class_reports import write_class_page
 from tests.classroom.gradebooks import batch, grader, lab_text, write_submission
 from tests.report.attacks import ATTACKS, make_attacked_class
 from tests.report.class_pages import ClassPageReader

@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
-from grader.drawing.picture import picture_of
-from grader.report.drawing import drawing_element, inspection_svg
+from grader.report.drawing.picture import picture_of
 from grader.report.formats import Format, render
 from grader.report.inspection import Inspection, main_root
+from grader.report.svg import drawing_element, inspection_svg
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
 from grader.text import format_points

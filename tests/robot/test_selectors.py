@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.errors import MissingElement, NotDecided
-from grader.grading.hints.targets import selected as linked
+from grader.hints.targets import selected as linked
 from grader.robot.joint_elements import Mimic
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint, Link, Robot

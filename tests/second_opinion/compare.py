@@ -10,11 +10,11 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
+from grader.authoring.trial import Trial
 from grader.grading.grade import grade
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric as GraderRubric
 from grader.grading.rubric import load_rubric
-from grader.mutation.trial import Trial
 from grader.robot.reader import read_urdf
 from grader.submission.opening import read_submission
 from grader.xml.catalogue import RECOVERED

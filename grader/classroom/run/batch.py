@@ -8,9 +8,9 @@ from grader.classroom.graded import Graded
 from grader.classroom.results import Results, ResultsWriter
 from grader.classroom.run.worker import ClassContext, Task, grade_all, undecided
 from grader.classroom.submissions import ClassSubmission
-from grader.workers.pool import WorkerError
-from grader.workers.progress import Progress
-from grader.workers.queue import Queue
+from grader.classroom.workers.pool import WorkerError
+from grader.classroom.workers.progress import Progress
+from grader.classroom.workers.queue import Queue
 
 _OF_PERSON = ("name", "email", "login", "sis", "canvas", "moodle")
 

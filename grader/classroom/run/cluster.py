@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from grader import __version__
+from grader.classroom.workers.pool import Processes, WorkerError
 from grader.errors import InputError
 from grader.text import printable_path
-from grader.workers.pool import Processes, WorkerError
 
 _CONNECT_TIMEOUT = 10.0  # seconds to find the scheduler, and to get an answer from every worker
 _NO_TIMEOUT = 0.0  # every run passes its own

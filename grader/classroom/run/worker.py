@@ -10,6 +10,7 @@ from grader.checks.outcome import Status
 from grader.classroom.equal_work import forms_of, hashes_of
 from grader.classroom.graded import Entry, Graded, Verdict, digest_of
 from grader.classroom.opening import digest_of_unread, open_class_submission
+from grader.classroom.workers.pool import NO_MEMORY
 from grader.errors import InputError, MachineError
 from grader.files.names import ARCHIVES
 from grader.files.reading import URDF_LIMIT
@@ -20,7 +21,6 @@ from grader.grading.rubric import Rubric, read_rubric
 from grader.submission.submission import Opening, Submission
 from grader.submission.urdf import Absent, Unreadable
 from grader.text import cut
-from grader.workers.pool import NO_MEMORY
 
 _MAX_CAUSE = 200  # characters
 

@@ -11,8 +11,8 @@ from grader.package.launch.parameters import evaluate_dict
 from grader.package.launch.substitutions import known_text, resolve
 from grader.package.launch.value_types import items_in, kind_of
 from grader.package.launch.visitor import PROCESSES, ActionVisitor
-from grader.static_python.parse import Position
-from grader.static_python.values import Call, Function, QualifiedName, Undetermined, Unknown, Value
+from grader.python.parse import Position
+from grader.python.values import Call, Function, QualifiedName, Undetermined, Unknown, Value
 
 CIRCULAR_INCLUDE = "it includes itself"
 # By which packages, programs and files are found.

@@ -9,9 +9,9 @@ from grader.package.launch.api import PROCESS, SOURCE, LaunchClass, class_named,
 from grader.package.launch.model import not_evaluated
 from grader.package.launch.substitutions import PERFORMS
 from grader.package.launch.value_types import CHECKS, is_entity, is_text, items_in, kind_of, wrong_text, wrong_typed
-from grader.static_python.evaluation import Evaluation, record
-from grader.static_python.knowledge import iterate, known
-from grader.static_python.values import Call, ExpressionFails, Function, Items, Undetermined, Unknown, Value
+from grader.python.evaluation import Evaluation, record
+from grader.python.knowledge import iterate, known
+from grader.python.values import Call, ExpressionFails, Function, Items, Undetermined, Unknown, Value
 
 _ACTIONS = (
     "Node", "ExecuteProcess", "LogInfo", "LaunchDescription", "DeclareLaunchArgument", "SetLaunchConfiguration",

@@ -7,8 +7,8 @@ import yaml
 
 from grader.package.launch.model import LaunchFails, LaunchFault
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.python.parse import Position
 from grader.source import Location, Source
-from grader.static_python.parse import Position
 from grader.xml.parsing import Element, XmlFault, XmlFile
 
 _MAX_DEPTH = 40

@@ -10,7 +10,7 @@ from grader.package.launch.frontend import Entity
 from grader.package.launch.frontend_values import command_line, is_typed, parse_if_text, parse_value, typed_text
 from grader.package.launch.model import Findings, LaunchFails, LaunchSignal, NotEvaluated
 from grader.package.launch.value_types import TYPED
-from grader.static_python.values import Call, ExpressionFails, Unknown, Value
+from grader.python.values import Call, ExpressionFails, Unknown, Value
 
 _PROCESS = (
     "cwd name on_exit launch-prefix output respawn shell:bool emulate_tty:bool"

@@ -10,8 +10,8 @@ import yaml
 from grader.names import closest
 from grader.package.launch.api import front_end
 from grader.package.launch.model import LaunchFails, NotEvaluated
-from grader.static_python.parse import Position
-from grader.static_python.values import Call, Value
+from grader.python.parse import Position
+from grader.python.values import Call, Value
 
 _MAX_DEPTH = 40
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from grader.package.launch.model import STATE_PUBLISHER, Contents, Context, Findings, Purpose, StartedNode
 from grader.package.launch.places import PREFIX, ROS, SHARE
-from grader.static_python.values import Call, Unknown
+from grader.python.values import Call, Unknown
 
 _RVIZ = "rviz2"
 _GIVEN: Mapping[str, Purpose] = {STATE_PUBLISHER: "urdf", _RVIZ: "rviz"}  # the nodes that are given a file

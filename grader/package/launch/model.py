@@ -4,9 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from grader.python.parse import Position
+from grader.python.values import Call, Unknown, Value
 from grader.source import Location, Source
-from grader.static_python.parse import Position
-from grader.static_python.values import Call, Unknown, Value
 
 _MAX_STEPS = 50_000
 ANY = "**"

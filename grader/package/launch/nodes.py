@@ -18,8 +18,8 @@ from grader.package.launch.model import (
 from grader.package.launch.parameters import tables_in
 from grader.package.launch.substitutions import PART_UNKNOWN, known_text, resolve
 from grader.package.launch.value_types import OPENED, TYPED, items_in
-from grader.static_python.parse import Position
-from grader.static_python.values import Call, Unknown, Value
+from grader.python.parse import Position
+from grader.python.values import Call, Unknown, Value
 
 _RVIZ = "rviz2"
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")

@@ -9,8 +9,8 @@ import yaml
 from grader.package.launch.model import Contents, Context, LaunchFails, NotEvaluated, UnknownText
 from grader.package.launch.substitutions import resolve
 from grader.package.launch.value_types import FILE, SCALARS, TYPED, boolean, items_in, kind_of, type_of
-from grader.static_python.parse import Position
-from grader.static_python.values import Call, Undetermined, Unknown, Value
+from grader.python.parse import Position
+from grader.python.values import Call, Undetermined, Unknown, Value
 
 _MAX_YAML = 200_000  # characters
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)

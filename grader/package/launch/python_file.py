@@ -11,13 +11,13 @@ from grader.package.launch.arguments import LaunchFunctions
 from grader.package.launch.model import Contents, Context, FileText, LaunchFails, LaunchSignal, UnknownText
 from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.launch.substitutions import resolve
-from grader.static_python.calls import Calls
-from grader.static_python.evaluation import Evaluation, EvaluationStopped, record
-from grader.static_python.interpreter import Interpreter
-from grader.static_python.knowledge import known, path_text
-from grader.static_python.library import standard_functions
-from grader.static_python.parse import Code, Position
-from grader.static_python.values import Call, ExpressionFails, Function, FunctionTable, Undetermined, Unknown, Value
+from grader.python.calls import Calls
+from grader.python.evaluation import Evaluation, EvaluationStopped, record
+from grader.python.interpreter import Interpreter
+from grader.python.knowledge import known, path_text
+from grader.python.library import standard_functions
+from grader.python.parse import Code, Position
+from grader.python.values import Call, ExpressionFails, Function, FunctionTable, Undetermined, Unknown, Value
 
 _MODULE = "python_launch_file"  # the __name__ of a launch file
 _AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")

@@ -16,9 +16,9 @@ from grader.package.launch.python_file import PythonLaunchFile
 from grader.package.launch.value_types import kind_of
 from grader.package.launch.visitor import ActionVisitor, Include
 from grader.package.setup_py import location_in
+from grader.python.parse import START, SyntaxFault, parse
+from grader.python.values import Call, Function, Unknown, Value
 from grader.source import Location, Source
-from grader.static_python.parse import START, SyntaxFault, parse
-from grader.static_python.values import Call, Function, Unknown, Value
 
 _ENTRY = "generate_launch_description"
 _NODE = "launch_ros.actions.node.Node"

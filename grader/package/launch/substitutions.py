@@ -9,12 +9,12 @@ from dataclasses import dataclass
 
 from grader.package.launch.model import ANY, Contents, Context, FileText, LaunchFails, NotEvaluated, Resolved
 from grader.package.launch.places import HOME, SHARE
-from grader.static_python.budget import Budget, OutOfBudget
-from grader.static_python.builtins import BUILTINS, MATH
-from grader.static_python.expressions import evaluate
-from grader.static_python.knowledge import str_of
-from grader.static_python.parse import Position
-from grader.static_python.values import MAX_TEXT, Call, ExpressionFails, Namespace, Undetermined, Unknown, Value
+from grader.python.budget import Budget, OutOfBudget
+from grader.python.builtins import BUILTINS, MATH
+from grader.python.expressions import evaluate
+from grader.python.knowledge import str_of
+from grader.python.parse import Position
+from grader.python.values import MAX_TEXT, Call, ExpressionFails, Namespace, Undetermined, Unknown, Value
 
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
 PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown

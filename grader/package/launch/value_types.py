@@ -8,9 +8,9 @@ import yaml
 
 from grader.package.launch.api import ENTITY, SUBSTITUTION, class_named, is_a
 from grader.package.launch.model import LaunchFails, UnknownText
-from grader.static_python.knowledge import iterate
-from grader.static_python.parse import Position
-from grader.static_python.values import VIEWS, Call, Function, Items, QualifiedName, Undetermined, Unknown, Value
+from grader.python.knowledge import iterate
+from grader.python.parse import Position
+from grader.python.values import VIEWS, Call, Function, Items, QualifiedName, Undetermined, Unknown, Value
 
 BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 SCALARS = (bool, int, float, str)

@@ -8,8 +8,8 @@ from grader.package.launch.model import Context, Findings, LaunchFails, LaunchSi
 from grader.package.launch.parameters import evaluate_parameters
 from grader.package.launch.substitutions import known_text, resolve
 from grader.package.launch.value_types import BOOLEANS, boolean, items_in, kind_of
-from grader.static_python.parse import START, Position
-from grader.static_python.values import Call, Function, Undetermined, Unknown, Value
+from grader.python.parse import START, Position
+from grader.python.values import Call, Function, Undetermined, Unknown, Value
 
 _MAX_ACTIONS = 5_000
 _MAX_DEPTH = 40

@@ -1,0 +1,188 @@
+"""The reference of a rubric, and what becomes of its criteria for changed copies: mutants and equivalents."""
+
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from functools import cached_property
+from typing import Any, NamedTuple
+
+from grader.authoring.equivalents import Equivalent, RewritingRules, equivalents
+from grader.authoring.mutants import Mutant, mutants
+from grader.authoring.package_mutants import package_mutants
+from grader.authoring.sameness import is_same_robot
+from grader.checks.manual import MANUAL_CHECKS
+from grader.errors import InputError
+from grader.files.reading import URDF_LIMIT
+from grader.grading.criterion import Criterion
+from grader.grading.deciding import decide
+from grader.grading.grade import grade
+from grader.grading.report import Result
+from grader.grading.rubric import Rubric
+from grader.hints.editing import content, with_files, with_urdf
+from grader.hints.trials import is_worse
+from grader.package.package import MANIFEST
+from grader.submission.opening import read_submission
+from grader.submission.submission import Submission
+from grader.submission.urdf import Read
+
+_WORD = re.compile(r"[\w@:.-]+")
+_TEXTS = (".py", ".xml", ".yaml", ".yml", ".rviz", ".launch", ".cfg", ".json", ".txt", ".world", ".sdf")
+_OF_ROBOT = (".urdf", ".xacro")
+_MESHES = (".stl", ".dae", ".obj")
+
+
+class MutantOutcome(NamedTuple):
+    """What the criteria made of a mutant: those that fail, and the faulty ones."""
+
+    mutant: Mutant
+    fate: str  # caught, same, survived or faulty
+    failed: tuple[str, ...] = ()
+    faults: Mapping[str, str] = {}
+
+
+class Trial:
+    """The reference of a rubric, graded. Manual checks and adjusted criteria do not count."""
+
+    def __init__(self, rubric: Rubric) -> None:
+        if rubric.solution is None:
+            missing = 'has no reference: add reference = "FOLDER" with a correct solution'
+            raise InputError(f"the rubric {rubric.id} {missing}")
+        self.rubric, self.reference = rubric, rubric.solution.submission
+        self.report = grade(rubric, self.reference)
+        counting = (found for found in self.report.results if not found.is_adjusted)
+        own = (found for found in counting if found.criterion.check.function not in MANUAL_CHECKS)
+        self.expected: Mapping[str, Result] = {found.criterion.id: found for found in own}
+
+    @cached_property
+    def tested(self) -> list[Criterion]:
+        """The criteria that the reference passes."""
+        return [found.criterion for found in self.expected.values() if found.outcome.status == "passed"]
+
+    @cached_property
+    def kept(self) -> set[str]:
+        """The names that the rubric and the text files around the URDF refer to."""
+        found = set(_names_in(self.rubric))
+        for path, file in self.reference.whole_tree.files.items():
+            if path.lower().endswith(_TEXTS) and file.size <= URDF_LIMIT:
+                found |= set(_WORD.findall(self.text(path)))
+        return found
+
+    @cached_property
+    def robot_files(self) -> tuple[str, ...]:
+        """The URDF and the xacro files that it includes."""
+        if not isinstance(self.reference.urdf, Read):
+            return ()
+        found = [self.reference.urdf.path]
+        others = [path for path in self.reference.whole_tree.files if path.lower().endswith(_OF_ROBOT)]
+        for path in found:  # grows
+            text = self.text(path)
+            found += [other for other in others if other not in found and other.rpartition("/")[2] in text]
+        return tuple(found)
+
+    def text(self, path: str) -> str:
+        """Return the text of a file of the reference."""
+        return (content(self.reference, path) or b"").decode("utf-8", "surrogateescape")
+
+    def mutants(self) -> Iterator[Mutant]:
+        """Yield the mutants of the robot, and those of the package that a criterion may look at."""
+        hidden = [one.arguments.get("link", "") for one in self.tested if one.check.name == "shows_nothing"]
+        for path in self.robot_files:
+            yield from mutants(self.text(path), path, hidden)
+        package, urdf = self.reference.package, self.reference.urdf
+        if package is not None:
+            robot = urdf.reading.robot if isinstance(urdf, Read) else None
+            links = [link.name for link in robot.links] if robot is not None else []
+            yield from filter(self._is_looked_at, package_mutants(package, links, self.text))
+
+    def _is_looked_at(self, mutant: Mutant) -> bool:
+        """Return whether a criterion may look at a mutant of a package: some look at its name or at meshes only."""
+        subjects = {criterion.check.subject for criterion in self.tested}
+        if "package" in subjects:
+            return True
+        if mutant.path.lower().endswith(_MESHES):
+            return any(criterion.check.name == "shows_mesh" for criterion in self.tested)
+        return "submission" in subjects and mutant.path.endswith(MANIFEST)
+
+    def submission(self, mutant: Mutant) -> Submission | None:
+        """Return the reference with a mistake; None where nothing of it can be read any more."""
+        data = mutant.applied(self.text(mutant.path)).encode("utf-8", "surrogateescape")
+        if self._is_of_robot(mutant):
+            return with_urdf(self.reference, {mutant.path: data})
+        renamed = {mutant.renamed: content(self.reference, mutant.path)} if mutant.renamed else {}
+        try:
+            return with_files(self.reference, {mutant.path: None if mutant.is_deleted else data, **renamed})
+        except InputError:
+            return None
+
+    def results(self, mutant: Mutant, submission: Submission) -> list[Result]:
+        """Return the results of the criteria that a mutant can change: of the robot only the URDF is read again."""
+        is_of_robot = self._is_of_robot(mutant)
+        subjects = {name: found.criterion.check.subject for name, found in self.expected.items()}
+        names = [name for name, subject in subjects.items() if not is_of_robot or subject != "package"]
+        return [*decide(self.rubric, submission, names)]
+
+    def _is_of_robot(self, mutant: Mutant) -> bool:
+        return mutant.path in self.robot_files and not mutant.is_deleted
+
+    def is_lost(self, result: Result) -> bool:
+        """Return whether a criterion has less than on the reference."""
+        return is_worse(self.expected[result.criterion.id], result)
+
+    def outcome(self, mutant: Mutant) -> MutantOutcome:
+        """Grade a mutant."""
+        submission = self.submission(mutant)
+        if submission is None:
+            return MutantOutcome(mutant, "caught")
+        results = self.results(mutant, submission)
+        faults = {found.criterion.id: found.outcome.message for found in results if found.outcome.status == "errored"}
+        is_lost = any(map(self.is_lost, results))
+        fate = "faulty" if faults else "caught" if is_lost else "survived"
+        if fate == "survived" and self._is_of_robot(mutant):
+            fate = "same" if is_same_robot(self.reference.urdf, submission.urdf, self.kept) else fate
+        failed = tuple(found.criterion.id for found in results if found.outcome.status == "failed")
+        return MutantOutcome(mutant, fate, failed, faults)
+
+    def equivalents(self) -> Iterator[tuple[Equivalent, Mapping[str, str]]]:
+        """Yield the rewritings of the reference, each with the criteria that lose points, and their messages."""
+        urdf = self.reference.urdf
+        if not isinstance(urdf, Read) or urdf.loaded.verdict != "clean" or urdf.reading.root is None:
+            return
+        has_places = any(name.startswith("@") for name in _names_in(self.rubric))
+        for found in equivalents(urdf.reading.root, RewritingRules(self.kept, has_places)):
+            submission = _rewritten(self.reference, urdf, found)
+            results = decide(self.rubric, submission, self._must_pass(submission, found.family))
+            yield found, {it.criterion.id: it.outcome.message for it in results if self.is_lost(it)}
+
+    def _must_pass(self, submission: Submission, family: str) -> Collection[str]:
+        """Return the criteria on the robot that must still pass; for a URDF on its own, those that need no package."""
+        others = ("package", "submission") if submission.is_single else ("package",)
+        return [it.id for it in self.tested if it.check.subject not in others and not breaks(it, family)]
+
+
+def breaks(criterion: Criterion, family: str) -> bool:
+    """Return whether a criterion may fail under a family of equivalents, as its check declares."""
+    return family in criterion.check.about.breaks_under(criterion.arguments)
+
+
+def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Submission:
+    """Return the reference with another text of its robot; a URDF that becomes xacro is graded on its own."""
+    data = equivalent.text.encode()
+    if not equivalent.is_xacro or (urdf.is_expanded and urdf.as_it_stands is None):
+        return with_urdf(reference, {urdf.path: data})
+    name = urdf.path.rpartition("/")[2]
+    return read_submission(data, identity=reference.id, path=f"{name.removesuffix('.xacro')}.xacro")
+
+
+def _names_in(rubric: Rubric) -> Iterator[str]:
+    """Yield every text in the arguments of a rubric's checks, also keys of tables, and the joints that it poses."""
+    for it in rubric.criteria:
+        yield from _texts((it.arguments, it.at, [one.arguments for one in it.carried]))
+
+
+def _texts(value: Any) -> Iterator[str]:
+    if isinstance(value, Mapping):
+        value = [*value, *value.values()]
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, Iterable):
+        for item in value:
+            yield from _texts(item)

@@ -1,0 +1,163 @@
+"""Export the current grades: as CSV, JSON or pages, into a file of an LMS, and the reports as feedback for an LMS."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import ROUND_FLOOR, Decimal
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from zipfile import is_zipfile
+
+from grader.classroom import folder as names
+from grader.classroom.grade_table import grade_table
+from grader.classroom.grades import Class
+from grader.classroom.lms.comments import comment_html, lost_points
+from grader.classroom.lms.feedback_zip import canvas_names, moodle_names, write_feedback
+from grader.classroom.lms.fill import Filled, FillOptions, by_reason, fill
+from grader.classroom.lms.forms import FORMS
+from grader.classroom.lms.owners import ClassGrade
+from grader.classroom.student_grade import Reason, StudentGrade
+from grader.classroom.tables import SIZE_LIMIT, write_table
+from grader.commands.class_figures import warn_of_ignored
+from grader.commands.exit_codes import ExitCode
+from grader.commands.terminal import Terminal
+from grader.commands.writing import is_same_file, is_stdout, refuse_symlinks, save_bytes
+from grader.errors import GraderError, InputError
+from grader.files.reading import read_capped
+from grader.report.formats import Format
+from grader.text import counted, enumerated, format_points, printable_path
+
+_BOM = b"\xef\xbb\xbf"  # by which Excel recognises UTF-8
+# The targets of each option that not all targets take.
+_TARGETS = {"--into": tuple(FORMS), "--feedback": ("moodle", "canvas"), "--excel": ("csv",)}
+
+
+@dataclass(frozen=True, slots=True)
+class ExportRequest:
+    """An export: its format, and for an LMS the file to fill in and how, and the zip of feedback to write."""
+
+    target: str
+    gradebook: Path
+    into: Path | None = None
+    output: Path | None = None
+    strict: bool = False
+    column: str = ""
+    pending_as_zero: bool = False
+    any_maximum: bool = False
+    only: bool = False
+    excel: bool = False
+    feedback: Path | None = None
+    feedback_format: str = "html"
+
+
+def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]:
+    """Export the grades to the output file; return what to print, and the exit code. Raises GraderError."""
+    _refuse_options(request)
+    book = Class(request.gradebook)
+    roots = book.settings.roots(book.folder)
+    if request.target == "html":
+        from grader.commands import class_reports  # it loads what runs processes
+
+        folder = request.output or book.folder / names.REPORTS
+        if request.output is not None:
+            class_reports.refuse_report_folder(folder, roots)
+        class_reports.write_reports(class_reports.ReportRun(book.folder, folder, (Format.HTML,)), terminal)
+        return b"", ExitCode.PASSED
+    for path in filter(None, (request.output, request.feedback)):
+        refuse_symlinks(path, roots)
+        if book.folder.resolve() in path.resolve().parents:
+            raise InputError(f"cannot write {printable_path(path)}: the gradebook is written by its own commands")
+    warn_of_ignored(book, terminal.warn)
+    exported = _exported(request, book, terminal)
+    if request.strict and (book.marks.ignored or not exported.is_complete):
+        why = "rows or students are unmatched, marks do not count, or the LMS would refuse a grade"
+        terminal.warn(f"nothing was written, because of --strict: {why}")
+        return b"", ExitCode.FAILED
+    if request.feedback is not None:
+        save_bytes(request.feedback, _feedback(request, book, exported.numbers, terminal), roots)
+    if request.output is None:
+        return exported.data, ExitCode.PASSED
+    save_bytes(request.output, exported.data, roots)
+    return b"", ExitCode.PASSED
+
+
+def _exported(request: ExportRequest, book: Class, terminal: Terminal) -> Filled:
+    """Return the exported file, empty if only feedback is asked for."""
+    if request.target == "csv":
+        return Filled(_BOM * request.excel + write_table(*grade_table(book, book, is_exported=True)).encode())
+    if request.target == "json":
+        from grader.report.class_json import render_class_json
+
+        return Filled(render_class_json(book).encode())
+    if request.into is None:
+        return Filled()
+    form, lab, shown = FORMS[request.target], (book.rubric.title, book.rubric.id), printable_path(request.into)
+    options = FillOptions(_maximum(book), lab, request.column, request.any_maximum, request.only, shown)
+    grades = [_class_grade(book, one, request, has_comment="comment" in form.columns) for one in book]
+    filled = fill(read_capped(request.into, SIZE_LIMIT, advice=""), grades, form, options)
+    older = ((Reason.OLDER_MARKS, one.student.key, ", ".join(one.older)) for one in book if one.older)
+    for line in [*filled.lines, *by_reason(older)]:
+        terminal.warn(line)
+    return filled
+
+
+def _class_grade(book: Class, grade: StudentGrade, request: ExportRequest, *, has_comment: bool) -> ClassGrade:
+    """Return a grade as it is published; points that need manual grading count as zero with --pending-as-zero."""
+    is_zero = request.pending_as_zero and grade.pending and grade.why_open.endswith("manual grading")
+    total = grade.total if is_zero else grade.published
+    comment = _comment(book, grade, total) if has_comment and total is not None else ""
+    return ClassGrade(grade.student, total, grade.is_excused, grade.why_open, comment)
+
+
+def _comment(book: Class, grade: StudentGrade, total: Decimal) -> str:
+    from grader.commands import class_reports
+
+    report = class_reports.report_of(book, grade, has_hints=False)
+    lost = () if grade.has_final else lost_points(report.results)
+    exported = format_points(total.quantize(Decimal("0.01"), ROUND_FLOOR))
+    opening = f"Grade: {exported} of {format_points(_maximum(book))} points."
+    return comment_html(opening, [*lost, *class_reports.notes_of(grade, report)])
+
+
+def _maximum(book: Class) -> Decimal:
+    return sum((row.maximum for row in book.criteria), Decimal(0))
+
+
+def _feedback(request: ExportRequest, book: Class, numbers: Mapping[str, str], terminal: Terminal) -> bytes:
+    """Return the zip of the reports, named as the LMS gives them to its students; `numbers` are of --into."""
+    from grader.commands import class_reports
+
+    kind = Format(request.feedback_format)
+    name, grades = f"report.{kind.ending}", [one for one in book if one.graded is not None or one.has_final]
+    if request.target == "canvas":
+        paths, without = canvas_names([(one.student, one.graded.paths if one.graded else ()) for one in grades], name)
+    else:
+        students = [one.student for one in grades]
+        if request.into is not None:
+            students = [one._replace(moodle=numbers.get(one.key, "")) for one in students]
+        paths, without = moodle_names(students, name)
+    files = {key: str(number) for number, key in enumerate(paths)}
+    with TemporaryDirectory() as folder:
+        run = class_reports.ReportRun(book.folder, Path(folder), (kind,))
+        without |= class_reports.render_reports(run, files, terminal)
+        written = {key: Path(folder, f"{file}.{kind.ending}") for key, file in files.items() if key not in without}
+        zipped, left = write_feedback({key: path.read_bytes() for key, path in written.items()}, paths, name)
+    for line in by_reason(("without feedback", key, why) for key, why in {**without, **left}.items()):
+        terminal.warn(line)
+    terminal.warn(f"{counted(len(written) - len(left), 'report')} in {printable_path(request.feedback or Path())}")
+    return zipped
+
+
+def _refuse_options(request: ExportRequest) -> None:
+    """Raise GraderError for an option that the target does not take, and for a file that must not be replaced."""
+    into, output, feedback = request.into, request.output, request.feedback
+    for option, given in {"--into": into, "--feedback": feedback, "--excel": request.excel}.items():
+        if given and request.target not in _TARGETS[option]:
+            raise GraderError(f"export {request.target} takes no {option}: it is for {enumerated(_TARGETS[option])}")
+    if request.target in FORMS and into is None and (output or not feedback):
+        raise GraderError(f"export {request.target} fills in a file that the LMS exported: give it with --into")
+    if into is not None and (is_stdout(into) if output is None else is_same_file(output, into)):
+        why = "--into reads it, and rows without a grade would be lost"
+        raise GraderError(f"cannot write {printable_path(into)}: {why}; choose another file")
+    if feedback is not None and (feedback.is_symlink() or (feedback.exists() and not is_zipfile(feedback))):
+        shown = printable_path(feedback)
+        raise InputError(f"cannot write {shown}: it is a symlink, or exists and is no zip; name another file")

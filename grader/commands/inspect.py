@@ -1,0 +1,67 @@
+"""Read a URDF as ROS 2 does, with its joints at given positions."""
+
+from collections.abc import Sequence
+from math import isfinite, nan
+
+from grader.commands.saves import read_arguments
+from grader.commands.terminal import Warn
+from grader.errors import GraderError, InputError, MissingElement, NotDecided
+from grader.report.inspection import Inspection, main_root
+from grader.robot.kinematics import Configuration
+from grader.robot.reader import Reading
+from grader.submission.opening import open_submission
+from grader.submission.submission import Lab, Opening
+from grader.submission.urdf import Absent, Unreadable
+from grader.text import printable_path
+
+_MAX_NAMED = 20
+
+
+def inspect(
+    path: str, joints: Sequence[str], relative_to: str | None, max_size: int, arguments: Sequence[str], warn: Warn
+) -> Inspection:
+    """Return the inspection of the URDF at a path. Raises GraderError."""
+    given = read_arguments(arguments)
+    submission = open_submission(path, Lab("robot.urdf"), Opening(max_size, given), with_neighbours=True)
+    match urdf := submission.urdf:
+        case Unreadable(reason=reason):
+            raise InputError(reason)
+        case Absent():
+            raise InputError(f"{printable_path(path)} has no URDF: no file in it has a <robot>")
+    if submission.other_candidates:
+        others = ", ".join(file.path for file in submission.other_candidates)
+        warn(f"inspecting {urdf.path}; other candidates: {others}")
+    if urdf.is_expanded and urdf.as_it_stands is None:
+        extent = "" if urdf.loaded.is_certain else "the part that can be determined of "
+        warn(f"{urdf.path} is xacro: this is {extent}what xacro expands it to")
+    for note in submission.notes if submission.is_single else ():
+        warn(note)
+    robot = _configuration(urdf.loaded, joints)
+    if robot is not None and relative_to is None:
+        relative_to = main_root(robot)
+    elif robot is not None and relative_to is not None and not robot.robot.has_link(relative_to):
+        known = ", ".join(repr(link.name) for link in robot.robot.links[:_MAX_NAMED])
+        raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
+    return Inspection(urdf.path, urdf.loaded, robot, relative_to)
+
+
+def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None:
+    positions = dict(map(_read_position, joints))
+    if urdf.robot is None:
+        return None
+    try:
+        return Configuration(urdf.robot, positions)
+    except (MissingElement, NotDecided, ValueError) as error:
+        raise GraderError(f"--joint: {error}") from None
+
+
+def _read_position(text: str) -> tuple[str, float]:
+    """Return the joint and its position in radians or metres that `--joint` gives. Raises GraderError."""
+    name, equals, value = text.rpartition("=")
+    try:
+        position = float(value)
+    except ValueError:
+        position = nan
+    if not equals or not isfinite(position):
+        raise GraderError(f"--joint takes NAME=VALUE with a number in radians or metres, not {text!r}")
+    return name, position

@@ -1,0 +1,108 @@
+"""Give and withdraw marks by command: of one student, of all who submitted nothing, and of a CSV file."""
+
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
+from decimal import Decimal
+from getpass import getuser
+from pathlib import Path
+
+from grader.classroom import folder as names
+from grader.classroom.grades import Class
+from grader.classroom.mark_files import COLUMNS, SURPLUS, WITHDRAWN, Cells, mark_file
+from grader.classroom.mark_import import MarkImport
+from grader.classroom.marks import Mark, append_marks
+from grader.classroom.review_items import review_items
+from grader.classroom.student_grade import Reason, StudentGrade
+from grader.classroom.tables import SIZE_LIMIT
+from grader.commands.grade_class import write_grades
+from grader.commands.terminal import Warn
+from grader.errors import InputError
+from grader.files.reading import read_capped
+from grader.grading.criterion import DEADLINE, TOTAL
+from grader.text import by_name, counted, counted_points, format_points, named, printable, printable_path
+
+_EMPTY = dict.fromkeys((*COLUMNS, SURPLUS), "")
+
+
+def give_mark(gradebook: Path, row: Cells, warn: Warn) -> str:
+    """Append the mark in a row to the file of its grader, and return what counts for the student now.
+
+    Raises InputError.
+    """
+    if not (row["student"] and row["criterion"] and (row["points"] or row["comment"])):
+        raise InputError("name a STUDENT and a CRITERION, and give POINTS or --comment")
+    book = Class(gradebook)
+    [mark] = _reader(book).marks_in({**_EMPTY, **row})
+    now = _append(book, [mark], row["by"])
+    for line in _warnings(book, mark):
+        warn(printable(line))
+    grade = now.grade(mark.student)
+    late = f"; {grade.late.reason}" if mark.criterion == DEADLINE and grade.late.reason else ""
+    return f"{printable(f'{named(mark.student, grade.student.name)}: {_grade_text(now, grade)}{late}')}\n"
+
+
+def mark_missing(gradebook: Path, row: Cells) -> str:
+    """Give a final mark to all students who submitted nothing and have none; return how many. Raises InputError."""
+    if row["criterion"] != TOTAL or row["points"] in ("", WITHDRAWN):
+        raise InputError(f"write it as --missing {TOTAL} POINTS")
+    book = Class(gradebook)
+    reader = _reader(book)
+    missing = [one.student.key for one in book if Reason.MISSING in one.concerns]
+    marks = [mark for key in missing for mark in reader.marks_in({**_EMPTY, **row, "student": key})]
+    if marks:
+        _append(book, marks, row["by"])
+    return f"final mark {row['points']} for {len(missing)} of {counted(len(book.keys), 'student')}\n"
+
+
+def import_marks(gradebook: Path, file: Path, by: str) -> str:
+    """Append the marks in a CSV file; return how many. Raises InputError, and records none, if a row is wrong."""
+    book = Class(gradebook)
+    items = review_items(book, with_final=True).items()
+    reader = _reader(book)._replace(answers={at: [one.student.key for one in item.members] for at, item in items})
+    new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file))
+    _append(book, new, by)
+    return f"{printable_path(file)}: {len(new)} recorded, {same} the same as before\n"
+
+
+def _reader(book: Class) -> MarkImport:
+    graded = {one.student: one for one in book.results.all()}
+    students = [book.student(key, graded.get(key)) for key in book.keys]
+    return MarkImport(students, book.rubric, book.marks, {key: one.digest for key, one in graded.items()})
+
+
+def _append(book: Class, marks: Iterable[Mark], by: str) -> Class:
+    """Append marks to the file of a grader, and return the class with them; its grades are written."""
+    new = [one._replace(by=one.by or by, time=book.marks.next_time((one.student, one.criterion))) for one in marks]
+    with suppress(OSError, KeyError):  # of an account without a name: the files of two gradebooks can be merged
+        by = by or getuser()
+    if new:
+        append_marks(mark_file(book.folder / names.MARKS, by), new)
+    now = Class(book.folder)
+    write_grades(now)
+    return now
+
+
+def _warnings(before: Class, mark: Mark) -> Iterator[str]:
+    """Yield what a mark replaced, and that it does not count."""
+    criterion, marks = mark.criterion, before.marks
+    if old := marks.counting.get((mark.student, criterion)) or marks.comments.get((mark.student, criterion)):
+        what = "mark" if old.value else "comment"
+        words = f"{old.value}{by_name(old.by)}: {' '.join(old.comment.split())}".strip(": ")
+        yield f"this replaces the {what} of {criterion} in {old.place}: {words}"
+    elif mark.value == WITHDRAWN:
+        yield f"there was no mark of {criterion} to withdraw"
+    if any(row.id == criterion and row.adjustment is not None for row in before.rubric.criteria):
+        yield f"{criterion} is corrected after grading, by [adjust] in the rubric: its marks do not count"
+
+
+def _grade_text(book: Class, grade: StudentGrade) -> str:
+    """Return what counts: an excuse, a final mark, or the points of the criteria."""
+    if grade.total is None:
+        return "excused" if grade.is_excused else "no submission"
+    whole = sum((row.maximum for row in book.criteria), Decimal(0))
+    if not grade.has_final:  # also with marks of parts that are not graded
+        whole = grade.report.max_score
+    final = "final mark " if grade.has_final else ""
+    late = f" after the late penalty of {format_points(-grade.late.points)}" if grade.late.points else ""
+    pending = f"; needs manual grading: {counted_points(grade.pending)}" if grade.pending else ""
+    return f"{final}{format_points(grade.total)} of {format_points(whole)} points{late}{pending}"

@@ -1,0 +1,155 @@
+"""Load, list, copy, check and bundle rubrics."""
+
+import os
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.commands.exit_codes import ExitCode
+from grader.commands.terminal import Warn
+from grader.commands.writing import make_folder, save_bytes
+from grader.errors import GraderError, MissingElement, NotDecided, RubricError
+from grader.text import counted, format_points, printable, printable_path, shell_quoted
+
+if TYPE_CHECKING:
+    from grader.grading.rubric import Rubric
+
+DEFAULT_RUBRIC = "lab6"  # of the command line
+
+
+def load(name: str, answers: Path | None = None) -> "Rubric":
+    """Return a rubric, with model answers if their file is named. Raises RubricError or InputError."""
+    if answers is None:
+        from grader.grading.rubric import load_rubric
+
+        return load_rubric(name)
+    from grader.grading.answers import load_with_answers
+
+    return load_with_answers(name, answers)
+
+
+def list_rubrics() -> str:
+    """Return a line for each rubric that comes with the grader."""
+    from grader.grading.rubric import load_rubric, shipped_rubrics
+
+    return "".join(f"{rubric.id}  {rubric_summary(rubric)}\n" for rubric in map(load_rubric, shipped_rubrics()))
+
+
+def rubric_summary(rubric: "Rubric") -> str:
+    """Return a rubric's title and size: Lab 6 (56 criteria, 100 points)."""
+    return f"{rubric.title} ({_size(rubric)})"
+
+
+def _size(rubric: "Rubric") -> str:
+    from grader.grading.criterion import worth
+
+    return f"{counted(len(rubric.criteria), 'criterion', 'criteria')}, {worth(rubric.criteria).text}"
+
+
+def files_of(name: str, answers: Path | None = None) -> list[Path]:
+    """Return the files and folders that a rubric is read from: its own file, its model answers, its reference.
+
+    It is only its own file if there is a mistake in it. Of a reference in the rubric's own folder it is only the URDF.
+    """
+    from grader.grading.rubric import find_rubric, load_rubric
+
+    found = [answers] if answers is not None else []
+    with suppress(GraderError):
+        file = find_rubric(name)
+        found.append(file)
+        rubric = load_rubric(name)
+        found += [file.parent / rubric.answers] * bool(rubric.answers)
+        if rubric.reference:
+            place = file.parent / rubric.reference
+            found.append(place / rubric.urdf if place.resolve() in file.resolve().parents else place)
+    return found
+
+
+def copy(name: str, folder: Path) -> str:
+    """Copy the files of a shipped rubric; return what was written, and the next step. Raises GraderError."""
+    from shutil import copyfile, copytree, ignore_patterns
+
+    from grader.grading.rubric import shipped_rubrics
+
+    file = shipped_rubrics().get(name)
+    if file is None:
+        raise GraderError(f"{printable_path(name)} is not a rubric of the grader: {', '.join(shipped_rubrics())}")
+    copies = {source: folder / name / source.relative_to(file.parent) for source in files_of(name) if source.exists()}
+    if there := [*filter(os.path.lexists, copies.values())]:
+        raise GraderError(f"{printable_path(there[0])} exists already: nothing was copied")
+    for source, target in copies.items():
+        make_folder(target.parent)
+        if source.is_dir():
+            copytree(source, target, ignore=ignore_patterns("__pycache__"))  # pip compiles the files of a package
+        else:
+            copyfile(source, target)
+    lines = [*map(str, copies.values()), f"next: change it, then `grader rubric check {shell_quoted(copies[file])}`"]
+    return "".join(f"{printable(line)}\n" for line in lines)
+
+
+def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
+    """Check a rubric; return a summary and the exit code: 1 if criteria cannot be decided on the reference solution.
+
+    Raises RubricError if the reference loses points.
+    """
+    from grader.grading.answers import load_with_answers, missing_answers
+    from grader.grading.grade import grade
+
+    rubric = load_with_answers(name)
+    if missing_answers(rubric) and not rubric.is_shipped:
+        warn(missing_answers(rubric))
+    found = f"{rubric.id}: {_size(rubric)}, no mistakes found"
+    if rubric.solution is None:
+        return f"{found}\n", ExitCode.PASSED
+    unearned = grade(rubric, rubric.solution.submission).unearned
+    lines = [f"the reference does not get {result.criterion.id}: {result.outcome.message}" for result in unearned]
+    unresolved = [*_unresolved_lines(rubric)]
+    if unresolved or any(result.outcome.status != "pending" for result in unearned):
+        raise RubricError(tuple(map(printable, lines + unresolved)))
+    if not lines:
+        return f"{found}; its reference gets full marks\n", ExitCode.PASSED
+    criteria = counted(len(lines), "criterion", "criteria")
+    found += f"; its reference does not get full marks: {criteria} cannot be decided on it"
+    return "".join(f"{printable(line)}\n" for line in (found, *lines)), ExitCode.FAILED
+
+
+def _unresolved_lines(rubric: "Rubric") -> Iterator[str]:
+    """Yield a line for each criterion that names a link by its place, where the reference has none or several."""
+    from grader.grading.subjects import check_selectors
+
+    assert rubric.solution is not None
+    for criterion in rubric.criteria:
+        if "robot" in criterion.check.examined:
+            try:
+                check_selectors(rubric.solution.robot, criterion)
+            except (MissingElement, NotDecided) as error:
+                yield (
+                    f"{criterion.id} names a link by its place in the tree, and the reference has no such link: {error}"
+                )
+
+
+def bundle(platform: str, output: Path, name: str) -> str:
+    """Write the autograder zip for a platform; return what to do next, in two lines. Raises GraderError."""
+    from grader.bundle.gradescope import autograder_zip
+
+    if output.suffix.lower() != ".zip":
+        raise GraderError(f"{platform} takes a zip: give a name that ends in .zip, not {str(output)!r}")
+    rubric = load(name)
+    save_bytes(output, autograder_zip(rubric))
+    lines = f"wrote {output}: {rubric_summary(rubric)}", f"next: {_next_step(rubric)}"
+    return "".join(f"{printable(line)}\n" for line in lines)
+
+
+def _next_step(rubric: "Rubric") -> str:
+    from grader.checks.manual import MANUAL_CHECKS
+    from grader.grading.criterion import worth
+
+    asked = (criterion for criterion in rubric.criteria if criterion.check.function in MANUAL_CHECKS)
+    manual = [criterion for criterion in asked if criterion.adjustment is None]
+    points = worth(manual)
+    step = f"upload it under Configure Autograder; autograder points: {format_points(rubric.points - points.points)}"
+    if not manual:
+        return step
+    listed = ", ".join(f"{criterion.id} ({worth((criterion,)).short})" for criterion in manual)
+    return f"{step}; manual grading: {points.text} for {listed}"

@@ -1,0 +1,68 @@
+"""A submission with edits of its files, which exist in memory only."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from grader.errors import InputError
+from grader.files.reading import URDF_LIMIT
+from grader.files.tree import overlaid
+from grader.hints.edits import edited
+from grader.python.budget import Budget
+from grader.source import Edit
+from grader.submission.submission import Submission
+from grader.submission.surroundings import Surroundings
+from grader.submission.urdf import Read, read_as_ros
+
+Files = Mapping[str, bytes | None]  # the new content of files by path; None for one that is no longer there
+
+
+def edited_files(submission: Submission, edits: Iterable[Edit]) -> Files | None:
+    """Return the files of a submission that edits change; None where the edits do not fit."""
+    by_path: dict[str, list[Edit]] = {}
+    for edit in edits:
+        by_path.setdefault(edit.path, []).append(edit)
+    files: dict[str, bytes | None] = {}
+    for path, of_file in by_path.items():
+        before = content(submission, path)
+        text = (before or b"").decode("utf-8", "surrogateescape")
+        renamed = next((edit.renamed for edit in of_file if edit.renamed), "")
+        after = edited(text, path, [edit for edit in of_file if not edit.renamed])
+        if after is None:
+            return None
+        if renamed:
+            files[path] = None
+        files[renamed or path] = after.encode("utf-8", "surrogateescape")
+    return files
+
+
+def content(submission: Submission, path: str) -> bytes | None:
+    """Return the bytes of a file of a submission; None where it has none that can be read."""
+    if isinstance(submission.urdf, Read) and path == submission.urdf.path:
+        return submission.urdf.data
+    file = submission.whole_tree.files.get(path)
+    try:
+        return file.read(URDF_LIMIT) if file is not None else None
+    except InputError:
+        return None
+
+
+def with_urdf(submission: Submission, files: Files) -> Submission:
+    """Return a submission with only the URDF read again: for edits of the URDF and of xacro that it includes."""
+    urdf = submission.urdf
+    assert isinstance(urdf, Read)
+    is_renamed = files.get(urdf.path, b"") is None
+    path = next((new for new, data in files.items() if data is not None and is_renamed), urdf.path)
+    whole_tree = overlaid(submission.whole_tree, files) if submission.whole_tree.files else submission.whole_tree
+    packages = submission.packages or submission.neighbours
+    surroundings = Surroundings(
+        Budget(), whole_tree, submission.package, packages, submission.opening.arguments, is_single=submission.is_single
+    )
+    read = read_as_ros(files.get(path) or urdf.data, path, surroundings)
+    return replace(submission, urdf=read, whole_tree=whole_tree, budget=surroundings.budget)
+
+
+def with_files(submission: Submission, files: Files) -> Submission:
+    """Return a submission that is read again from scratch with other files. Raises InputError."""
+    if submission.reopen is None:
+        return with_urdf(submission, files)
+    return submission.reopen(overlaid(submission.whole_tree, files))

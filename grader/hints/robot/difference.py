@@ -1,0 +1,212 @@
+"""The difference between a robot and the reference's, cut into pieces: each is an edit that may undo a mistake."""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from itertools import groupby
+from typing import NamedTuple
+
+from grader.hints.difference import Node, Step, steps
+from grader.hints.robot.draft import Draft, escaped
+from grader.hints.robot.elements import Set, child_of, end_of
+from grader.hints.robot.nodes import node_of, translation, wanted_value
+from grader.hints.robot.pieces import ENDS, SIBLING, STRUCTURE, Piece, PieceMaker, normal, unique
+from grader.names import near
+from grader.xml.parsing import Element
+from grader.xml.urdf_format import CHILDREN, TAGS, TagFormat
+
+_TAG = TagFormat()
+_MAX_LINKS = 400  # of a robot: more are not compared
+
+
+class MissingPart(NamedTuple):
+    """A link or joint of the reference that a robot does not have: nothing writes it."""
+
+    tag: str
+    link: str  # that it is, or that the joint moves
+    joint_type: str = ""
+    parent: str = ""
+
+
+class RobotDifference(PieceMaker):
+    """A robot and the reference's, paired; `known` are names that may be told, because the reference has them."""
+
+    def __init__(self, draft: Draft, reference: Draft) -> None:
+        super().__init__(draft, reference)
+        self._names = translation(draft, reference)
+        self.missing: list[MissingPart] = []
+
+    @property
+    def names(self) -> list[str]:
+        """The links of the reference."""
+        return [link.name for link in self.reference.robot.links]
+
+    @cached_property
+    def pieces(self) -> list[Piece]:
+        """The pieces, each once: values first, then what moves, is added and is removed."""
+        found_steps = steps(self._tree(self.draft, {}), self._tree(self.reference, self._names))
+        found = [*self._pieces(found_steps)]
+        return unique([*found, *self._materials(), *self._joint_names()])
+
+    def _materials(self) -> Iterator[Piece]:
+        """Name a material as links use it, or give what a link shows the reference's colour if no material has it."""
+        own = {it.get("name") or "": it for it in self.draft.root.iterchildren("material")}
+        uses = Counter(it.get("name") or "" for it in self.draft.root.iterfind("link//material"))
+        for name in sorted(own.keys() - uses.keys()):
+            meant = near(name, [it for it, number in uses.items() if number > 1 and it not in own], "material")
+            if meant is not None:
+                yield self.piece(own[name], "the name of {}", sets=(Set(own[name], "", "name", meant),))
+        for used in self.draft.root.iter("material"):
+            link = self.reference.link(self.draft.link_of(used))
+            names = [it.get("name") or "" for it in link.iter("material")] if link is not None else []
+            like = self.reference.material(names[0]) if names else None
+            colour = child_of(like, "color") if like is not None else None
+            if like is None or colour is None:
+                continue
+            if (used.get("name") or "") not in own:
+                yield self.of_sets([Set(used, "color", "rgba", colour.get("rgba") or "")])
+            elif (
+                self.draft.material(names[0]) is None
+                and self.draft.material(self._names["material"].get(names[0], "")) is None
+            ):
+                yield self.piece(used, "the material of {}", self.draft.replace(used, self.reference.text(like)))
+
+    def _joint_names(self) -> Iterator[Piece]:
+        """Rename joints as in the reference, also where they are mimicked."""
+        every: list[Set] = []
+        for new, old in self._names["joint"].items():
+            joint = next(it for it in self.draft.joints() if it.get("name") == old)
+            mimics = (it for it in self.draft.root.iter("mimic") if it.get("joint") == old)
+            sets = (Set(joint, "", "name", new), *(Set(it, "", "joint", new) for it in mimics))
+            every += sets
+            yield self.piece(joint, "the name of a joint", sets=sets, rank=STRUCTURE)
+        if len(every) > 1:
+            yield Piece("the names of joints", "", tuple(every), (), STRUCTURE)
+
+    def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
+        children = [child for child in draft.root if isinstance(child.tag, str)]
+        nodes = [node_of(child, names) for child in children[: 3 * _MAX_LINKS]]
+        is_nameless = draft is self.reference and self.draft.root.get("name") is None
+        values = {"name": draft.root.get("name") or ""} if is_nameless else {}
+        version = draft.root.get("version")
+        values |= {"version": version} if version not in (None, "1.0") else {}
+        return Node("robot", (), values, nodes, draft.root)
+
+    def _pieces(self, found: Sequence[Step]) -> Iterator[Piece]:
+        is_set = lambda step: id(step.own) if step.verb in ("set", "unset") else None  # noqa: E731
+        for _, group in groupby(found, key=is_set):
+            those = [*group]
+            if those[0].verb in ("set", "unset"):
+                yield from self._of_values(those)
+        for step in found:
+            own, like = step.own, step.like
+            match step.verb:
+                case "rename" | "unset" if new := step.other or TAGS.get(own.tag, _TAG).aliases.get(step.name, ""):
+                    edits = self.draft.rename_attribute(own.of, step.name, new) if new not in own.values else ()
+                    yield self.piece(own.of, f"the name of the attribute {new} of {{}}", edits, rank=SIBLING)
+                case "retag" if like is not None:
+                    edits = self.draft.rename_tag(own.of, like.tag)
+                    yield self.piece(own.of, f"the name of the tag <{like.tag}>", edits)
+                case "move" if step.parent is not None and like is not None:
+                    yield self.moved(own.of, step.parent.of)
+                case "add" if like is not None and own.tag != "robot":
+                    yield from self._inner(own.of, like.of)
+                case "add" if like is not None and like.tag in ("link", "joint"):
+                    self._miss(like.of)
+                case "remove":
+                    yield from self._remove(own)
+
+    def _miss(self, like: Element) -> None:
+        if like.tag == "link":
+            self.missing.append(MissingPart("link", like.get("name") or ""))
+        else:
+            ends = (end_of(like, "child"), like.get("type") or "", end_of(like, "parent"))
+            self.missing.append(MissingPart("joint", *ends))
+
+    def _of_values(self, found: Sequence[Step]) -> Iterator[Piece]:
+        """Yield the values of one element: each alone, and all together."""
+        element: Element = found[0].own.of
+        wanted = {step.name: wanted_value(step) for step in found}
+        values = {name: value for name, value in wanted.items() if value is not None}
+        if element.tag in ("link", "joint", "material", "visual", "collision") and "name" in values:
+            yield from self._rename(element, values.pop("name"))
+        if "" in values:
+            text = values.pop("")
+            yield self.piece(element, "the text of {}", self.draft.write_text(element, text))
+        if not self._is_loose(element):
+            yield from self.each([Set(element, "", name, value) for name, value in values.items()])
+
+    def _is_loose(self, element: Element) -> bool:
+        """Return whether an element names a parent of the student's own that no joint holds yet: that is what lacks."""
+        name = element.get("link") or ""
+        is_own = element.tag == "parent" and self.draft.link(name) is not None and name not in self.known
+        return is_own and self.draft.joint_of(name) is None
+
+    def _rename(self, element: Element, name: str) -> Iterator[Piece]:
+        """Rename a link with all that names it, or alone; a joint; a material where it is used or defined."""
+        tag, old = str(element.tag), element.get("name") or ""
+        is_begun = 2 * sum(map(self.draft.robot.has_link, self.names)) >= len(self.names)
+        if tag == "link" and not is_begun and old and near(old, [name], "link") is None:
+            return  # nothing shows that it is this one
+        own = (Set(element, "", "name", name),)
+        everywhere = rename_link(self.draft, old, name) if tag == "link" else own
+        for sets in filter(None, dict.fromkeys((everywhere, own))):
+            yield self.piece(element, f"the name of a {tag}", sets=sets, link=name if tag == "link" else "")
+
+    def _remove(self, node: Node) -> Iterator[Piece]:
+        """Remove what the reference does not have; an origin or axis gets its default."""
+        element, tag = node.of, node.tag
+        if tag in ("origin", "axis"):
+            defaults = dict.fromkeys(node.values, "1 0 0" if tag == "axis" else "0 0 0")
+            yield from self.each([Set(element, "", name, value) for name, value in defaults.items()])
+        elif element.getparent() is self.draft.root and not self._is_twice(element):
+            return
+        elif element.getparent() is not None and element.getparent().tag != "geometry":  # there the shape is replaced
+            cause = f"an extra <{tag}>: {{}}" if tag not in ("link", "joint") else f"an extra {tag}"
+            yield self.piece(element, cause, self.draft.remove(element), rank=STRUCTURE)
+
+    def _is_twice(self, element: Element) -> bool:
+        """Return whether another element has the same name, or another joint the same child."""
+        tag, parent = str(element.tag), element.getparent()
+        keys = [
+            {it.get("name"), end_of(it, "child") or None} - {None}
+            for it in (parent if parent is not None else ())
+            if it.tag == tag
+        ]
+        own = {element.get("name"), end_of(element, "child") or None} - {None}
+        return sum(not own.isdisjoint(other) for other in keys) > 1
+
+    def _inner(self, parent: Element, element: Element) -> Iterator[Piece]:
+        """Add an element to another one: values of an origin or axis, another shape, or the element as it is."""
+        tag, own = str(element.tag), child_of(parent, str(element.tag))
+        if tag in ("origin", "axis"):  # one with default values only does not count
+            values = {str(key): normal(tag, str(key), str(value)) for key, value in element.attrib.items()}
+            mine = {name: own.get(name) if own is not None else None for name in values}
+            off = [name for name, value in values.items() if normal(tag, name, mine[name]) != value]
+            yield from self.each([Set(parent, tag, name, values[name]) for name in off])
+            return
+        shape = next((it for it in parent if parent.tag == "geometry" and it.tag in CHILDREN["geometry"]), None)
+        if shape is None:
+            yield self.piece(parent, f"the <{tag}> of {{}} is missing", self.draft.insert(parent, self._text(element)))
+        else:
+            yield self.piece(parent, "the shape of {}", self.draft.replace(shape, self._text(element)))
+
+    def _text(self, element: Element) -> str:
+        """Return an element of the reference with the robot's names, an undefined material with its colour."""
+        name = element.get("name") or ""
+        own = self._names["material" if element.tag == "material" else "joint"]
+        text = self.reference.text(element)
+        for old, new in own.items():
+            text = text.replace(f'"{old}"', f'"{escaped(new)}"') if element.tag in ("material", "mimic") else text
+        defined = self.reference.material(name)
+        if element.tag == "material" and defined is not None and self.draft.material(own.get(name, name)) is None:
+            return self.reference.text(defined)
+        return text
+
+
+def rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
+    """Return what gives a link another name, also where joints name it; nothing where several have the old one."""
+    own = [link for link in draft.links() if link.get("name") == old]
+    ends = [(joint, role) for joint in draft.joints() for role in ENDS if end_of(joint, role) == old]
+    sets = (*(Set(link, "", "name", new) for link in own), *(Set(joint, role, "link", new) for joint, role in ends))
+    return sets if len(own) == 1 else sets[:0]

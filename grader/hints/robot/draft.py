@@ -1,0 +1,205 @@
+"""The edits of the elements of a robot in the text that they are written in."""
+
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, cast
+
+from grader import markup
+from grader.hints.edits import (
+    Proposal,
+    merged,
+    with_attribute,
+    with_child,
+    with_element,
+    without_element,
+)
+from grader.hints.robot.elements import RobotElements, Set
+from grader.hints.robot.numbers import values_of
+from grader.source import Edits
+from grader.xml.parsing import Element
+from grader.xml.urdf_format import PARTS
+
+if TYPE_CHECKING:
+    from grader.hints.xacro.expanded_edits import ExpandedEdits
+    from grader.xacro.expanded_source import ExpandedSource
+
+_ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
+_MAX_WAYS = 3
+
+
+class Draft(RobotElements):
+    """A robot that is being edited."""
+
+    @cached_property
+    def _expanded(self) -> "ExpandedEdits | None":
+        """The edits of the source if xacro expanded it: an element is not written there as it is read."""
+        if not self.source.is_expanded:
+            return None
+        from grader.hints.xacro.expanded_edits import ExpandedEdits  # late: most robots are not xacro
+
+        return ExpandedEdits(cast("ExpandedSource", self.source))
+
+    @property
+    def is_refused(self) -> bool:
+        """Whether xacro refuses something, so that elements may be missing for that."""
+        return self.source.is_expanded and cast("ExpandedSource", self.source).is_refused
+
+    def corrections(self, names: Sequence[str]) -> list[Proposal]:
+        """Return edits that may correct what xacro refuses; `names` are those that may be meant."""
+        return self._expanded.corrections(names) if self._expanded is not None else []
+
+    def numbers(self, element: Element, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
+        """Return the numbers from which xacro computes an attribute, each with what makes the edit of it."""
+        if self._expanded is None:
+            return []
+        return self._expanded.numbers(self._tags[element], attribute)
+
+    def _siblings(self, element: Element, attribute: str, sets: Iterable[Set]) -> dict[Element, str]:
+        """Return the values that are set for the elements that come from the same text as one."""
+        tag = self._tags[element]
+        same: list[Element] = [self._elements[it] for it in (self._expanded.siblings(tag) if self._expanded else [])]
+        return {it: one.value for it in same for one in sets if one.attribute == attribute and one.element is it}
+
+    def shared(self, sets: Iterable[Set]) -> frozenset[str]:
+        """Return the links whose elements come from the same text of xacro as those that are set."""
+        if self._expanded is None:
+            return frozenset()
+        tags = [self._tags[one.element] for one in sets if one.element is not None]
+        return frozenset(self.link_of(self._elements[it]) for tag in tags for it in self._expanded.siblings(tag))
+
+    def ways(self, sets: Collection[Set]) -> list[Edits]:
+        """Return the ways to set values; attributes and elements that are missing are added."""
+        found: list[Edits] = [()]
+        attributes: dict[Element, dict[str, str]] = {}
+        children: dict[tuple[Element, str], dict[str, str]] = {}
+        done: set[tuple[Element, str]] = set()
+        for one in dict.fromkeys(sets):
+            element = one.element
+            if element is not None and (element, one.attribute) in done:
+                continue
+            if element is None:
+                children.setdefault((one.owner, one.tag), {})[one.attribute] = one.value
+            elif one.attribute in element.attrib:
+                others = self._siblings(element, one.attribute, sets)
+                done |= {(it, one.attribute) for it in others}
+                is_numeric = bool(PARTS.get(one.attribute))
+                value = merged(element.get(one.attribute) or "", one.value) if is_numeric else one.value
+                ways = self._ways_of(element, one.attribute, value, others)
+                found = [(*before, *more) for before in found for more in ways]
+            else:
+                attributes.setdefault(element, {})[one.attribute] = one.value
+        added = [self.add_attributes(element, values) for element, values in attributes.items()]
+        added += [self.insert(owner, empty_element(tag, values)) for (owner, tag), values in children.items()]
+        rest = tuple(edit for edits in added for edit in edits)
+        return [
+            tuple(edit for edit in dict.fromkeys((*edits, *rest)) if edit.old != edit.new)
+            for edits in self._exchanged(sets, found)[:_MAX_WAYS]
+        ]
+
+    def _exchanged(self, sets: Collection[Set], ways: list[Edits]) -> list[Edits]:
+        """Return the ways to set values: two that are exchanged get the text of each other.
+
+        If names give both values, they may also be defined the wrong way round.
+        """
+        element = next((one.element for one in sets), None)
+        if element is None or len(sets) != 2 or any(one.element is not element for one in sets):
+            return ways
+        source, start = self.source.element(self._tags[element])
+        pair = [markup.attribute(source.text, start, one.attribute) for one in sets]
+        texts = [source.text[it.value_start : it.value_end] for it in reversed(pair) if it is not None]
+        wanted = [values_of(element.get(one.attribute)) for one in sets][::-1]
+        if len(texts) != 2 or not all(wanted) or [values_of(one.value) for one in sets] != wanted:
+            return ways
+        edits = tuple(with_attribute(source, start, it.attribute, text) for it, text in zip(sets, texts, strict=True))
+        return [*ways[:1], edits] if all("$" in text for text in texts) else [edits]
+
+    def _ways_of(self, element: Element, attribute: str, value: str, others: Mapping[Element, str]) -> list[Edits]:
+        """Return the ways to give an attribute another text, and elements that come from the same text others."""
+        tag = self._tags[element]
+        wanted = {tag: (element.get(attribute) or "", escaped(value))}
+        wanted |= {self._tags[it]: (it.get(attribute) or "", escaped(text)) for it, text in others.items()}
+        if self._expanded is not None:
+            return self._expanded.rewrites(attribute, wanted)
+        source, start = self.source.element(tag)
+        if self._broken_tag(source.text, start):
+            return [edits] if (edits := self.add_attributes(element, {attribute: value})) else []
+        return [(with_attribute(source, start, attribute, escaped(value)),)]
+
+    def write_text(self, element: Element, text: str) -> Edits:
+        """Return the edit that gives an element another text; none where it has children, or xacro evaluates it."""
+        tag = self._tags[element]
+        wanted = {tag: ((element.text or "").strip(), escaped(text))}
+        ways: list[Edits] = self._expanded.rewrites("", wanted) if self._expanded is not None else []
+        if ways:
+            return ways[0]
+        source, start = self.source.element(tag)
+        head, _ = markup.head_end(source.text, start)
+        end = source.text.rfind("</", head, markup.element_end(source.text, start))
+        if end < 0 or not {"$", "<"}.isdisjoint(source.text[head:end]):
+            return ()
+        return (source.edit(head, end, escaped(text)),)
+
+    def rename_attribute(self, element: Element, old: str, new: str) -> Edits:
+        """Return the edit that gives an attribute another name."""
+        source, start = self.source.element(self._tags[element])
+        found = markup.attribute(source.text, start, old)
+        rest = source.text[found.start + len(old) : found.end] if found is not None else ""
+        return (source.edit(found.start, found.end, f"{new}{rest}"),) if found is not None else ()
+
+    def rename_tag(self, element: Element, new: str) -> Edits:
+        """Return the edits that give an element another name, at its start and at its end."""
+        source, start = self.source.element(self._tags[element])
+        text, end = source.text, markup.name_end(source.text, start)
+        edits: Edits = (source.edit(start, end, f"<{new}"),)
+        tail = markup.element_end(text, start)
+        closing = text.rfind("</", start, tail)
+        if not markup.head_end(text, start)[1] and closing >= 0:
+            edits += (source.edit(closing, tail, f"</{new}>"),)
+        return edits
+
+    def add_attributes(self, element: Element, values: Mapping[str, str]) -> Edits:
+        """Return the edit that adds attributes to an element, or writes a broken tag with them."""
+        source, start = self.source.element(self._tags[element])
+        end = markup.name_end(source.text, start)
+        broken = self._broken_tag(source.text, start)
+        if broken:
+            given = {str(name): str(value) for name, value in element.attrib.items()}
+            new = empty_element(str(element.tag), {**given, **values})
+            new = new if broken.endswith("/>") else f"{new[:-2]}>"
+            return (source.edit(start, start + len(broken), new),) if broken.endswith(">") else ()
+        added = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
+        return (source.edit(start, end, f"{source.text[start:end]}{added}"),)
+
+    def _broken_tag(self, text: str, start: int) -> str:
+        if not self.is_broken:
+            return ""
+        from grader.xml.tinyxml2.recovery import broken_tag  # late: its patterns take long, and few files need them
+
+        return broken_tag(text, start)
+
+    def insert(self, parent: Element, xml: str) -> Edits:
+        """Return the edit that inserts an element as the first child of another one."""
+        return (with_child(*self.source.element(self._tags[parent]), xml),)
+
+    def remove(self, element: Element) -> Edits:
+        """Return the edit that removes an element."""
+        source, start = self.source.element(self._tags[element])
+        return (without_element(source, start),)
+
+    def replace(self, element: Element, xml: str) -> Edits:
+        """Return the edit that replaces an element."""
+        source, start = self.source.element(self._tags[element])
+        return (with_element(source, start, xml),)
+
+
+def empty_element(tag: str, values: Mapping[str, str]) -> str:
+    """Return the text of an element without content."""
+    attributes = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
+    return f"<{tag}{attributes}/>"
+
+
+def escaped(value: str) -> str:
+    """Return a text as an attribute contains it."""
+    for character, entity in _ESCAPES:
+        value = value.replace(character, entity)
+    return value

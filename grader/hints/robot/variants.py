@@ -1,0 +1,118 @@
+"""The student's own numbers with another sign, order or unit, doubled or halved, or those of the other side."""
+
+import re
+from collections.abc import Iterable, Iterator
+from itertools import combinations
+from math import inf
+
+from grader.hints.robot.difference import RobotDifference
+from grader.hints.robot.draft import Draft
+from grader.hints.robot.elements import Set
+from grader.hints.robot.numbers import LARGE, Values, format_number, format_numbers, plausible, values_of
+from grader.hints.robot.pieces import OWN, SIBLING, Piece, normal
+from grader.xml.parsing import Element
+from grader.xml.urdf_format import TAGS
+
+_SIDES = {"left": "right", "right": "left", "front": "rear", "rear": "front", "l": "r", "r": "l", "upper": "lower"}
+_WORD = re.compile(r"[^\W\d_]+")
+_PLACES = ("origin", "axis", "limit", "mimic", "dynamics", "color", "box", "cylinder", "sphere", "mass")
+
+
+def _parts(draft: Draft, link: str) -> Iterator[tuple[str, Element]]:
+    """Yield the elements with numbers of a link and its joint, each with its path."""
+    for owner in (draft.joint_of(link), draft.link(link)):
+        for element in owner.iter(*_PLACES) if owner is not None else ():
+            above = element.getparent()
+            around = above.getparent() if above is not None and above.tag == "geometry" else above
+            yield (
+                f"{owner.tag if owner is not None else ''}/{around.tag if around is not None else ''}/{element.tag}",
+                element,
+            )
+
+
+def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
+    """Yield the numbers of the link at the other side, mirrored, where the student builds both unlike the reference."""
+    for link in links:
+        other = _WORD.sub(lambda word: _SIDES.get(word[0], word[0]), link)
+        theirs = dict(reversed([*_parts(difference.draft, other)])) if other != link else {}
+        like = dict(reversed([*_parts(difference.reference, other)])) if theirs else {}
+        mine = dict(reversed([*_parts(difference.reference, link)])) if theirs else {}
+        for path, element in _parts(difference.draft, link):
+            for name, known in TAGS[str(element.tag)].attributes.items() if path in theirs else ():
+                text, tag = theirs[path].get(name), str(element.tag)
+                given = like[path].get(name) if path in like else None
+                values = values_of(text)
+                if len(values) == len(known.parts) and normal(tag, name, text) != normal(tag, name, given):
+                    others = {normal(tag, name, it.get(name)) for it in (element, mine.get(path, element))}
+                    for mirrored in map(format_numbers, _mirrored(values)):
+                        if normal(tag, name, mirrored) not in others:
+                            yield difference.of_sets([Set(element, "", name, mirrored)], SIBLING)
+
+
+def _mirrored(values: Values) -> Iterator[Values]:
+    yield values
+    for index in (index for index, value in enumerate(values) if value):
+        yield (*values[:index], -values[index], *values[index + 1 :])
+
+
+def of_own(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
+    """Yield the numbers of links as they may be meant, where they are not the reference's.
+
+    Where xacro computes them, the numbers that they come from.
+    """
+    seen: set[object] = set()
+    is_alone = difference.draft is difference.reference
+    for link in links:
+        like = dict(reversed([*_parts(difference.reference, link)]))
+        for path, element in _parts(difference.draft, link):
+            tag = str(element.tag)
+            numbers = TAGS[tag].attributes
+            single = [name for name, known in numbers.items() if len(known.parts) == 1 and element.get(name)]
+            if len(single) == 2:
+                pair = zip(single, single[::-1], strict=True)
+                yield difference.of_sets([Set(element, "", one, element.get(other) or "") for one, other in pair], OWN)
+            for name in numbers:
+                given = like[path].get(name) if path in like else None
+                if is_alone or normal(tag, name, element.get(name)) != normal(tag, name, given):
+                    found = (piece for piece in _of_number(difference, element, name) if piece.edits not in seen)
+                    for piece in found:
+                        seen |= {piece.edits} if piece.edits else set()
+                        yield piece
+
+
+def _of_number(difference: RobotDifference, element: Element, name: str) -> Iterator[Piece]:
+    unit = TAGS[str(element.tag)].attributes[name].unit
+    least = 0.0 if unit == "m" and element.tag != "origin" else -inf  # of a size
+    defined = [found for found in difference.draft.numbers(element, name) if values_of(found[0])]  # not 1e400
+    for values in () if defined else plausible(unit, values_of(element.get(name))):
+        if min(values) > least:
+            yield difference.of_sets([Set(element, "", name, format_numbers(values))], OWN)
+    coordinates = values_of(element.get(name)) if element.tag == "origin" else ()
+    for text, edits_with in defined:
+        (old,) = values_of(text)
+        for (value,) in plausible(unit, (old,)):
+            is_side = abs(old) == 1.0 and value != -old  # 1 and -1 are the sides
+            is_length = old > 0.0 > value and abs(old) != 1.0 and old not in coordinates
+            edits = edits_with(format_number(value))
+            if edits and value > least and not is_length and not is_side:
+                cause = f"a number from which the {name} of {{}} is computed"
+                yield difference.piece(element, cause, edits, rank=OWN)
+    lengths = [it for it in defined if abs(values_of(it[0])[0]) != 1.0]
+    for (one, with_one), (other, with_other) in combinations(lengths, 2):
+        edits = (*with_one(other), *with_other(one)) if one != other else ()
+        yield difference.piece(element, f"the numbers from which the {name} of {{}} is computed", edits, rank=OWN)
+
+
+def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
+    """Yield all lengths in metres, for a robot of which they are all in centimetres or millimetres."""
+    found: list[tuple[Element, str, Values]] = []
+    for element in difference.draft.root.iter():
+        for name, known in TAGS[str(element.tag)].attributes.items() if element.tag in TAGS else ():
+            values = values_of(element.get(name)) if known.unit == "m" else ()
+            found += [(element, name, values)] * any(values)
+    is_large = any(max(values) >= LARGE for element, _, values in found if element.tag != "origin")
+    for factor, unit in ((100.0, "centimetres"), (1000.0, "millimetres")) if is_large else ():
+        metres = [(it, name, tuple(value / factor for value in values)) for it, name, values in found]
+        sets = tuple(Set(it, "", name, format_numbers(values)) for it, name, values in metres)
+        cause = f"the unit of all lengths: {unit}, not metres"
+        yield Piece(cause, "", sets, (), OWN)

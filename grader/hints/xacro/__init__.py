@@ -1,0 +1,1 @@
+"""Edits of xacro files: of the texts that expanded elements come from."""

@@ -1,0 +1,166 @@
+"""Three orthographic views of a scene at one scale, as in third-angle projection, and free places for labels in them.
+
+A box, a cylinder and a sphere are convex, so the outline of each in a view is the convex hull of its projected points.
+Lengths on the sheet are pixels, and y points down.
+"""
+
+from collections.abc import Iterable
+from itertools import product
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from grader.report.drawing.picture import Picture
+from grader.report.drawing.scene import Body
+from grader.robot.model import Box, Sphere
+from grader.robot.transforms import Transform, Vector
+
+Place = tuple[float, float]
+Points = Any  # an array of shape (n, 3), or (n, 2) in a view
+
+WIDTH, TITLE = 600.0, 18.0
+PANEL = WIDTH / 2.0  # the width of a view
+_MARGIN = 40.0  # around the robot in each view, for labels
+_KEY_HEIGHT = 130.0
+_MAX_HEIGHT = 460.0  # of the view from above and the side view of the robot together
+_SMALLEST = 0.02  # metres
+_MAX_FRAMES, _MAX_FRAMES_ALONE = 12, 60  # with shapes, and where none is shown
+_FAR = 2.0  # times the size of the robot: a ground farther away is not in the picture
+_ANGLES = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+_CIRCLE = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
+_CORNERS = np.array([*product((-0.5, 0.5), repeat=3)])
+_CAPS = np.array([(x, y, z) for z in (-0.5, 0.5) for x, y in _CIRCLE])
+# Of each view: its title, and the axes of the frame that point to the right, up and to the viewer.
+_TOP = ("top (from +z)", (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+_SIDE = ("side (from -y)", (1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, -1.0, 0.0))
+_FRONT = ("front (from +x)", (0.0, 1.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
+
+
+class Panel(NamedTuple):
+    """A view on the sheet: the directions of the frame in it, its rectangle, and pixels per metre.
+
+    `middle` is the point of the frame (m) at its centre.
+    """
+
+    title: str
+    right: Vector
+    up: Vector
+    near: Vector
+    left: float
+    top: float
+    height: float
+    middle: Vector
+    scale: float
+
+    def direction(self, direction: Vector) -> Vector:
+        """Return a direction of the frame on the sheet, with y down, and its component to the viewer."""
+        x, y, z = np.array((self.right, self.up, self.near)) @ direction
+        return float(x), -float(y), float(z)
+
+    def places(self, points: Points) -> Points:
+        """Return the positions of points of the frame on the sheet."""
+        centre = self.left + PANEL / 2.0, self.top + (TITLE + self.height) / 2.0
+        across = (np.array(points) - self.middle) @ np.array((self.right, self.up)).T
+        return centre + across * (self.scale, -self.scale)
+
+    def place(self, point: Vector) -> Place:
+        """Return the position of a point of the frame on the sheet."""
+        x, y = self.places(point)
+        return float(x), float(y)
+
+    def outline(self, body: Body) -> list[Place]:
+        """Return the corners of the outline of a body."""
+        if isinstance(body.shape, Sphere):
+            return hull(self.places(body.T_frame_shape.translation) + _CIRCLE * body.shape.radius * self.scale)
+        return hull(self.places(points_of(body)))
+
+
+def points_of(body: Body) -> Points:
+    """Return points of the frame whose hull is a body; of a sphere, those that are farthest along the axes."""
+    pose, shape = body.T_frame_shape, body.shape
+    if isinstance(shape, Sphere):
+        return pose.translation + shape.radius * np.vstack([np.eye(3), -np.eye(3)])
+    points = _CORNERS * shape.size if isinstance(shape, Box) else _CAPS * (shape.radius, shape.radius, shape.length)
+    return points @ np.reshape(pose.rotation, (3, 3)).T + pose.translation
+
+
+def hull(points: Points) -> list[Place]:
+    """Return the convex hull of points on the sheet, to a tenth of a pixel (Andrew's monotone chain, 1979)."""
+    ordered = sorted({(round(float(x), 1), round(float(y), 1)) for x, y in points})
+    return [place for half in (ordered, ordered[::-1]) for place in _half_hull(half)] or ordered
+
+
+def _half_hull(ordered: list[Place]) -> list[Place]:
+    half: list[Place] = []
+    for x, y in ordered:
+        while len(half) > 1:
+            (a, b), (c, d) = half[-2:]
+            if (c - a) * (y - b) > (d - b) * (x - a):
+                break
+            half.pop()
+        half.append((x, y))
+    return half[:-1]
+
+
+def from_back_to_front(bodies: Iterable[Body], panel: Panel) -> list[Body]:
+    """Return bodies by the depth of their nearest points; slanted ones that interlock may be in the wrong order."""
+    return sorted(bodies, key=lambda body: float((points_of(body) @ panel.near).max()))
+
+
+def panels_of(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
+    """Return the three views of a picture, below `top`; the room above the last one is for the key."""
+    low, high = _bounds(picture)
+    size = np.maximum(high - low, _SMALLEST)
+    scale = min((PANEL - 2.0 * _MARGIN) / size[:2].max(), _MAX_HEIGHT / size[1:].sum())
+    rest = tuple((low + high) / 2.0), scale
+    upper, lower = (length * scale + 2.0 * _MARGIN + TITLE for length in size[1:])
+    upper = max(upper, _KEY_HEIGHT)
+    return (
+        Panel(*_TOP, 0.0, top, upper, *rest),
+        Panel(*_SIDE, 0.0, top + upper, lower, *rest),
+        Panel(*_FRONT, PANEL, top + upper, lower, *rest),
+    )
+
+
+def _bounds(picture: Picture) -> tuple[Points, Points]:
+    """Return the least and the largest coordinates (m) of what a picture shows, in the frame."""
+    shown = [points_of(body) for body in (*picture.scene.bodies, *picture.outlines)]
+    origins = [pose.translation for pose in (*frames_of(picture), *picture.frames)]
+    points = np.concatenate([*shown, origins or [(0.0, 0.0, 0.0)]])
+    low, high = points.min(axis=0), points.max(axis=0)
+    far, ground = _FAR * (high - low).max(), picture.scene.ground
+    if ground is not None and low[2] - far <= ground.translation[2] <= high[2] + far:
+        low[2], high[2] = min(low[2], ground.translation[2]), max(high[2], ground.translation[2])
+    return low, high
+
+
+def frames_of(picture: Picture) -> list[Transform]:
+    """Return the frames that are shown: of links with callouts or shapes, or of all links if there are no shapes."""
+    scene = picture.scene
+    called = [callout.link for callout in picture.callouts]
+    others = [body.link for body in scene.bodies] or scene.poses
+    links = dict.fromkeys([scene.frame, scene.root, *called, *others])
+    poses = [scene.poses[link] for link in links if link in scene.poses]
+    return poses[: _MAX_FRAMES if scene.bodies else _MAX_FRAMES_ALONE]
+
+
+class FreePlaces:
+    """The rectangles of a panel that labels have taken."""
+
+    def __init__(self, panel: Panel) -> None:
+        self._panel = panel
+        self._taken: list[tuple[float, ...]] = []
+
+    def take(self, centres: Iterable[Place], size: Place) -> Place | None:
+        """Take the first of some centres at which a label of a size is in the panel and free; None without one."""
+        panel, (across, down) = self._panel, size
+        for x, y in centres:
+            is_inside = across / 2.0 <= x - panel.left <= PANEL - across / 2.0
+            is_inside &= TITLE + down / 2.0 <= y - panel.top <= panel.height - down / 2.0
+            if is_inside and all(
+                2.0 * abs(x - a) >= across + width or 2.0 * abs(y - b) >= down + height
+                for a, b, width, height in self._taken
+            ):
+                self._taken.append((x, y, across, down))
+                return x, y
+        return None

@@ -1,0 +1,117 @@
+"""What a picture of a graded robot shows: wheels and their way, where the reference differs, which criteria failed where."""
+
+from math import dist
+from pathlib import Path
+from typing import cast
+
+import pytest
+
+from grader.grading.grade import grade
+from grader.grading.graded_submission import GradedSubmission
+from grader.grading.report import Report
+from grader.grading.rubric import load_rubric
+from grader.report.drawing.picture import Picture, picture_of
+from grader.report.drawing.scene import scene_of
+from grader.robot.kinematics import Configuration
+from grader.robot.reader import read_urdf
+from grader.source import Source
+from grader.submission.opening import open_submission
+from grader.submission.submission import Submission
+from grader.submission.urdf import Urdf
+from tests.command_line import run
+
+ROOT = Path(__file__).parents[3]
+
+
+def picture(name: str, rubric: str = "lab6") -> Picture:
+    """Return the picture of a sample submission."""
+    loaded = load_rubric(rubric)
+    found = picture_of(grade(loaded, open_submission(str(ROOT / "submissions" / rubric / name), loaded.lab)))
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize(("kind", "picture"), [("svg", "<svg "), ("html", "Three views")])
+def test_a_number_that_overflows_costs_neither_picture_nor_hints(kind: str, picture: str, tmp_path: Path) -> None:
+    """A mesh at the end of the range of numbers in a link that is turned: the number of the callout is at the cylinder that is drawn."""
+    far = '<visual><origin xyz="1e308 1.7e308 1.7e308"/><geometry><mesh filename="a.stl"/></geometry></visual>'
+    link = '<link name="left_wheel">'
+    text = (ROOT / "submissions/lab6/axis-negated/my_robot/urdf/my_robot.urdf").read_text().replace(link, link + far)
+    turned = '<origin xyz="-0.15 0.2 0" rpy="-0.78 0 0.78"/>'
+    (tmp_path / "my_robot.urdf").write_text(text.replace('<origin xyz="-0.15 0.2 0" rpy="-1.57 0 0"/>', turned))
+    assert (tmp_path / "my_robot.urdf").read_text().count(turned) == text.count(far) == 1
+    done = run(["grade", tmp_path, "--rubric", "lab6", "--format", kind])
+    assert (done.returncode, done.stderr) == (1, b"")
+    assert picture in done.stdout.decode()
+    loaded = load_rubric("lab6")
+    found = picture_of(grade(loaded, open_submission(str(tmp_path), loaded.lab)))
+    assert found is not None
+    point = next(callout.point for callout in found.callouts if callout.link == "left_wheel")
+    assert point is not None
+    assert dist(point, (-0.15, 0.2, 0.0)) == pytest.approx(0.025)
+
+
+class Unsafe:
+    """Files that must not be opened again."""
+
+    @property
+    def urdf(self) -> Urdf:
+        """Fail, as the process that graded them did."""
+        raise MemoryError
+
+    def source(self, path: str) -> Source | None:
+        """Fail as well."""
+        raise MemoryError(path)
+
+
+def test_a_submission_that_could_not_be_graded_is_not_opened_again() -> None:
+    """It may be one that crashed the process that graded it."""
+    submission = GradedSubmission("ash", originals=cast("Submission", Unsafe()))
+    assert picture_of(Report(submission, load_rubric("lab6"), (), ())) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new"),
+    [
+        ("equivalent-wheel-joints-at-centres", '"0.7 0.7 0.7 1', '"0.1 0.1 0.1 1'),
+        ("equivalent-wheel-joints-at-centres", '<axis xyz="0 0 1"', '<axis xyz="0 0 -1"'),
+    ],
+)
+def test_no_outline_of_what_is_right(name: str, old: str, new: str, tmp_path: Path) -> None:
+    """A wrong colour or axis draws no dashed shape or frame at a link that is correct in another way than the reference."""
+    found = changed_picture(tmp_path, name, old, new)
+    assert found.callouts
+    assert (found.outlines, found.frames) == ((), ())
+
+
+def changed_picture(folder: Path, name: str, old: str, new: str) -> Picture:
+    """Return the picture of a sample with another text in its URDF."""
+    text = (ROOT / "submissions/lab6" / name / "my_robot/urdf/my_robot.urdf").read_text()
+    assert old in text
+    (folder / "my_robot.urdf").write_text(text.replace(old, new))
+    loaded = load_rubric("lab6")
+    found = picture_of(grade(loaded, open_submission(str(folder), loaded.lab)))
+    assert found is not None
+    return found
+
+
+def test_criterion_on_several_links_marks_none_of_them(tmp_path: Path) -> None:
+    """If wheels and caster miss the ground together, that is a mistake of the robot, not of its first wheel."""
+    found = changed_picture(
+        tmp_path, "caster-below-the-ground", '<origin xyz="0 0 0.1"/>\n', '<origin xyz="0 0 0.05"/>\n'
+    )
+    callouts = {callout.link: callout for callout in found.callouts}
+    assert set(callouts) == {"base_footprint", "caster_wheel", ""}
+    assert [result.criterion.id for result in callouts[""].results] == ["stands-on-ground"]
+
+
+def test_wheel_below_a_joint_that_slides_has_an_arrow() -> None:
+    """The joint that turns the wheel counts, as in the check of its direction, also if another one moves it as well."""
+    text = """<robot name="r"><link name="base"/><link name="hub"/><link name="wheel"><visual><geometry>
+    <cylinder radius="0.1" length="0.05"/></geometry></visual></link>
+    <joint name="turn" type="continuous"><parent link="base"/><child link="hub"/><origin rpy="-1.5708 0 0"/><axis xyz="0 0 1"/></joint>
+    <joint name="slide" type="prismatic"><parent link="hub"/><child link="wheel"/><limit effort="1" velocity="1"/></joint></robot>"""
+    robot = read_urdf(text.encode(), "r.urdf").robot
+    assert robot is not None
+    (wheel,) = scene_of(Configuration(robot), "base", ["wheel"]).wheels
+    assert wheel.travel == pytest.approx((1.0, 0.0, 0.0), abs=1e-4)
