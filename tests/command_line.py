@@ -92,14 +92,11 @@ def clean_environment() -> dict[str, str]:
 
 
 def _exit_code() -> int:
-    leave = os._exit
     try:
         main()
     except SystemExit as end:
         assert isinstance(end.code, int)
         return end.code
-    finally:
-        os._exit = leave
     raise AssertionError("the command line did not exit")
 
 

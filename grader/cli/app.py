@@ -130,7 +130,7 @@ def _run(arguments: Sequence[str]) -> int:
         for line in reason.split("\n"):
             warn(line)
         return ExitCode.NOT_GRADED
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, typer.Abort):  # typer raises its own for Ctrl-C
         return ExitCode.INTERRUPTED
     except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
         return _other_error(error)
@@ -165,17 +165,15 @@ def _command(arguments: Sequence[str]) -> list[str]:
 
 
 def _other_error(error: Exception) -> ExitCode:
-    if type(error).__name__ == "Abort":  # typer's exception for Ctrl-C
-        return ExitCode.INTERRUPTED
-    usage = getattr(error, "format_message", None)
-    if usage is None:
+    if not hasattr(error, "format_message"):  # which typer's errors of usage have
         warn(_one_line(f"internal error, please report it: {type(error).__name__}: {error}"))
         return ExitCode.FAULT
-    command = getattr(getattr(error, "ctx", None), "command_path", "grader")
-    if type(error).__name__ == "NoArgsIsHelpError":
-        print(usage(), file=sys.stderr)
+    message, context = error.format_message(), getattr(error, "ctx", None)
+    if context is not None and message == context.get_help():  # a group of commands without arguments
+        print(message, file=sys.stderr)
     else:
-        warn(_one_line(f"{usage()} (`{command} --help` shows the usage)"))
+        command = context.command_path if context is not None else "grader"
+        warn(_one_line(f"{message} (`{command} --help` shows the usage)"))
     return ExitCode.NOT_GRADED
 
 

@@ -79,7 +79,6 @@ def batch(
 
       See https://urdf-grader.github.io/urdf-grader/grade-a-class.html for more.
     """
-    options = locals()  # named like the fields of the request
     if cluster is None and paths:  # a class that is graded may need no workers
         with suppress(OSError):  # it is started again when it is needed
             forks.start_server()  # it loads what grades a submission, while this process loads what the class needs
@@ -89,4 +88,26 @@ def batch(
     for kind in report_format or ():
         if kind.needs == "identity":
             raise GraderError(f"{kind} is for one repository: use `grader grade` there")
-    return grade_class(ClassRequest(**options), TERMINAL)
+    request = ClassRequest(
+        paths=paths,
+        gradebook=gradebook,
+        rubric=rubric,
+        roster=roster,
+        due=due,
+        layout=layout,
+        assignment=assignment,
+        part=part,
+        arg=arg,
+        ignore_file=ignore_file,
+        max_size=max_size,
+        jobs=jobs,
+        timeout=timeout,
+        force=force,
+        cluster=cluster,
+        reports=reports,
+        report_format=report_format,
+        answers=answers,
+        verbose=verbose,
+        output_format=output_format,
+    )
+    return grade_class(request, TERMINAL)

@@ -70,10 +70,23 @@ def export(
 
       Feedback in Moodle: --feedback, then "Upload multiple feedback files in a zip".
     """
-    options = locals()  # named like the fields of the request
     from grader.commands.export import ExportRequest
     from grader.commands.export import export as export_grades
 
-    data, code = export_grades(ExportRequest(**options), TERMINAL)
+    request = ExportRequest(
+        target=target,
+        gradebook=gradebook,
+        into=into,
+        output=output,
+        strict=strict,
+        column=column,
+        pending_as_zero=pending_as_zero,
+        any_maximum=any_maximum,
+        only=only,
+        excel=excel,
+        feedback=feedback,
+        feedback_format=feedback_format,
+    )
+    data, code = export_grades(request, TERMINAL)
     write_stdout(data)
     return code

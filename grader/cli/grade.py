@@ -67,10 +67,22 @@ def grade(
 
       grader grade lab6.zip --save markdown=report.md --save junit=report.xml
     """
-    options = locals()  # named like the fields of the request
-    del options["save"], options["watch"]
     try:
-        request = GradeRequest(**options, saves=read_saves(save or ()))
+        request = GradeRequest(
+            path=path,
+            rubric=rubric,
+            expect_rubric=expect_rubric,
+            part=part,
+            output_format=output_format,
+            saves=read_saves(save or ()),
+            fail_under=fail_under,
+            max_size=max_size,
+            arg=arg,
+            answers=answers,
+            verbose=verbose,
+            hints=hints,
+            fix=fix,
+        )
         if watch:
             from grader.commands.watch import watch as grade_on_change
 

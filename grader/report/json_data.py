@@ -29,12 +29,9 @@ def _harmless(text: str) -> str:
 
 
 def _lines(value: Any) -> str:
-    text = _ENCODER.encode(value)
     if not isinstance(value, list) or not value or not isinstance(value[0], dict):
-        return text
-    # In a JSON string every quote is escaped, so this matches only between two entries.
-    first = _ENCODER.encode(next(iter(value[0])))
-    return "[\n  " + text[1:-1].replace("}, {" + first, "},\n  {" + first) + "\n ]"
+        return _ENCODER.encode(value)
+    return "[\n  " + ",\n  ".join(map(_ENCODER.encode, value)) + "\n ]"
 
 
 def exact(points: Decimal | None) -> int | float | None:

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.classroom.class_runs import HOSTILE_RUBRIC, WITH_HOSTILE
-from tests.command_line import run, run_process
+from tests.classroom.class_runs import HOSTILE_RUBRIC
+from tests.command_line import run
 
 pytestmark = pytest.mark.usefixtures("hostile_checks")
 FAULTY = "the check behaves of the package hostile-checks is faulty: "
@@ -46,20 +46,6 @@ def test_a_faulty_check_is_errored(tmp_path: Path, name: str) -> None:
         loads, behaves = json.loads(done.stdout)["results"]
         assert (loads["status"], loads["points"]) == ("passed", 1)
         assert (behaves["status"], behaves["message"]) == ("errored", FAULTY + FAULTS[name])
-
-
-@pytest.mark.parametrize(
-    ("name", "printed"),
-    [
-        ("leaves", b"a plug-in check has ended the process"),
-        pytest.param("leaves_at_the_end", b"package hostile-checks is faulty", marks=pytest.mark.exhaustive),
-    ],
-)
-def test_no_check_decides_the_exit_code(tmp_path: Path, name: str, printed: bytes) -> None:
-    """One that ends the process, at once or registered for its end, never turns an errored run green."""
-    done = run_process(("grade", robot(tmp_path, name), "--rubric", HOSTILE_RUBRIC), variables=WITH_HOSTILE)
-    assert done.returncode == 3
-    assert printed in b" ".join((done.stdout + done.stderr).split())
 
 
 INVALID = {

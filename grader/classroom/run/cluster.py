@@ -90,14 +90,17 @@ class Cluster(Executor):
 
     async def _pass_on(self, task: Any, outer: "Future[Any]") -> None:
         """Wait for a task of the cluster, and complete its future in any case."""
+        from distributed import KilledWorker
+
         try:
             result = await self._client.gather(task, asynchronous=True)
         except (CancelledError, asyncio.CancelledError, OSError):  # no task is cancelled here: the cluster ended
             self._is_gone = True
             result = WorkerError("the cluster ended", is_own_fault=False)
-        except Exception as error:  # noqa: BLE001  such as Dask's KilledWorker
-            is_killer = type(error).__name__ == "KilledWorker"
-            result = WorkerError("it ended several workers of the cluster") if is_killer else error
+        except KilledWorker:
+            result = WorkerError("it ended several workers of the cluster")
+        except Exception as error:  # noqa: BLE001  of the task itself, or of Dask
+            result = error
         if isinstance(result, Exception):
             outer.set_exception(result)
         else:

@@ -1,6 +1,5 @@
 """A plug-in check that misbehaves as the robot's name says, to test what a worker survives."""
 
-import atexit
 import ctypes
 import os
 import signal
@@ -51,9 +50,6 @@ def behaves(robot: Configuration) -> Outcome:
             os.kill(os.getpid(), signal.SIGKILL)
         case "leaves":
             os._exit(0)
-        case "leaves_at_the_end":
-            atexit.register(os._exit, 0)
-            raise RuntimeError("as asked")
         case "leaves_loudly":
             os._exit(7)
         case "exits":
