@@ -10,10 +10,10 @@ from pathlib import PurePosixPath
 
 from grader.errors import InputError
 from grader.files.names import ignored_part
-from grader.package.globbing import PackageListing, SearchError
-from grader.python.evaluation import Evaluation, EvaluationStopped
+from grader.package.globbing import PackageListing
+from grader.python.evaluation import Evaluation
 from grader.python.knowledge import known, path_text
-from grader.python.values import Call, ExpressionFails, FunctionTable, Items, Undetermined, Unknown, Value
+from grader.python.values import Call, EvaluationFails, FunctionTable, Items, Undetermined, Unknown, Value
 
 _OUTSIDE = "it reads files outside of the package"
 _GLOB_OPTIONS = ("pathname", "recursive", "root_dir", "include_hidden", "dir_fd")
@@ -53,10 +53,7 @@ def _evaluate(
 ) -> Value:
     """Evaluate a search, charge it and record whether the order of files in a folder matters."""
     known([call.args, [*call.kwargs.values()]])
-    try:
-        found = function(evaluation, call)
-    except SearchError as error:
-        raise Undetermined(str(error)) from None
+    found = function(evaluation, call)
     listing.order_matters |= isinstance(found, list) and len(found) > 1
     return found
 
@@ -69,32 +66,32 @@ class _PackageFolder:
     root: str
 
     def inside(self, value: Value) -> str:
-        """Return a path or pattern relative to the package's folder. Raises SearchError."""
+        """Return a path or pattern relative to the package's folder. Raises Undetermined."""
         text = path_text(value)
         if text == self.root:
             return "."
         if text is not None and text.startswith(self.root + "/"):
             text = text.removeprefix(self.root).lstrip("/") or "."
         if text is None or text.startswith("/"):
-            raise SearchError(_OUTSIDE)
+            raise Undetermined(_OUTSIDE)
         return text
 
     def real(self, value: Value) -> str | None:
-        """Return the file or folder at a path; None where there is nothing. Raises SearchError."""
+        """Return the file or folder at a path; None where there is nothing. Raises Undetermined."""
         path = self.inside(value)
         real = self.listing.real(path)
         if real is None and ignored_part(posixpath.normpath(path)):
-            raise SearchError(f"{path} is an ignored file")
+            raise Undetermined(f"{path} is an ignored file")
         return real
 
     def glob(self, _: Evaluation, call: Call) -> Value:
         pattern, recursive = call.argument(0, "pathname"), call.kwargs.get("recursive", False)
         if isinstance(pattern, PurePosixPath):
-            raise ExpressionFails("glob takes a string, and this is a path: write str(...) around it")
+            raise EvaluationFails("glob takes a string, and this is a path: write str(...) around it")
         if not call.kwargs.keys() <= {*_GLOB_OPTIONS} or len(call.args) + ("pathname" in call.kwargs) != 1:
-            raise ExpressionFails("glob takes one pattern, and the options recursive, root_dir and include_hidden")
+            raise EvaluationFails("glob takes one pattern, and the options recursive, root_dir and include_hidden")
         if not isinstance(pattern, str):
-            raise ExpressionFails(f"glob takes a string, and this is of the type {type(pattern).__name__}")
+            raise EvaluationFails(f"glob takes a string, and this is of the type {type(pattern).__name__}")
         if call.kwargs.keys() & {*_GLOB_OPTIONS[2:]}:
             raise Undetermined("these options of glob are not evaluated")
         if pattern == self.root:
@@ -103,7 +100,7 @@ class _PackageFolder:
         pattern = pattern.removeprefix(above)
         try:
             found = self.listing.glob(pattern, recursive=bool(recursive), above=above)
-        except SearchError as error:  # glob raises no error of its own
+        except Undetermined as error:  # glob raises no error of its own
             return Unknown(str(error), call.at)
         return self.listing.record(pattern, found, call.at)
 
@@ -145,10 +142,7 @@ class _PackageFolder:
         if real is None or real not in self.listing.folders:
             return
         evaluation.budget.charge(10)
-        try:
-            names = self.listing.names(real)
-        except SearchError as error:
-            raise Undetermined(str(error)) from None
+        names = self.listing.names(real)
         self.listing.order_matters |= len(names) > 1
         paths = {name: _below(real, name) for name in names}
         folders = [name for name, path in paths.items() if path in self.listing.folders]
@@ -161,12 +155,12 @@ class _PackageFolder:
         others = call.kwargs.keys() - {"file", "mode", "encoding"}
         if mode not in (None, "r", "rt") or others or len(call.args) > 2:
             reason = "a file that is opened to write into it, or by other options, is not evaluated"
-            raise EvaluationStopped(reason, call.at)
+            raise Undetermined(reason, call.at, is_final=True)
         real = self.real(path)
         if real is None:
-            raise ExpressionFails(f"there is no file {str(path)!r}")
+            raise EvaluationFails(f"there is no file {str(path)!r}")
         if real in self.listing.folders:
-            raise ExpressionFails(f"{str(path)!r} is a folder, not a file")
+            raise EvaluationFails(f"{str(path)!r} is a folder, not a file")
         try:
             text = self.listing.files[real].read(_MAX_READ).decode()
         except (InputError, UnicodeDecodeError):
@@ -185,8 +179,8 @@ class _PackageFolder:
         if real in self.listing.folders:
             return list(self.listing.names(real or ""))
         if real is None:
-            raise ExpressionFails(f"there is no folder {str(path)!r}")
-        raise ExpressionFails(f"{str(path)!r} is a file, not a folder")
+            raise EvaluationFails(f"there is no folder {str(path)!r}")
+        raise EvaluationFails(f"{str(path)!r} is a file, not a folder")
 
 
 def _find_packages(listing: PackageListing, _: Evaluation, call: Call) -> Value:

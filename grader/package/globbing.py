@@ -11,7 +11,7 @@ from typing import NamedTuple
 from grader.files.tree import IS_LINK, Tree
 from grader.python.budget import Budget
 from grader.python.parse import Position
-from grader.python.values import Value
+from grader.python.values import Undetermined, Value
 
 # The file system lists a folder, and Python a set, in any order: a result that depends on the order differs between
 # these.
@@ -24,10 +24,6 @@ _UNUSUAL = "a pattern of this kind is not supported"
 _COMPILED = "__pycache__"  # its files are made by Python
 _MAX_RECORDED = 200  # paths of one search whose position is kept
 _MAX_PATTERN = 1_024  # characters
-
-
-class SearchError(Exception):
-    """A search that the list of a package's files does not answer."""
 
 
 class EmptyGlob(NamedTuple):
@@ -76,9 +72,9 @@ class PackageListing:
         return found
 
     def names(self, folder: str) -> list[str]:
-        """Return the names in a folder. Raises SearchError for an ignored folder."""
+        """Return the names in a folder. Raises Undetermined for an ignored folder."""
         if folder in self._unseen:
-            raise SearchError(_IGNORED)
+            raise Undetermined(_IGNORED)
         found = self._children.get(folder, [])
         self.budget.charge(1 + len(found))
         return found
@@ -90,9 +86,9 @@ class PackageListing:
         return frozenset((*files, *packages)) - {"setup"}
 
     def real(self, path: str) -> str | None:
-        """Return the file or folder at a path, without dots; None where there is nothing. Raises SearchError."""
+        """Return the file or folder at a path, without dots; None where there is nothing. Raises Undetermined."""
         if path.startswith("/"):
-            raise SearchError(_OUTSIDE)
+            raise Undetermined(_OUTSIDE)
         here = ""
         self.budget.charge(1, len(path))
         for index, part in enumerate(path.split("/")):
@@ -100,24 +96,24 @@ class PackageListing:
                 return None
             if part == "..":
                 if not here:
-                    raise SearchError(_OUTSIDE)
+                    raise Undetermined(_OUTSIDE)
                 here = here.rpartition("/")[0]
             elif part not in ("", "."):
                 here = f"{here}/{part}" if here else part
             elif index and here not in self.folders:
                 return None
             if here in self._links:
-                raise SearchError(f"{here} {IS_LINK}")
+                raise Undetermined(f"{here} {IS_LINK}")
         return here if here in self.folders or here in self.files else None
 
     def glob(self, pattern: str, *, recursive: bool = False, above: str = "") -> list[str]:
-        """Return the paths that glob.glob finds, as it writes them. Raises SearchError.
+        """Return the paths that glob.glob finds, as it writes them. Raises Undetermined.
 
         `recursive` lets ** match any number of folders; `above` is the absolute path of the tree's root, which precedes
         each path.
         """
         if pattern.startswith("/"):
-            raise SearchError(_OUTSIDE)
+            raise Undetermined(_OUTSIDE)
         start = above + "./" * pattern.startswith("./")
         parts = _SLASHES.sub("/", pattern.removeprefix("./")).split("/")
         found = self._search(parts, recursive=recursive)
@@ -126,12 +122,12 @@ class PackageListing:
         return [start + path for path in found if start + path]
 
     def path_glob(self, folder: str, pattern: str) -> list[str]:
-        """Return the paths below a folder that pathlib's glob finds in Python 3.12. Raises SearchError."""
+        """Return the paths below a folder that pathlib's glob finds in Python 3.12. Raises Undetermined."""
         parts = [part for part in pattern.split("/") if part not in ("", ".")]
         parts = [part for part, after in pairwise([*parts, ""]) if (part, after) != ("**", "**")]
         odd = any("**" in part and part != "**" for part in parts) or pattern.startswith("/")
         if odd or not parts or pattern.endswith(("/", "/.")):
-            raise SearchError(_UNUSUAL)
+            raise Undetermined(_UNUSUAL)
         start = self.real(folder)
         if start not in self.folders:
             return []
@@ -144,17 +140,17 @@ class PackageListing:
     ) -> list[str]:
         """Return the paths below a folder that consist of such names; with an empty one at the end, those of folders.
 
-        Wildcards match names that begin with a dot only if `hidden`. Raises SearchError, also for what nobody writes.
+        Wildcards match names that begin with a dot only if `hidden`. Raises Undetermined, also for what nobody writes.
         """
         several = recursive and "**" in parts and (parts.count("**") > 1 or any(it.startswith(".") for it in parts))
         if several or "" in parts[:-1] or {".", ".."} & {*parts} or sum(map(len, parts)) > _MAX_PATTERN:
-            raise SearchError(_UNUSUAL)
+            raise Undetermined(_UNUSUAL)
         self.budget.charge(1 + 2 * len(self._paths))
         place = parts.index("**") if recursive and "**" in parts else None
         pattern = _Pattern([_test(part, hidden=hidden) for part in parts], place)
         start = f"{folder}/" if folder else ""
         if any(pattern.leads_to(names) for names in _below(start, self._unseen)):
-            raise SearchError(_IGNORED)
+            raise Undetermined(_IGNORED)
         return self.ordered(["/".join(names) for names in _below(start, self._paths) if pattern.matches(names)])
 
 

@@ -10,11 +10,11 @@ from grader.package.data_files import DataFiles, InstalledFile, InstallError
 from grader.package.file_functions import file_functions
 from grader.package.globbing import ORDERS, EmptyGlob, PackageListing
 from grader.python.budget import PYTHON_LIMIT, Budget
-from grader.python.evaluation import Evaluation, EvaluationStopped, PythonError
+from grader.python.evaluation import Evaluation, PythonError
 from grader.python.interpreter import Interpreter
 from grader.python.library import PACKAGE_FOLDER, standard_functions
 from grader.python.parse import START, Code, Position, SyntaxFault, parse, position_of
-from grader.python.values import Call, ExpressionFails, QualifiedName, Unknown, Value
+from grader.python.values import Call, EvaluationFails, QualifiedName, Undetermined, Unknown, Value
 from grader.source import Location, Source
 
 _ROOT = f"/{PACKAGE_FOLDER}"
@@ -119,7 +119,7 @@ def _evaluate(code: Code, listing: PackageListing, written: dict[str, Position],
         if "file" not in call.kwargs:
             data_files.stop("setup.py prints something, and colcon reads what it prints: print to sys.stderr", call.at)
         elif not isinstance(call.kwargs["file"], QualifiedName) or call.kwargs["file"].name != "sys.stderr":
-            raise EvaluationStopped("this use of print is not evaluated", call.at)
+            raise Undetermined("this use of print is not evaluated", call.at, is_final=True)
 
     functions = {**standard_functions(_ROOT), **file_functions(listing, _ROOT), **dict.fromkeys(_SETUPS, setup)}
     interpreter = Interpreter(
@@ -155,7 +155,7 @@ def _read_call(data_files: DataFiles, call: Call) -> None:
         return Unknown(reason, call.at)
 
     if call.args:
-        raise ExpressionFails("setup() takes arguments by name only: write name=...")
+        raise EvaluationFails("setup() takes arguments by name only: write name=...")
     entries = call.kwargs.get("data_files")
     if entries is not None:
         data_files.read(entries, call.at)

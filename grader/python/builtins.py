@@ -31,10 +31,10 @@ def call(
     given = (apply, *args) if function.kind == "applies" else args
     try:
         return budget.checked(call_plain(function.run, *given, **kwargs), function.kind)
-    except py.ExpressionFails as error:
+    except py.EvaluationFails as error:
         if function.kind != "plain" and _OF_SIGNATURE.search(str(error)):  # Python's own may take other arguments
             wrong = _wrong_arguments(function, args, kwargs)
-            raise py.ExpressionFails(f"TypeError: {function.name}() {wrong}") from None
+            raise py.EvaluationFails(f"TypeError: {function.name}() {wrong}") from None
         raise
 
 

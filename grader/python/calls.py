@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 
 from grader.python import values as py
 from grader.python.builtins import BUILTINS, call
-from grader.python.evaluation import FAILED, NOT_EVALUATED, Evaluation, EvaluationStopped
+from grader.python.evaluation import FAILED, NOT_EVALUATED, Evaluation
 from grader.python.knowledge import call_plain, iterate, known, reason_of
 from grader.python.operators import method
 from grader.python.parse import Position, position_of
@@ -44,10 +44,11 @@ class Calls(Evaluation):
     def unpack(self, kwargs: dict[str, py.Value], value: py.Value, node: ast.expr) -> None:
         """Add the arguments that ** unpacks."""
         if not isinstance(value, dict):
-            raise EvaluationStopped(reason_of(value) or f"this use of ** {NOT_EVALUATED}", position_of(node))
+            reason = reason_of(value) or f"this use of ** {NOT_EVALUATED}"
+            raise py.Undetermined(reason, position_of(node), is_final=True)
         for key, item in value.items():
             if not isinstance(key, str) or key in kwargs:
-                raise py.ExpressionFails(f"TypeError: ** unpacks the key {key!r}, which is no text or given twice")
+                raise py.EvaluationFails(f"TypeError: ** unpacks the key {key!r}, which is no text or given twice")
             kwargs[key] = item
 
     def called(self, function: py.Value, args: list[py.Value], kwargs: dict[str, py.Value], node: ast.expr) -> py.Value:
@@ -77,9 +78,10 @@ class Calls(Evaluation):
                 found = function
             case _ if isinstance(function, py.PLAIN):
                 kind = type(function).__name__
-                raise py.ExpressionFails(f"a {kind} cannot be called: is there a comma missing before it?")
+                raise py.EvaluationFails(f"a {kind} cannot be called: is there a comma missing before it?")
             case _:
-                raise EvaluationStopped(f"this call {NOT_EVALUATED}: {reason_of(function)}".rstrip(": "), made.at)
+                reason = f"this call {NOT_EVALUATED}: {reason_of(function)}".rstrip(": ")
+                raise py.Undetermined(reason, made.at, is_final=True)
         return found
 
     def _plain(self, function: py.PlainFunction, made: py.Call) -> py.Value:
@@ -89,7 +91,7 @@ class Calls(Evaluation):
         except py.Undetermined as error:
             given = (*made.args, *made.kwargs.values())
             if any(isinstance(value, py.Function | py.BoundMethod | py.QualifiedName | py.Items) for value in given):
-                raise EvaluationStopped(str(error), error.at or made.at) from None
+                raise py.Undetermined(str(error), error.at or made.at, is_final=True) from None
             raise
 
     def _apply(self, at: Position, function: py.Value, args: list[py.Value]) -> py.Value:
@@ -101,7 +103,8 @@ class Calls(Evaluation):
         if function is None and made.name.startswith("?."):  # an undefined name, which is an error already
             return py.Unknown(FAILED, made.at)
         if function is None:
-            raise EvaluationStopped(f"{made.name.removeprefix('builtins.')} {NOT_EVALUATED}", made.at)
+            reason = f"{made.name.removeprefix('builtins.')} {NOT_EVALUATED}"
+            raise py.Undetermined(reason, made.at, is_final=True)
         return self.call_value(function, made) if isinstance(function, py.PlainFunction) else function(self, made)
 
     def _method(self, owner: py.Value, name: str, made: py.Call) -> py.Value:
@@ -116,7 +119,7 @@ class Calls(Evaluation):
             return self.call_value(found, made)
         if isinstance(owner, py.Unknown) and (name in _TEXT_METHODS or owner.reason == FAILED):
             raise py.Undetermined(owner.reason, owner.at)
-        raise EvaluationStopped(f"the method {name} of this value {NOT_EVALUATED}", made.at)
+        raise py.Undetermined(f"the method {name} of this value {NOT_EVALUATED}", made.at, is_final=True)
 
     def _change(self, owner: py.Value, name: str, made: py.Call) -> py.Value:
         """Run a method that changes a list or dict: Python's own."""
@@ -134,12 +137,15 @@ class Calls(Evaluation):
                 known(args if name != "insert" else args[:1])
             return self.budget.checked(call_plain(getattr(owner, name), *args, **kwargs))
         except py.Undetermined as error:
-            raise EvaluationStopped(f"the method {name} {NOT_EVALUATED} here: {error}", made.at) from None
+            if error.is_final:
+                raise
+            reason = f"the method {name} {NOT_EVALUATED} here: {error}"
+            raise py.Undetermined(reason, made.at, is_final=True) from None
 
     def call_function(self, function: py.Function, made: py.Call) -> py.Value:
         """Return the value of a call of a function of the file."""
         if self._depth == _MAX_DEPTH:
-            raise EvaluationStopped(f"a function that calls others so deeply {NOT_EVALUATED}", made.at)
+            raise py.Undetermined(f"a function that calls others so deeply {NOT_EVALUATED}", made.at, is_final=True)
         scope = py.Scope(self._bound_parameters(function, made), function.scope, function.local)
         self._depth += 1
         try:

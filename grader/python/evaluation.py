@@ -21,14 +21,6 @@ class PythonError(NamedTuple):
     at: Position
 
 
-class EvaluationStopped(py.EvaluationSignal):
-    """The evaluation ends here: nothing that follows can be determined."""
-
-    def __init__(self, reason: str, at: Position) -> None:
-        super().__init__(reason)
-        self.at = at
-
-
 NOT_EVALUATED = "is not evaluated"
 FAILED = "Python raises an error before"  # the reason of a value that would follow
 # All parts of such an expression are evaluated before the expression itself; such a part may change something.
@@ -77,10 +69,11 @@ class Evaluation(Expressions):
             return self.value(node, scope)
         except py.Undetermined as error:
             unknown = py.Unknown(str(error), error.at or position_of(node))
-            if not isinstance(node, _WHOLE) and any(isinstance(part, _CHANGING) for part in ast.walk(node)):
-                raise EvaluationStopped(unknown.reason, unknown.at) from None
+            may_change = not isinstance(node, _WHOLE) and any(isinstance(part, _CHANGING) for part in ast.walk(node))
+            if error.is_final or may_change:
+                raise py.Undetermined(unknown.reason, unknown.at, is_final=True) from None
             return self.doubted(unknown)
-        except py.ExpressionFails as error:
+        except py.EvaluationFails as error:
             self.error(str(error), position_of(node))
             return py.Unknown(FAILED, position_of(node))
 
@@ -106,9 +99,8 @@ class Evaluation(Expressions):
         if isinstance(value, py.Unknown | py.Call | py.QualifiedName | py.BoundMethod):
             nodes = (node for branch in branches for node in ast.walk(branch))
             if any(isinstance(node, _CHANGING) for node in nodes):
-                raise EvaluationStopped(
-                    f"a condition {NOT_EVALUATED}: {reason_of(value)}", getattr(value, "at", self.at)
-                )
+                reason = f"a condition {NOT_EVALUATED}: {reason_of(value)}"
+                raise py.Undetermined(reason, getattr(value, "at", self.at), is_final=True)
         return truth(value)
 
 

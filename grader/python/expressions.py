@@ -14,7 +14,7 @@ from grader.python.builtins import call, truth
 from grader.python.knowledge import call_plain, iterate
 from grader.python.operators import attribute, compare, operate, subscript
 from grader.python.parse import kinds_of, parse_expression
-from grader.python.values import ExpressionFails, Scope, Undetermined, Value
+from grader.python.values import EvaluationFails, Scope, Undetermined, Value
 
 _MAX_LENGTH = 4_000  # characters of an expression
 _MAX_KEPT = 200  # characters of an expression that is kept once it is parsed
@@ -24,7 +24,7 @@ _OF_NODE = 2  # what evaluating a part of an expression is charged
 def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
     """Return the value of an expression. `find` returns the value of a name, and raises as this function does.
 
-    Raises ExpressionFails where Python raises an error, Undetermined where the value cannot be determined, OutOfBudget.
+    Raises EvaluationFails where Python raises an error, Undetermined where the value cannot be determined, OutOfBudget.
     """
     text = text.strip()
     if len(text) > _MAX_LENGTH:
@@ -34,7 +34,7 @@ def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
     if node is None:
         raise Undetermined("the expression is nested too deeply")
     if isinstance(node, str):
-        raise ExpressionFails(node)
+        raise EvaluationFails(node)
     try:
         return Expressions(find, budget).value(node, Scope({}))
     except (RecursionError, MemoryError):
@@ -70,7 +70,7 @@ class Expressions:
 
     def _of_name(self, node: ast.Name, scope: Scope) -> Value:
         if node.id.startswith("__"):
-            raise ExpressionFails(f"names that begin with two underscores are not allowed: {node.id}")
+            raise EvaluationFails(f"names that begin with two underscores are not allowed: {node.id}")
         try:
             return scope.find(node.id)
         except KeyError:
@@ -156,7 +156,7 @@ class Expressions:
                 self.unpack(kwargs, self.evaluate(keyword.value, scope), keyword.value)
                 continue
             if keyword.arg in kwargs:
-                raise ExpressionFails(f"SyntaxError: keyword argument repeated: {keyword.arg}")
+                raise EvaluationFails(f"SyntaxError: keyword argument repeated: {keyword.arg}")
             kwargs[keyword.arg] = self.evaluate(keyword.value, scope)
         return self.called(function, args, kwargs, node)
 
@@ -203,7 +203,7 @@ class Expressions:
         values = list(iterate(value))
         if len(values) != len(targets):
             message = f"ValueError: cannot unpack {len(values)} values into {len(targets)} names"
-            raise ExpressionFails(message)
+            raise EvaluationFails(message)
         for inner, item in zip(targets, values, strict=True):
             self.bind(inner, item, scope)
 

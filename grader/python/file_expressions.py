@@ -9,7 +9,7 @@ from typing import Any
 
 from grader.python import values as py
 from grader.python.calls import Calls
-from grader.python.evaluation import NOT_EVALUATED, EvaluationStopped
+from grader.python.evaluation import NOT_EVALUATED
 from grader.python.knowledge import call_plain, iterate, known, refuse, str_of
 from grader.python.library import CONSTANTS, attribute_error
 from grader.python.operators import has_attribute, operate
@@ -34,13 +34,13 @@ class FileExpressions(Calls):
                 full = f"{module}.{name}"
                 error = attribute_error(module, name) if full not in self.functions else None
                 if error is not None:
-                    raise py.ExpressionFails(error)
+                    raise py.EvaluationFails(error)
                 return CONSTANTS.get(full, py.QualifiedName(full))
             case PurePosixPath() if name in _PARTS:
                 value = getattr(owner, name)
                 return self.budget.checked(list(value) if name == "parents" else value, "path")
         if isinstance(owner, py.PLAIN) and not has_attribute(owner, name):
-            raise py.ExpressionFails(f"{type(owner).__name__!r} has no attribute {name!r}")
+            raise py.EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
         return py.BoundMethod(owner, name)
 
     def item(self, owner: py.Value, key: py.Value, node: ast.expr) -> py.Value:
@@ -63,7 +63,7 @@ class FileExpressions(Calls):
             try:
                 values += iterate(self.evaluate(node.value, scope))
             except py.Undetermined as error:
-                raise EvaluationStopped(str(error), error.at or position_of(node)) from None
+                raise py.Undetermined(str(error), error.at or position_of(node), is_final=True) from None
         return values
 
     def _of_dict(self, node: ast.Dict, scope: py.Scope) -> py.Value:
@@ -113,8 +113,9 @@ class FileExpressions(Calls):
             case ast.Attribute(value=owner, attr=name):
                 changed = self.evaluate(owner, scope)
                 if isinstance(changed, py.PLAIN):
-                    raise py.ExpressionFails(f"{type(changed).__name__!r} has no attribute {name!r}")
-                raise EvaluationStopped(f"a change of the attribute {name} is not evaluated", position_of(target))
+                    raise py.EvaluationFails(f"{type(changed).__name__!r} has no attribute {name!r}")
+                reason = f"a change of the attribute {name} is not evaluated"
+                raise py.Undetermined(reason, position_of(target), is_final=True)
             case _:
                 super().bind(target, value, scope)
 

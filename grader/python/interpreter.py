@@ -10,9 +10,8 @@ from functools import partial
 from io import StringIO
 
 from grader.python import values as py
-from grader.python.budget import Budget, OutOfBudget
+from grader.python.budget import Budget
 from grader.python.builtins import truth
-from grader.python.evaluation import EvaluationStopped
 from grader.python.file_expressions import FileExpressions
 from grader.python.knowledge import iterate
 from grader.python.library import UNCERTAIN, USUAL_NAMES, import_error, imported_names
@@ -59,7 +58,7 @@ class Interpreter(FileExpressions):
         """Evaluate a whole file and return the scope of its names. Never raises."""
         try:
             self._block(code.tree.body, self.module)
-        except (EvaluationStopped, OutOfBudget, RecursionError) as error:
+        except (py.EvaluationSignal, RecursionError) as error:
             self._stop(error)
         return self.module
 
@@ -74,18 +73,16 @@ class Interpreter(FileExpressions):
         recorded, doubt = list(self.errors), self.doubt
         try:
             return self.call_function(function, py.Call("", event if args is None else list(args), {}, at))
-        except (EvaluationStopped, OutOfBudget, RecursionError) as error:
+        except (py.EvaluationSignal, RecursionError) as error:
             return self._stop(error, at)
-        except (py.ExpressionFails, py.Undetermined) as error:
-            return self.doubted(py.Unknown(str(error), at))
         finally:
             if args is None:
                 self.errors, self.doubt = recorded, doubt
 
-    def _stop(self, error: Exception, at: Position | None = None) -> py.Unknown:
-        is_deep = isinstance(error, RecursionError)
-        reason = "the file is too deeply nested, which is not evaluated" if is_deep else str(error)
-        return self.doubted(py.Unknown(reason, getattr(error, "at", None) or at or self.at))
+    def _stop(self, error: py.EvaluationSignal | RecursionError, at: Position | None = None) -> py.Unknown:
+        if isinstance(error, RecursionError):
+            error = py.Undetermined("the file is too deeply nested, which is not evaluated")
+        return self.doubted(py.Unknown(str(error), error.at or at or self.at))
 
     def _block(self, body: list[ast.stmt], scope: py.Scope) -> None:
         for node in body:
@@ -93,19 +90,23 @@ class Interpreter(FileExpressions):
             self.at = position_of(node)
             kind = getattr(self, f"_on_{type(node).__name__.lower()}", None)
             if kind is None:
-                raise EvaluationStopped(f"a statement of the kind {type(node).__name__} is not evaluated", self.at)
+                raise py.Undetermined(
+                    f"a statement of the kind {type(node).__name__} is not evaluated", self.at, is_final=True
+                )
             try:
                 kind(node, scope)
-            except py.ExpressionFails as error:  # of the statement itself, such as an assignment
+            except py.EvaluationFails as error:  # of the statement itself, such as an assignment
                 self.error(str(error), position_of(node))
             except py.Undetermined as error:
+                if error.is_final:
+                    raise
                 reason = f"this statement is not evaluated: {error}"
-                raise EvaluationStopped(reason, error.at or position_of(node)) from None
+                raise py.Undetermined(reason, error.at or position_of(node), is_final=True) from None
 
     def _on_functiondef(self, node: ast.FunctionDef, scope: py.Scope) -> None:
         at = position_of(node)
         if node.decorator_list or getattr(node, "type_params", []):
-            raise EvaluationStopped("a function with a decorator or type parameters is not evaluated", at)
+            raise py.Undetermined("a function with a decorator or type parameters is not evaluated", at, is_final=True)
         parameters = node.args
         every = (*parameters.posonlyargs, *parameters.args, *parameters.kwonlyargs, parameters.vararg, parameters.kwarg)
         function: py.Value = self.function(parameters, scope, at, partial(self._function_body, node), bound_in(node))
@@ -115,7 +116,7 @@ class Interpreter(FileExpressions):
 
     def _function_body(self, node: ast.FunctionDef, scope: py.Scope) -> py.Value:
         if any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in own_nodes(node)):
-            raise EvaluationStopped("a generator function is not evaluated", position_of(node))
+            raise py.Undetermined("a generator function is not evaluated", position_of(node), is_final=True)
         try:
             self._block(node.body, scope)
         except _ReturnFlow as flow:
@@ -131,7 +132,7 @@ class Interpreter(FileExpressions):
             if isinstance(part, ast.Name):
                 self._of_name(part, scope)
             elif not isinstance(part, _IN_ANNOTATIONS):
-                raise EvaluationStopped("this annotation is not evaluated", self.at)
+                raise py.Undetermined("this annotation is not evaluated", self.at, is_final=True)
 
     def _on_if(self, node: ast.If, scope: py.Scope) -> None:
         self._block(node.body if truth(self.evaluate(node.test, scope)) else node.orelse, scope)
@@ -147,7 +148,7 @@ class Interpreter(FileExpressions):
         if isinstance(value, py.Call):
             self.call_value(py.BoundMethod(value, "__enter__"), py.Call("", [], {}, self.at))
         if len(node.items) > 1 or not isinstance(value, py.Call | StringIO):
-            raise EvaluationStopped("this use of with is not evaluated", self.at)
+            raise py.Undetermined("this use of with is not evaluated", self.at, is_final=True)
         if target is not None:
             self.bind(target, value, scope)
         try:
@@ -174,7 +175,9 @@ class Interpreter(FileExpressions):
         module = "" if isinstance(node, ast.Import) else "." * node.level + (node.module or "")
         for alias in node.names:
             if (module or alias.name).split(".")[0] in self.local_modules:
-                raise EvaluationStopped(f"the file's own module {module or alias.name} is not evaluated", self.at)
+                raise py.Undetermined(
+                    f"the file's own module {module or alias.name} is not evaluated", self.at, is_final=True
+                )
             error = import_error(module, alias.name, self.exports)
             bound = imported_names(module, alias, self.exports)
             if error == UNCERTAIN:
@@ -184,7 +187,7 @@ class Interpreter(FileExpressions):
                 self.error(error, self.at)
                 bound = dict.fromkeys(bound, py.QualifiedName(USUAL_NAMES.get(alias.name, f"?.{alias.name}")))
             if bound.pop("*", None) is not None:
-                raise EvaluationStopped(f"the names of {module} are not evaluated", self.at)
+                raise py.Undetermined(f"the names of {module} are not evaluated", self.at, is_final=True)
             scope.names.update(bound)
 
     _on_importfrom = _on_import
@@ -198,4 +201,4 @@ class Interpreter(FileExpressions):
         kind = getattr(builtins, raised.id, None) if isinstance(raised, ast.Name) else None
         if isinstance(kind, type) and issubclass(kind, Exception):
             self.error(f"the file raises {kind.__name__} here", self.at)
-        raise EvaluationStopped("which error is raised here is not evaluated", self.at)
+        raise py.Undetermined("which error is raised here is not evaluated", self.at, is_final=True)

@@ -12,8 +12,8 @@ from grader.python.values import (
     VIEWS,
     BoundMethod,
     Call,
+    EvaluationFails,
     EvaluationSignal,
-    ExpressionFails,
     Function,
     Items,
     QualifiedName,
@@ -29,7 +29,7 @@ _REPEATED = (list, tuple, dict)
 
 
 def call_plain(function: Callable[..., Value], *args: Value, **kwargs: Value) -> Value:
-    """Return what a function of plain values returns; what it raises is ExpressionFails."""
+    """Return what a function of plain values returns; what it raises is EvaluationFails."""
     try:
         return function(*args, **kwargs)
     except (EvaluationSignal, RecursionError, MemoryError):
@@ -38,7 +38,7 @@ def call_plain(function: Callable[..., Value], *args: Value, **kwargs: Value) ->
         if not has_text([*args, *kwargs.values()]):
             raise Undetermined("this use of a function, a namespace or an iterator is not supported") from None
         message = error.args[0] if isinstance(error, KeyError) and error.args else error
-        raise ExpressionFails(f"{type(error).__name__}: {message}") from None
+        raise EvaluationFails(f"{type(error).__name__}: {message}") from None
 
 
 def iterate(value: Value) -> Iterator[Value]:

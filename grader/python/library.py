@@ -172,14 +172,14 @@ def standard_functions(working_folder: str) -> py.FunctionTable:
 
 def _of_path(value: py.Value) -> py.Value:
     if not isinstance(value, str | PurePosixPath):
-        raise py.ExpressionFails(f"a path is a string, and this is of the type {type(value).__name__}")
+        raise py.EvaluationFails(f"a path is a string, and this is of the type {type(value).__name__}")
     return value
 
 
 def _join(first: py.Value, *parts: py.Value) -> str:
     if not all(isinstance(value, str | PurePosixPath) for value in (first, *parts)):
         message = "os.path.join takes strings, and one argument is not a string: is a bracket misplaced?"
-        raise py.ExpressionFails(message)
+        raise py.EvaluationFails(message)
     return _bounded(posixpath.join(first, *parts))
 
 

@@ -21,7 +21,7 @@ _NUMBERS = (float, int)
 def attribute(owner: py.Value, name: str, budget: Budget) -> py.Value:
     """Return the value of an attribute: of a namespace, of a dict from YAML, or a method of a plain value."""
     if name.startswith("__"):
-        raise py.ExpressionFails(f"names that begin with two underscores are not allowed: {name}")
+        raise py.EvaluationFails(f"names that begin with two underscores are not allowed: {name}")
     if isinstance(owner, py.Namespace):
         if hasattr(dict, name):  # a namespace of xacro is a dict
             raise py.Undetermined(f"the method {name} of a namespace is not supported")
@@ -34,7 +34,7 @@ def attribute(owner: py.Value, name: str, budget: Budget) -> py.Value:
     if isinstance(owner, py.DottedDict) and name in owner:
         return owner[name]
     if isinstance(owner, py.PLAIN):
-        raise py.ExpressionFails(f"{type(owner).__name__!r} has no attribute {name!r}")
+        raise py.EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
     raise py.Undetermined(f"the attribute {name} of this value is not supported")
 
 
@@ -162,7 +162,7 @@ def _run(operation: Callable[[py.Value, py.Value], py.Value], left: py.Value, ri
     except py.Undetermined:
         if isinstance(left, py.PLAIN) and isinstance(right, py.PLAIN) and type(left) is not type(right):
             kinds = f"{type(left).__name__} and {type(right).__name__}"
-            raise py.ExpressionFails(f"TypeError: no such operator for {kinds}") from None
+            raise py.EvaluationFails(f"TypeError: no such operator for {kinds}") from None
         raise
 
 

@@ -24,22 +24,29 @@ PLAIN: tuple[Any, ...] = (*SCALARS, type(None), range, list, tuple, dict, PurePo
 
 
 class EvaluationSignal(Exception):
-    """What ends the evaluation of an expression, and is no error of the grader's own."""
+    """What ends the evaluation of an expression or action, and is no error of the grader's own.
 
-    def __init__(self, message: str = "") -> None:
+    `at` is the place that it is about; None for that of the expression.
+    """
+
+    def __init__(self, message: str = "", at: "Position | None" = None) -> None:
         super().__init__(message[:_MAX_MESSAGE])
+        self.at = at
 
 
-class ExpressionFails(EvaluationSignal):
-    """Python certainly raises an error for this expression; the text is a sentence without its end."""
+class EvaluationFails(EvaluationSignal):
+    """Python, xacro or launch certainly raises an error here; the text is a sentence without its end."""
 
 
 class Undetermined(EvaluationSignal):
-    """The value of an expression cannot be determined statically; the text says why, and `at` where, if it is known."""
+    """A value, or whether there is an error, cannot be determined statically; the text says why.
 
-    def __init__(self, message: str, at: "Position | None" = None) -> None:
-        super().__init__(message)
-        self.at = at
+    With `is_final`, nothing that follows in the file can be determined either: what is not evaluated may do anything.
+    """
+
+    def __init__(self, message: str, at: "Position | None" = None, *, is_final: bool = False) -> None:
+        super().__init__(message, at)
+        self.is_final = is_final
 
 
 @dataclass_transform(eq_default=False)
@@ -129,13 +136,13 @@ class Scope(Record):
     local: frozenset[str] = frozenset()
 
     def find(self, name: str) -> Value:
-        """Return the value of a name; raise KeyError, or ExpressionFails for one that is bound later."""
+        """Return the value of a name; raise KeyError, or EvaluationFails for one that is bound later."""
         scope: Scope | None = self
         while scope is not None:
             if name in scope.names:
                 return scope.names[name]
             if name in scope.local:
-                raise ExpressionFails(f"the name {name!r} is used before it has a value")
+                raise EvaluationFails(f"the name {name!r} is used before it has a value")
             scope = scope.outer
         raise KeyError(name)
 
@@ -162,7 +169,7 @@ FunctionTable = Mapping[str, "PlainFunction | Callable[[Any, Call], Value]"]
 
 
 class Namespace:
-    """Names that are reached with a dot: math.pi. `find` raises ExpressionFails for other names."""
+    """Names that are reached with a dot: math.pi. `find` raises EvaluationFails for other names."""
 
     __slots__ = ("find", "name")
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from grader.problems import Kind, Problem
 from grader.python.budget import CHARACTERS, Budget, OutOfBudget
-from grader.python.values import ExpressionFails, Undetermined, Value
+from grader.python.values import EvaluationFails, Undetermined, Value
 from grader.source import Location
 from grader.xacro import catalogue
 from grader.xacro.files import FileFails, Files, XmlFails
@@ -46,7 +46,7 @@ class Scopes(NamedTuple):
 Refusal = tuple[XacroFails, ScopePlace, str | None]
 # Expands one xacro tag: its element, the expanded element that the result goes into, and the scopes.
 Handler = Callable[["Expander", XacroNode, XacroNode, Scopes], None]
-_KINDS: Mapping[type[ExpressionFails], Kind] = {
+_KINDS: Mapping[type[EvaluationFails], Kind] = {
     MacroError: catalogue.XACRO_MACRO,
     FileFails: catalogue.XACRO_FILE,
     XmlFails: catalogue.XACRO_NOT_XML,
@@ -114,7 +114,7 @@ class Expander:
                 stop = error if isinstance(error, OutOfBudget) else OutOfBudget(_TOO_DEEP)
                 self._stopped, out.open = self._stopped or place, out.open or str(stop)
                 raise stop from None
-            except (ExpressionFails, Undetermined) as error:
+            except (EvaluationFails, Undetermined) as error:
                 reason = self.report(error, place)
                 out.open = out.open or reason
 
@@ -151,14 +151,14 @@ class Expander:
             raise OutOfBudget("the expanded document is larger than a URDF may be")
 
     def report(
-        self, error: ExpressionFails | Undetermined | OutOfBudget, place: ScopePlace, attribute: str | None = None
+        self, error: EvaluationFails | Undetermined | OutOfBudget, place: ScopePlace, attribute: str | None = None
     ) -> str:
         """List a problem, or what cannot be determined; return why it cannot, nothing for what xacro refuses."""
         message = str(error)
         if isinstance(error, Reported) or not self._is_new(message, place, attribute):
-            return "" if isinstance(error, ExpressionFails) else message
+            return "" if isinstance(error, EvaluationFails) else message
         location = self._place(place).at(attribute)
-        if not isinstance(error, ExpressionFails):
+        if not isinstance(error, EvaluationFails):
             self.undetermined.append(Open(message, location))
             return message
         joint = " " if message.endswith("?") else "; "
@@ -195,7 +195,7 @@ class Expander:
         """Return the value of an attribute; its text as it is written where it has none."""
         try:
             return self.texts.text(text, scopes.symbols)
-        except (ExpressionFails, Undetermined) as error:
+        except (EvaluationFails, Undetermined) as error:
             out.unresolved[name] = self.report(error, out.place, name)
         return text
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from grader.problems import Problem
 from grader.python.budget import Budget, OutOfBudget
-from grader.python.values import ExpressionFails, Undetermined
+from grader.python.values import EvaluationFails, Undetermined
 from grader.source import Source
 from grader.xacro import catalogue
 from grader.xacro.expanded_source import ExpandedSource
@@ -84,7 +84,7 @@ def _expand(
     before = budget.used
     try:
         source, refused, is_recovered = _read(data, plain, budget)
-    except ExpressionFails as error:
+    except EvaluationFails as error:
         problem = Problem(catalogue.XACRO_NOT_XML, f"{error}; {STOPS}", plain.at(0))
         return Expansion(None, plain, (problem,), (), {}), None
     except (Undetermined, OutOfBudget) as error:

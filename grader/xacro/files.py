@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from grader.errors import InputError, NotDecided
 from grader.python.budget import Budget
-from grader.python.values import ExpressionFails, Undetermined
+from grader.python.values import EvaluationFails, Undetermined
 from grader.xacro.nodes import XacroNode, read_nodes
 from grader.xacro.scopes import UnknownName, XacroFails
 from grader.xacro.texts import INSTALLED
@@ -42,7 +42,7 @@ class FileFails(XacroFails):
     """A file that is not there."""
 
 
-class XmlFails(ExpressionFails):
+class XmlFails(EvaluationFails):
     """A file that is not well-formed XML."""
 
 

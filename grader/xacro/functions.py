@@ -10,7 +10,7 @@ from grader.python.budget import Budget
 from grader.python.builtins import BUILTINS, MATH, make_dict
 from grader.python.expressions import evaluate
 from grader.python.knowledge import call_plain, checked_key, str_of
-from grader.python.values import DottedDict, ExpressionFails, Namespace, PlainFunction, Undetermined, Value
+from grader.python.values import DottedDict, EvaluationFails, Namespace, PlainFunction, Undetermined, Value
 
 _OLD_BUILTINS = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")
 _NOT_IN_XACRO = ("iter", "next")
@@ -33,7 +33,7 @@ def namespace(name: str, names: Mapping[str, Value]) -> Namespace:
 
     def find(wanted: str) -> Value:
         if wanted not in names:
-            raise ExpressionFails(f"name {name}.{wanted} is not defined")
+            raise EvaluationFails(f"name {name}.{wanted} is not defined")
         return names[wanted]
 
     return Namespace(name, find)
@@ -64,7 +64,7 @@ def _tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]
 
 
 def _fatal(*parts: Value) -> Value:
-    raise ExpressionFails(" ".join(map(str_of, parts)))
+    raise EvaluationFails(" ".join(map(str_of, parts)))
 
 
 def _no_path(*_: Value) -> Value:
@@ -91,20 +91,20 @@ GLOBALS: Mapping[str, Value] = {
 def read_yaml_values(data: bytes, find: Callable[[str], Value], budget: Budget) -> Value:
     """Return the value of a YAML text. `find` returns the value of a name in an expression with a unit: !radians pi/2.
 
-    Raises ExpressionFails for what is not YAML, Undetermined for what is too large or rarely used.
+    Raises EvaluationFails for what is not YAML, Undetermined for what is too large or rarely used.
     """
     budget.charge(1, len(data))
     try:
         events = yaml.parse(data.decode("utf-8"), _LOADER)
         values = [*_Values(events, find, budget).items(yaml.StreamEndEvent)]
     except UnicodeDecodeError:
-        raise ExpressionFails("the YAML file is not UTF-8 text") from None
+        raise EvaluationFails("the YAML file is not UTF-8 text") from None
     except (yaml.YAMLError, ValueError) as error:
-        raise ExpressionFails(f"the file is not YAML: {' '.join(str(error).split())[:200]}") from None
+        raise EvaluationFails(f"the file is not YAML: {' '.join(str(error).split())[:200]}") from None
     except RecursionError:
         raise Undetermined("the YAML file is nested too deeply") from None
     if len(values) > 1:
-        raise ExpressionFails("the file is not YAML: it has more than one document")
+        raise EvaluationFails("the file is not YAML: it has more than one document")
     return budget.checked(values[0]) if values else None
 
 
@@ -128,7 +128,7 @@ class _Values:
                 raise Undetermined(f"the alias {event.anchor} has no value, or contains itself")
             return self._budget.checked(self._anchors[event.anchor])
         if event.anchor in self._anchors or (event.tag in _UNITS and not isinstance(event, yaml.ScalarEvent)):
-            raise ExpressionFails(
+            raise EvaluationFails(
                 f"the file is not YAML: {event.anchor or event.tag} is used twice, or not of a number"
             )
         if event.tag not in (None, "!", *_UNITS):

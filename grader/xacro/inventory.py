@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from grader.python.budget import Budget
-from grader.python.values import ExpressionFails, Undetermined
+from grader.python.values import EvaluationFails, Undetermined
 from grader.xacro.macros import read_parameters
 from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import ScopePlace
@@ -81,7 +81,7 @@ def _parameters(node: XacroNode, found: Inventory, budget: Budget) -> frozenset[
     """Return the names of a macro's parameters; forwarding one uses the caller's property. Raises OutOfBudget."""
     try:
         parameters = read_parameters(node.attributes.get("params", ""), budget)
-    except (ExpressionFails, Undetermined):
+    except (EvaluationFails, Undetermined):
         return frozenset()
     found.used.update(parameter.name for parameter in parameters if parameter.is_forwarded)
     return frozenset(parameter.name.lstrip("*") for parameter in parameters)

@@ -4,7 +4,7 @@ import re
 
 from grader.problems import Problem
 from grader.python.budget import Budget
-from grader.python.values import ExpressionFails, Undetermined
+from grader.python.values import EvaluationFails, Undetermined
 from grader.reuse import reuse
 from grader.source import Source
 from grader.xacro.scopes import ScopePlace
@@ -112,7 +112,7 @@ def _decode(data: bytes, budget: Budget) -> str:
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError:
-        raise ExpressionFails("the file is not UTF-8 text") from None
+        raise EvaluationFails("the file is not UTF-8 text") from None
 
 
 def _add_text(children: Children, text: str | None) -> None:

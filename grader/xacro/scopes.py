@@ -4,12 +4,12 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from grader.names import MAX_LENGTH
-from grader.python.values import ExpressionFails, Undetermined, Value
+from grader.python.values import EvaluationFails, Undetermined, Value
 from grader.source import Location, Source
 
 # What a scope needs to evaluate a text in it, and to report that xacro refuses one, or that it cannot be determined.
 Evaluate = Callable[[str, "XacroScope"], Value]
-ReportFailure = Callable[[ExpressionFails | Undetermined, "ScopePlace", str], object]
+ReportFailure = Callable[[EvaluationFails | Undetermined, "ScopePlace", str], object]
 
 
 _MAX_CALLS = 20  # that a location names
@@ -68,7 +68,7 @@ class UnknownName(NamedTuple):
     meant: str | None = None
 
 
-class XacroFails(ExpressionFails):
+class XacroFails(EvaluationFails):
     """Something that xacro refuses, perhaps for a name that it does not know, or values that a call lacks."""
 
     def __init__(self, message: str, unknown: UnknownName | None = None, lacking: tuple[str, ...] = ()) -> None:
@@ -76,7 +76,7 @@ class XacroFails(ExpressionFails):
         self.unknown, self.lacking = unknown, lacking
 
 
-class Reported(ExpressionFails):
+class Reported(EvaluationFails):
     """Something that xacro refuses, which is already listed as a problem."""
 
 
@@ -91,7 +91,7 @@ class Property:
         self.is_lazy = is_lazy and isinstance(value, str)
         self.definition = definition
         self.is_open = False  # whether it is being evaluated
-        self.failure: ExpressionFails | Undetermined | None = None
+        self.failure: EvaluationFails | Undetermined | None = None
 
 
 class XacroScope:
@@ -149,11 +149,11 @@ class XacroScope:
         if not found.is_lazy:
             return found.value
         if found.is_open:
-            raise ExpressionFails(f"the property {name} is defined by itself")
+            raise EvaluationFails(f"the property {name} is defined by itself")
         found.is_open = True
         try:
             found.value, found.is_lazy = literal(evaluate(found.value, self)), False
-        except ExpressionFails as error:
+        except EvaluationFails as error:
             if found.definition is not None and not isinstance(error, Reported):
                 report(error, found.definition.place, "value")
             found.failure = Reported(str(error))

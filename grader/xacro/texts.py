@@ -8,7 +8,7 @@ from grader.names import did_you_mean, near
 from grader.python.budget import Budget
 from grader.python.expressions import evaluate
 from grader.python.knowledge import str_of
-from grader.python.values import MAX_TEXT, ExpressionFails, Undetermined, Value, too_large
+from grader.python.values import MAX_TEXT, EvaluationFails, Undetermined, Value, too_large
 from grader.xacro.functions import GLOBALS
 from grader.xacro.scopes import (
     Definition,
@@ -52,7 +52,7 @@ class Texts:
         """`own` are functions that need the document, such as load_yaml; `is_own`: whether a package was submitted."""
         self.arguments = arguments
         self.defaults: dict[str, Definition] = {}  # of arguments that have no other value
-        self.names_open: ExpressionFails | Undetermined | None = None  # why a name may be bound that is not known
+        self.names_open: EvaluationFails | Undetermined | None = None  # why a name may be bound that is not known
         self._budget = budget
         self._is_own = is_own
         self._report = report
@@ -72,7 +72,7 @@ class Texts:
             self._budget.charge(_OF_PIECE)
             piece = PIECE.match(text, position)
             if piece is None:
-                raise ExpressionFails(f"invalid expression: {text[position : position + 60]}")
+                raise EvaluationFails(f"invalid expression: {text[position : position + 60]}")
             values.append(self._piece(piece, scope))
             position = piece.end()
         return self._charge(values[0] if len(values) == 1 else joined(map(self.written, values)))
@@ -126,14 +126,14 @@ class Texts:
         self, target: XacroScope, name: str, text: str, scope: XacroScope, place: ScopePlace, attribute: str
     ) -> None:
         """Bind a name to the value that the text of an attribute has in a scope, or to why it has none."""
-        failure: ExpressionFails | Undetermined | None = None
+        failure: EvaluationFails | Undetermined | None = None
         value: Value = ""
         self._budget.charge(1, len(text))
         try:
             value = self.evaluate(text, scope)
         except Reported as error:
             failure = error
-        except ExpressionFails as error:
+        except EvaluationFails as error:
             self._report(error, place, attribute)
             failure = Reported(str(error))
         except Undetermined as error:  # xacro evaluates it even if nothing uses it
@@ -165,9 +165,9 @@ class Texts:
             what = f"the environment variable {args[0]}" if args else "the folder in which xacro runs"
             raise Undetermined(f"{what} is known only at run time")
         if "$" in text or "(" in text:
-            raise ExpressionFails(f"$({text}): no $ and no ( can be inside of $(...)")
+            raise EvaluationFails(f"$({text}): no $ and no ( can be inside of $(...)")
         if command not in ("find", "arg") or len(args) != 1:
-            raise ExpressionFails(f"$({text}): expected $(find PACKAGE) or $(arg NAME)")
+            raise EvaluationFails(f"$({text}): expected $(find PACKAGE) or $(arg NAME)")
         found = self._charge(self.share(args[0]) if command == "find" else self.argument(args[0]))
         return _NESTED_FIND.sub(lambda nested: self.share(nested[1]), found) if "$(" in found else found
 
@@ -188,9 +188,9 @@ class Texts:
 
 
 def for_xml(value: str) -> str:
-    """Return a text that is written into XML; raise ExpressionFails for characters that XML cannot hold."""
+    """Return a text that is written into XML; raise EvaluationFails for characters that XML cannot hold."""
     if not value.isprintable() and _NO_XML.search(value):
-        raise ExpressionFails("the value has a character that XML cannot hold")
+        raise EvaluationFails("the value has a character that XML cannot hold")
     return value
 
 

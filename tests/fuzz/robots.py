@@ -13,7 +13,7 @@ from grader.hints.edits import edited
 from grader.hints.xacro.expanded_edits import ExpandedEdits
 from grader.python.budget import Budget, OutOfBudget
 from grader.python.expressions import evaluate
-from grader.python.values import ExpressionFails, Undetermined
+from grader.python.values import EvaluationFails, Undetermined
 from grader.report.formats import InspectFormat, render_inspection
 from grader.report.inspection import Inspection, main_root
 from grader.report.screen import Screen
@@ -126,7 +126,7 @@ def refusals() -> Iterator[None]:
     """Accept the refusals of expressions, which have messages."""
     try:
         yield
-    except (ExpressionFails, Undetermined, OutOfBudget) as error:
+    except (EvaluationFails, Undetermined, OutOfBudget) as error:
         check_message(str(error))
 
 

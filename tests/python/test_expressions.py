@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from grader.python.budget import Budget, OutOfBudget
 from grader.python.builtins import BUILTINS, MATH
 from grader.python.expressions import evaluate
-from grader.python.values import ExpressionFails, Undetermined, Value
+from grader.python.values import EvaluationFails, Undetermined, Value
 
 NAMES: dict[str, Value] = {**BUILTINS, **MATH, "size": 4, "text": "wheel", "table": {"a": [1, 2]}, "flag": True}
 PLAIN = {name: NAMES[name] for name in ("size", "text", "table", "flag", "pi")}
@@ -19,7 +19,7 @@ PLAIN = {name: NAMES[name] for name in ("size", "text", "table", "flag", "pi")}
 def find(name: str) -> Value:
     """Return the value of a name."""
     if name not in NAMES:
-        raise ExpressionFails(f"name {name!r} is not defined")
+        raise EvaluationFails(f"name {name!r} is not defined")
     return NAMES[name]
 
 
@@ -70,7 +70,7 @@ def test_the_value_is_pythons(text: str) -> None:
 )  # fmt: skip
 def test_what_python_refuses_fails(text: str) -> None:
     """An expression for which Python raises an error fails with its message."""
-    with pytest.raises(ExpressionFails, match=r"\w"):
+    with pytest.raises(EvaluationFails, match=r"\w"):
         value(text)
 
 
@@ -87,7 +87,7 @@ def test_what_python_refuses_fails(text: str) -> None:
 )  # fmt: skip
 def test_what_is_dangerous_or_unknown_has_no_value(text: str) -> None:
     """Attributes with underscores, formats that reach them, huge values and everything else outside the list are refused."""
-    with pytest.raises((ExpressionFails, Undetermined, OutOfBudget)):
+    with pytest.raises((EvaluationFails, Undetermined, OutOfBudget)):
         value(text)
 
 
@@ -124,7 +124,7 @@ def test_any_arithmetic_is_pythons(text: str) -> None:
     try:
         expected = eval(text, {**vars(math), "abs": abs})
     except (ArithmeticError, ValueError) as error:
-        with pytest.raises(ExpressionFails, match=type(error).__name__):
+        with pytest.raises(EvaluationFails, match=type(error).__name__):
             value(text)
         return
     assert repr(value(text)) == repr(expected)
@@ -133,5 +133,5 @@ def test_any_arithmetic_is_pythons(text: str) -> None:
 @given(text=st.text(alphabet="()[]{}'\"%.,:+-*/=<>!&|~ \\\n0123456789abcdefpisz_xlnmort", max_size=60))
 def test_no_text_raises_anything_else(text: str) -> None:
     """Any text has a value, fails or is undetermined."""
-    with suppress(ExpressionFails, Undetermined, OutOfBudget):
+    with suppress(EvaluationFails, Undetermined, OutOfBudget):
         value(text)

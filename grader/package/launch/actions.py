@@ -5,14 +5,23 @@ from dataclasses import replace
 
 from grader.package.launch.api import SOURCE, is_a
 from grader.package.launch.known_files import start_known_file
-from grader.package.launch.model import ANY, Context, LaunchFails, LaunchSignal, NotEvaluated, Resolved
+from grader.package.launch.model import ANY, Context, Resolved
 from grader.package.launch.nodes import check_namespace, evaluate_node, evaluate_process, start_node, start_process
 from grader.package.launch.parameters import evaluate_dict
 from grader.package.launch.substitutions import known_text, resolve
 from grader.package.launch.value_types import items_in, kind_of
 from grader.package.launch.visitor import PROCESSES, ActionVisitor
 from grader.python.parse import Position
-from grader.python.values import Call, Function, QualifiedName, Undetermined, Unknown, Value
+from grader.python.values import (
+    Call,
+    EvaluationFails,
+    EvaluationSignal,
+    Function,
+    QualifiedName,
+    Undetermined,
+    Unknown,
+    Value,
+)
 
 CIRCULAR_INCLUDE = "it includes itself"
 # By which packages, programs and files are found.
@@ -30,20 +39,20 @@ def _declare(visitor: ActionVisitor, call: Call, context: Context, when: bool | 
     del visitor
     name, choices, default = (call.kwargs.get(it) for it in ("name", "choices", "default_value"))
     if not isinstance(name, str):
-        raise NotEvaluated("the name of this launch argument is not evaluated", call.at)
+        raise Undetermined("the name of this launch argument is not evaluated", call.at)
     if when is False:
         return
     is_given = name in context.given or (name in context.arguments and call.kwargs.get("condition") is not None)
     if default is None and not is_given:
-        raise LaunchFails(f"the launch argument {name!r} has no default, and no value is given", call.at)
+        raise EvaluationFails(f"the launch argument {name!r} has no default, and no value is given", call.at)
     if name not in context.arguments:
         _set(name, default, call, context, when)
     value = context.arguments[name]
     if choices is not None and when:
         if not isinstance(value, str) or not isinstance(choices, list | tuple):
-            raise NotEvaluated(f"whether {name!r} is one of its choices is not evaluated", call.at)
+            raise Undetermined(f"whether {name!r} is one of its choices is not evaluated", call.at)
         if value not in choices:
-            raise LaunchFails(f"the value {value!r} of {name!r} is not one of its choices", call.at)
+            raise EvaluationFails(f"the value {value!r} of {name!r} is not one of its choices", call.at)
 
 
 def _assign(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
@@ -56,8 +65,8 @@ def _set(name: str, value: Value, call: Call, context: Context, when: bool | Non
     uncertain = Unknown(f"the launch argument {name!r} is set under a condition", call.at)
     try:
         context.arguments[name] = resolve(value, context, call.at) if when else uncertain
-    except LaunchSignal as signal:
-        context.arguments[name] = Unknown(str(signal), signal.at)
+    except EvaluationSignal as signal:
+        context.arguments[name] = Unknown(str(signal), signal.at or call.at)
         raise
 
 
@@ -65,9 +74,9 @@ def _environment(visitor: ActionVisitor, call: Call, context: Context, when: boo
     del visitor
     variable = known_text(call.kwargs["name"], context, call.at) if when is not False else "X"
     if not variable or "=" in variable:
-        raise LaunchFails(f"an environment variable cannot be called {variable!r}", call.at)
+        raise EvaluationFails(f"an environment variable cannot be called {variable!r}", call.at)
     if variable in _SEARCHED:
-        raise NotEvaluated(f"what is found with another {variable} is not evaluated", call.at)
+        raise Undetermined(f"what is found with another {variable} is not evaluated", call.at)
 
 
 def _namespace(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
@@ -90,7 +99,7 @@ def _nothing(visitor: ActionVisitor, call: Call, context: Context, when: bool | 
 def _shutdown(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     del context
     if when is not False and not visitor.findings.is_silent:
-        raise NotEvaluated("what a shutdown stops is not evaluated", call.at)
+        raise Undetermined("what a shutdown stops is not evaluated", call.at)
 
 
 def _group(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
@@ -110,7 +119,7 @@ def _register(visitor: ActionVisitor, call: Call, context: Context, when: bool |
     handler = call.kwargs["event_handler"]
     kind = handler.name.rpartition(".")[2] if isinstance(handler, Call) else ""
     if kind not in ("OnProcessExit", "OnProcessStart"):
-        visitor.add_form(NotEvaluated("this event handler is not evaluated", call.at), when)
+        visitor.add_form(Undetermined("this event handler is not evaluated"), call.at, when)
         return
     value = handler.kwargs.get("on_exit", handler.kwargs.get("on_start"))
     actions = visitor.call_function(value, handler.at, None, context) if isinstance(value, Function) else value
@@ -123,13 +132,13 @@ def _register(visitor: ActionVisitor, call: Call, context: Context, when: bool |
 def _opaque_function(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     function, args = call.kwargs["function"], call.kwargs.get("args") or []
     if not isinstance(function, Function) or not isinstance(args, list | tuple) or call.kwargs.get("kwargs"):
-        raise NotEvaluated("the result of this OpaqueFunction is not evaluated", call.at)
+        raise Undetermined("the result of this OpaqueFunction is not evaluated", call.at)
     if when is False:
         return
     arguments = (Call("launch.launch_context.LaunchContext", [], {}, call.at), *args)
     found = visitor.call_function(function, call.at, arguments if when else None, context)
     if isinstance(found, Unknown):
-        visitor.findings.add(NotEvaluated(found.reason, found.at), when)
+        visitor.findings.add(Undetermined(found.reason), found.at, when)
     elif found is not None:
         visitor.visit_all(found, call, context, when)
 
@@ -148,7 +157,7 @@ def _include(visitor: ActionVisitor, call: Call, context: Context, when: bool | 
     if reason and not start_known_file(visitor.findings, path, call, inner):
         visitor.findings.refer("include", path, call)
         if reason == CIRCULAR_INCLUDE:
-            raise LaunchFails(reason, call.at)
+            raise EvaluationFails(reason, call.at)
         visitor.findings.add_unknown(reason, call.at)
     elif not reason:
         visitor.findings.refer("include", path, call)
@@ -158,18 +167,15 @@ def _include(visitor: ActionVisitor, call: Call, context: Context, when: bool | 
 
 
 def _launch_arguments(given: Value, context: Context, at: Position) -> dict[str, Resolved]:
-    """Return the launch arguments that an include passes on. Raises LaunchSignal."""
-    try:
-        pairs = items_in(given) if given is not None else []
-    except Undetermined as error:
-        raise NotEvaluated(str(error), at) from None
+    """Return the launch arguments that an include passes on. Raises EvaluationSignal."""
+    pairs = items_in(given) if given is not None else []
     found: dict[str, Resolved] = {}
     for pair in pairs or ():
         if not isinstance(pair, list | tuple) or len(pair) != 2:
-            raise NotEvaluated("launch_arguments that are no pairs are not evaluated", at)
+            raise Undetermined("launch_arguments that are no pairs are not evaluated", at)
         for part in pair:
             if not isinstance(part, str | Call | Unknown | list | tuple):
-                raise LaunchFails(f"the value of a launch argument is {kind_of(part)}, not a string", at)
+                raise EvaluationFails(f"the value of a launch argument is {kind_of(part)}, not a string", at)
         found[known_text(pair[0], context, at)] = resolve(pair[1], context, at)
     return found
 
@@ -181,14 +187,14 @@ def _process(visitor: ActionVisitor, call: Call, context: Context, when: bool | 
     start(visitor.findings, call, context, when)
     if when is not False and before is not False:
         message = f"the same {call.name.rpartition('.')[2]} is executed twice: make two of them"
-        raise LaunchFails(message, call.at) if before and when else NotEvaluated(message, call.at)
+        raise EvaluationFails(message, call.at) if before and when else Undetermined(message, call.at)
     if when is not False:
         evaluate(call, context)
     on_exit = call.kwargs.get("on_exit")
     if isinstance(on_exit, list):
         visitor.perhaps(on_exit, call, context, when)
     elif not isinstance(on_exit, Function | Call | Unknown | QualifiedName | None):
-        raise NotEvaluated("this value of on_exit is not evaluated", call.at)
+        raise Undetermined("this value of on_exit is not evaluated", call.at)
 
 
 # What each kind of action does, besides the evaluation of its arguments.

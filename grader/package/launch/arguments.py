@@ -11,7 +11,7 @@ from grader.package.launch.substitutions import PERFORMS
 from grader.package.launch.value_types import CHECKS, is_entity, is_text, items_in, kind_of, wrong_text, wrong_typed
 from grader.python.evaluation import Evaluation, record
 from grader.python.knowledge import iterate, known
-from grader.python.values import Call, ExpressionFails, Function, Items, Undetermined, Unknown, Value
+from grader.python.values import Call, EvaluationFails, Function, Items, Undetermined, Unknown, Value
 
 _ACTIONS = (
     "Node", "ExecuteProcess", "LogInfo", "LaunchDescription", "DeclareLaunchArgument", "SetLaunchConfiguration",
@@ -23,28 +23,28 @@ _OF_ONE_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
 
 
 def _bind(cls: LaunchClass, call: Call) -> None:
-    """Give the arguments of a constructor their names. Raises ExpressionFails as Python does."""
+    """Give the arguments of a constructor their names. Raises EvaluationFails as Python does."""
     positional = [name for name, it in cls.parameters.items() if it.is_positional]
     if len(call.args) > len(positional):
         names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)
         hint = "put [ ] around them" if cls.short in _OF_ONE_LIST else f"write {names[:100]}"
-        raise ExpressionFails(f"{cls.short} takes {len(positional)} argument without a name: {hint}")
+        raise EvaluationFails(f"{cls.short} takes {len(positional)} argument without a name: {hint}", call.at)
     given = dict(zip(positional, call.args, strict=False))
     if twice := given.keys() & call.kwargs.keys():
-        raise ExpressionFails(f"{cls.short} is given {min(twice)!r} twice")
+        raise EvaluationFails(f"{cls.short} is given {min(twice)!r} twice", call.at)
     for name in (name for name in call.kwargs if name not in cls.parameters):
         message = f"{cls.short} has no argument {name!r}{did_you_mean(name, cls.parameters)}"
-        raise ExpressionFails(message)
+        raise EvaluationFails(message, call.at)
     kwargs = {**given, **call.kwargs}.items()
     call.args = []
     call.kwargs = {name: list(iterate(value)) if isinstance(value, Items) else value for name, value in kwargs}
     missing = [name for name, it in cls.parameters.items() if it.is_required and name not in call.kwargs]
     if missing:
-        raise ExpressionFails(f"{cls.short} needs the argument {missing[0]}=...")
+        raise EvaluationFails(f"{cls.short} needs the argument {missing[0]}=...", call.at)
 
 
 def check(cls: LaunchClass, call: Call) -> Unknown | None:
-    """Name and check the arguments of a constructor; return what is not evaluated. Raises ExpressionFails."""
+    """Name and check the arguments of a constructor; return what is not evaluated. Raises EvaluationFails."""
     if cls.short not in _EVALUATED and not is_a(cls.name, SOURCE):
         return Unknown(f"{cls.short} is not evaluated", call.at)
     _bind(cls, call)
@@ -52,7 +52,7 @@ def check(cls: LaunchClass, call: Call) -> Unknown | None:
     for name, value in [*call.kwargs.items(), ("", None)]:
         try:
             if message := _wrong(cls, call, name, value):
-                raise ExpressionFails(message)
+                raise EvaluationFails(message, call.at)
         except Undetermined as error:
             doubt = doubt or Unknown(str(error), call.at)
     return doubt
@@ -170,4 +170,4 @@ def _construct(cls: LaunchClass, evaluation: Evaluation, call: Call) -> Value:
 
 
 def _fail(message: str, *_: object) -> Value:
-    raise ExpressionFails(message)
+    raise EvaluationFails(message)

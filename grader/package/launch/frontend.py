@@ -5,9 +5,10 @@ from typing import Any
 
 import yaml
 
-from grader.package.launch.model import LaunchFails, LaunchFault
+from grader.package.launch.model import LaunchFault
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
-from grader.python.parse import Position
+from grader.python.parse import START, Position
+from grader.python.values import EvaluationFails
 from grader.source import Location, Source
 from grader.xml.parsing import Element, XmlFault, XmlFile
 
@@ -39,8 +40,9 @@ def read_frontend(data: bytes, source: Source, *, is_yaml: bool) -> Entity | Lau
         root = _YamlReader().root(data, source.path) if is_yaml else _xml_root(XmlFile(data, source))
     except (YamlFault, XmlFault) as fault:
         return LaunchFault(f"not readable as {'YAML' if is_yaml else 'XML'}: {fault}", fault.location)
-    except LaunchFails as error:
-        return LaunchFault(str(error), Location(source.path, error.at.line, error.at.column))
+    except EvaluationFails as error:
+        line, column = error.at or START
+        return LaunchFault(str(error), Location(source.path, line, column))
     if root is not None and root.kind == "launch":
         return root
     what = "the file is not a list of actions below launch:" if is_yaml else "the root of the file is not <launch>"
@@ -75,14 +77,14 @@ class _YamlReader:
         return self.entity("launch", node, 0)
 
     def entries(self, listed: YamlNode, depth: int) -> list[Entity]:
-        """Return the actions of a list, each below its own key. Raises LaunchFails."""
+        """Return the actions of a list, each below its own key. Raises EvaluationFails."""
         found: list[Entity] = []
         for item in listed.items:
             table = item.value if isinstance(item.value, dict) else {}
             if len(table) != 1:
                 names = ", ".join(list(table)[:4]) or "nothing"
                 message = f"expected one action below one key, found {names}. Is it indented far enough?"
-                raise LaunchFails(message, _position(item))
+                raise EvaluationFails(message, _position(item))
             found += [self.entity(kind, value, depth + 1) for kind, value in table.items()]
         return found
 
@@ -91,7 +93,7 @@ class _YamlReader:
         entity = Entity(kind, _position(node), is_yaml=True)
         self.count += 1
         if depth > _MAX_DEPTH or self.count > _MAX_ENTITIES:
-            raise LaunchFails("the launch file has too many elements", _position(node))
+            raise EvaluationFails("the launch file has too many elements", _position(node))
         if isinstance(node.value, list):
             entity.actions = self.entries(node, depth)
         elif not isinstance(node.value, dict):

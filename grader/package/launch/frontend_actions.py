@@ -8,9 +8,9 @@ from grader.package.launch.api import class_named, front_end
 from grader.package.launch.arguments import check
 from grader.package.launch.frontend import Entity
 from grader.package.launch.frontend_values import command_line, is_typed, parse_if_text, parse_value, typed_text
-from grader.package.launch.model import Findings, LaunchFails, LaunchSignal, NotEvaluated
+from grader.package.launch.model import Findings
 from grader.package.launch.value_types import TYPED
-from grader.python.values import Call, ExpressionFails, Unknown, Value
+from grader.python.values import Call, EvaluationFails, EvaluationSignal, Undetermined, Unknown, Value
 
 _PROCESS = (
     "cwd name on_exit launch-prefix output respawn shell:bool emulate_tty:bool"
@@ -45,10 +45,10 @@ def actions_of(parent: Entity, findings: Findings) -> list[Value]:
     for entity in parent.actions:
         try:
             found.append(_action(entity, findings))
-        except LaunchFails as error:
-            findings.add_fault(str(error), error.at)
-        except LaunchSignal as signal:
-            found.append(Unknown(str(signal), signal.at))
+        except EvaluationFails as error:
+            findings.add_fault(str(error), error.at or entity.at)
+        except EvaluationSignal as signal:
+            found.append(Unknown(str(signal), signal.at or entity.at))
     return found
 
 
@@ -56,8 +56,8 @@ def _action(entity: Entity, findings: Findings) -> Call:
     kind = entity.kind
     if kind not in _ACTIONS:
         if kind in front_end("action"):
-            raise NotEvaluated(f"the action {kind} is not evaluated", entity.at)
-        raise LaunchFails(f"there is no action {kind!r}{did_you_mean(kind, _ACTIONS)}", entity.at)
+            raise Undetermined(f"the action {kind} is not evaluated", entity.at)
+        raise EvaluationFails(f"there is no action {kind!r}{did_you_mean(kind, _ACTIONS)}", entity.at)
     given = _attributes(entity, f"if unless {_ACTIONS[kind]}")
     condition = _condition(given, entity)
     kwargs = {_ARGUMENTS.get(name, name): _value(entity, name, value) for name, value in given.items()}
@@ -70,12 +70,12 @@ def _action(entity: Entity, findings: Findings) -> Call:
 
 
 def _attributes(entity: Entity, known: str) -> dict[str, Any]:
-    """Return the attributes of an entity, of their types. Raises LaunchSignal."""
+    """Return the attributes of an entity, of their types. Raises EvaluationSignal."""
     if entity.error:
-        raise LaunchFails(entity.error, entity.at)
+        raise EvaluationFails(entity.error, entity.at)
     if entity.is_yaml and entity.has_actions != ("children" in known):
         what = "needs the key children" if "children" in known else "has no list of actions"
-        raise LaunchFails(f"{entity.kind} {what}", entity.at)
+        raise EvaluationFails(f"{entity.kind} {what}", entity.at)
     names = {word.partition(":")[0].strip("-![]"): word for word in f"{known} -<<".split()}
     lists = {name for name, word in names.items() if word.endswith("[]")}
     inner = [*entity.nested, *(it.kind for it in entity.actions)]
@@ -85,16 +85,16 @@ def _attributes(entity: Entity, known: str) -> dict[str, Any]:
             or names.get(name, "").startswith("-")
             or (name.removesuffix("-sep") in names and name not in names)
         ):
-            raise NotEvaluated(f"{name} of <{entity.kind}> is not evaluated", entity.at)
+            raise Undetermined(f"{name} of <{entity.kind}> is not evaluated", entity.at)
     for name in inner if "children" not in names else ():
         if name not in lists:
-            raise LaunchFails(f"<{entity.kind}> contains no <{name}>{did_you_mean(name, lists)}", entity.at)
+            raise EvaluationFails(f"<{entity.kind}> contains no <{name}>{did_you_mean(name, lists)}", entity.at)
     for name in entity.attributes:
         if name not in names or name in lists or name == "children":
-            raise LaunchFails(f"<{entity.kind}> has no attribute {name!r}{did_you_mean(name, names)}", entity.at)
+            raise EvaluationFails(f"<{entity.kind}> has no attribute {name!r}{did_you_mean(name, names)}", entity.at)
     missing = [name for name, word in names.items() if "!" in word and name not in {*entity.attributes, *entity.nested}]
     if missing:
-        raise LaunchFails(f"<{entity.kind}> needs the attribute {missing[0]!r}", entity.at)
+        raise EvaluationFails(f"<{entity.kind}> needs the attribute {missing[0]!r}", entity.at)
     return {
         name: _typed(entity, name, value, names[name].partition(":")[2]) for name, value in entity.attributes.items()
     }
@@ -106,20 +106,16 @@ def _typed(entity: Entity, name: str, value: Any, kind: str) -> Any:
         return value if wanted is str else typed_text(value, wanted, entity.at)
     if not is_typed(value, wanted, entity.at):
         what = f"{name} of {entity.kind} is {value!r}, which YAML reads as {type(value).__name__}"
-        raise LaunchFails(f"{what}: {'put quotes around it' if wanted is str else f'write a {kind}'}", entity.at)
+        raise EvaluationFails(f"{what}: {'put quotes around it' if wanted is str else f'write a {kind}'}", entity.at)
     return value
 
 
 def _checked(call: Call) -> Call:
-    """Return a call whose arguments its constructor accepts. Raises LaunchSignal."""
+    """Return a call whose arguments its constructor accepts. Raises EvaluationSignal."""
     cls = class_named(call.name)
-    try:
-        if cls is not None:
-            doubt = check(cls, call)
-            if doubt is not None:
-                raise NotEvaluated(doubt.reason, doubt.at)
-    except ExpressionFails as error:
-        raise LaunchFails(str(error), call.at) from None
+    doubt = check(cls, call) if cls is not None else None
+    if doubt is not None:
+        raise Undetermined(doubt.reason, doubt.at)
     return call
 
 
@@ -127,7 +123,7 @@ def _condition(given: dict[str, Any], entity: Entity) -> Call | None:
     """Take the condition out of the attributes."""
     own = {name: given.pop(name) for name in ("if", "unless") if name in given}
     if len(own) > 1:
-        raise LaunchFails("if and unless cannot be used together", entity.at)
+        raise EvaluationFails("if and unless cannot be used together", entity.at)
     for name, text in own.items():
         kind = "if_condition.IfCondition" if name == "if" else "unless_condition.UnlessCondition"
         kwargs = {"predicate_expression": parse_value(text, entity.at)}
@@ -142,7 +138,7 @@ def _value(entity: Entity, name: str, value: Any) -> Value:
         return command_line(value, entity.at)
     if name == "on_exit":
         if value != "shutdown":
-            raise LaunchFails(f"on_exit is 'shutdown', not {value!r}", entity.at)
+            raise EvaluationFails(f"on_exit is 'shutdown', not {value!r}", entity.at)
         return [Call(front_end("action")["shutdown"], [], {}, entity.at)]
     if name == "respawn" or entity.kind == "set_parameter":
         text = "launch.substitutions.text_substitution.TextSubstitution"
@@ -169,25 +165,25 @@ def _add_elements(entity: Entity, kwargs: dict[str, Value]) -> None:
 
 
 def _parameter(entity: Entity) -> Value:
-    """Return an item of the parameters of a node. Raises LaunchSignal."""
+    """Return an item of the parameters of a node. Raises EvaluationSignal."""
     given = _attributes(entity, _NESTED["param"])
     if ("from" in given) == ("name" in given):
-        raise LaunchFails("a <param> has either name or from", entity.at)
+        raise EvaluationFails("a <param> has either name or from", entity.at)
     if "from" in given:
         return parse_value(str(given["from"]), entity.at)
     parts, inner, kind = parse_value(given["name"], entity.at), entity.nested.get("param"), given.get("type")
     name: Value = parts[0] if len(parts) == 1 and isinstance(parts[0], str) else tuple(parts)
     if inner:
         if "value" in given or "type" in given:
-            raise LaunchFails("a <param> has either a value or other <param> in it", entity.at)
+            raise EvaluationFails("a <param> has either a value or other <param> in it", entity.at)
         tables = (_parameter(it) for it in inner)
         return {name: {key: value for table in tables if isinstance(table, dict) for key, value in table.items()}}
     if "value" not in given:
-        raise LaunchFails("a <param> needs a value", entity.at)
+        raise EvaluationFails("a <param> needs a value", entity.at)
     if kind is not None and kind not in _VALUE_TYPES:
-        raise LaunchFails(f"a <param> has the type {kind!r}, which is none of {', '.join(_VALUE_TYPES)}", entity.at)
+        raise EvaluationFails(f"a <param> has the type {kind!r}, which is none of {', '.join(_VALUE_TYPES)}", entity.at)
     if kind not in (None, "str", "yaml"):
-        raise NotEvaluated(f"a <param> of the type {kind} is not evaluated", entity.at)
+        raise Undetermined(f"a <param> of the type {kind} is not evaluated", entity.at)
     value = entity.attributes["value"] if not entity.is_yaml and kind == "str" else given["value"]
     kwargs: dict[str, Value] = {"value": parse_if_text(value, entity.at)}
     if kind == "str":

@@ -9,9 +9,8 @@ import yaml
 
 from grader.names import closest
 from grader.package.launch.api import front_end
-from grader.package.launch.model import LaunchFails, NotEvaluated
 from grader.python.parse import Position
-from grader.python.values import Call, Value
+from grader.python.values import Call, EvaluationFails, Undetermined, Value
 
 _MAX_DEPTH = 40
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
@@ -30,7 +29,7 @@ _ON_STDERR = (["fail"], ["ignore"], ["warn"], ["capture"])
 
 
 def parse_value(text: str, at: Position) -> list[Value]:
-    """Return a value as a list of strings and substitutions. Raises LaunchFails."""
+    """Return a value as a list of strings and substitutions. Raises EvaluationFails."""
     parser = _ValueParser(text, at)
     found = parser.template("", 0)
     return found or [""]
@@ -54,7 +53,7 @@ class _ValueParser:
         while self.position < len(self.text) and (not quote or self.next != quote):
             found.append(self.part(quote, quote, depth))
         if quote and self.position >= len(self.text):
-            raise LaunchFails(f"a quote is not closed in {self.text[:60]!r}", self.at)
+            raise EvaluationFails(f"a quote is not closed in {self.text[:60]!r}", self.at)
         self.position += len(quote)
         return found
 
@@ -75,14 +74,14 @@ class _ValueParser:
         """Return the substitution in brackets: a name, and values separated by one space each."""
         name = _NAME.match(self.text, self.position)
         if name is None or depth > _MAX_DEPTH:
-            raise LaunchFails(f"there is no name of a substitution after $( in {self.text[:60]!r}", self.at)
+            raise EvaluationFails(f"there is no name of a substitution after $( in {self.text[:60]!r}", self.at)
         self.position, values = name.end(), list[list[Value]]()
         while self.next == " ":
             self.position += 1
             values.append(self.value(quote, depth))
         if self.next != ")":
             what = "is not closed" if not self.next else f"has {self.next!r} in an argument without quotes"
-            raise LaunchFails(f"the bracket of $({name[0][:40]} {what}", self.at)
+            raise EvaluationFails(f"the bracket of $({name[0][:40]} {what}", self.at)
         self.position += 1
         return self.call(name[0], values)
 
@@ -95,26 +94,28 @@ class _ValueParser:
         while self.next and self.next not in _BEFORE_NEXT[quote]:
             found.append(self.part(_BEFORE_NEXT[quote], quote, depth))
         if not found:
-            raise LaunchFails(
+            raise EvaluationFails(
                 f"an argument is missing in {self.text[:60]!r}: write one space between arguments", self.at
             )
         return found
 
     def call(self, name: str, values: list[list[Value]]) -> Call:
-        """Return a substitution as the call that it is in Python. Raises LaunchFails."""
+        """Return a substitution as the call that it is in Python. Raises EvaluationFails."""
         if name == "command" and len(values) > 1 and values[1] not in _ON_STDERR:
-            raise LaunchFails("$(command ...) needs quotes around its command: $(command 'xacro ...')", self.at)
+            raise EvaluationFails("$(command ...) needs quotes around its command: $(command 'xacro ...')", self.at)
         if name not in _ARGUMENTS:
             if name in front_end("substitution"):
-                raise NotEvaluated(f"the substitution $({name} ...) is not evaluated", self.at)
+                raise Undetermined(f"the substitution $({name} ...) is not evaluated", self.at)
             similar = closest(name, _ARGUMENTS)
-            raise LaunchFails(
+            raise EvaluationFails(
                 f"there is no substitution $({name} ...){f'; did you mean $({similar} ...)?' if similar else ''}",
                 self.at,
             )
         names = _ARGUMENTS[name].split()
         if not len([it for it in names if it[0] != "["]) <= len(values) <= len(names):
-            raise LaunchFails(f"$({name} ...) takes {len(names) or 'no'} argument{'s' * (len(names) != 1)}", self.at)
+            raise EvaluationFails(
+                f"$({name} ...) takes {len(names) or 'no'} argument{'s' * (len(names) != 1)}", self.at
+            )
         plain = ("".join(value) if all(isinstance(it, str) for it in value) else value for value in values)
         kwargs: dict[str, Value] = dict(zip((it.strip("[]") for it in names), plain, strict=False))
         return Call(front_end("substitution")[name], [], kwargs, self.at)
@@ -130,7 +131,9 @@ def command_line(text: str, at: Position) -> list[list[Value]]:
         try:
             found = shlex.split(piece)
         except ValueError:
-            raise LaunchFails("quotes cannot enclose a substitution in a line of arguments: remove them", at) from None
+            raise EvaluationFails(
+                "quotes cannot enclose a substitution in a line of arguments: remove them", at
+            ) from None
         if piece[:1].isspace() or not found:
             words.append([])
         words[-1] += found[:1]
@@ -153,18 +156,18 @@ def typed_text(text: str, kind: type | None, at: Position) -> Any:
     except (yaml.YAMLError, ValueError, RecursionError):
         return text
     if not is_typed(found, kind, at):
-        raise LaunchFails(f"{text[:40]!r} is of no type that is accepted here: put quotes in it", at)
+        raise EvaluationFails(f"{text[:40]!r} is of no type that is accepted here: put quotes in it", at)
     return found
 
 
 def is_typed(value: Any, kind: type | None, at: Position) -> bool:
-    """Return whether a value is a text or of a type; with None, whether it is a scalar. Raises NotEvaluated."""
+    """Return whether a value is a text or of a type; with None, whether it is a scalar. Raises Undetermined."""
     if isinstance(value, list) and kind is None:
-        raise NotEvaluated("a list in this place is not evaluated", at)
+        raise Undetermined("a list in this place is not evaluated", at)
     return isinstance(value, str | (kind or float) | (kind or int))
 
 
 def parse_if_text(value: Any, at: Position) -> Any:
-    """Return a value; a text is parsed. Raises LaunchFails."""
+    """Return a value; a text is parsed. Raises EvaluationFails."""
     parts = parse_value(value, at) if isinstance(value, str) else [value]
     return parts[0] if len(parts) == 1 and not isinstance(parts[0], Call) else parts

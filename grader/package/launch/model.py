@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from grader.python.parse import Position
-from grader.python.values import Call, Unknown, Value
+from grader.python.values import Call, EvaluationFails, EvaluationSignal, Unknown, Value
 from grader.source import Location, Source
 
 _MAX_STEPS = 50_000
@@ -39,22 +39,6 @@ class FileText(UnknownText):
 
 
 Resolved = str | Contents | Unknown
-
-
-class LaunchSignal(Exception):
-    """What ends the evaluation of an action, with the position that it is about."""
-
-    def __init__(self, message: str, at: Position) -> None:
-        super().__init__(message)
-        self.at = at
-
-
-class LaunchFails(LaunchSignal):
-    """launch certainly raises an error if it evaluates this."""
-
-
-class NotEvaluated(LaunchSignal):
-    """Whether launch raises an error here is not known."""
 
 
 def not_evaluated(reason: str) -> str:
@@ -189,15 +173,17 @@ class Findings:
         self.add_unknown(reason, at)
         self.add_doubt(reason, at)
 
-    def add(self, signal: LaunchSignal, when: bool | None) -> None:
-        """Add what ends an action: an error only if it certainly is executed."""
-        if self.is_silent:
+    def add(self, signal: EvaluationSignal, at: Position, when: bool | None) -> None:
+        """Add what ends an action: an error only if it certainly is executed. `at` is the position of the action."""
+        if self.is_silent or when is False:
             return
-        if isinstance(signal, LaunchFails) and when:
-            self.add_fault(str(signal), signal.at)
-        elif when is not False:
-            reason = f"whether this is executed is not evaluated: {signal}"
-            self.add_doubt(reason if isinstance(signal, LaunchFails) else str(signal), signal.at)
+        at = signal.at or at
+        if not isinstance(signal, EvaluationFails):
+            self.add_doubt(str(signal), at)
+        elif when:
+            self.add_fault(str(signal), at)
+        else:
+            self.add_doubt(f"whether this is executed is not evaluated: {signal}", at)
 
     def refer(self, purpose: Purpose, path: Resolved | None, call: Call, value: Value = None, wrong: str = "") -> None:
         """Add the file that an action names, why it is unknown which, or what is wrong with it."""

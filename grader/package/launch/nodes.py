@@ -3,23 +3,12 @@
 import re
 import shlex
 
-from grader.package.launch.model import (
-    STATE_PUBLISHER,
-    Contents,
-    Context,
-    Findings,
-    LaunchFails,
-    LaunchSignal,
-    NamedFile,
-    NotEvaluated,
-    Resolved,
-    StartedNode,
-)
+from grader.package.launch.model import STATE_PUBLISHER, Contents, Context, Findings, NamedFile, Resolved, StartedNode
 from grader.package.launch.parameters import tables_in
 from grader.package.launch.substitutions import PART_UNKNOWN, known_text, resolve
 from grader.package.launch.value_types import OPENED, TYPED, items_in
 from grader.python.parse import Position
-from grader.python.values import Call, Unknown, Value
+from grader.python.values import Call, EvaluationFails, EvaluationSignal, Undetermined, Unknown, Value
 
 _RVIZ = "rviz2"
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")
@@ -29,48 +18,48 @@ _NAMESPACE = re.compile(r"|/|/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*"
 
 
 def check_namespace(value: Value, context: Context, at: Position) -> None:
-    """Raise NotEvaluated for a namespace that may not be valid, or stands below one that the file itself sets."""
+    """Raise Undetermined for a namespace that may not be valid, or stands below one that the file itself sets."""
     text = known_text(value, context, at)
     if _NAMESPACE.fullmatch(text) is None or isinstance(context.arguments.get("ros_namespace"), str):
-        raise NotEvaluated(f"whether the namespace {text!r} is valid is not evaluated", at)
+        raise Undetermined(f"whether the namespace {text!r} is valid is not evaluated", at)
 
 
 def evaluate_process(call: Call, context: Context) -> None:
-    """Evaluate what launch does with the arguments of a process besides their texts. Raises LaunchSignal."""
+    """Evaluate what launch does with the arguments of a process besides their texts. Raises EvaluationSignal."""
     if "cmd" in call.kwargs and not items_in(call.kwargs["cmd"]):
-        raise LaunchFails("cmd is empty", call.at)
+        raise EvaluationFails("cmd is empty", call.at)
     try:
         shlex.split(known_text(call.kwargs.get("prefix") or "", context, call.at))
     except ValueError:
-        raise LaunchFails("the quotes in a prefix are not closed", call.at) from None
+        raise EvaluationFails("the quotes in a prefix are not closed", call.at) from None
     output = call.kwargs.get("output", "log")
     if not isinstance(output, dict) and (text := known_text(output, context, call.at)) not in _OUTPUTS:
-        raise LaunchFails(f"output={text!r} is not one of {', '.join(_OUTPUTS)}", call.at)
+        raise EvaluationFails(f"output={text!r} is not one of {', '.join(_OUTPUTS)}", call.at)
     if isinstance(output, dict) and not output.keys() <= {"stdout", "stderr", "both"}:
-        raise LaunchFails("output has the keys stdout, stderr and both only", call.at)
+        raise EvaluationFails("output has the keys stdout, stderr and both only", call.at)
 
 
 def evaluate_node(call: Call, context: Context) -> None:
-    """Evaluate what launch_ros does with the arguments of a node besides their texts. Raises LaunchSignal."""
+    """Evaluate what launch_ros does with the arguments of a node besides their texts. Raises EvaluationSignal."""
     evaluate_process(call, context)
     name, namespace = call.kwargs.get("name"), call.kwargs.get("namespace")
     if name is not None and _NAME.fullmatch(text := known_text(name, context, call.at)) is None:
-        raise LaunchFails(f"the name of the node, {text!r}, is not valid: use letters, digits and _", call.at)
+        raise EvaluationFails(f"the name of the node, {text!r}, is not valid: use letters, digits and _", call.at)
     if namespace is not None or "ros_namespace" in context.arguments:
         check_namespace(namespace or "", context, call.at)
     if call.kwargs.get("ros_arguments") is not None:
-        raise NotEvaluated("ros_arguments are not evaluated", call.at)
+        raise Undetermined("ros_arguments are not evaluated", call.at)
     package = call.kwargs.get("package")
     if package is not None:
         text = known_text(package, context, call.at)
         program = known_text(call.kwargs["executable"], context, call.at)
         if not context.around.is_installed(text):
-            raise NotEvaluated(f"whether the package {text!r} is installed is not evaluated", call.at)
+            raise Undetermined(f"whether the package {text!r} is installed is not evaluated", call.at)
         if context.around.has_program(text, program) is not True:
             reason = f"{text!r} has no program {program!r}"
             if context.around.has_program(text, program) is None:
-                raise NotEvaluated(f"whether {reason} is not evaluated".replace(" has no ", " has the "), call.at)
-            raise LaunchFails(f"the package {reason}", call.at)
+                raise Undetermined(f"whether {reason} is not evaluated".replace(" has no ", " has the "), call.at)
+            raise EvaluationFails(f"the package {reason}", call.at)
 
 
 def start_node(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
@@ -108,8 +97,8 @@ def _attempt(value: Value, context: Context, at: Position) -> Resolved:
     """Return the text of a value; Unknown where launch may fail, which is added elsewhere."""
     try:
         return resolve(value, context, at) if value is not None else Unknown("there is none", at)
-    except LaunchSignal as signal:
-        return Unknown(str(signal), signal.at)
+    except EvaluationSignal as signal:
+        return Unknown(str(signal), signal.at or at)
 
 
 def _words_of(value: Value, context: Context, at: Position) -> list[str]:

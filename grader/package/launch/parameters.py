@@ -6,29 +6,29 @@ from typing import Any
 
 import yaml
 
-from grader.package.launch.model import Contents, Context, LaunchFails, NotEvaluated, UnknownText
+from grader.package.launch.model import Contents, Context, UnknownText
 from grader.package.launch.substitutions import resolve
 from grader.package.launch.value_types import FILE, SCALARS, TYPED, boolean, items_in, kind_of, type_of
 from grader.python.parse import Position
-from grader.python.values import Call, Undetermined, Unknown, Value
+from grader.python.values import Call, EvaluationFails, Undetermined, Unknown, Value
 
 _MAX_YAML = 200_000  # characters
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 def evaluate_parameters(parameters: Value, context: Context, at: Position) -> None:
-    """Evaluate the parameters of a node, as launch_ros does first. Raises LaunchSignal and Undetermined."""
+    """Evaluate the parameters of a node, as launch_ros does first. Raises EvaluationSignal and Undetermined."""
     for item in items_in(parameters) or ():
         if isinstance(item, dict):
             evaluate_dict(item, context, at)
         elif isinstance(item, Call) and item.name in (*TYPED, FILE):
-            raise NotEvaluated("a parameter of this kind is not evaluated", item.at)
+            raise Undetermined("a parameter of this kind is not evaluated", item.at)
         elif not isinstance(item, PurePosixPath):
             resolve(item, context, at)
 
 
 def evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> None:
-    """Evaluate a dict of parameters. Raises LaunchSignal."""
+    """Evaluate a dict of parameters. Raises EvaluationSignal."""
     for key, value in table.items():
         name = resolve(list(key) if isinstance(key, tuple) else key, context, at)
         shown = name if isinstance(name, str) else "?"
@@ -50,9 +50,9 @@ def _evaluate_list(name: str, items: list[Value], context: Context, at: Position
     if any(isinstance(item, Call) for item in items) and all(isinstance(it, str | Call | Unknown) for it in items):
         _read_as_yaml(name, items, context, at)
     elif not items or not all(isinstance(item, SCALARS) for item in items):
-        raise NotEvaluated(f"the value of the parameter {name!r} is not evaluated", at)
+        raise Undetermined(f"the value of the parameter {name!r} is not evaluated", at)
     elif len(kinds) > 1 and kinds != {int, float}:
-        raise LaunchFails(f"the parameter {name!r} is a list of values of different types", at)
+        raise EvaluationFails(f"the parameter {name!r} is a list of values of different types", at)
 
 
 def _is_uniform(values: list[Any]) -> bool:
@@ -61,24 +61,24 @@ def _is_uniform(values: list[Any]) -> bool:
 
 
 def _yaml_of(name: str, value: Value, context: Context, at: Position) -> Any:
-    """Return the value of a text as YAML. Raises LaunchSignal."""
+    """Return the value of a text as YAML. Raises EvaluationSignal."""
     found = resolve(value, context, at)
     if isinstance(found, Unknown):
-        raise NotEvaluated(f"the value of the parameter {name!r} is not evaluated: {found.reason}", at)
+        raise Undetermined(f"the value of the parameter {name!r} is not evaluated: {found.reason}", at)
     text = context.around.read(found.path) if isinstance(found, Contents) else found
     if text is None:
         return ""  # a file that is not there is reported for itself
     try:
         if len(text) > _MAX_YAML:
-            raise NotEvaluated(f"the parameter {name!r} is too long to be read as YAML", at)
+            raise Undetermined(f"the parameter {name!r} is too long to be read as YAML", at)
         return yaml.load(text or "''", Loader=_LOADER)  # noqa: S506  a safe loader
     except (yaml.YAMLError, ValueError, RecursionError):
         if isinstance(found, Contents) and found.by == "xacro":
-            raise NotEvaluated(
+            raise Undetermined(
                 f"whether the output of xacro is YAML, as which {name!r} is read, is not evaluated", at
             ) from None
         hint = "write ParameterValue(..., value_type=str)"
-        raise LaunchFails(f"the parameter {name!r} is read as YAML, which fails: {hint}", at) from None
+        raise EvaluationFails(f"the parameter {name!r} is read as YAML, which fails: {hint}", at) from None
 
 
 def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> None:
@@ -87,7 +87,7 @@ def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> No
         return
     if not isinstance(found, (*SCALARS, bytes)):
         hint = "write ParameterValue(..., value_type=str)"
-        raise LaunchFails(f"the parameter {name!r} is read as YAML, and is {kind_of(found)} then: {hint}", at)
+        raise EvaluationFails(f"the parameter {name!r} is read as YAML, and is {kind_of(found)} then: {hint}", at)
 
 
 def _evaluate_typed(call: Call, context: Context) -> None:
@@ -101,7 +101,7 @@ def _evaluate_typed(call: Call, context: Context) -> None:
     try:
         kind = type_of(call)
     except Undetermined as error:
-        raise NotEvaluated(f"{error} is not evaluated", call.at) from None
+        raise Undetermined(f"{error} is not evaluated", call.at) from None
     if kind is None:
         _read_as_yaml("value", value, context, call.at)
         return
@@ -109,11 +109,11 @@ def _evaluate_typed(call: Call, context: Context) -> None:
     if kind is str:
         return
     if not isinstance(text, str):
-        raise NotEvaluated("the value of a parameter is not evaluated", call.at)
+        raise Undetermined("the value of a parameter is not evaluated", call.at)
     try:
         boolean(text, call.at) if kind is bool else kind(text)
     except ValueError:
-        raise LaunchFails(f"the value {text[:40]!r} of a parameter is not {kind.__name__}", call.at) from None
+        raise EvaluationFails(f"the value {text[:40]!r} of a parameter is not {kind.__name__}", call.at) from None
 
 
 def tables_in(parameters: Value) -> Iterator[dict[Any, Value]]:

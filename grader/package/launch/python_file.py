@@ -8,16 +8,24 @@ from pathlib import PurePosixPath
 
 from grader.package.launch.api import DESCRIPTION, SUBSTITUTION, class_named, exports, is_a
 from grader.package.launch.arguments import LaunchFunctions
-from grader.package.launch.model import Contents, Context, FileText, LaunchFails, LaunchSignal, UnknownText
+from grader.package.launch.model import Contents, Context, FileText, UnknownText
 from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.launch.substitutions import resolve
 from grader.python.calls import Calls
-from grader.python.evaluation import Evaluation, EvaluationStopped, record
+from grader.python.evaluation import Evaluation, record
 from grader.python.interpreter import Interpreter
 from grader.python.knowledge import known, path_text
 from grader.python.library import standard_functions
 from grader.python.parse import Code, Position
-from grader.python.values import Call, ExpressionFails, Function, FunctionTable, Undetermined, Unknown, Value
+from grader.python.values import (
+    Call,
+    EvaluationFails,
+    Function,
+    FunctionTable,
+    Undetermined,
+    Unknown,
+    Value,
+)
 
 _MODULE = "python_launch_file"  # the __name__ of a launch file
 _AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
@@ -78,9 +86,8 @@ class PythonLaunchFile:
         """Return the text of a substitution as Python gets it."""
         try:
             found = resolve(call.owner, self.context, call.at)
-        except LaunchSignal as signal:
-            kind = ExpressionFails if isinstance(signal, LaunchFails) else Undetermined
-            raise kind(str(signal)) from None
+        except Undetermined as error:  # at this call, not at the substitution
+            raise Undetermined(str(error)) from None
         reason = "the content of a file is not evaluated"
         return FileText(reason=reason, at=call.at, contents=found) if isinstance(found, Contents) else found
 
@@ -98,7 +105,7 @@ class PythonLaunchFile:
     def _package(self, evaluation: Evaluation, call: Call) -> str:
         name = known(call.argument(0, "package_name", "package"))
         if not isinstance(name, str):
-            raise ExpressionFails("the name of a package is a string")
+            raise EvaluationFails("the name of a package is a string")
         if not self.context.around.is_installed(name):
             evaluation.doubted(Unknown(f"whether the package {name!r} is installed is not evaluated", call.at))
         return name
@@ -113,12 +120,12 @@ class PythonLaunchFile:
         file, mode = call.argument(0, "file"), known(call.argument(1, "mode"))
         path = path_text(file if isinstance(file, Call) and class_named(file.name) is not None else known(file))
         if path is None:
-            raise ExpressionFails("open takes a path, not a substitution: use Command(['cat ', ...])")
+            raise EvaluationFails("open takes a path, not a substitution: use Command(['cat ', ...])")
         encoding = known(call.argument(3, "encoding"))
         others = call.kwargs.keys() - {"file", "mode", "encoding"}
         is_utf8 = encoding is None or str(encoding).lower().replace("_", "-") in ("utf-8", "utf8")
         if mode not in (None, "r", "rt") or not is_utf8 or others or len(call.args) > 2:
-            raise EvaluationStopped("this use of open is not evaluated", call.at)
+            raise Undetermined("this use of open is not evaluated", call.at, is_final=True)
         self.reads.append((Contents(path, "open"), call.at))
         call.name, call.args, call.kwargs = "builtins.open", [path], {}
         return record(evaluation, call)
@@ -137,7 +144,7 @@ class PythonLaunchFile:
     def _xacro(self, evaluation: Evaluation, call: Call) -> Value:
         given = call.argument(0, "input_file_name")
         if isinstance(given, Call) and not given.name.startswith("builtins.open"):
-            raise ExpressionFails(f"{call.name} takes a path, not a substitution: use Command(['xacro ', ...])")
+            raise EvaluationFails(f"{call.name} takes a path, not a substitution: use Command(['xacro ', ...])")
         if isinstance(given, Call):
             given = given.args[0] if given.args else None
         path = path_text(known(given))
@@ -161,7 +168,7 @@ def _contents(call: Call) -> Contents:
 def _add_action(evaluation: Evaluation, call: Call) -> Value:
     """Record an action that is added to a description."""
     if len(call.args) + len(call.kwargs) != 1:
-        raise ExpressionFails(f"{call.name.rpartition('.')[2]} takes one action")
+        raise EvaluationFails(f"{call.name.rpartition('.')[2]} takes one action")
     record(evaluation, call)
 
 
@@ -179,7 +186,7 @@ def _variable(_: Evaluation, call: Call) -> Value:
 def _join_paths(evaluation: Calls, call: Call) -> Value:
     """Return what os.path.join returns; it fails for substitutions."""
     if any(isinstance(value, Call) and class_named(value.name) is not None for value in call.args):
-        raise ExpressionFails("os.path.join takes strings, not substitutions: use PathJoinSubstitution([...])")
+        raise EvaluationFails("os.path.join takes strings, not substitutions: use PathJoinSubstitution([...])")
     return evaluation.call_value(standard_functions(WORKING_FOLDER)["os.path.join"], call)
 
 

@@ -7,14 +7,14 @@ import shlex
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from grader.package.launch.model import ANY, Contents, Context, FileText, LaunchFails, NotEvaluated, Resolved
+from grader.package.launch.model import ANY, Contents, Context, FileText, Resolved
 from grader.package.launch.places import HOME, SHARE
 from grader.python.budget import Budget, OutOfBudget
 from grader.python.builtins import BUILTINS, MATH
 from grader.python.expressions import evaluate
 from grader.python.knowledge import str_of
 from grader.python.parse import Position
-from grader.python.values import MAX_TEXT, Call, ExpressionFails, Namespace, Undetermined, Unknown, Value
+from grader.python.values import MAX_TEXT, Call, EvaluationFails, Namespace, Undetermined, Unknown, Value
 
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
 PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
@@ -24,11 +24,11 @@ _PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", 
 def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Resolved:
     """Return the text of a value, or the contents of a file; Unknown where it certainly is a text, but not known.
 
-    Raises LaunchFails where launch certainly raises an error, NotEvaluated where it may.
+    Raises EvaluationFails where launch certainly raises an error, Undetermined where it may.
     """
     context.around.steps_left -= 1
     if depth > _MAX_DEPTH or context.around.steps_left < 0:
-        raise NotEvaluated("a substitution that is nested so deeply is not evaluated", at)
+        raise Undetermined("a substitution that is nested so deeply is not evaluated", at)
     match value:
         case FileText(contents=contents):
             context.reads.append((contents, value.at))
@@ -39,7 +39,7 @@ def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Res
             return _Substitution(value, context, depth).value()
         case list() | tuple() | dict() | set():
             return _joined([resolve(part, context, at, depth + 1) for part in value], at)
-    raise NotEvaluated("the text of this value is not evaluated", at)
+    raise Undetermined("the text of this value is not evaluated", at)
 
 
 def _joined(parts: list[Resolved], at: Position) -> Resolved:
@@ -50,16 +50,16 @@ def _joined(parts: list[Resolved], at: Position) -> Resolved:
         unknown = (part for part in parts if isinstance(part, Unknown))
         return next(unknown, Unknown("the content of a file is part of a string", at))
     if sum(map(len, texts)) > MAX_TEXT:
-        raise NotEvaluated("a string grows too long", at)
+        raise Undetermined("a string grows too long", at)
     return "".join(texts)
 
 
 def known_text(value: Value, context: Context, at: Position) -> str:
-    """Return the text of a value. Raises NotEvaluated where it is not known."""
+    """Return the text of a value. Raises Undetermined where it is not known."""
     found = resolve(value, context, at)
     if isinstance(found, str):
         return found
-    raise NotEvaluated(found.reason if isinstance(found, Unknown) else "the content of a file is used as a text", at)
+    raise Undetermined(found.reason if isinstance(found, Unknown) else "the content of a file is used as a text", at)
 
 
 @dataclass(slots=True)
@@ -71,7 +71,7 @@ class _Substitution:
     def value(self) -> Resolved:
         perform = PERFORMS.get(self.call.name.rpartition(".")[2])
         if perform is None:
-            raise NotEvaluated(f"{self.call.name.rpartition('.')[2]} is not evaluated", self.call.at)
+            raise Undetermined(f"{self.call.name.rpartition('.')[2]} is not evaluated", self.call.at)
         return perform(self)
 
     def resolve(self, value: Value) -> Resolved:
@@ -90,26 +90,26 @@ class _Substitution:
     def configuration(self) -> Resolved:
         name, arguments = self.argument("variable_name"), self.context.arguments
         if not isinstance(name, str):
-            raise NotEvaluated("the name of a launch configuration is not evaluated", self.call.at)
+            raise Undetermined("the name of a launch configuration is not evaluated", self.call.at)
         if name in arguments:
             return arguments[name]
         default = self.call.kwargs.get("default")
         if ANY in arguments:
-            raise NotEvaluated(
+            raise Undetermined(
                 f"whether {name!r} is declared in a file that is not submitted is not evaluated", self.call.at
             )
         if default is not None:
             items = default if isinstance(default, list | tuple) else [default]
             return self.resolve([item if isinstance(item, str | Call | Unknown) else str(item) for item in items])
         message = f"the launch argument {name!r} is used, but DeclareLaunchArgument does not declare it before"
-        raise LaunchFails(message, self.call.at)
+        raise EvaluationFails(message, self.call.at)
 
     def variable(self) -> Resolved:
         name, default = self.argument("name"), self.call.kwargs.get("default_value")
         if name == "HOME":
             return HOME
         if default is None:
-            raise NotEvaluated(f"whether the environment variable {name!r} is set is not evaluated", self.call.at)
+            raise Undetermined(f"whether the environment variable {name!r} is set is not evaluated", self.call.at)
         self.resolve(default)
         return Unknown("the environment is not evaluated", self.call.at)
 
@@ -119,7 +119,7 @@ class _Substitution:
         if isinstance(texts, Unknown):
             return texts
         if not texts:
-            raise LaunchFails("PathJoinSubstitution is given no path", self.call.at)
+            raise EvaluationFails("PathJoinSubstitution is given no path", self.call.at)
         return posixpath.join(*texts)
 
     def package_folder(self) -> Resolved:
@@ -128,19 +128,19 @@ class _Substitution:
             return package
         if not isinstance(package, str) or not self.context.around.is_installed(package):
             shown = repr(package) if isinstance(package, str) else "that is read from a file"
-            raise NotEvaluated(f"whether the package {shown} is installed is not evaluated", self.call.at)
+            raise Undetermined(f"whether the package {shown} is installed is not evaluated", self.call.at)
         return f"{SHARE}/{package}"
 
     def program(self) -> Resolved:
         name = self.argument("name")
         if isinstance(name, str) and name not in _PROGRAMS:
-            raise NotEvaluated(f"whether the program {name!r} is installed is not evaluated", self.call.at)
+            raise Undetermined(f"whether the program {name!r} is installed is not evaluated", self.call.at)
         return name
 
     def command(self) -> Resolved:
         mode = self.argument("on_stderr", "fail")
         if isinstance(mode, str) and mode not in ("fail", "ignore", "warn", "capture"):
-            raise LaunchFails("on_stderr is one of fail, ignore, warn, capture", self.call.at)
+            raise EvaluationFails("on_stderr is one of fail, ignore, warn, capture", self.call.at)
         parts = self.call.kwargs["command"]
         texts = [self.resolve(piece) for piece in (parts if isinstance(parts, list | tuple) else [parts])]
         contents = _command_output(texts, self.call.at)
@@ -150,9 +150,9 @@ class _Substitution:
     def expression(self) -> Resolved:
         texts = self.texts(self.call.kwargs["expression"])
         if isinstance(texts, Unknown):
-            raise NotEvaluated(f"this expression is not evaluated: {texts.reason}", self.call.at)
+            raise Undetermined(f"this expression is not evaluated: {texts.reason}", self.call.at)
         if "python_modules" in self.call.kwargs:
-            raise NotEvaluated("the modules of this expression are not evaluated", self.call.at)
+            raise Undetermined("the modules of this expression are not evaluated", self.call.at)
         return _expression_text(texts[0], self.call.at, self.context)
 
 
@@ -167,14 +167,14 @@ PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
 
 
 def _expression_text(text: str, at: Position, context: Context) -> str:
-    """Return the value of a PythonExpression as a text. Raises LaunchSignal."""
+    """Return the value of a PythonExpression as a text. Raises EvaluationSignal."""
     budget = Budget(_WORK)
     try:
         return str_of(evaluate(text, _find, budget))
-    except ExpressionFails as error:
-        raise LaunchFails(f"the expression {text[:60]!r} fails: {error}", at) from None
+    except EvaluationFails as error:
+        raise EvaluationFails(f"the expression {text[:60]!r} fails: {error}", at) from None
     except (Undetermined, OutOfBudget) as error:
-        raise NotEvaluated(f"this expression is not evaluated: {error}", at) from None
+        raise Undetermined(f"this expression is not evaluated: {error}", at) from None
     finally:
         context.around.steps_left -= budget.used
 
@@ -186,24 +186,24 @@ def _find(name: str) -> Value:
         return Namespace("math", MATH.__getitem__)
     if hasattr(builtins, name) or name.startswith("__"):
         raise Undetermined(f"the name {name!r} is not evaluated")
-    raise ExpressionFails(f"the name {name!r} is not defined")
+    raise EvaluationFails(f"the name {name!r} is not defined")
 
 
 def _command_output(texts: Sequence[Resolved], at: Position) -> Contents:
-    """Return the contents of the file that a command prints, whose parts have these texts. Raises LaunchSignal."""
+    """Return the contents of the file that a command prints, whose parts have these texts. Raises EvaluationSignal."""
     command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()[:MAX_TEXT]
     if glued := re.match(r"(xacro|cat)(?=/)", command):
-        raise LaunchFails(f"a space is missing between {glued[1]} and the path: write '{glued[1]} '", at)
+        raise EvaluationFails(f"a space is missing between {glued[1]} and the path: write '{glued[1]} '", at)
     try:
         words = shlex.split(command)
     except ValueError:
-        raise LaunchFails("the quotes in this command are not closed", at) from None
+        raise EvaluationFails("the quotes in this command are not closed", at) from None
     if not words:
-        raise LaunchFails("this command is empty", at)
+        raise EvaluationFails("this command is empty", at)
     found = _file_of(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words)
     if found is None:
         unknown = next((text.reason for text in texts if isinstance(text, Unknown)), "")
-        raise NotEvaluated(f"the output of this command is not evaluated{unknown and ': ' + unknown}", at)
+        raise Undetermined(f"the output of this command is not evaluated{unknown and ': ' + unknown}", at)
     return found
 
 

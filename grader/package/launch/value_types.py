@@ -7,10 +7,20 @@ from typing import Any
 import yaml
 
 from grader.package.launch.api import ENTITY, SUBSTITUTION, class_named, is_a
-from grader.package.launch.model import LaunchFails, UnknownText
+from grader.package.launch.model import UnknownText
 from grader.python.knowledge import iterate
 from grader.python.parse import Position
-from grader.python.values import VIEWS, Call, Function, Items, QualifiedName, Undetermined, Unknown, Value
+from grader.python.values import (
+    VIEWS,
+    Call,
+    EvaluationFails,
+    Function,
+    Items,
+    QualifiedName,
+    Undetermined,
+    Unknown,
+    Value,
+)
 
 BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 SCALARS = (bool, int, float, str)
@@ -199,5 +209,5 @@ def boolean(text: str, at: Position) -> bool:
     except yaml.YAMLError:
         found = None
     if not isinstance(found, bool):
-        raise LaunchFails(f"{text[:40]!r} is neither true nor false", at)
+        raise EvaluationFails(f"{text[:40]!r} is neither true nor false", at)
     return found

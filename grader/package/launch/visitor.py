@@ -4,12 +4,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from grader.package.launch.api import CONDITION, ENTITY, class_named, is_a
-from grader.package.launch.model import Context, Findings, LaunchFails, LaunchSignal, NotEvaluated
+from grader.package.launch.model import Context, Findings
 from grader.package.launch.parameters import evaluate_parameters
 from grader.package.launch.substitutions import known_text, resolve
 from grader.package.launch.value_types import BOOLEANS, boolean, items_in, kind_of
 from grader.python.parse import START, Position
-from grader.python.values import Call, Function, Undetermined, Unknown, Value
+from grader.python.values import Call, EvaluationFails, EvaluationSignal, Function, Undetermined, Unknown, Value
 
 _MAX_ACTIONS = 5_000
 _MAX_DEPTH = 40
@@ -48,40 +48,43 @@ class ActionVisitor:
         """Visit an action."""
         self.steps += 1
         if self.depth > _MAX_DEPTH or self.steps > _MAX_ACTIONS:
-            self.add_form(NotEvaluated("a launch file with so many actions is not evaluated", START), when)
+            self.add_form(Undetermined("a launch file with so many actions is not evaluated"), START, when)
             return
         self.depth += 1
         try:
             if isinstance(value, Unknown):
-                raise NotEvaluated(value.reason, value.at)
+                raise Undetermined(value.reason, value.at)
             if isinstance(value, Call) and class_named(value.name) is None:
-                raise NotEvaluated(f"the result of {value.name} is not evaluated", value.at)
+                raise Undetermined(f"the result of {value.name} is not evaluated", value.at)
             if not isinstance(value, Call) or not is_a(value.name, ENTITY):
                 hint = ": write * before it" if isinstance(value, list | tuple) else ""
-                raise LaunchFails(f"expected an action, found {kind_of(value)}{hint}", at)
-        except LaunchSignal as signal:
-            self.add_form(signal, when)
+                raise EvaluationFails(f"expected an action, found {kind_of(value)}{hint}", at)
+        except EvaluationSignal as signal:
+            self.add_form(signal, at, when)
         else:
             self.visited.add(id(value))
             self._execute(value, context, self._holds(value, context, when))
         self.depth -= 1
 
-    def add_form(self, signal: LaunchSignal, when: bool | None) -> None:
+    def add_form(self, signal: EvaluationSignal, at: Position, when: bool | None) -> None:
         """Add an error in the form of a description: launch looks at all of it before it executes any of it."""
-        if isinstance(signal, NotEvaluated):
-            self.findings.add_unknown(str(signal), signal.at)
-        if when and isinstance(signal, LaunchFails) and not self.findings.is_silent:
-            self.findings.add_fault(str(signal), signal.at)
-        elif not self.findings.is_silent or isinstance(signal, LaunchFails):
-            self.findings.add_doubt(str(signal), signal.at)
+        at, is_silent = signal.at or at, self.findings.is_silent
+        if not isinstance(signal, EvaluationFails):
+            self.findings.add_unknown(str(signal), at)
+            if not is_silent:
+                self.findings.add_doubt(str(signal), at)
+        elif when and not is_silent:
+            self.findings.add_fault(str(signal), at)
+        else:
+            self.findings.add_doubt(str(signal), at)
 
     def _holds(self, call: Call, context: Context, when: bool | None) -> bool | None:
         """Return whether an action is executed: if `when`, and if its condition holds."""
         given = call.kwargs.get("condition")
         try:
             holds = _condition(given, context, call.at) if given is not None else True
-        except LaunchSignal as signal:
-            self.findings.add(signal, when)
+        except EvaluationSignal as signal:
+            self.findings.add(signal, call.at, when)
             holds = None
         return False if False in (when, holds) else None if None in (when, holds) else True
 
@@ -89,14 +92,11 @@ class ActionVisitor:
         kind, start = call.name.rpartition(".")[2], len(context.reads)
         self._evaluate_fields(call, context, when)
         try:
-            if kind not in self.kinds:
-                raise NotEvaluated(f"what {kind} does is not evaluated", call.at)
-            self.kinds[kind](self, call, context, when)
-        except (LaunchSignal, Undetermined) as error:
-            signal = error if isinstance(error, LaunchSignal) else NotEvaluated(str(error), call.at)
-            self.findings.add(signal, when)
-            if isinstance(signal, NotEvaluated) and kind not in PROCESSES and when is not False:
-                self.findings.add_unknown(str(signal), signal.at)
+            self.kinds.get(kind, _refuse)(self, call, context, when)
+        except EvaluationSignal as signal:
+            self.findings.add(signal, call.at, when)
+            if not isinstance(signal, EvaluationFails) and kind not in PROCESSES and when is not False:
+                self.findings.add_unknown(str(signal), signal.at or call.at)
         for contents, at in context.reads[start:] if when else ():
             self.findings.refer("read", contents, Call("", [], {}, at))
         del context.reads[start:]
@@ -110,24 +110,21 @@ class ActionVisitor:
                 continue
             try:
                 _evaluate_field(value, test, context, call.at)
-            except LaunchSignal as signal:
-                self.findings.add(signal, when)
-            except Undetermined as error:
-                self.findings.add_doubt(str(error), call.at)
+            except EvaluationSignal as signal:
+                self.findings.add(signal, call.at, when)
 
     def visit_all(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
         """Visit the actions of a list."""
         try:
             items = items_in(actions)
-            if items is None:
-                raise LaunchFails(f"expected a list of actions, found {kind_of(actions)}", call.at)
-        except Undetermined as error:
-            self.add_form(NotEvaluated(str(error), call.at), when)
-        except LaunchSignal as signal:
-            self.findings.add(signal, when)
-        else:
-            for action in items:
-                self.visit(action, context, when, call.at)
+        except Undetermined as signal:
+            self.add_form(signal, call.at, when)
+            return
+        if items is None:
+            error = EvaluationFails(f"expected a list of actions, found {kind_of(actions)}")
+            self.findings.add(error, call.at, when)
+        for action in items or ():
+            self.visit(action, context, when, call.at)
 
     def perhaps(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
         """Visit what may never be executed: errors in it do not count, but for what is no action."""
@@ -137,23 +134,27 @@ class ActionVisitor:
         self.findings.is_silent, self.executed = silent, kept
 
 
+def _refuse(_: ActionVisitor, call: Call, __: Context, ___: bool | None) -> None:
+    raise Undetermined(f"what {call.name.rpartition('.')[2]} does is not evaluated")
+
+
 def _condition(given: Value, context: Context, at: Position) -> bool:
     if isinstance(given, Unknown):
-        raise NotEvaluated(given.reason, given.at)
+        raise Undetermined(given.reason, given.at)
     if not isinstance(given, Call):
-        raise LaunchFails(f"condition is {kind_of(given)}, not a condition such as IfCondition(...)", at)
+        raise EvaluationFails(f"condition is {kind_of(given)}, not a condition such as IfCondition(...)", at)
     kind = given.name.rpartition(".")[2]
     if not is_a(given.name, CONDITION) or kind not in ("IfCondition", "UnlessCondition"):
-        raise NotEvaluated(f"the condition {kind} is not evaluated", given.at)
+        raise Undetermined(f"the condition {kind} is not evaluated", given.at)
     text = known_text(given.kwargs["predicate_expression"], context, given.at)
     holds = BOOLEANS.get(text.strip().lower())
     if holds is None:
-        raise LaunchFails(f"a condition is {text[:40]!r}, expected true or false", given.at)
+        raise EvaluationFails(f"a condition is {text[:40]!r}, expected true or false", given.at)
     return holds == (kind == "IfCondition")
 
 
 def _evaluate_field(value: Value, test: str, context: Context, at: Position) -> None:
-    """Evaluate an argument of an action, which has the check `test`. Raises LaunchSignal, and Undetermined."""
+    """Evaluate an argument of an action, which has the check `test`. Raises EvaluationSignal."""
     match test:
         case "text":
             resolve(value, context, at)
