@@ -12,8 +12,7 @@ from typing import Any
 from lxml import etree
 
 from grader.robot.frames import placed_by
-from grader.robot.joint_elements import Dynamics
-from grader.robot.model import Collision, Cylinder, Geometry, Joint, Link, Sphere, Visual
+from grader.robot.model import Collision, Cylinder, Dynamics, Geometry, Joint, Link, Sphere, Visual
 from grader.robot.shapes import is_empty
 from grader.robot.transforms import AXES, IDENTITY, Transform, Vector, unit
 from grader.source import LazyLocation

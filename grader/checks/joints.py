@@ -8,8 +8,8 @@ from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millime
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import axis_place
 from grader.robot.diagnostics import FULL_TURN
-from grader.robot.joint_elements import Dynamics
 from grader.robot.kinematics import Configuration
+from grader.robot.model import Dynamics
 from grader.robot.transforms import Vector, cross, degrees_between, minus, unit
 
 ABOUT = {

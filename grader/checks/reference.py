@@ -132,7 +132,7 @@ def kinematics_match_reference(
 
 
 def _link_name(robot: Configuration, link: str) -> str:
-    name = selected_link(robot.known, robot.holding, link)
+    name = selected_link(robot.known, robot.known_parents, link)
     robot.link(name)
     return name
 

@@ -167,7 +167,7 @@ def _is_named(robot: Configuration, name: str, link: str, parent: str) -> bool:
         return any(joint.parent == link for joint in named)
     is_joined = robot.robot.has_link(parent) and robot.root_of(parent) == robot.root_of(link)
     path = robot.between(parent, link) if is_joined else ()
-    return any(robot.as_known(joint) in named for joint in (*path, own))
+    return any(joint.known in named for joint in (*path, own))
 
 
 def root_of_tree(robot: Configuration, *, link: str, holds: str) -> Outcome:

@@ -96,7 +96,7 @@ def check_selectors(robot: Configuration, criterion: Criterion) -> None:
 def _joint(robot: Configuration, name: str) -> Joint:
     """Return a joint that turns or slides, by its name or by a selector of the link that it moves."""
     if is_selector(name) and not robot.robot.has_joint(name):
-        link = selected_link(robot.known, robot.holding, name)
+        link = selected_link(robot.known, robot.known_parents, name)
         found = robot.parent_joints.get(link)
         if found is None:
             raise MissingElement("joint", name, message=f"no joint moves {name}")
@@ -113,7 +113,7 @@ def named_links(value: Any, robot: Configuration) -> Any:
     """Return a value with each selector replaced by the name of its link; raises MissingElement and NotDecided."""
     match value:
         case str():
-            return selected_link(robot.known, robot.holding, value)
+            return selected_link(robot.known, robot.known_parents, value)
         case list() | tuple():
             return type(value)(named_links(item, robot) for item in value)
         case Mapping():

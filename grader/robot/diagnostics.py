@@ -8,10 +8,9 @@ from typing import TypeVar
 from grader.names import closest, did_you_mean
 from grader.problems import Effect, Kind, Problem
 from grader.robot import catalogue
-from grader.robot.model import Joint, Origin
+from grader.robot.model import Joint, Origin, UnresolvedPart, UnresolvedParts
 from grader.robot.numbers import NumberError, number, vector
 from grader.robot.transforms import Vector
-from grader.robot.unresolved import UnresolvedPart, UnresolvedParts
 from grader.source import LazyLocation
 from grader.text import cut, quoted
 from grader.xml.catalogue import RECOVERED

@@ -4,8 +4,7 @@ from itertools import islice
 
 from grader.robot import catalogue
 from grader.robot.diagnostics import FULL_TURN, ElementReader, Problems, first_children
-from grader.robot.joint_elements import Calibration, Dynamics, Limit, Mimic, SafetyController
-from grader.robot.model import Joint, Robot
+from grader.robot.model import Calibration, Dynamics, Joint, Limit, Mimic, Robot, SafetyController
 from grader.robot.transforms import X_AXIS, Vector, unit
 from grader.text import quoted
 from grader.xml.parsing import Element

@@ -2,9 +2,11 @@
 
 from collections.abc import Collection, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import takewhile
 from math import isfinite
+from typing import NamedTuple
 
 from grader.errors import MissingElement
 from grader.robot.frames import Frames, check_position, motion_of, undefined_pose
@@ -15,53 +17,77 @@ from grader.robot.tree import parent_joints
 from grader.text import quoted
 
 
-@dataclass(frozen=True, init=False, eq=False, repr=False)
-class Configuration:
-    """A robot with its joints at `positions`: radians or metres; the joints that are not named are at 0.
+class _Views(NamedTuple):
+    """What the configurations of a robot share: the robot and its parent joints, as checks read them and as known."""
 
-    A mimic joint follows, unless it is named itself. Planar and floating joints stay at 0. Links without a parent joint
-    are roots, so a forest is solved tree by tree. Every link is solved once: linear in the number of links, without
-    recursion.
+    robot: Robot
+    parent_joints: Mapping[str, Joint]
+    known_parents: Mapping[str, Joint]
+
+
+def _views_of(known: Robot, *, is_guarded: bool) -> _Views:
+    parents = parent_joints(known)
+    if not is_guarded:
+        return _Views(known, parents, parents)
+    from grader.robot.open_values import guarded  # late: few robots have open values
+
+    return _Views(*guarded(known, parents), parents)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Configuration:
+    """A robot with its joints at `positions`: where each link is, relative to any other.
+
+    Checks get one with all joints at 0 and ask it for poses and axes; `moved` and `at` return the same robot with its
+    joints elsewhere. A mimic joint follows its leader, unless it has a position itself. Planar and floating joints stay
+    at 0. Links without a parent joint are roots, so a forest is solved tree by tree. Every link is solved once: linear
+    in the number of links, without recursion.
+
+    >>> from grader.robot.model import Joint, Link, Origin, Robot
+    >>> arm = Joint("shoulder", "prismatic", "base", "arm", Origin((0.0, 0.0, 0.5)))
+    >>> robot = Configuration(Robot("r", (Link("base"), Link("arm")), (arm,)))
+    >>> robot.pose("arm", relative_to="base").translation
+    (0.0, 0.0, 0.5)
+    >>> robot.moved("shoulder", 0.25).pose("arm").translation
+    (0.25, 0.0, 0.5)
+
+    Raises MissingElement for a position of a joint that is not there, ValueError for one that it cannot have.
     """
 
-    known: Robot
-    robot: Robot
-    is_guarded: bool
-    positions: Mapping[str, float]
-    parent_joints: Mapping[str, Joint]
-    shown: dict[str, tuple[Visual, ...]]  # a cache for the checks of what a link shows
-    holding: Mapping[str, Joint]  # the parent joints as they are known
-    _frames: Frames
-    _relative: dict[tuple[str, str | None], Transform]
+    known: Robot  # as it was read: its open values can be read
+    positions: Mapping[str, float] = field(default_factory=dict)  # radians or metres; the other joints are at 0
+    is_guarded: bool = field(default=False, kw_only=True)  # reading what is open in `robot` raises NotDecided
+    shown: dict[str, tuple[Visual, ...]] = field(default_factory=dict, init=False)  # a cache for the checks of visuals
+    _relative: dict[tuple[str, str | None], Transform] = field(default_factory=dict, init=False)
+    _shared: "_Views | None" = field(default=None, kw_only=True)  # of a configuration that differs in positions only
 
-    def __init__(
-        self,
-        robot: Robot,
-        positions: Mapping[str, float] | None = None,
-        *,
-        holding: Mapping[str, Joint] | None = None,
-        is_guarded: bool = False,
-    ) -> None:
-        """`robot` becomes `known`. With `is_guarded`, reading what xacro leaves open in `self.robot` raises NotDecided.
+    def __post_init__(self) -> None:
+        if self._shared is None:
+            for name, position in self.positions.items():
+                check_position(self.known.joint(name), position)
 
-        `holding` is parent_joints(robot), if it is known already; positions are not validated then.
+    @cached_property
+    def _views(self) -> "_Views":
+        return self._shared or _views_of(self.known, is_guarded=self.is_guarded)
 
-        Raises MissingElement for a joint that is not there, ValueError for a position that it cannot have.
-        """
-        known, positions = robot, dict(positions or {})
-        parents = found = parent_joints(known) if holding is None else holding
-        if is_guarded:
-            from grader.robot.open_values import guarded  # late: few robots have open values
+    @cached_property
+    def _frames(self) -> Frames:
+        return Frames(self.known, self.known_parents, self.positions)
 
-            robot, joints = guarded(known)
-            own = {id(old): joint for old, joint in zip(known.joints, joints, strict=True)}
-            parents = {child: own[id(joint)] for child, joint in found.items()}
-        if holding is None:
-            for name, position in positions.items():
-                check_position(known.joint(name), position)
-        _frames = Frames(known, found, positions)
-        vars(self).update(known=known, robot=robot, positions=positions, parent_joints=parents, shown={})
-        vars(self).update(is_guarded=is_guarded, holding=found, _frames=_frames, _relative={})
+    @property
+    def robot(self) -> Robot:
+        """The robot as checks read it."""
+        return self._views.robot
+
+    @property
+    def parent_joints(self) -> Mapping[str, Joint]:
+        """The parent joints of links as checks read them; a root has none."""
+        return self._views.parent_joints
+
+    @property
+    def known_parents(self) -> Mapping[str, Joint]:
+        """The parent joints of links as they are known."""
+        return self._views.known_parents
 
     def link(self, name: str) -> Link:
         """Return the link of this name; raises MissingElement."""
@@ -114,7 +140,7 @@ class Configuration:
             raise MissingElement("connection", roots, message=message, location=self.link(link).location)
         if frame.group != base.group:
             deeper = max(frame, base, key=lambda either: either.depth)  # the chain crosses into the deeper group
-            raise undefined_pose(self.holding[deeper.group], self.known)
+            raise undefined_pose(self.known_parents[deeper.group], self.known)
         if relative_to is None or relative_to == frame.group:
             return frame.pose
         pose = base.pose.inverse() @ frame.pose
@@ -184,7 +210,7 @@ class Configuration:
 
     def at(self, positions: Mapping[str, float]) -> "Configuration":
         """Return the same robot with its joints at other positions, which are not validated."""
-        return Configuration(self.known, positions, holding=self.holding, is_guarded=self.is_guarded)
+        return Configuration(self.known, positions, is_guarded=self.is_guarded, _shared=self._views)
 
     def displacement(self, link: str, joint: Joint, angle: float, *, relative_to: str) -> Transform:
         """Return the motion of points on a link when a turning or sliding joint moves by `angle` (rad, m) from here.
@@ -193,7 +219,7 @@ class Configuration:
         """
         self.axis(joint)  # raises where it has no direction
         chain = self.chain(link, above=relative_to) or ()
-        if joint in chain and not self.positions and all(self.as_known(above).mimic is None for above in chain):
+        if joint in chain and not self.positions and all(above.known.mimic is None for above in chain):
             T_relative_joint = self.pose(joint.child, relative_to=relative_to)
             turn = motion_of(joint, angle) or IDENTITY  # everything below the joint turns together
             return T_relative_joint @ turn @ T_relative_joint.inverse()
@@ -202,11 +228,7 @@ class Configuration:
 
     def position(self, joint: Joint) -> float:
         """Return the position of a joint: its own, that of the joint that it mimics, or 0."""
-        return self._frames.position(self.as_known(joint))
-
-    def as_known(self, joint: Joint) -> Joint:
-        """Return a parent joint as it is known, for code that decides itself what is open."""
-        return self.holding[joint.child] if self.parent_joints.get(joint.child) is joint else joint
+        return self._frames.position(joint.known)
 
 
 def last_moving(path: tuple[Joint, ...], link: str, types: Collection[str], message: str) -> Joint:

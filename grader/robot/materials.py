@@ -2,9 +2,8 @@
 
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems, first_children, quote_value
-from grader.robot.model import Material
+from grader.robot.model import Material, UnresolvedPart
 from grader.robot.numbers import NumberError, rgba
-from grader.robot.unresolved import UnresolvedPart
 from grader.text import quoted
 from grader.xml.parsing import Element
 

@@ -1,17 +1,15 @@
-"""A robot as plain values: the content of a URDF as ROS 2 keeps it.
+"""A robot as plain values: the content of a URDF as ROS 2 keeps it, and what xacro leaves open of it.
 
 Lengths are metres, angles radians about fixed axes x, y, z (REP 103). `None` is a value that the file gives but that
 cannot be read; a value that the file does not give has ROS 2's default.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple, NoReturn
+from typing import NamedTuple, NoReturn
 
 from grader.errors import MissingElement, NotDecided
 from grader.names import did_you_mean
-from grader.robot.joint_elements import Calibration, Dynamics, Limit, Mimic, SafetyController
-from grader.robot.unresolved import Guarded, UnresolvedParts
 from grader.source import LazyLocation
 from grader.text import quoted
 
@@ -63,8 +61,25 @@ class Mesh(NamedTuple):
 Geometry = Box | Cylinder | Sphere | Mesh
 
 
+class UnresolvedPart(NamedTuple):
+    """A part of a link, joint or material that xacro leaves open: the reason, which is empty where xacro refuses it."""
+
+    reason: str
+    location: LazyLocation
+
+    def check(self) -> None:
+        """Raise NotDecided if the part cannot be determined."""
+        if self.reason:
+            raise NotDecided(self.reason)
+
+
+# The parts of an element that are unresolved: "@name" for its attribute, "visual" for something in a <visual>, "" for
+# more children than are known. Empty for a plain URDF.
+UnresolvedParts = Mapping[str, UnresolvedPart]
+
+
 @dataclass(frozen=True, slots=True)
-class Material(Guarded):
+class Material:
     """A colour with channels in 0..1, red, green, blue, alpha; `texture` is a file name, never opened."""
 
     name: str
@@ -103,7 +118,7 @@ class Inertial(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Link(Guarded):
+class Link:
     """A rigid body and its frame."""
 
     name: str
@@ -113,9 +128,62 @@ class Link(Guarded):
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
     unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
 
+    @property
+    def known(self) -> "Link":
+        """The link as it is known, for code that decides itself what is open."""
+        return self
+
+
+class Limit(NamedTuple):
+    """A joint's range (rad or m), maximum effort (N m or N) and maximum velocity (rad/s or m/s).
+
+    Here and in the other elements of a joint, a number that cannot be read is NaN.
+    """
+
+    lower: float
+    upper: float
+    effort: float
+    velocity: float
+    location: LazyLocation | None = None
+
+
+class Mimic(NamedTuple):
+    """This joint's position is `multiplier` times the named joint's, plus `offset`."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+    location: LazyLocation | None = None
+
+
+class Dynamics(NamedTuple):
+    """Damping (N m s/rad or N s/m) and static friction (N m or N)."""
+
+    damping: float = 0.0
+    friction: float = 0.0
+    location: LazyLocation | None = None
+
+
+class SafetyController(NamedTuple):
+    """The range (rad or m) in which a safety controller keeps a joint, and its gains for position and velocity."""
+
+    k_velocity: float
+    soft_lower_limit: float = 0.0
+    soft_upper_limit: float = 0.0
+    k_position: float = 0.0
+    location: LazyLocation | None = None
+
+
+class Calibration(NamedTuple):
+    """The positions (rad or m) at which a joint's reference switch has a rising or falling edge; None if not given."""
+
+    rising: float | None = None
+    falling: float | None = None
+    location: LazyLocation | None = None
+
 
 @dataclass(frozen=True, slots=True)
-class Joint(Guarded):
+class Joint:
     """A joint between two links; its frame is the child link's frame.
 
     `type` is the file's text, so a misspelt one can be quoted. `origin` and `axis` are None if they are given but
@@ -137,6 +205,11 @@ class Joint(Guarded):
     axis_location: LazyLocation | None = field(default=None, compare=False, repr=False)
     unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
 
+    @property
+    def known(self) -> "Joint":
+        """The joint as it is known, for code that decides itself what is open."""
+        return self
+
 
 @dataclass(frozen=True, slots=True)
 class Robot:
@@ -156,16 +229,8 @@ class Robot:
     _joints: dict[str, Joint] = field(init=False, compare=False, repr=False, hash=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_links", {link.name: link for link in reversed(self.links)})
-        object.__setattr__(self, "_joints", {joint.name: joint for joint in reversed(self.joints)})
-
-    if not TYPE_CHECKING:  # pragma: no branch
-
-        def __getattr__(self, name: str) -> NoReturn:
-            """Refuse `links` and `joints` where these are not set, because it is open which ones there are."""
-            if name in ("links", "joints"):
-                self.check_complete()
-            raise AttributeError(name)
+        object.__setattr__(self, "_links", {link.known.name: link for link in reversed(self.links)})
+        object.__setattr__(self, "_joints", {joint.known.name: joint for joint in reversed(self.joints)})
 
     def link(self, name: str) -> Link:
         """Return the link of this name; raises MissingElement, which lists the existing names."""
@@ -176,12 +241,12 @@ class Robot:
         return self._joints.get(name) or self._raise_missing("joint", name, self.joints)
 
     def has_joint(self, name: str) -> bool:
-        """Return whether there is a joint of this name; raises NotDecided where `joints` does."""
-        return name in self._joints or self.joints is None
+        """Return whether there is a joint of this name."""
+        return name in self._joints
 
     def has_link(self, name: str) -> bool:
-        """Return whether there is a link of this name; raises NotDecided where `links` does."""
-        return name in self._links or self.links is None
+        """Return whether there is a link of this name."""
+        return name in self._links
 
     def check_complete(self) -> None:
         """Raise NotDecided if there may be more links and joints than are known."""
@@ -190,6 +255,6 @@ class Robot:
 
     def _raise_missing(self, kind: str, name: str, existing: Iterable[Link | Joint]) -> NoReturn:
         self.check_complete()
-        known = tuple(element.name for element in existing)
+        known = tuple(element.known.name for element in existing)
         guess = did_you_mean(name, known) or f"; the file has: {', '.join(map(quoted, known[:20])) or 'none'}"
         raise MissingElement(kind, name, known, message=f"there is no {kind} {quoted(name)}", detail=guess)

@@ -1,65 +1,275 @@
-"""A robot for checks: reading a value of it that xacro leaves open needs manual grading."""
+"""A robot for checks: reading a value of it that xacro leaves open needs manual grading.
 
-from collections.abc import Iterable
+A plug-in cannot read such a value by accident: each field of a view that can be open is a property, which raises
+NotDecided, or MissingElement where xacro refuses the text of the field.
+"""
+
+from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
 from typing import TypeVar
 
-from grader.robot.model import Joint, Link, Material, Robot, Visual
-from grader.robot.unresolved import open_part
+from grader.errors import MissingElement
+from grader.robot.model import (
+    Calibration,
+    Collision,
+    Dynamics,
+    Inertial,
+    Joint,
+    Limit,
+    Link,
+    Material,
+    Mimic,
+    Origin,
+    Robot,
+    SafetyController,
+    UnresolvedParts,
+    Vector,
+    Visual,
+)
+from grader.source import LazyLocation
+from grader.text import quoted
 
-_OF_LINK = ("name", "visuals", "collisions", "inertial")
-_OF_PLACE = ("name", "parent", "child", "type", "origin", "axis")
-_OF_JOINT = (*_OF_PLACE, "limit", "mimic", "dynamics", "safety_controller", "calibration")
+_KEYS = {"name": "@name", "type": "@type", "visuals": "visual", "collisions": "collision"}  # in UnresolvedParts
+_OF_PLACE = ("name", "parent", "child", "type", "origin", "axis")  # what xacro refuses of these is wrong, not missing
 
-Part = TypeVar("Part", Link, Joint, Material)
+Value = TypeVar("Value")
 
 
-def guarded(robot: Robot) -> tuple[Robot, tuple[Joint, ...]]:
-    """Return a robot in which reading what is open raises NotDecided, or MissingElement for what xacro refuses.
+def guarded(robot: Robot, parents: Mapping[str, Joint]) -> tuple[Robot, dict[str, Joint]]:
+    """Return views of a robot and of its parent joints, in which reading what is open raises.
 
-    So does reading its links and joints as a whole, and asking for one that is not there, where it is open which ones
-    there are. The second value are its known joints, in the same order.
+    So does reading the links and joints as a whole, and asking for one that is not there, where it is open which ones
+    there are.
     """
-    joints = tuple(_without(joint, _open(joint, _OF_JOINT)) for joint in robot.joints)
-    links = tuple(
-        _without(replace(link, visuals=tuple(map(_visual, link.visuals))), _open(link, _OF_LINK))
-        for link in robot.links
-    )
-    found = replace(robot)
-    put = partial(object.__setattr__, found)
-    put("links", links)
-    put("joints", joints)
-    put("_links", {old.name: new for old, new in reversed([*zip(robot.links, links, strict=True)])})
-    put("_joints", {old.name: new for old, new in reversed([*zip(robot.joints, joints, strict=True)])})
-    put("materials", tuple(map(_material, robot.materials)))
-    for name in ("links", "joints") if robot.incomplete else ():
-        object.__delattr__(found, name)
-    return found, joints
+    joints = tuple(_JointView(joint) if joint.unresolved else joint for joint in robot.joints)
+    links, materials = tuple(map(_view_of_link, robot.links)), tuple(map(_view_of_material, robot.materials))
+    found = replace(robot, links=links, joints=joints, materials=materials)
+    views = {view.known.child: view for view in joints if parents.get(view.known.child) is view.known}
+    return _IncompleteRobot(found) if robot.incomplete else found, {child: views[child] for child in parents}
 
 
-def _open(part: Link | Joint, fields: Iterable[str]) -> Iterable[str]:
-    """Yield the fields that are open. What xacro refuses of a name or a joint's place is wrong, and not missing."""
-    for name in fields if part.unresolved else ():
-        # A visual that is known counts, even if there may be more.
-        found = open_part(part.unresolved, name, is_absent=name == "collisions" or not getattr(part, name))
-        if found is not None and (found.reason or name not in _OF_PLACE):
-            yield name
+def _view_of_link(link: Link) -> Link:
+    if any(visual.material is not None and visual.material.unresolved for visual in link.visuals):
+        link = replace(link, visuals=tuple(map(_view_of_visual, link.visuals)))
+    return _LinkView(link) if link.unresolved else link
 
 
-def _visual(visual: Visual) -> Visual:
-    material = visual.material
-    return visual if material is None or not material.unresolved else visual._replace(material=_material(material))
+def _view_of_visual(visual: Visual) -> Visual:
+    return visual._replace(material=_view_of_material(visual.material)) if visual.material is not None else visual
 
 
-def _material(material: Material) -> Material:
-    return _without(material, ("rgba", "texture") if any(it.reason for it in material.unresolved.values()) else ())
+def _view_of_material(material: Material) -> Material:
+    return _MaterialView(material) if any(part.reason for part in material.unresolved.values()) else material
 
 
-def _without(part: Part, names: Iterable[str]) -> Part:
-    """Return a copy in which some fields are not set, so that reading them raises."""
-    unset = [*names]
-    copy = replace(part) if unset else part
-    for name in unset:
-        object.__delattr__(copy, name)
-    return copy
+def _value_if_known(part: Link | Joint, field: str, value: Value) -> Value:
+    """Return the value of a field of a link or joint; raise NotDecided or MissingElement if it is open."""
+    key = _KEYS.get(field, field)
+    found = part.unresolved.get(key)
+    # What the file does not give may be among unknown children. A visual that is known counts, even if there are more.
+    if found is None and (field == "collisions" or not value):
+        found = part.unresolved.get("")
+    if found is None:
+        return value
+    found.check()
+    if field in _OF_PLACE:
+        return value
+    kind, owner = ("joint", part.child) if isinstance(part, Joint) else ("link", part.name)
+    message = f"xacro cannot expand the {key} of {kind} {quoted(part.name)}"
+    raise MissingElement(key, owner, message=message, location=found.location)
+
+
+class _MaterialView(Material):
+    """A material of which something is open, so that neither its colour nor its texture can be read."""
+
+    __slots__ = ("_known",)
+    _known: Material
+
+    def __init__(self, known: Material) -> None:
+        object.__setattr__(self, "_known", known)
+
+    @property
+    def name(self) -> str:
+        return self._known.name
+
+    @property
+    def rgba(self) -> tuple[float, float, float, float]:
+        self._check()
+        return self._known.rgba
+
+    @property
+    def texture(self) -> str:
+        self._check()
+        return self._known.texture
+
+    @property
+    def location(self) -> LazyLocation | None:
+        return self._known.location
+
+    @property
+    def unresolved(self) -> UnresolvedParts:
+        return self._known.unresolved
+
+    def _check(self) -> None:
+        for part in self.unresolved.values():
+            part.check()
+
+
+class _LinkView(Link):
+    """A link of which something is open."""
+
+    __slots__ = ("_known",)
+    _known: Link
+
+    def __init__(self, known: Link) -> None:
+        object.__setattr__(self, "_known", known)
+
+    @property
+    def known(self) -> Link:
+        return self._known
+
+    @property
+    def name(self) -> str:
+        return _value_if_known(self, "name", self._known.name)
+
+    @property
+    def visuals(self) -> tuple[Visual, ...]:
+        return _value_if_known(self, "visuals", self._known.visuals)
+
+    @property
+    def collisions(self) -> tuple[Collision, ...]:
+        return _value_if_known(self, "collisions", self._known.collisions)
+
+    @property
+    def inertial(self) -> Inertial | None:
+        return _value_if_known(self, "inertial", self._known.inertial)
+
+    @property
+    def location(self) -> LazyLocation | None:
+        return self._known.location
+
+    @property
+    def unresolved(self) -> UnresolvedParts:
+        return self._known.unresolved
+
+
+class _JointView(Joint):
+    """A joint of which something is open."""
+
+    __slots__ = ("_known",)
+    _known: Joint
+
+    def __init__(self, known: Joint) -> None:
+        object.__setattr__(self, "_known", known)
+
+    @property
+    def known(self) -> Joint:
+        return self._known
+
+    @property
+    def name(self) -> str:
+        return _value_if_known(self, "name", self._known.name)
+
+    @property
+    def type(self) -> str:
+        return _value_if_known(self, "type", self._known.type)
+
+    @property
+    def parent(self) -> str:
+        return _value_if_known(self, "parent", self._known.parent)
+
+    @property
+    def child(self) -> str:
+        return _value_if_known(self, "child", self._known.child)
+
+    @property
+    def origin(self) -> Origin | None:
+        return _value_if_known(self, "origin", self._known.origin)
+
+    @property
+    def axis(self) -> Vector | None:
+        return _value_if_known(self, "axis", self._known.axis)
+
+    @property
+    def limit(self) -> Limit | None:
+        return _value_if_known(self, "limit", self._known.limit)
+
+    @property
+    def mimic(self) -> Mimic | None:
+        return _value_if_known(self, "mimic", self._known.mimic)
+
+    @property
+    def dynamics(self) -> Dynamics | None:
+        return _value_if_known(self, "dynamics", self._known.dynamics)
+
+    @property
+    def safety_controller(self) -> SafetyController | None:
+        return _value_if_known(self, "safety_controller", self._known.safety_controller)
+
+    @property
+    def calibration(self) -> Calibration | None:
+        return _value_if_known(self, "calibration", self._known.calibration)
+
+    @property
+    def location(self) -> LazyLocation | None:
+        return self._known.location
+
+    @property
+    def axis_location(self) -> LazyLocation | None:
+        return self._known.axis_location
+
+    @property
+    def unresolved(self) -> UnresolvedParts:
+        return self._known.unresolved
+
+
+class _IncompleteRobot(Robot):
+    """A robot that may have more links and joints than are known: those that are known can be read one by one."""
+
+    __slots__ = ("_known",)
+    _known: Robot
+
+    def __init__(self, known: Robot) -> None:
+        object.__setattr__(self, "_known", known)
+
+    @property
+    def name(self) -> str:
+        return self._known.name
+
+    @property
+    def links(self) -> tuple[Link, ...]:
+        self.check_complete()
+        return self._known.links
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        self.check_complete()
+        return self._known.joints
+
+    @property
+    def materials(self) -> tuple[Material, ...]:
+        return self._known.materials
+
+    @property
+    def rejected(self) -> bool:
+        return self._known.rejected
+
+    @property
+    def incomplete(self) -> str:
+        return self._known.incomplete
+
+    def link(self, name: str) -> Link:
+        return self._known.link(name)
+
+    def joint(self, name: str) -> Joint:
+        return self._known.joint(name)
+
+    def has_link(self, name: str) -> bool:
+        if not self._known.has_link(name):
+            self.check_complete()
+        return True
+
+    def has_joint(self, name: str) -> bool:
+        if not self._known.has_joint(name):
+            self.check_complete()
+        return True

@@ -89,7 +89,7 @@ def movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[str, J
         if len(chain) > _MAX_CHAIN:
             raise NotDecided(f"more than {_MAX_CHAIN} joints lead to {quoted(link)}", "a chain has too many joints")
         for joint in chain:
-            leader = _leader(robot.known, robot.as_known(joint))
+            leader = _leader(robot.known, joint.known)
             if leader is not None and leader.type != "fixed":
                 found.setdefault(leader.name, leader)
     return found

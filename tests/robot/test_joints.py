@@ -5,9 +5,8 @@ from math import isnan
 import pytest
 
 from grader.errors import MissingElement
-from grader.robot.joint_elements import Calibration, Dynamics, Limit, Mimic, SafetyController
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Joint
+from grader.robot.model import Calibration, Dynamics, Joint, Limit, Mimic, SafetyController
 from grader.robot.reader import read_urdf
 from tests.robot.builders import joint, links, one_joint, robot
 

@@ -13,10 +13,9 @@ from hypothesis import strategies as st
 
 from grader.errors import MissingElement
 from grader.robot.frames import SINGLE
-from grader.robot.joint_elements import Mimic
 from grader.robot.joints import MOVING_TYPES
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Joint, Link, Origin, Robot
+from grader.robot.model import Joint, Link, Mimic, Origin, Robot
 from grader.robot.reader import read_urdf
 from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_about, rotation_from_rpy, unit
 from tests.examples import examples
@@ -485,7 +484,7 @@ def test_huge_numbers_never_give_nan(
         joint("ad", origin=Origin(xyz[2], rpy[2])),
         joint("ae", origin=at(1, 2, 3)),
     )
-    configuration = Configuration(extreme, {"bc": position} if kind != "fixed" else None)
+    configuration = Configuration(extreme, {"bc": position} if kind != "fixed" else {})
     assert_finite_or_missing(configuration)
     assert configuration.pose("e").translation == (1.0, 2.0, 3.0)
 

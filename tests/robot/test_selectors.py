@@ -8,9 +8,8 @@ from hypothesis import strategies as st
 
 from grader.errors import MissingElement, NotDecided
 from grader.hints.targets import selected as linked
-from grader.robot.joint_elements import Mimic
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Joint, Link, Robot
+from grader.robot.model import Joint, Link, Mimic, Robot
 from grader.robot.selectors import selected_link
 from grader.robot.tree import parent_joints
 
