@@ -26,7 +26,7 @@ class Work:
 def limited_work(limit: int = sys.maxsize, of: Collection[str] = ()) -> Iterator[Work]:
     """Fail as soon as a block has made more calls than allowed, of any functions or of built-in ones with these names.
 
-    The limits in the tests are several times what was counted: they separate linear work from quadratic work. A block that catches
+    The limits in the tests are ten times what was counted: they separate linear work from quadratic work. A block that catches
     the exception fails at its end.
     """
     work = Work()

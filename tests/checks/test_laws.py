@@ -319,7 +319,7 @@ def test_comparing_with_the_reference_is_bounded() -> None:
             for index, pair in pairs
         ]
         robot = scene(*map(link, names), *joints).robot
-        with limited_work(400_000):
+        with limited_work(900_000):
             if count == 7:
                 assert kinematics_match_reference(robot, robot, links=["l7"]).status == "passed"
             else:

@@ -152,7 +152,7 @@ def test_long_documents_are_cut_with_a_note() -> None:
 def test_documents_of_headings_are_bounded(line: str) -> None:
     """Documents that consist of headings take no longer than their lines."""
     files: Files = {f"{number}.md": "# Task 1\n" + f"{line}\n" * 1999 for number in range(5)}
-    with limited_work(10_000_000):
+    with limited_work(30_000_000):
         both(files)
 
 

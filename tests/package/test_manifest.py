@@ -131,5 +131,5 @@ def test_encodings(encoding: str) -> None:
 )  # fmt: skip
 def test_hostile_files(text: str) -> None:
     """Depth, length and number take linear time."""
-    with limited_work(400_000):
+    with limited_work(500_000):
         assert isinstance(read(text).problems, tuple)
