@@ -30,18 +30,15 @@ SAMPLES: Mapping[Any, Any] = {float: 1, int: 1, str: "a", bool: True}
 SCALAR = str | float | bool
 CONTENT = SCALAR | list[SCALAR]
 
-UNIT = re.compile(r"metre|degree|radian|kilogram|newton|N m|m/s|percent|ratio|units?\b|from 0")
-
 every_check = pytest.mark.parametrize("check", own_checks(), ids=NAMES)
 
 
 @every_check
-def test_the_first_paragraph_is_one_sentence(check: Check) -> None:
-    """A check's docstring starts with one sentence, the fact that it tests, which ends in a period."""
+def test_the_first_paragraph_is_the_fact(check: Check) -> None:
+    """A check's docstring starts with a paragraph of its own: the fact that it tests."""
     first, *_ = (inspect.getdoc(check.function) or "").split("\n\n")
-    sentence = " ".join(first.split())
-    assert sentence == check.documentation.fact
-    assert re.fullmatch(r"[A-Z][^.!?]*(?:[.!?]\S[^.!?]*)*\.", sentence), sentence
+    assert " ".join(first.split()) == check.documentation.fact
+    assert check.documentation.fact
 
 
 @every_check
@@ -64,12 +61,10 @@ def test_the_signature_is_a_schema(check: Check) -> None:
 
 @every_check
 def test_every_argument_is_documented(check: Check) -> None:
-    """`Args:` names exactly the arguments of the signature, in its order, each with a sentence, and numbers with their unit."""
+    """`Args:` names exactly the arguments of the signature, in its order, each with its meaning."""
     meanings = check.documentation.arguments
     assert list(meanings) == list(check.parameters)
-    for name, meaning in meanings.items():
-        assert re.fullmatch(r"[A-Z].*\.", meaning), meaning
-        assert check.parameters[name].type.schema.get("type") != "number" or UNIT.search(meaning), meaning
+    assert all(meanings.values())
     assert "Args" not in " ".join(check.documentation.paragraphs)
 
 
