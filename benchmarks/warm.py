@@ -57,7 +57,7 @@ def from_path(path: Path) -> Callable[[], Report]:
 
 def expanded(path: Path) -> bytes:
     """Return the URDF that xacro makes of a file."""
-    root = expand(path.read_bytes(), path.name, Surroundings(Budget()).workspace(), {}).root
+    root = expand(path.read_bytes(), path.name, Surroundings(Budget()), {}).root
     assert root is not None
     return etree.tostring(root, pretty_print=True)
 

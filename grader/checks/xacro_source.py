@@ -145,20 +145,10 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
 
 def _expand(submission: Submission, path: str, data: bytes) -> "ExpandedSource | Source":
     """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at all."""
-    from grader.submission.surroundings import Surroundings
     from grader.xacro.expanded_source import ExpandedSource
     from grader.xacro.expansion import expand
 
-    packages = submission.packages or submission.neighbours
-    surroundings = Surroundings(
-        submission.budget,
-        submission.whole_tree,
-        submission.package,
-        packages,
-        submission.opening.arguments,
-        is_single=submission.is_single,
-    )
-    expansion = expand(data, path, surroundings.workspace(), submission.opening.arguments)
+    expansion = expand(data, path, submission.surroundings(submission.budget), submission.opening.arguments)
     if isinstance(expansion.source, ExpandedSource):
         return expansion.source
     for found in expansion.undetermined:

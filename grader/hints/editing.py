@@ -10,7 +10,6 @@ from grader.hints.edits import edited
 from grader.python.budget import Budget
 from grader.source import Edit
 from grader.submission.submission import Submission
-from grader.submission.surroundings import Surroundings
 from grader.submission.urdf import Read, read_as_ros
 
 Files = Mapping[str, bytes | None]  # the new content of files by path; None for one that is no longer there
@@ -53,10 +52,7 @@ def with_urdf(submission: Submission, files: Files) -> Submission:
     is_renamed = files.get(urdf.path, b"") is None
     path = next((new for new, data in files.items() if data is not None and is_renamed), urdf.path)
     whole_tree = overlaid(submission.whole_tree, files) if submission.whole_tree.files else submission.whole_tree
-    packages = submission.packages or submission.neighbours
-    surroundings = Surroundings(
-        Budget(), whole_tree, submission.package, packages, submission.opening.arguments, is_single=submission.is_single
-    )
+    surroundings = submission.surroundings(Budget(), whole_tree)
     read = read_as_ros(files.get(path) or urdf.data, path, surroundings)
     return replace(submission, urdf=read, whole_tree=whole_tree, budget=surroundings.budget)
 

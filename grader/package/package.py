@@ -157,7 +157,7 @@ class Package:
             installed = next(
                 (it for it, source in self.installed.items() if source == path), f"share/{self.name}/{path}"
             )
-            launch = read_launch(data, own, installed, self._open_installed, self._is_on_machine, self._has_program)
+            launch = read_launch(data, own, installed, self)
         except InputError as error:
             launch = Launch(Source(own, ""), unread=str(error))
         return self._launches.setdefault(path, launch) if text is None else launch
@@ -198,20 +198,20 @@ class Package:
         shares = tuple(f"{SHARE}/{name}/" for name in self.names)
         return self.installed.get(path.removeprefix(f"{PREFIX}/")) if path.startswith(shares) else None
 
-    def _is_on_machine(self, name: str) -> bool:
+    def has_package(self, name: str) -> bool:
         """Return whether a package certainly is on the machine: submitted, declared as needed, or part of ROS 2."""
         from grader.package.launch.known_files import is_of_ros  # late: as the readers of launch files
 
         return self.find(name) is not None or self.depends_on(name) or is_of_ros(name)
 
-    def _has_program(self, package: str, name: str) -> bool | None:
+    def has_program(self, package: str, name: str) -> bool | None:
         """Return whether a package has a program, as far as its setup.py tells; one that is not submitted has it."""
         owner = self.find(package)
         if owner is None or owner.is_cmake or owner.setup is None:
             return True if owner is None else None
         return owner.setup.has_program(name)
 
-    def _open_installed(self, path: str) -> tuple[bytes, str] | None:
+    def open_installed(self, path: str) -> tuple[bytes, str] | None:
         """Return what a build of any submitted package installs at a path below the prefix, with the file's path."""
         for package in (package for package in self.packages.values() if path in package.installed):
             with suppress(InputError):

@@ -20,6 +20,7 @@ from grader.text import was_not_committed
 if TYPE_CHECKING:
     from grader.documents.collection import DocumentCollection
     from grader.documents.evidence_files import LabelledFile
+    from grader.submission.surroundings import Surroundings
 
 _WORK_OF_READING = 1_500  # parts of a package's evaluation that take as long as reading a short URDF
 _FILES_OF_READING = 200
@@ -181,6 +182,19 @@ class Submission:
         built = next((path for path in self.tree.generated if path.lower().endswith(ROBOT_ENDINGS)), "")
         detail = f"{f': {files}' if count else ''}{was_not_committed(built) if built else ''}"
         raise MissingElement("URDF", "", message="no URDF was submitted", detail=detail)
+
+    def surroundings(self, budget: Budget, tree: Tree | None = None) -> "Surroundings":
+        """Return the files around its URDF: its own, or other ones."""
+        from grader.submission.surroundings import Surroundings  # late: most URDFs are no xacro
+
+        return Surroundings(
+            budget,
+            self.whole_tree if tree is None else tree,
+            self.package,
+            self.packages or self.neighbours,
+            self.opening.arguments,
+            is_single=self.is_single,
+        )
 
     def _refuse_unopened(self, missing: str) -> None:
         if self.tree.unopened:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError, NotDecided
@@ -14,26 +14,21 @@ from grader.python.values import Undetermined
 
 if TYPE_CHECKING:
     from grader.package.launch.model import NamedFile
-    from grader.xacro.files import Workspace
 
 _MAX_FOLDERS = 40  # whose launch files are read
 _NO_FILES = make_tree("", (), ())
 
 
 class Surroundings(NamedTuple):
-    """The files and packages of a submission; `arguments` are those that the user gives xacro.
+    """The files and packages around a URDF, as launch files and xacro find them: the Workspace of xacro."""
 
-    `ask` is called with the name of each other file that xacro reads. With `is_single` they are those around a single
-    file.
-    """
-
-    budget: Budget
+    budget: Budget  # of what is expanded and evaluated
     tree: Tree = _NO_FILES
     graded: Package | None = None
     packages: tuple[Package, ...] = ()
-    arguments: Mapping[str, str] = {}
-    is_single: bool = False
-    ask: Callable[[str], object] = lambda _: None
+    arguments: Mapping[str, str] = {}  # that the user gives xacro
+    is_single: bool = False  # whether the files are those around a single file
+    ask: Callable[[str], object] = lambda _: None  # is called with the name of each other file that xacro reads
 
     def robot_references(self, path: str) -> list[NamedFile]:
         """Return where the launch files of the graded package read a URDF; without one, those in a folder around it."""
@@ -41,23 +36,22 @@ class Surroundings(NamedTuple):
         around = [self.graded] if self.graded is not None else launch_folders(self.tree, self.packages, paths)
         return [found for package in around for found in package.robot_references(path.rpartition("/")[2])]
 
-    def workspace(self) -> Workspace:
-        """Return the files as xacro sees them."""
-        from grader.xacro.files import Workspace  # late: most URDFs are no xacro
+    @property
+    def paths(self) -> Collection[str]:
+        """The paths of the files."""
+        return self.tree.files
 
-        folders = {package.name: package.folder for package in reversed(self.packages)}
-        is_part = not folders and bool(self.tree.files)
-        return Workspace(
-            self._read,
-            folders.get,
-            self.budget,
-            tuple(self.tree.files),
-            self._installed_file,
-            is_part,
-            self.ask,
-        )
+    @property
+    def is_part(self) -> bool:
+        """Whether the files may be a part of any package, because there is none among them."""
+        return bool(self.tree.files) and not self.packages
 
-    def _read(self, path: str) -> bytes:
+    def package(self, name: str) -> str | None:
+        """Return the folder of a package."""
+        return next((package.folder for package in self.packages if package.name == name), None)
+
+    def read(self, path: str) -> bytes:
+        """Return the bytes of a file. Raises InputError, NotDecided."""
         file = self.tree.files.get(path)
         ignored = next((other for other in self.tree.ignored if other.path == path), None)
         if file is None and ignored is not None:
@@ -73,15 +67,15 @@ class Surroundings(NamedTuple):
         except InputError as error:
             raise NotDecided(str(error)) from None
 
-    def _installed_file(self, name: str, inside: str) -> str | None:
+    def installed(self, package: str, inside: str) -> str | None:
         """Return the file at a path in a package once it is built; without any package, the most similar path."""
-        for package in self.packages:
-            if package.name == name:
-                similar = any(f"/{path}".endswith(f"/{inside}") for path in package.tree.files)
-                if package.is_cmake and similar and inside not in package.tree.files:
+        for own in self.packages:
+            if own.name == package:
+                similar = any(f"/{path}".endswith(f"/{inside}") for path in own.tree.files)
+                if own.is_cmake and similar and inside not in own.tree.files:
                     raise Undetermined(f"whether CMakeLists.txt installs {inside} is not evaluated")
-                source = package.installed.get(f"share/{name}/{inside}")
-                return package.path(source) if source is not None else None
+                source = own.installed.get(f"share/{package}/{inside}")
+                return own.path(source) if source is not None else None
         if self.packages:
             return None
         steps = inside.split("/")

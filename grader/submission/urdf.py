@@ -156,15 +156,15 @@ def _expand_xacro(data: bytes, path: str, surroundings: "Surroundings", launched
     from grader.xacro.expansion import expand
     from grader.xacro.texts import INSTALLED
 
-    workspace, given = surroundings.workspace(), dict(launched)
+    given = dict(launched)
     for name, text in launched.items():
         shared = re.fullmatch(rf"{SHARE}/([^/]+)/?(.*)", text or "")
         if shared is None:
             continue
         package, inside = shared.groups()
-        if not inside or workspace.package(package) is None or workspace.installed(package, inside) is not None:
+        if not inside or surroundings.package(package) is None or surroundings.installed(package, inside) is not None:
             given[name] = f"{INSTALLED}/{package}/share/{package}/{inside}".rstrip("/")
-    expansion = expand(data, path, workspace, {**given, **surroundings.arguments})
+    expansion = expand(data, path, surroundings, {**given, **surroundings.arguments})
     if expansion.root is None and expansion.recovered is None and expansion.problems:
         raw = read_urdf(data, path)
         problems = [problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)]

@@ -28,7 +28,7 @@ from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError,
 _INSTRUCTION = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?(?!xml\s)(?P<target>[\w:.-]+)", re.DOTALL)
 _MAX_ASSUMED = 20
 
-__all__ = ("Expansion", "Open", "Workspace", "expand")
+__all__ = ("Expansion", "Open", "expand")
 
 
 class Expansion(NamedTuple):

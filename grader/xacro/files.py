@@ -2,8 +2,8 @@
 
 import posixpath
 import re
-from collections.abc import Callable, Collection
-from typing import NamedTuple
+from collections.abc import Collection
+from typing import Protocol
 
 from grader.errors import InputError, NotDecided
 from grader.python.budget import Budget
@@ -20,22 +20,32 @@ _MAX_PATH = 1_000  # characters
 _OF_FILE = 50  # what looking for one is charged
 
 
-class Workspace(NamedTuple):
-    """The files of a submission, as xacro sees them.
+class Workspace(Protocol):
+    """The files around a xacro file: those of its submission."""
 
-    `read` returns the bytes of a file by its path, and raises InputError or NotDecided. `package` returns the folder of
-    a package of the submission, `installed` the file that a build installs at a path in a package. With `is_part` the
-    files may be a part of any package, because there is none among them. `ask` is called with the name of each file
-    that is looked for; `budget` is that of the submission.
-    """
+    @property
+    def budget(self) -> Budget:
+        """The budget of the submission."""
 
-    read: Callable[[str], bytes]
-    package: Callable[[str], str | None]
-    budget: Budget
-    paths: Collection[str] = ()
-    installed: Callable[[str, str], str | None] = lambda *_: None
-    is_part: bool = False
-    ask: Callable[[str], object] = lambda _: None
+    @property
+    def paths(self) -> Collection[str]:
+        """The paths of the files."""
+
+    @property
+    def is_part(self) -> bool:
+        """Whether the files may be a part of any package, because there is none among them."""
+
+    def read(self, path: str) -> bytes:
+        """Return the bytes of a file. Raises InputError, NotDecided."""
+
+    def package(self, name: str) -> str | None:
+        """Return the folder of a package."""
+
+    def installed(self, package: str, inside: str) -> str | None:
+        """Return the file that a build installs at a path in a package. Raises Undetermined."""
+
+    def ask(self, name: str) -> object:
+        """Note the name of a file that is looked for."""
 
 
 class FileFails(XacroFails):

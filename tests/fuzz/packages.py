@@ -14,6 +14,7 @@ from grader.python.parse import Position, parse
 from grader.source import Location
 from tests.checks.submissions import file_of
 from tests.fuzz.harness import check_location, check_message, decoded
+from tests.package.launch_samples import Installed
 from tests.package.my_robot import FILES
 
 _TREE = make_tree("my_robot", [file_of(path, text.format(path).encode()) for path, text in FILES.items()], ())
@@ -52,7 +53,8 @@ def setup(data: bytes) -> None:
 def launch(data: bytes, ending: str) -> None:
     """A launch file of any language, and those that it includes, are evaluated; what is found has a place."""
     path = f"launch/my.launch.{ending}"
-    found = read_launch(data, path, f"share/my_robot/{path}", lambda path: _opened(path, data, ending))
+    installed = f"share/my_robot/{path}"
+    found = read_launch(data, path, installed, Installed({**_LAUNCHES, installed: data}))
     text = _TEXTS[ending](data)
     faults = [*found.faults, *found.unknown, *([found.syntax] if found.syntax is not None else [])]
     for fault in faults:
@@ -63,12 +65,6 @@ def launch(data: bytes, ending: str) -> None:
     for node in (*found.nodes, *found.forgotten):
         check_location(node.location, {path: text})
     assert all(frame is None or frame[:1] != "/" for frame in found.frames_of("base_link"))
-
-
-def _opened(path: str, data: bytes, ending: str) -> tuple[bytes, str] | None:
-    if path.endswith(f"my.launch.{ending}"):
-        return data, f"launch/my.launch.{ending}"
-    return (_LAUNCHES[path], path.removeprefix("share/my_robot/")) if path in _LAUNCHES else None
 
 
 def cmake(data: bytes) -> None:

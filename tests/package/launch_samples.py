@@ -1,6 +1,8 @@
 """The samples of launch files, and the results of evaluating one in a form that is easy to compare."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 from grader.package.launch.model import Launch, LaunchFault, NamedFile
 from grader.package.launch.places import PREFIX
@@ -36,13 +38,27 @@ def summarize_sample(sample: str) -> list[str]:
     return summarize(read(SAMPLES[sample].read_bytes(), sample))
 
 
+class Installed(NamedTuple):
+    """What is installed around a launch file: these files, by their paths below the prefix, and every program."""
+
+    files: Mapping[str, bytes]
+
+    def open_installed(self, path: str) -> tuple[bytes, str] | None:
+        """Return a file and its path in the submission."""
+        return (self.files[path], path.removeprefix("share/my_robot/")) if path in self.files else None
+
+    def has_package(self, name: str) -> bool:
+        """Return whether a package is there."""
+        return name != ""
+
+    def has_program(self, package: str, name: str) -> bool:
+        """Return whether a package has a program."""
+        return "" not in (package, name)
+
+
 def read(data: bytes, name: str, others: dict[str, bytes] = INNER) -> Launch:
     """Return the results for a launch file of this name; `others` are installed, too."""
-
-    def installed(path: str) -> tuple[bytes, str] | None:
-        return (others[path], path.removeprefix("share/my_robot/")) if path in others else None
-
-    return read_launch(data, f"launch/{name}", f"{FOLDER}/{name}", installed)
+    return read_launch(data, f"launch/{name}", f"{FOLDER}/{name}", Installed(others))
 
 
 def summarize(launch: Launch) -> list[str]:

@@ -12,6 +12,7 @@ import pytest
 
 from grader.package.launch.reader import read_launch
 from tests.command_line import ROOT
+from tests.package.launch_samples import Installed
 
 _HERE = Path(__file__).parent
 _CASES = json.loads((_HERE / "launch_cases.json").read_text("utf-8"))
@@ -84,19 +85,20 @@ launch:
 """
 
 
-def _has_program(package: str, name: str) -> bool:
-    del name
-    return package != "my_robot"
+class _Installed(Installed):
+    def has_package(self, name: str) -> bool:
+        return name in _INSTALLED
+
+    def has_program(self, package: str, name: str) -> bool:
+        del name
+        return package != "my_robot"
 
 
 def outcome(text: str, language: str) -> bool | None:
     """Return whether a launch file starts the robot and RViz; None where this needs manual grading."""
     path = f"launch/view.launch.{language}"
 
-    def opened(name: str) -> tuple[bytes, str] | None:
-        return (_FILES[name], name) if name in _FILES else None
-
-    launch = read_launch(text.encode(), path, f"share/my_robot/{path}", opened, _INSTALLED.__contains__, _has_program)
+    launch = read_launch(text.encode(), path, f"share/my_robot/{path}", _Installed(_FILES))
     if launch.syntax is not None or launch.faults:
         return False
     if launch.doubts:

@@ -3,7 +3,7 @@
 import posixpath
 import re
 from importlib import import_module
-from typing import Any
+from typing import Any, NamedTuple
 
 from lxml import etree
 
@@ -17,21 +17,37 @@ from tests.xacro.documents.document import PACKAGES, Document
 Tree = tuple[str, dict[str, str], list[Any]]
 
 
+class _Workspace(NamedTuple):
+    files: dict[str, str | bytes]
+    budget: Budget
+    paths: list[str]
+    asked: list[str]
+    is_part: bool = False
+
+    def read(self, path: str) -> bytes:
+        self.asked.append(path)
+        content = self.files.get(posixpath.normpath(path))
+        if content is None:
+            raise InputError(f"{path} does not exist")
+        return content if isinstance(content, bytes) else content.encode()
+
+    def package(self, name: str) -> str | None:
+        return PACKAGES.get(name)
+
+    def installed(self, package: str, inside: str) -> None:
+        """Return no file: no build installs one."""
+
+    def ask(self, name: str) -> None:
+        """Note nothing."""
+
+
 def expand(document: Document, asked: list[str] | None = None, limit: int = READING) -> Any:
     """Return the grader's expansion of a document; `asked` receives the paths of the files that it reads, `limit` are parts."""
     expansion: Any = import_module("grader.xacro.expansion")
     files = {document.path: document.text, **document.files}
 
-    def read(path: str) -> bytes:
-        if asked is not None:
-            asked.append(path)
-        content = files.get(posixpath.normpath(path))
-        if content is None:
-            raise InputError(f"{path} does not exist")
-        return content if isinstance(content, bytes) else content.encode()
-
-    workspace = expansion.Workspace(read=read, package=PACKAGES.get, budget=Budget(limit), paths=sorted(files))
-    return expansion.expand(read(document.path), document.path, workspace, document.arguments)
+    workspace = _Workspace(files, Budget(limit), sorted(files), [] if asked is None else asked)
+    return expansion.expand(workspace.read(document.path), document.path, workspace, document.arguments)
 
 
 def difference(document: Document, expected: oracle.Accepted | oracle.Refused) -> str | None:

@@ -1,9 +1,13 @@
 """The nodes that a launch file starts and the files that it names, and the state while its actions are visited."""
 
+import posixpath
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from functools import partial
+from typing import Literal, Protocol
 
+from grader.package.launch.places import PREFIX
+from grader.python.budget import Budget
 from grader.python.parse import Position
 from grader.python.values import Call, EvaluationFails, EvaluationSignal, Unknown, Value
 from grader.source import Location, Source
@@ -46,14 +50,17 @@ def not_evaluated(reason: str) -> str:
     return reason if "evaluated" in reason else f"{reason}, which is not evaluated"
 
 
-@dataclass(slots=True)
-class Surroundings:
-    """What a launch file finds around it."""
+class Installation(Protocol):
+    """What is installed on the machine of a launch file: what builds of the submitted packages install, and ROS 2."""
 
-    read: Callable[[str], str | None]  # the text of an installed file; None where it is not installed or is no text
-    is_installed: Callable[[str], bool]  # whether a package certainly is on the machine
-    has_program: Callable[[str, str], bool | None]  # whether a package has a program; None where this is not known
-    steps_left: int = _MAX_STEPS
+    def open_installed(self, path: str) -> tuple[bytes, str] | None:
+        """Return an installed file by its path below the prefix: its bytes, and its path in the submission."""
+
+    def has_package(self, name: str) -> bool:
+        """Return whether a package certainly is on the machine."""
+
+    def has_program(self, package: str, name: str) -> bool | None:
+        """Return whether a package has a program; None where this is not known."""
 
 
 @dataclass(slots=True)
@@ -64,15 +71,26 @@ class Context:
     """
 
     path: str
-    around: Surroundings
+    installation: Installation
     arguments: dict[str, Resolved] = field(default_factory=dict)
     when: bool | None = True  # whether the file is launched at all
     given: frozenset[str] = frozenset()  # the launch arguments that the file is included with
     reads: list[tuple[Contents, Position]] = field(default_factory=list)  # that the current action needs
+    budget: Budget = field(default_factory=partial(Budget, _MAX_STEPS))  # of all files that are launched
 
     def copy(self) -> "Context":
         """Return a context whose launch configurations change on their own."""
         return replace(self, arguments=dict(self.arguments))
+
+    def text_of(self, path: str) -> str | None:
+        """Return the text of a file; None for one that is not installed below the prefix, or is no text."""
+        if not path.startswith(f"{PREFIX}/"):
+            return None
+        found = self.installation.open_installed(posixpath.normpath(path).removeprefix(f"{PREFIX}/"))
+        try:
+            return found[0].decode().replace("\r\n", "\n") if found is not None else None
+        except UnicodeDecodeError:
+            return None
 
 
 @dataclass(frozen=True, slots=True)

@@ -53,11 +53,11 @@ def evaluate_node(call: Call, context: Context) -> None:
     if package is not None:
         text = known_text(package, context, call.at)
         program = known_text(call.kwargs["executable"], context, call.at)
-        if not context.around.is_installed(text):
+        if not context.installation.has_package(text):
             raise Undetermined(f"whether the package {text!r} is installed is not evaluated", call.at)
-        if context.around.has_program(text, program) is not True:
+        if context.installation.has_program(text, program) is not True:
             reason = f"{text!r} has no program {program!r}"
-            if context.around.has_program(text, program) is None:
+            if context.installation.has_program(text, program) is None:
                 raise Undetermined(f"whether {reason} is not evaluated".replace(" has no ", " has the "), call.at)
             raise EvaluationFails(f"the package {reason}", call.at)
 

@@ -65,7 +65,7 @@ def _yaml_of(name: str, value: Value, context: Context, at: Position) -> Any:
     found = resolve(value, context, at)
     if isinstance(found, Unknown):
         raise Undetermined(f"the value of the parameter {name!r} is not evaluated: {found.reason}", at)
-    text = context.around.read(found.path) if isinstance(found, Contents) else found
+    text = context.text_of(found.path) if isinstance(found, Contents) else found
     if text is None:
         return ""  # a file that is not there is reported for itself
     try:

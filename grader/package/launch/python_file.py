@@ -106,7 +106,7 @@ class PythonLaunchFile:
         name = known(call.argument(0, "package_name", "package"))
         if not isinstance(name, str):
             raise EvaluationFails("the name of a package is a string")
-        if not self.context.around.is_installed(name):
+        if not self.context.installation.has_package(name):
             evaluation.doubted(Unknown(f"whether the package {name!r} is installed is not evaluated", call.at))
         return name
 
@@ -138,7 +138,7 @@ class PythonLaunchFile:
 
     def _exists(self, _: Evaluation, call: Call) -> Value:
         path = path_text(known(call.args[0])) or ""
-        is_there = self.context.around.read(path) is not None
+        is_there = self.context.text_of(path) is not None
         return True if is_there else Unknown(f"whether {posixpath.basename(path)} exists is not evaluated", call.at)
 
     def _xacro(self, evaluation: Evaluation, call: Call) -> Value:

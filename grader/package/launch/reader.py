@@ -3,14 +3,12 @@
 import posixpath
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import partial
-from operator import attrgetter
+from operator import attrgetter, methodcaller
 from pathlib import PurePosixPath
-from typing import Any
 
 from grader.package.launch.actions import CIRCULAR_INCLUDE, KINDS
 from grader.package.launch.api import DESCRIPTION, is_a
-from grader.package.launch.model import Context, Findings, Launch, LaunchFault, StartedNode, Surroundings
+from grader.package.launch.model import Context, Findings, Installation, Launch, LaunchFault, StartedNode
 from grader.package.launch.places import PREFIX
 from grader.package.launch.python_file import PythonLaunchFile
 from grader.package.launch.value_types import kind_of
@@ -26,56 +24,60 @@ _MAX_INCLUDES = 10
 # What a launch file shares with those that it includes.
 _JOINED = ("nodes", "references", "faults", "unknown", "doubts")
 _MAX_KEPT = 4  # launch files
-# The results of launch files that are read again: those of a handout, or while hints are searched. Each with what it
-# asked, and the answers.
-_KEPT: dict[tuple[bytes, str, str], tuple[list[tuple[str, tuple[str, ...], Any]], Launch]] = {}
-
-# Returns the bytes of an installed file and its path in the submission, by its path below the prefix; None for other
-# files.
-Opener = Callable[[str], "tuple[bytes, str] | None"]
 
 
-def read_launch(
-    data: bytes,
-    path: str,
-    installed: str,
-    opener: Opener,
-    is_installed: Callable[[str], bool] = lambda _: True,
-    has_program: Callable[[str, str], bool | None] = lambda *_: True,
-) -> Launch:
+class _Recorder:
+    """An installation that records what is asked of it. With the same answers, a launch file is evaluated alike."""
+
+    def __init__(self, installation: Installation) -> None:
+        self._installation = installation
+        self._answers: list[tuple[Callable[[Installation], object], object]] = []
+
+    def open_installed(self, path: str) -> tuple[bytes, str] | None:
+        """Return an installed file."""
+        found = self._installation.open_installed(path)
+        self._answers.append((methodcaller("open_installed", path), found))
+        return found
+
+    def has_package(self, name: str) -> bool:
+        """Return whether a package certainly is on the machine."""
+        found = self._installation.has_package(name)
+        self._answers.append((methodcaller("has_package", name), found))
+        return found
+
+    def has_program(self, package: str, name: str) -> bool | None:
+        """Return whether a package has a program."""
+        found = self._installation.has_program(package, name)
+        self._answers.append((methodcaller("has_program", package, name), found))
+        return found
+
+    def is_equal(self, other: Installation) -> bool:
+        """Return whether another installation answers alike."""
+        return all(question(other) == answer for question, answer in self._answers)
+
+
+# The results of the last launch files: those of a handout are read again, and all while hints are searched.
+_KEPT: dict[tuple[bytes, str, str], tuple[_Recorder, Launch]] = {}
+
+
+def read_launch(data: bytes, path: str, installed: str, installation: Installation) -> Launch:
     """Read a launch file and evaluate it. Never raises.
 
     Args:
         data: The file's contents.
         path: Its path in the submission.
         installed: Its path below the prefix after a build.
-        opener: Opens installed files.
-        is_installed: Whether a package certainly is on the machine.
-        has_program: Whether such a package has a program.
+        installation: What is installed besides.
     """
-    questions: dict[str, Callable[..., Any]] = {"open": opener, "package": is_installed, "program": has_program}
-    kept = _KEPT.get((data, path, installed))
-    if kept is not None and all(questions[name](*asked) == answer for name, asked, answer in kept[0]):
-        return kept[1]
-    answers: list[tuple[str, tuple[str, ...], Any]] = []
-
-    def ask(name: str, *asked: str) -> Any:
-        answer = questions[name](*asked)
-        answers.append((name, asked, answer))
-        return answer
-
-    def read(path: str) -> str | None:
-        is_below = path.startswith(f"{PREFIX}/")
-        found = ask("open", posixpath.normpath(path).removeprefix(f"{PREFIX}/")) if is_below else None
-        try:
-            return found[0].decode().replace("\r\n", "\n") if found is not None else None
-        except UnicodeDecodeError:
-            return None
-
-    around = Surroundings(read, partial(ask, "package"), partial(ask, "program"))
-    launch = _LaunchReader(partial(ask, "open")).read(data, path, installed, Context(f"{PREFIX}/{installed}", around))
-    _KEPT.pop(next(iter(_KEPT)) if len(_KEPT) >= _MAX_KEPT else (b"", "", ""), None)
-    _KEPT[data, path, installed] = (answers, launch)
+    key = (data, path, installed)
+    if key in _KEPT and _KEPT[key][0].is_equal(installation):
+        return _KEPT[key][1]
+    recorder = _Recorder(installation)
+    launch = _LaunchReader().read(data, path, installed, Context(f"{PREFIX}/{installed}", recorder))
+    _KEPT.pop(key, None)
+    if len(_KEPT) >= _MAX_KEPT:
+        del _KEPT[next(iter(_KEPT))]
+    _KEPT[key] = (recorder, launch)
     return launch
 
 
@@ -83,7 +85,6 @@ def read_launch(
 class _LaunchReader:
     """A reader of a launch file and a limited number of included ones."""
 
-    opener: Opener
     includes_left: int = _MAX_INCLUDES
     open: list[str] = field(default_factory=list)  # the files that are being read, each included by the one before
 
@@ -111,7 +112,7 @@ class _LaunchReader:
         """Read an included file; return why it is not read, or nothing."""
         if target in self.open:
             return CIRCULAR_INCLUDE
-        found = self.opener(target)
+        found = context.installation.open_installed(target)
         if found is None:
             return f"it includes {target}, which the submission does not install"
         if self.includes_left == 0:

@@ -26,8 +26,8 @@ def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Res
 
     Raises EvaluationFails where launch certainly raises an error, Undetermined where it may.
     """
-    context.around.steps_left -= 1
-    if depth > _MAX_DEPTH or context.around.steps_left < 0:
+    context.budget.left -= 1
+    if depth > _MAX_DEPTH or context.budget.left < 0:
         raise Undetermined("a substitution that is nested so deeply is not evaluated", at)
     match value:
         case FileText(contents=contents):
@@ -126,7 +126,7 @@ class _Substitution:
         package = self.argument("package")
         if isinstance(package, Unknown):
             return package
-        if not isinstance(package, str) or not self.context.around.is_installed(package):
+        if not isinstance(package, str) or not self.context.installation.has_package(package):
             shown = repr(package) if isinstance(package, str) else "that is read from a file"
             raise Undetermined(f"whether the package {shown} is installed is not evaluated", self.call.at)
         return f"{SHARE}/{package}"
@@ -176,7 +176,7 @@ def _expression_text(text: str, at: Position, context: Context) -> str:
     except (Undetermined, OutOfBudget) as error:
         raise Undetermined(f"this expression is not evaluated: {error}", at) from None
     finally:
-        context.around.steps_left -= budget.used
+        context.budget.left -= budget.used
 
 
 def _find(name: str) -> Value:
