@@ -13,7 +13,7 @@ from grader.checks.registry import own_checks
 
 ROOT = Path(__file__).parent.parent / "grader"
 LAYERS = (
-    ("errors", "markup", "text", "reuse"),
+    ("errors", "markup", "text", "reuse", "pairing"),
     ("source", "names"),
     ("problems",),
     ("files", "python", "xml"),

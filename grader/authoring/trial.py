@@ -5,10 +5,11 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import Any, NamedTuple
 
+from lxml import etree
+
 from grader.authoring.equivalents import Equivalent, RewritingRules, equivalents
 from grader.authoring.mutants import Mutant, mutants
 from grader.authoring.package_mutants import package_mutants
-from grader.authoring.sameness import is_same_robot
 from grader.checks.manual import MANUAL_CHECKS
 from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
@@ -20,9 +21,11 @@ from grader.grading.rubric import Rubric
 from grader.hints.editing import content, with_files, with_urdf
 from grader.hints.trials import is_worse
 from grader.package.package import MANIFEST
+from grader.robot.normal_form import normal_form
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
-from grader.submission.urdf import Read
+from grader.submission.urdf import Read, Urdf
+from grader.xml.wanted_element import foreign_elements, words_of_foreign
 
 _WORD = re.compile(r"[\w@:.-]+")
 _TEXTS = (".py", ".xml", ".yaml", ".yml", ".rviz", ".launch", ".cfg", ".json", ".txt", ".world", ".sdf")
@@ -156,6 +159,27 @@ class Trial:
         """Return the criteria on the robot that must still pass; for a URDF on its own, those that need no package."""
         others = ("package", "submission") if submission.is_single else ("package",)
         return [it.id for it in self.tested if it.check.subject not in others and not breaks(it, family)]
+
+
+def is_same_robot(one: Urdf, other: Urdf, kept: Collection[str]) -> bool:
+    """Return whether two URDFs are the same robot; `kept` are names that something outside of the file refers to.
+
+    ROS 2's verdict counts, the normal form of the robot, and the elements for simulators and controllers.
+    """
+    form = _form(one, kept)
+    return form is not None and form == _form(other, kept)
+
+
+def _form(urdf: Urdf, kept: Collection[str]) -> object:
+    """Return what counts of a file; None if no robot is read."""
+    if not isinstance(urdf, Read) or urdf.reading.robot is None or urdf.reading.root is None:
+        return None
+    robot, root = urdf.reading.robot, urdf.reading.root
+    foreign = [
+        etree.tostring(child, with_tail=False) for child in sorted(foreign_elements(root), key=lambda it: str(it.tag))
+    ]
+    form = normal_form(robot, {*kept, *words_of_foreign(root)})
+    return urdf.loaded.verdict, urdf.reading.undetermined, foreign, form
 
 
 def breaks(criterion: Criterion, family: str) -> bool:

@@ -8,6 +8,7 @@ from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, in_millime
 from grader.checks.toml_types import NonNegative, RadiusAndLength, Size
 from grader.checks.visuals import MAX_SHAPES, file_name, visuals
 from grader.errors import MissingElement, NotDecided, RubricError
+from grader.pairing import most_pairs
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
 from grader.robot.likeness import Mismatch, mismatch, turn_between
@@ -40,7 +41,12 @@ def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonN
     solid = _solid(robot, link, "the shapes that it shows")
     if max(len(shown), len(solid)) > MAX_SHAPES:
         raise NotDecided(f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes")
-    partners = _partners(shown, solid, tolerance)
+    partners = most_pairs(
+        [
+            [index for index, other in enumerate(solid) if _fits(_mismatch(visual, other, tolerance), tolerance)]
+            for visual in shown
+        ]
+    )
     lonely = [visual for index, visual in enumerate(shown) if index not in partners.values()]
     others = [collision for index, collision in enumerate(solid) if index not in partners]
     if not lonely and not others:
@@ -120,28 +126,6 @@ def _solid(robot: Configuration, link: str, expected: str) -> tuple[Collision, .
         message = f"link {link!r} has no collision shape with a size; it should have {expected}"
         raise MissingElement("collision", link, message=message, location=place(robot.link(link).location))
     return solid
-
-
-def _partners(shown: Sequence[Visual], solid: Sequence[Collision], tolerance: float) -> dict[int, int]:
-    """Return the visual of each collision shape, by their indices: as many pairs as possible (Kuhn's algorithm)."""
-    partners: dict[int, int] = {}
-    alike = [
-        [index for index, other in enumerate(solid) if _fits(_mismatch(visual, other, tolerance), tolerance)]
-        for visual in shown
-    ]
-
-    def find(visual: int, tried: set[int]) -> bool:
-        for collision in alike[visual]:
-            if collision not in tried:
-                tried.add(collision)
-                if collision not in partners or find(partners[collision], tried):
-                    partners[collision] = visual
-                    return True
-        return False
-
-    for visual in range(len(shown)):
-        find(visual, set())
-    return partners
 
 
 def _fits(off: Mismatch | None, tolerance: float) -> bool:

@@ -1,32 +1,41 @@
-"""The normal form of a robot: equal for files that differ only in what a copy can change without changing the robot."""
+"""The normal form of a robot: equal for files that differ only in what nobody can see, and what a copy can change.
 
-from collections.abc import Callable
-from dataclasses import fields
-from functools import cache
+What counts: every pose, shape, colour, mass, axis, limit, mimic and dynamics, the tree, and every name that something
+refers to. What does not: comments, white space, the order of elements, the way in which numbers are written, defaults
+written out, rotations of a cylinder or sphere within its symmetry, shapes without size, the length of an axis, and axes
+and limits that ROS 2 does not use for a type of joint.
+"""
+
+from collections.abc import Collection, Iterable, Iterator
 from hashlib import sha256
-from operator import attrgetter
 from typing import Any
 
-from grader.robot.model import Collision, Joint, Link, Robot, Visual
+from grader.robot.frames import placed_by
+from grader.robot.model import Collision, Cylinder, Dynamics, Geometry, Joint, Link, Robot, Sphere, Visual
 from grader.robot.reader import Reading
+from grader.robot.shapes import is_empty
+from grader.robot.transforms import AXES, IDENTITY, Transform, unit
+from grader.source import LazyLocation
 from grader.xml.parsing import Element
 
 _MODEL = ("link", "joint", "material")
-_NAMES = ("name", "material_name")  # of materials: nothing outside of the file refers to them
+_DIGITS, _DECIMALS = 6, 12  # significant digits, of which rounding leaves those after the 12th decimal open
+_TURN = 2  # decimals of a direction: half a turn that is written 3.14 is the same in both directions
+_TURNING = ("continuous", "revolute", "prismatic", "planar")
+_LIMITED = ("revolute", "prismatic")
+_UNLIMITED = ("fixed", "floating")
 
 
-def normal_form(robot: Robot) -> tuple[list[str], list[str]]:
+def normal_form(robot: Robot, kept: Collection[str] = ()) -> tuple[list[str], list[str]]:
     """Return the links and joints of a robot as texts, sorted.
 
-    Comments, white space, the order of elements and the way in which numbers are written do not count. Neither do names
-    that nothing refers to: those of the robot, of materials, of joints that no joint mimics, and of links without a
-    joint.
+    Names that nothing refers to do not count: those of the robot, of materials, of joints that no joint mimics, and of
+    links without a joint. `kept` are names that something outside of the file refers to.
     """
     mimicked = {joint.mimic.joint for joint in robot.joints if joint.mimic is not None}
     connected = {name for joint in robot.joints for name in (joint.parent, joint.child)}
-    links = (_with_name(link, connected) for link in robot.links)
-    joints = (_with_name(joint, mimicked) for joint in robot.joints)
-    return sorted(map(repr, links)), sorted(map(repr, joints))
+    links = (_link_form(link, {*kept, *connected}) for link in robot.links)
+    return _sorted(links), _sorted(_joint_form(joint, {*kept, *mimicked}) for joint in robot.joints)
 
 
 def robot_hash(reading: Reading) -> str:
@@ -69,27 +78,67 @@ def _content(element: Element) -> tuple[Any, ...]:
     )
 
 
-def _with_name(element: Link | Joint, kept: set[str]) -> tuple[Any, ...]:
-    return element.name if element.name in kept else "", _plain(element, ignored=("name",))
+def _sorted(forms: Iterable[object]) -> list[str]:
+    """Return forms as texts, each once."""
+    return sorted(set(map(repr, forms)))
 
 
-def _plain(value: Any, ignored: tuple[str, ...] = _NAMES) -> Any:
-    """Return a value of the model as plain tuples; locations do not count, as in comparisons."""
-    kind: Any = type(value)
-    if kind in (str, bool) or value is None:  # most values
-        return value
-    if kind is float:
-        return value + 0.0  # -0.0 is 0.0
-    if kind is not tuple:
-        return tuple(map(_plain, _compared(kind, ignored)(value)))
-    if value and type(value[0]) is float:
-        return tuple(number + 0.0 for number in value)
-    items = map(_plain, value)
-    return tuple(sorted(items, key=repr)) if value and isinstance(value[0], Visual | Collision) else tuple(items)
+def _link_form(link: Link, kept: Collection[str]) -> object:
+    inertial = link.inertial
+    mass = (inertial.mass, inertial.inertia, _pose(placed_by(IDENTITY, inertial.origin))) if inertial else ()
+    name = link.name if link.name in kept else ""
+    return name, _sorted(_shapes(link.visuals)), _sorted(_shapes(link.collisions)), _rounded(mass)
 
 
-@cache
-def _compared(kind: Any, ignored: tuple[str, ...]) -> Callable[[Any], tuple[Any, ...]]:
-    """Return what gets the name of a class and the fields that count."""
-    names = getattr(kind, "_fields", ()) or (field.name for field in fields(kind) if field.compare)
-    return attrgetter("__class__.__name__", *(name for name in names if name not in (*ignored, "location")))
+def _shapes(shapes: tuple[Visual, ...] | tuple[Collision, ...]) -> Iterator[object]:
+    for shape in shapes:
+        if not is_empty(shape.geometry):
+            pose = placed_by(IDENTITY, shape.origin)
+            material = shape.material if isinstance(shape, Visual) else None
+            colour = (*material.rgba, material.texture) if material is not None else ()
+            yield _rounded(pose.translation), _rounded(shape.geometry), _rotation(shape.geometry, pose), colour
+
+
+def _rotation(geometry: Geometry, pose: Transform) -> tuple[float, ...]:
+    """Return the rotation of a shape without what its symmetry hides: a cylinder has a line, in both directions."""
+    match geometry:
+        case Cylinder():
+            turned = _turned(pose.rotate(AXES[2]))
+            return max(turned, tuple(-value + 0.0 for value in turned))
+        case Sphere():
+            return ()
+    return _turned(pose.rotation)
+
+
+def _turned(values: tuple[float, ...]) -> tuple[float, ...]:
+    return tuple(round(value, _TURN) + 0.0 for value in values)
+
+
+def _pose(pose: Transform) -> tuple[Any, ...]:
+    return _rounded(pose.translation), _turned(pose.rotation)
+
+
+def _joint_form(joint: Joint, kept: Collection[str]) -> object:
+    kind, limit = joint.type, joint.limit if joint.type not in _UNLIMITED else None
+    axis = unit(joint.axis) if joint.axis is not None and kind in _TURNING else None
+    moving = (joint.mimic, joint.dynamics or Dynamics(), joint.safety_controller, joint.calibration)
+    return (
+        joint.parent, joint.child, joint.name if joint.name in kept else "", kind,
+        _pose(placed_by(IDENTITY, joint.origin)) if joint.origin is not None else None,
+        (_turned(axis) if axis is not None else joint.axis) if kind in _TURNING else (),
+        _rounded((limit.lower, limit.upper)) if limit is not None and kind in _LIMITED else (),
+        _rounded((limit.effort, limit.velocity)) if limit is not None else (),
+        _rounded(moving) if kind != "fixed" else (),
+    )  # fmt: skip
+
+
+def _rounded(value: Any) -> Any:
+    """Return numbers, also those in tuples, without what computing with them may change."""
+    match value:
+        case LazyLocation():
+            return None
+        case tuple():
+            return tuple(map(_rounded, value))
+        case float():
+            return float(f"{round(value, _DECIMALS):.{_DIGITS}g}") + 0.0
+    return value

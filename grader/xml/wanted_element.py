@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from math import isfinite
 from typing import NamedTuple
 
+from grader.pairing import most_pairs
 from grader.xml.parsing import Element, Unresolved
 
 Scalar = str | float | bool
@@ -106,18 +107,8 @@ def numbers_in(text: str) -> list[float]:
 
 def are_there(texts: Sequence[str], expected: Sequence[Scalar], tolerance: float) -> bool:
     """Return whether each expected value is a different one of the texts, in any order."""
-    taken: dict[int, int] = {}  # the text of each index is for the expected value of an index
-
-    def place(wanted: int, tried: set[int]) -> bool:
-        for index, text in enumerate(texts):
-            if index not in tried and matches_value(text, expected[wanted], tolerance):
-                tried.add(index)
-                if index not in taken or place(taken[index], tried):
-                    taken[index] = wanted
-                    return True
-        return False
-
-    return all(place(wanted, set()) for wanted in range(len(expected)))
+    fitting = [[i for i, text in enumerate(texts) if matches_value(text, value, tolerance)] for value in expected]
+    return len(most_pairs(fitting)) == len(expected)
 
 
 class WantedElement(NamedTuple):

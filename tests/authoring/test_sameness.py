@@ -3,7 +3,7 @@
 import pytest
 
 from grader.authoring.mutants import mutants
-from grader.authoring.sameness import is_same_robot
+from grader.authoring.trial import is_same_robot
 from grader.submission.urdf import read_as_ros
 from tests.authoring.robots import ARM, CHANGES
 from tests.hints.behaviour import behaviour, differences
