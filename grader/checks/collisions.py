@@ -9,11 +9,9 @@ from grader.checks.toml_types import NonNegative, RadiusAndLength, Size
 from grader.checks.visuals import MAX_SHAPES, file_name, visuals
 from grader.errors import MissingElement, NotDecided, RubricError
 from grader.pairing import most_pairs
-from grader.robot.frames import placed_by
-from grader.robot.kinematics import Configuration
-from grader.robot.likeness import Mismatch, mismatch, turn_between
+from grader.robot.kinematics import Configuration, placed_by
 from grader.robot.model import Box, Collision, Cylinder, Geometry, Mesh, Origin, Sphere, Visual
-from grader.robot.shapes import Shape, is_empty
+from grader.robot.shapes import Mismatch, Shape, is_empty, mismatch, turn_between
 from grader.robot.transforms import IDENTITY, Vector, minus
 from grader.text import counted
 

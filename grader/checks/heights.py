@@ -8,8 +8,7 @@ from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, shape_name, span, visual_pose
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
-from grader.robot.likeness import turn_between
-from grader.robot.shapes import UnknownShape, extent
+from grader.robot.shapes import UnknownShape, extent, turn_between
 from grader.robot.transforms import IDENTITY_ROTATION, Z_AXIS
 from grader.source import LazyLocation
 from grader.text import enumerated

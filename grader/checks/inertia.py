@@ -9,7 +9,6 @@ from grader.checks.outcome import Outcome, failed, in_millimetres, judged, place
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import MAX_SHAPES
 from grader.errors import MissingElement, NotDecided
-from grader.robot.frames import placed_by
 from grader.robot.inertia import (
     MassProperties,
     largest_difference,
@@ -18,7 +17,7 @@ from grader.robot.inertia import (
     uniform_solid,
     with_volume,
 )
-from grader.robot.kinematics import Configuration
+from grader.robot.kinematics import Configuration, placed_by
 from grader.robot.model import INERTIA, Geometry, Inertial, Mesh
 from grader.robot.overlap import penetration
 from grader.robot.shapes import Shape, UnknownShape, bounding_radius

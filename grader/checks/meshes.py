@@ -10,8 +10,8 @@ from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import file_name, shape_name, visual_pose, visuals
 from grader.errors import MissingElement, NotDecided
 from grader.robot.kinematics import Configuration
-from grader.robot.likeness import turn_between
 from grader.robot.model import Mesh, Visual
+from grader.robot.shapes import turn_between
 from grader.robot.transforms import Vector, rotation_from_rpy
 from grader.source import LazyLocation
 from grader.submission.submission import Submission

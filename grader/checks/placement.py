@@ -7,9 +7,8 @@ from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, location_o
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose
 from grader.robot.kinematics import Configuration
-from grader.robot.likeness import turn_between
 from grader.robot.model import Mesh, Visual
-from grader.robot.shapes import UnknownShape
+from grader.robot.shapes import UnknownShape, turn_between
 from grader.robot.transforms import Z_AXIS, Vector, dot, minus, rotation_from_rpy, unit
 from grader.source import LazyLocation
 

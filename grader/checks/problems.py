@@ -8,8 +8,8 @@ from grader.checks.outcome import Outcome, failed, passed, pending
 from grader.checks.toml_types import Constraint
 from grader.errors import MissingElement
 from grader.problems import Problem
-from grader.robot.catalogue import CATALOGUE, UNLISTED
 from grader.robot.reader import Reading
+from grader.robot.urdf_problems import CATALOGUE, UNLISTED
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import counted, enumerated

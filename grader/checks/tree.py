@@ -8,11 +8,11 @@ from grader.checks.outcome import Outcome, failed, passed, pending, place
 from grader.errors import MissingElement
 from grader.names import did_you_mean
 from grader.problems import Problem, kinds_in
-from grader.robot.catalogue import RAW_XACRO
 from grader.robot.joints import MOVING_TYPES
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.reader import Reading
+from grader.robot.urdf_problems import RAW_XACRO
 from grader.text import counted, enumerated
 from grader.xml import catalogue as xml_catalogue
 from grader.xml.urdf_format import JOINT_TYPES, JointType

@@ -7,8 +7,7 @@ from typing import Literal
 
 from grader.checks.outcome import place, within
 from grader.errors import MissingElement
-from grader.robot.frames import placed_by
-from grader.robot.kinematics import Configuration
+from grader.robot.kinematics import Configuration, placed_by
 from grader.robot.model import Box, Cylinder, Geometry, Joint, Mesh, Sphere, Visual
 from grader.robot.shapes import extent, is_empty, volume
 from grader.robot.transforms import Transform, Vector, unit

@@ -10,8 +10,8 @@ from grader.errors import InputError, MissingElement, NotDecided
 from grader.files.reading import URDF_LIMIT
 from grader.names import did_you_mean
 from grader.python.budget import OutOfBudget
-from grader.robot.catalogue import RAW_XACRO
 from grader.robot.reader import find_xacro
+from grader.robot.urdf_problems import RAW_XACRO
 from grader.source import LazyLocation, Location, Source
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read

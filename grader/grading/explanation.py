@@ -5,31 +5,31 @@ from collections.abc import Iterable
 from grader import markup
 from grader.checks.outcome import Outcome
 from grader.problems import Problem
-from grader.robot import catalogue
+from grader.robot import urdf_problems
 from grader.source import Location, Source
 
 # Problems that explain a measurement at the same place, and those with which ROS 2 drops a part of a link.
 _EXPLAINING = (
-    catalogue.BAD_COLOUR,
-    catalogue.COLOUR_COUNT,
-    catalogue.DEGREES,
-    catalogue.UNDEFINED_MATERIAL,
-    catalogue.BAD_LIMIT,
-    catalogue.BAD_DYNAMICS,
-    catalogue.EMPTY_RANGE,
-    catalogue.LIMIT_IN_DEGREES,
+    urdf_problems.BAD_COLOUR,
+    urdf_problems.COLOUR_COUNT,
+    urdf_problems.DEGREES,
+    urdf_problems.UNDEFINED_MATERIAL,
+    urdf_problems.BAD_LIMIT,
+    urdf_problems.BAD_DYNAMICS,
+    urdf_problems.EMPTY_RANGE,
+    urdf_problems.LIMIT_IN_DEGREES,
 )
 # Problems that explain a measurement of the element around them, and how that begins.
 _INSIDE = {
-    catalogue.MISSPELT: "<",
-    catalogue.DEGREES: "<origin",
-    catalogue.BAD_COLOUR: "<material",
-    catalogue.COLOUR_COUNT: "<material",
+    urdf_problems.MISSPELT: "<",
+    urdf_problems.DEGREES: "<origin",
+    urdf_problems.BAD_COLOUR: "<material",
+    urdf_problems.COLOUR_COUNT: "<material",
 }
 _DROPPING = {
-    "inertial": (catalogue.BAD_INERTIAL,),
-    "visual": (catalogue.BAD_VISUAL, catalogue.BAD_INERTIAL),
-    "collision": (catalogue.BAD_COLLISION, catalogue.BAD_VISUAL, catalogue.BAD_INERTIAL),
+    "inertial": (urdf_problems.BAD_INERTIAL,),
+    "visual": (urdf_problems.BAD_VISUAL, urdf_problems.BAD_INERTIAL),
+    "collision": (urdf_problems.BAD_COLLISION, urdf_problems.BAD_VISUAL, urdf_problems.BAD_INERTIAL),
 }
 
 
@@ -52,7 +52,7 @@ def explain(
     inside = _extent(place, source) if any(problem.kind in _INSIDE for problem in problems) else range(0)
     for problem in problems:
         kind, where = problem.kind, problem.location
-        explains = kind in _EXPLAINING or (kind is catalogue.DEFAULT_AXIS and outcome.unit == "deg")
+        explains = kind in _EXPLAINING or (kind is urdf_problems.DEFAULT_AXIS and outcome.unit == "deg")
         is_there = where == place and dropped is None and ((explains and not dropping) or kind.is_before_ros)
         if is_there or (where != place and _is_inside(problem, place, inside, source)):
             if dropped is not None:  # because of this

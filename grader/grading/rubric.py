@@ -19,7 +19,7 @@ from grader.grading.toml_file import complain_of, key_lines, read_toml
 from grader.grading.toml_rows import TomlRow
 from grader.grading.validation import BoundCarried, BoundCheck, Validation
 from grader.names import did_you_mean
-from grader.robot.selectors import is_selector, texts_in
+from grader.robot.link_tree import is_selector, texts_in
 from grader.submission.submission import Lab
 from grader.text import printable_path, shell_quoted
 

@@ -11,8 +11,8 @@ from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 from grader.problems import Problem
 from grader.robot.kinematics import Configuration
+from grader.robot.link_tree import is_selector, selected_link
 from grader.robot.model import Joint
-from grader.robot.selectors import is_selector, selected_link
 from grader.source import Source
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read

@@ -13,7 +13,7 @@ from grader.grading import keys
 from grader.grading.criterion import DEADLINE, TOTAL
 from grader.grading.toml_file import TomlPath
 from grader.grading.toml_rows import KeyTable, TomlRow, TomlRowReader, shorten_value
-from grader.robot.selectors import is_selector, texts_in
+from grader.robot.link_tree import is_selector, texts_in
 from grader.text import enumerated
 
 _MAX_LISTED = 20  # names in one message

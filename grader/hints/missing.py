@@ -7,7 +7,7 @@ from grader.grading.criterion import Criterion
 from grader.hints.edits import Proposal
 from grader.hints.robot.difference import MissingPart, RobotDifference
 from grader.hints.trials import FoundHint
-from grader.robot.selectors import texts_in
+from grader.robot.link_tree import texts_in
 from grader.text import enumerated
 
 _MAX_SIBLINGS, _MAX_NAMED = 2, 4

@@ -5,8 +5,8 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 from grader.errors import MissingElement, NotDecided
 from grader.grading.criterion import Criterion
 from grader.robot.kinematics import Configuration
+from grader.robot.link_tree import selected_link, texts_in
 from grader.robot.model import Robot
-from grader.robot.selectors import selected_link, texts_in
 from grader.submission.urdf import known_links
 
 _MAX_LINKS = 40

@@ -10,10 +10,9 @@ from math import dist, hypot
 from typing import NamedTuple
 
 from grader.errors import MissingElement, NotDecided
-from grader.robot.frames import placed_by
-from grader.robot.kinematics import Configuration
-from grader.robot.likeness import turn_between
+from grader.robot.kinematics import Configuration, placed_by
 from grader.robot.model import Joint, Link, Origin, Robot
+from grader.robot.shapes import turn_between
 from grader.robot.transforms import IDENTITY, IDENTITY_ROTATION, Rotation, Transform, Vector, minus
 
 _NEAR = 0.005  # metres

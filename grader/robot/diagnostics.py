@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from grader.names import closest, did_you_mean
 from grader.problems import Effect, Kind, Problem
-from grader.robot import catalogue
+from grader.robot import urdf_problems
 from grader.robot.model import Joint, Origin, UnresolvedPart, UnresolvedParts
 from grader.robot.numbers import NumberError, number, vector
 from grader.robot.transforms import Vector
@@ -23,16 +23,16 @@ _MAX_GUESSES = 50  # in one file, because they take long
 _PRINTED = frozenset({"origin", "box", "cylinder", "sphere", "mass"})  # whose values urdfdom uses as printf's format
 FULL_TURN = 6.2832  # radians
 _OF_MISSING = (
-    catalogue.UNKNOWN_LINK,
-    catalogue.TWO_ROOTS,
-    catalogue.NO_ROOT,
-    catalogue.NO_LINKS,
-    catalogue.MIMIC_TARGET,
+    urdf_problems.UNKNOWN_LINK,
+    urdf_problems.TWO_ROOTS,
+    urdf_problems.NO_ROOT,
+    urdf_problems.NO_LINKS,
+    urdf_problems.MIMIC_TARGET,
 )
 _ZERO: Vector = (0.0, 0.0, 0.0)
 _NOTHING: UnresolvedParts = {}
 
-Value = TypeVar("Value")
+_Value = TypeVar("_Value")
 
 
 class Problems:
@@ -130,7 +130,7 @@ class Problems:
         """Add a problem if ROS 2 passes this text to printf and it contains a directive that can crash it."""
         if "%" in text and _FORMAT_DIRECTIVE.search(text):
             message = "ROS 2 passes this value to printf as a format, where %n writes to memory: it can crash"
-            self.add(catalogue.FORMAT_DIRECTIVE, message, element, attribute)
+            self.add(urdf_problems.FORMAT_DIRECTIVE, message, element, attribute)
 
 
 class ElementReader:
@@ -179,10 +179,10 @@ class ElementReader:
             angle = next((angle for angle in rpy if abs(angle) > FULL_TURN and angle % 15 == 0), None)
             if angle is not None:
                 message = f"rpy is in radians, and {angle:g} is more than a full turn: is it in degrees?"
-                self._problems.add(catalogue.DEGREES, message, element, "rpy")
+                self._problems.add(urdf_problems.DEGREES, message, element, "rpy")
         return Origin(xyz, rpy, self._problems.location(element))
 
-    def _value(self, element: Element, attribute: str, parse: Callable[[str], Value], default: Value) -> Value:
+    def _value(self, element: Element, attribute: str, parse: Callable[[str], _Value], default: _Value) -> _Value:
         text = element.get(attribute)
         if text is None:
             return default

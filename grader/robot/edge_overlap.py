@@ -13,9 +13,9 @@ from grader.robot.model import Box, Cylinder
 from grader.robot.shapes import straight_edges
 from grader.robot.transforms import Transform, Vector
 
-Array = np.ndarray[Any, np.dtype[np.float64]]
+_Array = np.ndarray[Any, np.dtype[np.float64]]
 
-SAGITTA = 4e-5  # metres from a rim to the polygon that replaces it; two of these are less than 0.1 mm
+_SAGITTA = 4e-5  # metres from a rim to the polygon that replaces it; two of these are less than 0.1 mm
 _MIN_RELATIVE_SAGITTA = 4e-6  # of the radius, so that a rim of more than 10 m has no more corners than one of 10 m
 _ROUNDING = 1e-9  # the sine of an angle that counts as zero
 _STEPS = np.arange(-8, 9) / 8.0
@@ -25,7 +25,7 @@ def least_edge_overlap(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -
     """Return the unit normal of least overlap among those that two straight edges, an edge and a rim, or two rims span.
 
     If the rims were polygons, these and the normals of flat faces would be all that the separating axis test needs; a
-    rim differs from its polygon by no more than `SAGITTA`. Two more rounds refine the best normal.
+    rim differs from its polygon by no more than `_SAGITTA`. Two more rounds refine the best normal.
     """
     rotation = np.array(T_a_b.rotation).reshape(3, 3)
     straight = np.array([*straight_edges(a), *map(T_a_b.rotate, straight_edges(b))]).T
@@ -46,30 +46,30 @@ def least_edge_overlap(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -
     return (x, y, z)
 
 
-def _cross_products(p: Array, q: Array) -> Array:
+def _cross_products(p: _Array, q: _Array) -> _Array:
     """Return the cross products of directions of shape (3, n) and (3, m), as (3, n m). np.cross is far slower."""
     (a, b, c), (x, y, z) = p[:, :, None], q[:, None, :]
     return np.array((b * z - c * y, c * x - a * z, a * y - b * x)).reshape(3, -1)
 
 
-def _all_around(radius: float) -> Array:
+def _all_around(radius: float) -> _Array:
     """Return the directions of a polygon's edges as angles over half a turn; the other half repeats them."""
-    sagitta = max(SAGITTA, _MIN_RELATIVE_SAGITTA * abs(radius))
+    sagitta = max(_SAGITTA, _MIN_RELATIVE_SAGITTA * abs(radius))
     count = max(2, ceil(pi / 2.0 * sqrt(abs(radius) / sagitta / 2.0)))  # because 1 - cos(t) is at most t**2 / 2
     return np.linspace(0.0, pi, count, endpoint=False)
 
 
-def _closer(turns: Array, middle: float) -> Array:
-    closer: Array = middle + (turns[1] - turns[0]) * _STEPS
+def _closer(turns: _Array, middle: float) -> _Array:
+    closer: _Array = middle + (turns[1] - turns[0]) * _STEPS
     return closer
 
 
-def _half_widths(shape: Box | Cylinder, directions: Array) -> Array:
+def _half_widths(shape: Box | Cylinder, directions: _Array) -> _Array:
     """Return `half_width` for directions of shape (3, n)."""
     x, y, z = directions
     if isinstance(shape, Box):
         a, b, c = shape.size
-        widths: Array = (abs(a * x) + abs(b * y) + abs(c * z)) / 2.0
+        widths: _Array = (abs(a * x) + abs(b * y) + abs(c * z)) / 2.0
     else:
         widths = abs(shape.radius) * (x * x + y * y) ** 0.5 + abs(shape.length / 2.0 * z)
     return widths

@@ -2,7 +2,7 @@
 
 from itertools import islice
 
-from grader.robot import catalogue
+from grader.robot import urdf_problems
 from grader.robot.diagnostics import FULL_TURN, ElementReader, Problems, first_children
 from grader.robot.model import Calibration, Dynamics, Joint, Limit, Mimic, Robot, SafetyController
 from grader.robot.transforms import X_AXIS, Vector, unit
@@ -23,19 +23,19 @@ def read_joint(element: Element, problems: Problems) -> Joint:
     name, kind = element.get("name", ""), element.get("type", "")
     label = quoted(name)
     if element.get("name") is None:
-        problems.add(catalogue.JOINT_WITHOUT_NAME, f"this joint has no name; {_REJECTED}", element)
+        problems.add(urdf_problems.JOINT_WITHOUT_NAME, f"this joint has no name; {_REJECTED}", element)
     _check_type(element, kind, label, problems)
     inside = first_children(element)
     parent = _link_name(element, inside, "parent", label, problems)
     child = _link_name(element, inside, "child", label, problems)
-    reader = ElementReader(problems, catalogue.BAD_JOINT_ORIGIN)
+    reader = ElementReader(problems, urdf_problems.BAD_JOINT_ORIGIN)
     origin = reader.origin(inside.get("origin"))
     axis = _read_axis(element, inside.get("axis"), kind, problems)
     limit = _read_limit(element, inside.get("limit"), kind, problems)
     if kind in ("floating", "planar"):
         how = "does not publish it" if kind == "floating" else "treats it as fixed"
         message = f"joint {label} is {kind}: robot_state_publisher {how}"
-        problems.add(catalogue.UNPUBLISHED_JOINT, message, element, "type")
+        problems.add(urdf_problems.UNPUBLISHED_JOINT, message, element, "type")
     axis_at = problems.location(inside["axis"]) if "axis" in inside else None
     unresolved = problems.parts(element)
     is_open = "" in unresolved  # then a missing element may be there all the same
@@ -61,13 +61,13 @@ def read_joint(element: Element, problems: Problems) -> Joint:
 
 def _check_type(element: Element, kind: str, label: str, problems: Problems) -> None:
     if element.get("type") is None:
-        problems.add(catalogue.TYPE_MISSING, f"joint {label} has no type; {_REJECTED}", element)
+        problems.add(urdf_problems.TYPE_MISSING, f"joint {label} has no type; {_REJECTED}", element)
     elif kind not in JOINT_TYPES:
         guess = problems.did_you_mean(kind.strip(), JOINT_TYPES)
         if kind.strip().lower() in JOINT_TYPES:
             guess = f"; write {kind.strip().lower()!r}, in lower case and without spaces"
         message = f"joint {label} has the unknown type {quoted(kind)}; {_REJECTED}{guess}"
-        problems.add(catalogue.TYPE_UNKNOWN, message, element, "type")
+        problems.add(urdf_problems.TYPE_UNKNOWN, message, element, "type")
 
 
 def _link_name(element: Element, inside: dict[str, Element], role: str, label: str, problems: Problems) -> str:
@@ -76,7 +76,7 @@ def _link_name(element: Element, inside: dict[str, Element], role: str, label: s
     link = named.get("link") if named is not None else None
     if not link:
         message = f'joint {label} has no {role} link (<{role} link="..."/>); {_REJECTED}'
-        problems.add(catalogue.NO_PARENT_OR_CHILD, message, element if named is None else named, "link")
+        problems.add(urdf_problems.NO_PARENT_OR_CHILD, message, element if named is None else named, "link")
     return link or ""
 
 
@@ -86,18 +86,18 @@ def _read_axis(element: Element, axis: Element | None, kind: str, problems: Prob
     if axis is None:
         if kind in MOVING_TYPES:
             message = "this joint has no <axis>; ROS 2 uses the x axis, 1 0 0"
-            problems.add(catalogue.DEFAULT_AXIS, message, element)
+            problems.add(urdf_problems.DEFAULT_AXIS, message, element)
         return X_AXIS
-    reader = ElementReader(problems, catalogue.BAD_AXIS)
+    reader = ElementReader(problems, urdf_problems.BAD_AXIS)
     direction = reader.vector(axis, "xyz")
     if reader.failed:
         return None
     if unit(direction) is None:
         message = "this axis has length 0; ROS 2 loads it, but every pose below this joint is undefined"
-        problems.add(catalogue.ZERO_AXIS, message, axis, "xyz")
+        problems.add(urdf_problems.ZERO_AXIS, message, axis, "xyz")
     elif abs(sum(component * component for component in direction) - 1.0) > 0.02:  # 0.71 0.71 0 is rounded only
         message = "only the direction of an axis counts: ROS 2 normalizes it"
-        problems.add(catalogue.SCALED_AXIS, message, axis, "xyz")
+        problems.add(urdf_problems.SCALED_AXIS, message, axis, "xyz")
     return direction
 
 
@@ -105,14 +105,14 @@ def _read_limit(element: Element, limit: Element | None, kind: str, problems: Pr
     if limit is None:
         if kind in _WITH_LIMIT:
             message = f"a {kind} joint needs <limit> with effort and velocity; {_REJECTED}"
-            problems.add(catalogue.LIMIT_MISSING, message, element, "type")
+            problems.add(urdf_problems.LIMIT_MISSING, message, element, "type")
         return None
-    reader = ElementReader(problems, catalogue.BAD_LIMIT)
+    reader = ElementReader(problems, urdf_problems.BAD_LIMIT)
     lower, upper = reader.number(limit, "lower"), reader.number(limit, "upper")
     effort, velocity = reader.number(limit, "effort"), reader.number(limit, "velocity")
     if kind in _WITH_LIMIT and lower >= upper and not reader.failed:
         message = f"lower {lower:g} is not below upper {upper:g}: the joint cannot move"
-        problems.add(catalogue.EMPTY_RANGE, message, limit, "lower" if "lower" in limit.attrib else "upper")
+        problems.add(urdf_problems.EMPTY_RANGE, message, limit, "lower" if "lower" in limit.attrib else "upper")
     if kind == "revolute":
         _check_degrees(limit, {"lower": lower, "upper": upper}, problems)
     return Limit(lower, upper, effort, velocity, problems.location(limit))
@@ -123,12 +123,12 @@ def _check_degrees(limit: Element, ends: dict[str, float], problems: Problems) -
         # Degrees are round numbers: 10 and 15 are also taken for degrees, 31.4 (five turns in radians) is not.
         if FULL_TURN < abs(angle) <= _MAX_DEGREES and angle % 5 == 0:
             message = f"{attribute} is in radians, and {angle:g} is more than a full turn: is it in degrees?"
-            problems.add(catalogue.LIMIT_IN_DEGREES, message, limit, attribute)
+            problems.add(urdf_problems.LIMIT_IN_DEGREES, message, limit, attribute)
             return
 
 
 def _read_mimic(element: Element, problems: Problems) -> Mimic | None:
-    reader = ElementReader(problems, catalogue.BAD_MIMIC)
+    reader = ElementReader(problems, urdf_problems.BAD_MIMIC)
     joint = element.get("joint")
     if joint is None:
         reader.fail("<mimic> has no joint", element)
@@ -137,7 +137,7 @@ def _read_mimic(element: Element, problems: Problems) -> Mimic | None:
 
 
 def _read_dynamics(element: Element, problems: Problems) -> Dynamics | None:
-    reader = ElementReader(problems, catalogue.BAD_DYNAMICS)
+    reader = ElementReader(problems, urdf_problems.BAD_DYNAMICS)
     if "damping" not in element.attrib and "friction" not in element.attrib:
         reader.fail("<dynamics> has neither damping nor friction", element)
         return None
@@ -145,7 +145,7 @@ def _read_dynamics(element: Element, problems: Problems) -> Dynamics | None:
 
 
 def _read_safety(element: Element, problems: Problems) -> SafetyController:
-    reader = ElementReader(problems, catalogue.BAD_SAFETY)
+    reader = ElementReader(problems, urdf_problems.BAD_SAFETY)
     return SafetyController(
         reader.number(element, "k_velocity"),
         reader.number(element, "soft_lower_limit"),
@@ -156,7 +156,7 @@ def _read_safety(element: Element, problems: Problems) -> SafetyController:
 
 
 def _read_calibration(element: Element, problems: Problems) -> Calibration:
-    reader = ElementReader(problems, catalogue.BAD_CALIBRATION)
+    reader = ElementReader(problems, urdf_problems.BAD_CALIBRATION)
     rising, falling = (
         reader.number(element, name) if name in element.attrib else None for name in ("rising", "falling")
     )
@@ -176,14 +176,16 @@ def check_references(robot: Robot, problems: Problems) -> None:
                 guess = guess or f"; the links are: {', '.join(map(quoted, islice(links, _MAX_NAMED)))}"
                 message = f"the {role} link {quoted(name)} of joint {quoted(joint.name)} does not exist"
                 message += f"; ROS 2 rejects the file{guess}"
-                problems.add(catalogue.UNKNOWN_LINK, message, _child_element(joint, role, problems), "link")
+                problems.add(urdf_problems.UNKNOWN_LINK, message, _child_element(joint, role, problems), "link")
         if joint.mimic is not None and not robot.has_joint(joint.mimic.joint) and not is_joint_open:
             guess = problems.did_you_mean(joint.mimic.joint, [other.name for other in robot.joints])
             message = f"joint {quoted(joint.name)} mimics {quoted(joint.mimic.joint)}, which does not exist{guess}"
-            problems.add(catalogue.MIMIC_TARGET, message, _child_element(joint, "mimic", problems), "joint")
+            problems.add(urdf_problems.MIMIC_TARGET, message, _child_element(joint, "mimic", problems), "joint")
     for loop in _mimic_loops(robot):
         message = f"joint {quoted(loop[0])} mimics itself: {' -> '.join(map(quoted, (*loop[:_MAX_STEPS], loop[0])))}"
-        problems.add(catalogue.MIMIC_TARGET, message, _child_element(robot.joint(loop[0]), "mimic", problems), "joint")
+        problems.add(
+            urdf_problems.MIMIC_TARGET, message, _child_element(robot.joint(loop[0]), "mimic", problems), "joint"
+        )
 
 
 def _child_element(joint: Joint, tag: str, problems: Problems) -> Element:

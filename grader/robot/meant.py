@@ -28,7 +28,7 @@ class Word(NamedTuple):
     sentence: str
 
 
-class AsMeant(NamedTuple):
+class _AsMeant(NamedTuple):
     """What ROS 2 would read if some words were others; the problems say which."""
 
     robot: Robot
@@ -36,7 +36,7 @@ class AsMeant(NamedTuple):
     words: list[Word]
 
 
-def read_as_meant(root: Element, robot: Robot, read: Callable[[], tuple[Robot, Problems]]) -> AsMeant | None:
+def read_as_meant(root: Element, robot: Robot, read: Callable[[], tuple[Robot, Problems]]) -> _AsMeant | None:
     """Return what a rejected file means; None if a word can stand for several, or ROS 2 would still reject the file.
 
     `robot` was read from `root`, and `read` reads it again. The elements are as before at the end.
@@ -56,7 +56,7 @@ def read_as_meant(root: Element, robot: Robot, read: Callable[[], tuple[Robot, P
             robot, problems = read()
             if "rejects" not in problems.effects:
                 assumed = [problems.assumed(word.element, word.attribute, word.sentence) for word in undone]
-                return AsMeant(robot, [*problems.listed, *assumed], undone)
+                return _AsMeant(robot, [*problems.listed, *assumed], undone)
         return None
     finally:
         for element, tag, attributes in reversed(before):

@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Iterator
 from hashlib import sha256
 from typing import Any
 
-from grader.robot.frames import placed_by
+from grader.robot.kinematics import placed_by
 from grader.robot.model import Collision, Cylinder, Dynamics, Geometry, Joint, Link, Robot, Sphere, Visual
 from grader.robot.reader import Reading
 from grader.robot.shapes import is_empty

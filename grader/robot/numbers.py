@@ -19,14 +19,14 @@ _COMMA = r"[+-]?[0-9]+,[0-9]+"  # 0,15 for 0.15
 _VERSION = r"[ \t\n\v\f\r]*([+-]?[0-9]+)"
 _MAX_LONG = 2**63 - 1
 
-Value = TypeVar("Value")
+_Value = TypeVar("_Value")
 
 
 class NumberError(ValueError):
     """Text that ROS 2 does not read as a number; the message says why."""
 
 
-def _cache(read: Callable[[str], Value]) -> Callable[[str], Value]:
+def _cache(read: Callable[[str], _Value]) -> Callable[[str], _Value]:
     """Return a reader that keeps values: the files of a class contain the same few texts thousands of times."""
     cached = lru_cache(maxsize=4096)(read)
     return wraps(read)(lambda text: cached(text) if len(text) <= _MAX_CACHED_LENGTH else read(text))

@@ -32,7 +32,7 @@ from grader.text import quoted
 _KEYS = {"name": "@name", "type": "@type", "visuals": "visual", "collisions": "collision"}  # in UnresolvedParts
 _OF_PLACE = ("name", "parent", "child", "type", "origin", "axis")  # what xacro refuses of these is wrong, not missing
 
-Value = TypeVar("Value")
+_Value = TypeVar("_Value")
 
 
 def guarded(robot: Robot, parents: Mapping[str, Joint]) -> tuple[Robot, dict[str, Joint]]:
@@ -62,7 +62,7 @@ def _view_of_material(material: Material) -> Material:
     return _MaterialView(material) if any(part.reason for part in material.unresolved.values()) else material
 
 
-def _value_if_known(part: Link | Joint, field: str, value: Value) -> Value:
+def _value_if_known(part: Link | Joint, field: str, value: _Value) -> _Value:
     """Return the value of a field of a link or joint; raise NotDecided or MissingElement if it is open."""
     key = _KEYS.get(field, field)
     found = part.unresolved.get(key)

@@ -1,4 +1,4 @@
-"""Read a URDF as ROS 2 (Jazzy) does, and report everything that is wrong with it."""
+"""Read a URDF as ROS 2 (Jazzy) does, and report everything that is wrong with it, also names that look misspelt."""
 
 import re
 from collections.abc import Collection, Iterator, Mapping
@@ -7,26 +7,31 @@ from functools import partial
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from grader.problems import Effect, Problem, causes, in_order
-from grader.robot import catalogue
+from grader.robot import urdf_problems
 from grader.robot.diagnostics import Problems
 from grader.robot.joints import check_references, read_joint
-from grader.robot.links import read_link
-from grader.robot.materials import Materials
+from grader.robot.link_tree import check_tree
+from grader.robot.links import Materials, read_link
 from grader.robot.model import Joint, Link, Robot
 from grader.robot.numbers import is_version_one
-from grader.robot.spelling import check_spelling
-from grader.robot.tree import check_tree
 from grader.source import Source
 from grader.text import quoted
 from grader.xml.parsing import Element, Unresolved, XmlDocument, read_document
+from grader.xml.urdf_format import ATTRIBUTES, CHILDREN, TAGS
 
 if TYPE_CHECKING:
     from grader.robot.meant import Word
+
 
 Verdict = Literal["clean", "degraded", "rejected"]
 
 _FATAL: frozenset[Effect] = frozenset({"rejects", "undetermined"})
 _XACRO = re.compile(r"<xacro:|\$\{|\$\(")
+# Correct names that urdfdom does not read: they are not misspellings.
+_EXTENSIONS = frozenset(
+    {"gazebo", "transmission", "hardwareInterface", "ros2_control", "sensor", "plugin"}
+    | {"drake", "mujoco", "capsule", "verbose"}
+)
 
 
 class Reading(NamedTuple):
@@ -87,7 +92,7 @@ def read_robot(document: XmlDocument) -> Reading:
         if root is not None:
             message = f"the root of the file is <{root.tag.rpartition('}')[2]}>, expected <robot>; ROS 2 rejects it"
             at = source.tag(0)
-        listed.append(Problem(catalogue.NO_ROBOT, message, at))
+        listed.append(Problem(urdf_problems.NO_ROBOT, message, at))
     return Reading(_verdict(effects), None, in_order(listed), source, root, document.unresolved)
 
 
@@ -112,7 +117,7 @@ def _read_content(document: XmlDocument, root: Element) -> Reading:
     listed += found
     if problems.unlisted:
         message = f"{problems.unlisted} more problems of this file are not listed"
-        listed.append(Problem(catalogue.UNLISTED, message, document.source.at(len(document.source.text))))
+        listed.append(Problem(urdf_problems.UNLISTED, message, document.source.at(len(document.source.text))))
     verdict = _verdict(effects)
     if verdict == "rejected":
         robot = replace(robot, rejected=not is_meant or "undetermined" in effects, incomplete=incomplete)
@@ -127,11 +132,11 @@ def _verdict(effects: Collection[Effect]) -> Verdict:
 def _read_robot(document: XmlDocument, root: Element) -> tuple[Robot, Problems]:
     problems = Problems(document, root)
     if root.get("name") is None:
-        problems.add(catalogue.ROBOT_WITHOUT_NAME, "<robot> has no name; ROS 2 rejects the file", root)
+        problems.add(urdf_problems.ROBOT_WITHOUT_NAME, "<robot> has no name; ROS 2 rejects the file", root)
     version = root.get("version")
     if version is not None and not is_version_one(version):
         message = f'version="{version[:40]}" is not supported, expected 1.0; ROS 2 rejects the file'
-        problems.add(catalogue.BAD_VERSION, message, root, "version")
+        problems.add(urdf_problems.BAD_VERSION, message, root, "version")
     materials = Materials(problems)
     for element in root.iterchildren("material"):
         materials.define(element)
@@ -140,17 +145,17 @@ def _read_robot(document: XmlDocument, root: Element) -> tuple[Robot, Problems]:
     for element in root.iterchildren("link"):
         link = read_link(element, problems, materials)
         if link.name in links:
-            problems.duplicate(catalogue.DUPLICATE_LINK, element, elements[link.name])
+            problems.duplicate(urdf_problems.DUPLICATE_LINK, element, elements[link.name])
         else:
             links[link.name], elements[link.name] = link, element
     if not links:
-        problems.add(catalogue.NO_LINKS, "the robot has no <link>; ROS 2 rejects the file", root)
+        problems.add(urdf_problems.NO_LINKS, "the robot has no <link>; ROS 2 rejects the file", root)
     robot = Robot(
         root.get("name") or "", tuple(links.values()), _read_joints(root, problems), tuple(materials.known.values())
     )
     check_references(robot, problems)
     check_tree(robot, elements, problems)
-    check_spelling(root, problems)
+    _check_spelling(root, problems)
     _check_root_inertia(robot, elements, problems)
     if root is document.root:
         _check_text(problems, is_expanded=document.is_expanded)
@@ -173,7 +178,7 @@ def _read_joints(root: Element, problems: Problems) -> tuple[Joint, ...]:
         joint = read_joint(element, problems)
         joints.append(joint)
         if element.get("name") is not None and elements.setdefault(joint.name, element) is not element:
-            problems.duplicate(catalogue.DUPLICATE_JOINT, element, elements[joint.name])
+            problems.duplicate(urdf_problems.DUPLICATE_JOINT, element, elements[joint.name])
     return tuple(joints)
 
 
@@ -182,7 +187,7 @@ def _check_root_inertia(robot: Robot, links: dict[str, Element], problems: Probl
     for link in robot.links:
         if link.inertial is not None and link.name not in children:
             message = f"the root link {quoted(link.name)} has an inertia: KDL ignores it, robot_state_publisher warns"
-            problems.add(catalogue.ROOT_INERTIA, message, next(links[link.name].iterchildren("inertial")))
+            problems.add(urdf_problems.ROOT_INERTIA, message, next(links[link.name].iterchildren("inertial")))
 
 
 def find_xacro(text: str) -> int | None:
@@ -203,12 +208,12 @@ def _check_text(problems: Problems, *, is_expanded: bool) -> None:
 
         name = problems.source.path.rpartition("/")[2]
         message = f"this is xacro, which ROS 2 does not evaluate in a .urdf: run `ros2 run xacro xacro {quote(name)}`"
-        problems.listed.append(Problem(catalogue.RAW_XACRO, message, problems.source.at(xacro)))
+        problems.listed.append(Problem(urdf_problems.RAW_XACRO, message, problems.source.at(xacro)))
     for start, end in _comments(text):
         if text.find(": ", start, end) >= 0 or text.find("\t", start, end) >= 0:
             message = "this comment contains a colon and a space, or a tab"
             message += ": it can stop a launch file that passes the URDF as YAML"
-            problems.listed.append(Problem(catalogue.COMMENT_TRAP, message, problems.source.at(start)))
+            problems.listed.append(Problem(urdf_problems.COMMENT_TRAP, message, problems.source.at(start)))
             break
 
 
@@ -218,3 +223,64 @@ def _comments(text: str) -> Iterator[tuple[int, int]]:
     while start >= 0 and (end := text.find("-->", start + 4)) >= 0:
         yield start, end
         start = text.find("<!--", end)
+
+
+def _check_spelling(root: Element, problems: Problems) -> None:
+    """Report misspelt names and repeated elements in what urdfdom reads; extensions of other tools are skipped."""
+    if not ATTRIBUTES["robot"].issuperset(root.keys()):
+        _check_attributes(root, problems)
+    waiting = [root]
+    while waiting:
+        element = waiting.pop()
+        allowed = CHILDREN[element.tag]
+        tags = []
+        for child in element:
+            tag = child.tag
+            tags.append(tag)
+            if tag in allowed:
+                if not ATTRIBUTES[tag].issuperset(child.keys()):
+                    _check_attributes(child, problems)
+                if tag in CHILDREN and len(child):
+                    waiting.append(child)
+            elif tag not in _EXTENSIONS:
+                _check_tag(child, element.tag, allowed, problems)
+        if element is not root and len(tags) > 1 and (len(set(tags)) < len(tags) or element.tag == "geometry"):
+            _check_repeated(element, tags, problems)
+
+
+def _check_attributes(element: Element, problems: Problems) -> None:
+    known, given = ATTRIBUTES[element.tag], list(map(str, element.keys()))
+    missing = known - set(given)
+    for name in given:
+        if name in known or name.startswith("{"):
+            continue
+        meant = TAGS[element.tag].aliases.get(name) or problems.closest(name, missing)
+        if meant:
+            message = f"ROS 2 ignores the unknown attribute {quoted(name)} of <{element.tag}>"
+            problems.add(urdf_problems.MISSPELT, f"{message}; did you mean {quoted(meant)}?", element, name)
+
+
+def _check_tag(child: Element, parent: str, allowed: tuple[str, ...], problems: Problems) -> None:
+    if child.tag.startswith("{"):  # a prefix is not a misspelling
+        return
+    meant = problems.closest(child.tag, allowed)
+    if meant:
+        message = f"ROS 2 ignores <{child.tag}> in <{parent}>; did you mean <{meant}>?"
+    elif child.tag in ATTRIBUTES:
+        message = f"ROS 2 ignores <{child.tag}> in <{parent}>: it does not belong there"
+    else:
+        return
+    problems.add(urdf_problems.MISSPELT, message, child)
+
+
+def _check_repeated(element: Element, tags: list[str], problems: Problems) -> None:
+    seen: set[str] = set()
+    for child, tag in zip(element, tags, strict=True):
+        if element.tag == "geometry" and seen:
+            problems.add(
+                urdf_problems.REPEATED_ELEMENT, "a <geometry> has one shape: ROS 2 reads only the first", child
+            )
+        elif tag in seen and tag in TAGS[element.tag].children and tag not in TAGS[element.tag].repeated:
+            message = f"<{tag}> is repeated in this <{element.tag}>: ROS 2 reads only the first"
+            problems.add(urdf_problems.REPEATED_ELEMENT, message, child)
+        seen.add(tag)

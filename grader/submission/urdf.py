@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.names import closest
 from grader.problems import Problem, causes, in_order
 from grader.python.budget import Budget
-from grader.robot.catalogue import RAW_XACRO
 from grader.robot.model import Robot
 from grader.robot.reader import Reading, find_xacro, read_robot, read_urdf
+from grader.robot.urdf_problems import RAW_XACRO
 from grader.source import Source
 from grader.xml.catalogue import DOCTYPE, NOT_WELL_FORMED
 

@@ -13,8 +13,7 @@ from grader.authoring.trial import Trial, breaks
 from grader.checks.check import EQUIVALENTS
 from grader.checks.registry import find_check
 from grader.grading.criterion import Criterion
-from grader.robot.frames import placed_by
-from grader.robot.kinematics import Configuration
+from grader.robot.kinematics import Configuration, placed_by
 from grader.robot.model import Robot
 from grader.submission.opening import read_submission
 from grader.submission.urdf import Read

@@ -1,8 +1,7 @@
 """What a robot shows and how it moves, whatever its frames, to compare two robots."""
 
 from grader.errors import MissingElement, NotDecided
-from grader.robot.frames import placed_by
-from grader.robot.kinematics import Configuration
+from grader.robot.kinematics import Configuration, placed_by
 from grader.robot.model import Box, Cylinder, Sphere, Visual
 from grader.robot.shapes import half_width, is_empty
 from grader.robot.transforms import Vector, unit

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from grader.robot.frames import SINGLE
-from grader.robot.kinematics import Configuration
+from grader.robot.kinematics import SINGLE, Configuration
 from grader.robot.model import Robot
 from grader.robot.reader import read_urdf
 from tests.oracles.example_robots import MISSING

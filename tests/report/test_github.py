@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from grader.grading.report import Report
 from grader.problems import Problem
 from grader.report.annotations import command, render_github
-from grader.robot.catalogue import UNDEFINED_MATERIAL
+from grader.robot.urdf_problems import UNDEFINED_MATERIAL
 from grader.source import Base, Location
 from grader.text import printable
 from tests.report.readers import read_commands

@@ -12,9 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.errors import MissingElement
-from grader.robot.frames import SINGLE
 from grader.robot.joints import MOVING_TYPES
-from grader.robot.kinematics import Configuration
+from grader.robot.kinematics import SINGLE, Configuration
 from grader.robot.model import Joint, Link, Mimic, Origin, Robot
 from grader.robot.reader import read_urdf
 from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_about, rotation_from_rpy, unit

@@ -6,9 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.robot.likeness import mismatch, turn_between
 from grader.robot.model import Box, Cylinder, Sphere
-from grader.robot.shapes import Shape
+from grader.robot.shapes import Shape, mismatch, turn_between
 from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_about, rotation_from_rpy
 
 TOLERANCE = 0.002

@@ -8,10 +8,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from grader.errors import MissingElement
-from grader.robot.catalogue import CATALOGUE
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Origin
 from grader.robot.reader import Reading, read_urdf
+from grader.robot.urdf_problems import CATALOGUE
 from tests.examples import examples, spread
 from tests.robot.builders import joint, links, robot
 from tests.robot.problem_samples import SAMPLES, ProblemSample

@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 from grader.errors import MissingElement, NotDecided
 from grader.hints.targets import selected as linked
 from grader.robot.kinematics import Configuration
+from grader.robot.link_tree import parent_joints, selected_link
 from grader.robot.model import Joint, Link, Mimic, Robot
-from grader.robot.selectors import selected_link
-from grader.robot.tree import parent_joints
 
 # base -fixed- mount -m1- upper -fixed- flange -m2- hand -fixed- tool, and a camera on the base
 ARM = ("bm:fixed", "mu:revolute", "uf:fixed", "fh:prismatic", "ht:fixed", "bc:fixed")

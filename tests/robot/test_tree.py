@@ -5,9 +5,9 @@ from itertools import permutations
 import pytest
 
 from grader.robot.kinematics import Configuration
+from grader.robot.link_tree import parent_joints
 from grader.robot.model import Joint, Link, Robot
 from grader.robot.reader import read_urdf
-from grader.robot.tree import parent_joints
 
 
 def joint(name: str, parent: str, child: str) -> Joint:

@@ -5,9 +5,9 @@ from collections.abc import Collection, Iterator
 from typing import NamedTuple, Self
 
 from grader.hints.edits import element_text
+from grader.robot.link_tree import parent_joints
 from grader.robot.model import Joint, Robot
 from grader.robot.reader import Reading
-from grader.robot.tree import parent_joints
 from grader.source import Source
 from grader.xml.parsing import Element
 

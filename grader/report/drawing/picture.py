@@ -12,7 +12,7 @@ from grader.grading.rubric import Rubric
 from grader.hints.targets import selected
 from grader.report.drawing.scene import Body, Scene, scene_of
 from grader.robot.kinematics import Configuration
-from grader.robot.selectors import texts_in
+from grader.robot.link_tree import texts_in
 from grader.robot.transforms import Transform, Vector
 
 _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines

@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 from grader.checks.motion import travel_of, turning_joint
 from grader.errors import MissingElement, NotDecided
-from grader.robot.frames import placed_by
-from grader.robot.kinematics import Configuration
+from grader.robot.kinematics import Configuration, placed_by
 from grader.robot.model import Box, Cylinder, Link, Mesh, Sphere, Visual
 from grader.robot.shapes import Shape, UnknownShape, is_empty
 from grader.robot.transforms import Z_AXIS, Transform, Vector

@@ -1,16 +1,21 @@
-"""The tree of links: their parent joints, and what keeps them from being one tree.
+"""The tree of links: their parent joints, what keeps them from being one tree, and links that are named by their place.
 
-ROS 2 does so in `model.h` (initTree, initRoot) and kdl_parser (addChildrenToTree).
+ROS 2 makes the tree in `model.h` (initTree, initRoot) and kdl_parser (addChildrenToTree). A rubric can name a link by
+its place in the tree: "@root", "@tip", "@moved:2".
 """
 
-from collections.abc import Iterable
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 from itertools import pairwise
+from typing import Any, NamedTuple
 
-from grader.robot import catalogue
+from grader.errors import MissingElement, NotDecided
+from grader.robot import urdf_problems
 from grader.robot.diagnostics import Problems
 from grader.robot.model import Joint, Robot
-from grader.text import enumerated, quoted
+from grader.text import counted, enumerated, quoted
 from grader.xml.parsing import Element
 
 _MAX_PATHS = 10_000_000  # that ROS 2 follows in a reasonable time
@@ -18,7 +23,10 @@ _MAX_CYCLES = 10
 _MAX_NAMED = 20
 _MAX_ROOTS = 50
 
-Edges = dict[str, list[Joint]]  # the joints by their parent link
+_SELECTOR = re.compile(r"@(?:root|tip|moved:([1-9]\d{0,3}))")
+_MAX_CHOICES = 5  # links that a name may mean, in a message
+
+_Edges = dict[str, list[Joint]]  # the joints by their parent link
 
 
 def parent_joints(robot: Robot) -> dict[str, Joint]:
@@ -73,7 +81,7 @@ def check_tree(robot: Robot, links: dict[str, Element], problems: Problems) -> N
     """Report everything that keeps the links from being one tree. `links` gives their elements by name."""
     parents = parent_joints(robot)
     roots = [link.name for link in robot.links if link.name not in parents]
-    edges: Edges = {}
+    edges: _Edges = {}
     for joint in _complete_joints(robot):
         edges.setdefault(joint.parent, []).append(joint)
     reachable = _reachable(roots, edges)
@@ -88,8 +96,8 @@ def check_tree(robot: Robot, links: dict[str, Element], problems: Problems) -> N
         _check_paths(roots, edges, links, problems)
 
 
-def _check_two_parents(edges: Edges, parents: dict[str, Joint], problems: Problems) -> None:
-    by_child: Edges = {}
+def _check_two_parents(edges: _Edges, parents: dict[str, Joint], problems: Problems) -> None:
+    by_child: _Edges = {}
     for joints in edges.values():
         for joint in joints:
             by_child.setdefault(joint.child, []).append(joint)
@@ -98,10 +106,10 @@ def _check_two_parents(edges: Edges, parents: dict[str, Joint], problems: Proble
             names = " and ".join(quoted(joint.name) for joint in rivals[:_MAX_NAMED])
             taken = f"ROS 2 takes {quoted(parents[child].name)}, the last in name order"
             message = f"link {quoted(child)} is the child of the joints {names}; {taken}"
-            problems.add(catalogue.TWO_PARENTS, message, problems.element(rivals[1]))
+            problems.add(urdf_problems.TWO_PARENTS, message, problems.element(rivals[1]))
 
 
-def _reachable(roots: Iterable[str], edges: Edges) -> set[str]:
+def _reachable(roots: Iterable[str], edges: _Edges) -> set[str]:
     reached = set(roots)
     waiting = list(reached)
     while waiting:
@@ -112,7 +120,7 @@ def _reachable(roots: Iterable[str], edges: Edges) -> set[str]:
     return reached
 
 
-def _predecessors(edges: Edges, links: Iterable[str]) -> dict[str, list[str]]:
+def _predecessors(edges: _Edges, links: Iterable[str]) -> dict[str, list[str]]:
     before: dict[str, list[str]] = {link: [] for link in links}
     for parent in before:
         for joint in edges.get(parent, ()):
@@ -121,7 +129,7 @@ def _predecessors(edges: Edges, links: Iterable[str]) -> dict[str, list[str]]:
     return before
 
 
-def _cycles(edges: Edges, links: list[str]) -> list[list[Joint]]:
+def _cycles(edges: _Edges, links: list[str]) -> list[list[Joint]]:
     """Return up to `_MAX_CYCLES` loops of joints; the links of each are removed before the next is looked for."""
     cycles: list[list[Joint]] = []
     rank = {link: number for number, link in enumerate(links)}
@@ -147,15 +155,15 @@ def _report_cycle(cycle: list[Joint], reachable: set[str], problems: Problems, *
     loop = f"joint {names} forms a loop" if len(cycle) == 1 else f"joints {names} form a loop"
     element = problems.element(cycle[0])
     if cycle[0].parent in reachable:
-        problems.add(catalogue.CYCLE, f"{loop}: {steps}; ROS 2 follows it without end and crashes", element)
+        problems.add(urdf_problems.CYCLE, f"{loop}: {steps}; ROS 2 follows it without end and crashes", element)
     elif has_root:
         message = f"{loop} that is detached from the robot: {steps}; ROS 2 ignores these links"
-        problems.add(catalogue.DETACHED_CYCLE, message, element)
+        problems.add(urdf_problems.DETACHED_CYCLE, message, element)
     else:
-        problems.add(catalogue.NO_ROOT, f"there is no root link: {loop}: {steps}; ROS 2 rejects the file", element)
+        problems.add(urdf_problems.NO_ROOT, f"there is no root link: {loop}: {steps}; ROS 2 rejects the file", element)
 
 
-def _check_roots(robot: Robot, roots: list[str], edges: Edges, links: dict[str, Element], problems: Problems) -> None:
+def _check_roots(robot: Robot, roots: list[str], edges: _Edges, links: dict[str, Element], problems: Problems) -> None:
     explained = {joint.child for joint in robot.joints if not robot.has_link(joint.parent)}
     unknown = [joint.child for joint in robot.joints if not robot.has_link(joint.child)]
     explained |= {problems.closest(child, links) or "" for child in unknown}
@@ -171,14 +179,113 @@ def _check_roots(robot: Robot, roots: list[str], edges: Edges, links: dict[str, 
     all_roots = ", ".join(map(quoted, [main, *others][:_MAX_ROOTS]))
     reason = f"no joint has {them} as its child (the roots are {all_roots})"
     message = f"{named} {verb} not connected to the robot: {reason}; ROS 2 rejects the file"
-    problems.add(catalogue.TWO_ROOTS, message, links[others[0]], "name")
+    problems.add(urdf_problems.TWO_ROOTS, message, links[others[0]], "name")
 
 
-def _check_paths(roots: list[str], edges: Edges, links: dict[str, Element], problems: Problems) -> None:
+def _check_paths(roots: list[str], edges: _Edges, links: dict[str, Element], problems: Problems) -> None:
     paths = dict.fromkeys(links, 0) | dict.fromkeys(roots, 1)
     for name in TopologicalSorter(_predecessors(edges, links)).static_order():
         for joint in edges.get(name, ()):
             paths[joint.child] += paths[name]
     if sum(paths.values()) > _MAX_PATHS:
         message = "links with two parents multiply the paths through the tree: ROS 2 does not finish loading it"
-        problems.add(catalogue.TOO_MANY_PATHS, message, links[roots[0]])
+        problems.add(urdf_problems.TOO_MANY_PATHS, message, links[roots[0]])
+
+
+class _LinkPlace(NamedTuple):
+    """The place of a link in its tree: the root, and how many moving joints are above it."""
+
+    root: str
+    depth: int
+    is_moved: bool  # by its own joint
+
+
+def is_selector(text: str) -> bool:
+    """Return whether a text names a link by its place in the tree."""
+    return _SELECTOR.fullmatch(text) is not None
+
+
+def texts_in(value: Any) -> Iterator[str]:
+    """Yield a text, or the texts in a list or in the values of a table."""
+    match value:
+        case str():
+            yield value
+        case list() | tuple():
+            for item in value:
+                yield from texts_in(item)
+        case Mapping():
+            yield from texts_in(list(value.values()))
+
+
+def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
+    """Return the name of the link that a selector means, and any other text as it is; `parents` are the parent joints.
+
+    Of several trees the one with the most links counts. "@root" is its root. The chain with the most moving joints,
+    which are neither fixed nor mimic joints, leads to "@tip", its last link, and "@moved:2" is the child of its second
+    moving joint.
+
+    Raises MissingElement where there is no such link, NotDecided where several could be meant.
+    """
+    found = _SELECTOR.fullmatch(name)
+    if found is None or robot.has_link(name):
+        return name
+    robot.check_complete()
+    places = _places(robot, parents)
+    root = _main_root(places, name)
+    places = {link: place for link, place in places.items() if place.root == root}
+    if name == "@root":
+        return root
+    most = max(place.depth for place in places.values())
+    if found[1] is None:
+        inner = {parents[link].parent for link in places if link != root}
+        tips = {link for link, place in places.items() if place.depth == most and link not in inner}
+        return _only(robot, tips, name)
+    return _only(robot, _links_of(places, parents, int(found[1]), most, name), name)
+
+
+def _links_of(
+    places: dict[str, _LinkPlace], parents: Mapping[str, Joint], number: int, most: int, name: str
+) -> set[str]:
+    """Return the links that the joint of this number moves, of those on the chains with the most moving joints."""
+    if number > most:
+        longest = f"the longest chain has {counted(most, 'moving joint')}"
+        raise MissingElement("link", name, message=f"there is no {name}: {longest}")
+    on_chain = {link for link, place in places.items() if place.depth == most}
+    for link in reversed(places):  # a link comes after its parent
+        if link in on_chain and link != places[link].root:
+            on_chain.add(parents[link].parent)
+    return {link for link in on_chain if places[link].is_moved and places[link].depth == number}
+
+
+def _places(robot: Robot, parents: Mapping[str, Joint]) -> dict[str, _LinkPlace]:
+    """Return the places of the links that are in a tree, each after that of its parent."""
+    below: dict[str, list[str]] = {}
+    for link, joint in parents.items():
+        below.setdefault(joint.parent, []).append(link)
+    places = {link.name: _LinkPlace(link.name, 0, is_moved=False) for link in robot.links if link.name not in parents}
+    waiting = list(places)
+    while waiting:
+        above = waiting.pop()
+        for link in below.get(above, ()):
+            is_moving = parents[link].type != "fixed" and parents[link].mimic is None
+            places[link] = _LinkPlace(places[above].root, places[above].depth + is_moving, is_moving)
+            waiting.append(link)
+    return places
+
+
+def _main_root(places: Mapping[str, _LinkPlace], name: str) -> str:
+    sizes = Counter(place.root for place in places.values()).most_common()
+    largest = [root for root, size in sizes if size == sizes[0][1]]
+    if len(largest) == 1:
+        return largest[0]
+    message = "no link is the root of the robot" if not largest else "several links are roots of trees of the same size"
+    detail = f": {enumerated([*map(quoted, largest)], _MAX_CHOICES)}" if largest else ""
+    raise MissingElement("link", name, message=f"there is no {name}: {message}", detail=detail)
+
+
+def _only(robot: Robot, links: set[str], name: str) -> str:
+    if len(links) > 1:
+        reason = f"several links can be {name}"
+        in_file = [quoted(link.name) for link in robot.links if link.name in links]
+        raise NotDecided(f"{reason}: {enumerated(in_file, _MAX_CHOICES)}", reason)
+    return min(links)
