@@ -15,13 +15,13 @@ from grader.source import LazyLocation
 from grader.submission.submission import Submission
 from grader.text import enumerated, first_lines, quoted
 from grader.xml.parsing import Element
+from grader.xml.urdf_format import numbers_in
 from grader.xml.wanted_element import (
     FoundElement,
     WantedElement,
     attribute_of,
     elements_at,
     name_of,
-    numbers_in,
     readable,
     steps_of,
     texts_at,

@@ -111,12 +111,12 @@ class Families:
 def _undone(reading: Reading) -> Iterator[Proposal]:
     """Yield the edits of the tags and of the words for which ROS 2 or xacro rejects a file."""
     if reading.verdict == "rejected" and not reading.undone:
-        from grader.xml.tinyxml2.recovery import Recovery  # late: its patterns take long
+        from grader.xml.repair import repair  # late: its patterns take long
 
-        recovery = Recovery(reading.source.text)
-        recovery.run()
-        edits = tuple(reading.source.edit(*change) for change in recovery.changes if not recovery.is_lossy)
-        yield Proposal(edits, "the syntax of tags")
+        repaired = repair(reading.source.text)
+        if not repaired.is_lossy:
+            edits = tuple(reading.source.edit(*change) for change in repaired.changes)
+            yield Proposal(edits, "the syntax of tags")
     draft = Draft.of(reading)
     if draft is not None and reading.undone:
         edits = tuple(edit for word in reading.undone for edit in _of_word(draft, word))

@@ -9,7 +9,7 @@ from grader.reuse import reuse
 from grader.source import Source
 from grader.xacro.scopes import ScopePlace
 from grader.xml.parsing import Element, parse_xml
-from grader.xml.tinyxml2.recovery import Recovery
+from grader.xml.repair import repair
 
 Children = list["XacroNode | str"]
 _OF_TAG, _OF_ATTRIBUTE = 4, 2  # what reading one is charged
@@ -82,12 +82,10 @@ def _read(data: bytes, path: str, is_repaired: bool) -> tuple[XacroNode, int]:
 def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[XacroNode | None, list[Problem]]:
     """Return what can be read of a file with broken tags, None if no link can, and what was assumed."""
     text = _decode(data, budget)
-    recovered = Recovery(text).run()
-    source = Source(path, text, recovered.offsets)
-    assumed = [
-        Problem(found.kind, found.message, source.at(found.offset), found.subject) for found in recovered.differences
-    ]
-    return _nodes(parse_xml(recovered.recovered), source, budget) if recovered.recovered else None, assumed
+    repaired = repair(text)
+    source = Source(path, text, repaired.offsets)
+    assumed = [Problem(found.kind, found.message, source.at(found.offset), found.subject) for found in repaired.assumed]
+    return _nodes(parse_xml(repaired.xml), source, budget) if repaired.xml else None, assumed
 
 
 def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:

@@ -1,14 +1,17 @@
 """XML read by lxml, which may open nothing: no file, no network, no entity; and a URDF as TinyXML2 reads it."""
 
 import re
-from collections.abc import Mapping
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, NamedTuple
 
 from lxml import etree
 
 from grader.problems import Problem
 from grader.source import Location, Source
 from grader.xml.catalogue import NOT_UTF8
+
+if TYPE_CHECKING:
+    from grader.xml.tinyxml2 import Difference, Scan
 
 Element = etree._Element  # noqa: SLF001  lxml has no public name for it
 XMLSyntaxError = etree.XMLSyntaxError
@@ -87,15 +90,29 @@ def read_document(data: bytes, path: str) -> XmlDocument:
             return XmlDocument(parse_xml(body), source, [], 0)
         except XMLSyntaxError:
             pass
-    from grader.xml.tinyxml2.scanner import Scanner  # late: most files are plain, and compiling its patterns takes long
+    from grader.xml.tinyxml2 import scan  # late: most files are plain, and compiling its patterns takes long
 
-    scan = Scanner(text).scan()
-    source = Source(path, text, scan.offsets)
-    problems = [
-        Problem(found.kind, found.message, source.at(found.offset), found.subject) for found in scan.differences
-    ]
-    root, recovered = (parse_xml(xml) if xml else None for xml in (scan.xml, scan.recovered))
-    return XmlDocument(root, source, problems, scan.first_tag, recovered=recovered)
+    scanned = scan(text)
+    if scanned.is_refused:
+        return _read_repaired(text, path, scanned)
+    source = Source(path, text, scanned.offsets)
+    root = parse_xml(scanned.xml) if scanned.xml else None
+    return XmlDocument(root, source, _problems(scanned.differences, source), scanned.first_tag)
+
+
+def _read_repaired(text: str, path: str, refused: "Scan") -> XmlDocument:
+    """Read a text that TinyXML2 refuses as it is after the edits that repair it; places are those in the text."""
+    from grader.xml.repair import repair  # late: few files are broken
+
+    repaired = repair(text)
+    source = Source(path, text, repaired.offsets)
+    recovered = parse_xml(repaired.xml) if repaired.xml else None
+    problems = _problems([*refused.differences, *repaired.assumed], source)
+    return XmlDocument(None, source, problems, refused.first_tag, recovered=recovered)
+
+
+def _problems(differences: "Iterable[Difference]", source: Source) -> list[Problem]:
+    return [Problem(found.kind, found.message, source.at(found.offset), found.subject) for found in differences]
 
 
 def _read_utf_16(data: bytes, path: str) -> XmlDocument:

@@ -1,6 +1,7 @@
 """The format of a URDF: the elements that urdfdom reads, their attributes, and the elements that may be in each."""
 
 from collections.abc import Mapping
+from math import isfinite
 from typing import Literal, NamedTuple, get_args
 
 JointType = Literal["fixed", "continuous", "revolute", "prismatic", "floating", "planar"]
@@ -106,3 +107,12 @@ REQUIRED = {
 }
 # The parts of the numbers in an attribute of this name; texts have none.
 PARTS = {key: one.parts for tag in TAGS.values() for key, one in tag.attributes.items()}
+
+
+def numbers_in(text: str) -> list[float]:
+    """Return the numbers that a text consists of; nothing for any other text."""
+    try:
+        values = [float(piece) for piece in text.split()]
+    except ValueError:
+        return []
+    return values if "_" not in text and all(map(isfinite, values)) else []  # Python reads 1_000 as a number

@@ -2,11 +2,11 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from math import isfinite
 from typing import NamedTuple
 
 from grader.pairing import most_pairs
 from grader.xml.parsing import Element, Unresolved
+from grader.xml.urdf_format import numbers_in
 
 Scalar = str | float | bool
 
@@ -94,15 +94,6 @@ def xml_text(value: Scalar) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return value if isinstance(value, str) else f"{value:.12g}"
-
-
-def numbers_in(text: str) -> list[float]:
-    """Return the numbers that a text consists of; nothing for any other text."""
-    try:
-        values = [float(piece) for piece in text.split()]
-    except ValueError:
-        return []
-    return values if "_" not in text and all(map(isfinite, values)) else []  # Python reads 1_000 as a number
 
 
 def are_there(texts: Sequence[str], expected: Sequence[Scalar], tolerance: float) -> bool:

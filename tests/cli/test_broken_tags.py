@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
-from grader.xml.tinyxml2.recovery import Recovery
+from grader.xml.repair import repair
 from tests.command_line import ROOT, run
 from tests.examples import examples
 from tests.work import limited_work
@@ -38,8 +38,8 @@ def test_recovery_is_linear_in_the_size_of_the_text(name: str, tmp_path: Path) -
 
 def test_a_path_without_quotes_is_read_whole() -> None:
     """A value without quotes ends at a space or at the end of the tag, not at its first slash."""
-    found = Recovery('<robot name="r"><link name="a"/><mesh filename=package://my_robot/caster.stl /></robot>').run()
-    assert b'<mesh filename="package://my_robot/caster.stl"/>' in found.recovered
+    found = repair('<robot name="r"><link name="a"/><mesh filename=package://my_robot/caster.stl /></robot>')
+    assert b'<mesh filename="package://my_robot/caster.stl"/>' in found.xml
 
 
 @examples(40)
@@ -53,9 +53,9 @@ def test_any_damage_is_read_with_its_places(data: st.DataObject) -> None:
         | st.sampled_from(("<link>", "</link>", "<!--", "<![CDATA[", "\0"))
     )
     text = TEXT[:start] + inserted + TEXT[end:]
-    found = Recovery(text).run()
-    if found.recovered:
-        elements = list(etree.fromstring(found.recovered).iter(etree.Element))
+    found = repair(text)
+    if found.xml:
+        elements = list(etree.fromstring(found.xml).iter(etree.Element))
         assert len(elements) == len(found.offsets)
         assert all(text[offset] == "<" for offset in found.offsets)
         assert found.offsets == sorted(found.offsets)

@@ -21,8 +21,8 @@ from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading, read_urdf
 from grader.source import Source
 from grader.xacro.functions import GLOBALS, namespace, read_yaml_values
-from grader.xml.tinyxml2.recovery import Recovery
-from grader.xml.tinyxml2.scanner import Scanner
+from grader.xml.repair import repair
+from grader.xml.tinyxml2 import scan
 from tests.fuzz.harness import check_location, check_message, decoded, files_of
 from tests.report.harmless import is_harmless
 from tests.xacro.comparing import expand
@@ -77,17 +77,16 @@ def inspection(data: bytes) -> None:
 def tinyxml2(data: bytes) -> None:
     """Any bytes are translated into XML with its offsets, or refused; plain ones mean the same to lxml."""
     text = decoded(data)
-    assert_sound(Scanner(text).scan(), text)
+    assert_sound(scan(text), text)
     assert_alike_if_plain(data)
 
 
 def syntax(data: bytes) -> None:
     """The changes with which a broken text is what is read of it fit the text, and none touches another one."""
     source = Source("a.urdf", decoded(data))
-    recovery = Recovery(source.text)
-    recovery.run()
-    edits = tuple(source.edit(*change) for change in recovery.changes)
-    assert recovery.is_lossy or edited(source.text, source.path, edits) is not None
+    repaired = repair(source.text)
+    edits = tuple(source.edit(*change) for change in repaired.changes)
+    assert edited(source.text, source.path, edits) is not None
 
 
 def xacro(data: bytes) -> None:

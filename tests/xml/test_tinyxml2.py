@@ -10,8 +10,7 @@ from lxml import etree
 from grader.robot.reader import read_urdf
 from grader.xml.catalogue import MISPLACED_DECLARATION
 from grader.xml.parsing import is_plain
-from grader.xml.tinyxml2.scanner import Scanner
-from grader.xml.tinyxml2.tags import MAX_NAME_LENGTH, Scan
+from grader.xml.tinyxml2 import MAX_NAME_LENGTH, Scan, scan
 from tests.examples import examples, spread
 from tests.robot.random_text import data
 from tests.work import limited_work
@@ -56,14 +55,14 @@ def assert_sound(scan: Scan, text: str) -> None:
 def test_translation_is_sound(raw: bytes) -> None:
     """Any bytes are translated or refused, and the translation is XML with its offsets."""
     text = decoded(raw)
-    assert_sound(Scanner(text).scan(), text)
+    assert_sound(scan(text), text)
 
 
 @examples(30)
 @given(text=st.text(max_size=200))
 def test_any_text_is_translated_or_refused(text: str) -> None:
     """Text without any tags in mind."""
-    assert_sound(Scanner(text).scan(), text)
+    assert_sound(scan(text), text)
 
 
 # --- Where lxml and TinyXML2 agree ------------------------------------------------------------------------------------
@@ -135,7 +134,7 @@ def assert_same_if_plain(text: str) -> None:
             root = etree.fromstring(raw, _PARSER)
         except etree.XMLSyntaxError:
             return
-        assert tree(root) == tree(etree.fromstring(Scanner(text).scan().xml, _PARSER))
+        assert tree(root) == tree(etree.fromstring(scan(text).xml, _PARSER))
 
 
 @examples(30)
@@ -172,7 +171,7 @@ def assert_alike_if_plain(raw: bytes) -> None:
         return
     if root.tag != "robot" or root.xpath("//*[count(ancestor::*) > 30]"):  # deeper ones are not translated
         return
-    translated = tree(etree.fromstring(Scanner(decoded(raw)).scan().xml, _PARSER))
+    translated = tree(etree.fromstring(scan(decoded(raw)).xml, _PARSER))
     for (tag, attributes), (other, others) in zip(tree(root), translated, strict=True):
         if _is_plain_name(tag.replace("_", "a")):
             assert tag == other
@@ -252,4 +251,4 @@ def test_a_long_file_of_one_piece(piece: str, frame: str) -> None:
     text = frame.format(piece * (2**18 // len(piece)))
     with limited_work(30_000_000):
         is_plain(text.encode())
-        Scanner(text).scan()
+        scan(text)

@@ -173,7 +173,7 @@ class Draft(RobotElements):
     def _broken_tag(self, text: str, start: int) -> str:
         if not self.is_broken:
             return ""
-        from grader.xml.tinyxml2.recovery import broken_tag  # late: its patterns take long, and few files need them
+        from grader.xml.repair import broken_tag  # late: its patterns take long, and few files need them
 
         return broken_tag(text, start)
 
