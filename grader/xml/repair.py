@@ -235,12 +235,10 @@ class _Repairer:
     def _rename(self, opened: Tag, name: str) -> None:
         start = opened.offset
         end, new = self._replaced.get(start, (0, ""))
-        old = _NAME.match(new or self._text, 0 if new else start)
-        assert old is not None
         if new:
-            self._replaced[start] = end, f"<{name}{new[old.end() :]}"
+            self._replaced[start] = end, f"<{name}{new.removeprefix(f'<{opened.name}')}"
         else:
-            self._replace(start, old.end(), f"<{name}")
+            self._replace(start, self._text.index(opened.name, start) + len(opened.name), f"<{name}")
 
     def _noted(self) -> list[Change]:
         """Return all changes in order: of two at one place, the end tags that are inserted come first."""

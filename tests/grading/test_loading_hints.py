@@ -26,7 +26,7 @@ _LACKING = {"footprint-without-joint", "lidar-without-joint", "links-without-joi
 _NOT_UNDONE = {
     "tag-glued-to-its-attribute", "a-robot-that-closes-itself", "no-start-of-a-tag", "no-start-of-a-link",
     "no-start-of-a-joint", "robot-twice", "robot-ends-early", "no-robot", "comment-not-closed", "comment-closed-badly",
-    "declaration-closed-badly", "declaration-opened-badly",
+    "declaration-opened-badly",
 }  # fmt: skip
 
 
