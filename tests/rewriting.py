@@ -12,8 +12,7 @@ from random import Random
 from hypothesis import strategies as st
 from lxml import etree
 
-from grader.authoring.equivalents import split_joint as split
-from grader.authoring.trees import (
+from grader.authoring.equivalents import (
     add_joint,
     attribute_numbers,
     attribute_text,
@@ -26,6 +25,7 @@ from grader.authoring.trees import (
     pose,
     set_pose,
 )
+from grader.authoring.equivalents import split_joint as split
 from grader.robot.transforms import IDENTITY
 from grader.xml.parsing import Element
 from tests.writing_style import Style

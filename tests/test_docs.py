@@ -14,7 +14,7 @@ import yaml
 from typer.main import get_command
 
 from grader import __version__
-from grader.authoring import testing
+from grader.authoring import rubric_test
 from grader.classroom.workers import pool
 from grader.cli import ending
 from grader.cli.app import COMMANDS, make_app
@@ -157,7 +157,7 @@ LIMITS: dict[str, dict[str, tuple[float, ...]]] = {
             values.MAX_PARTS,
         ),
     },
-    "rubric-test.md": {"a sample of {} is graded": (testing._MAX_MUTANTS,)},
+    "rubric-test.md": {"a sample of {} is graded": (rubric_test._MAX_MUTANTS,)},
     "grade-a-class.md": {
         "up to {} MiB": (pictures.MAX_BYTES / MIB,),
     },

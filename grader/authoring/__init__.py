@@ -1,4 +1,4 @@
-"""A new rubric from a reference solution: its facts are tried on it, and written as criteria.
+"""A rubric from a reference solution, whose facts are written as criteria, and its test by mutants and equivalents.
 
-It imports `grading` and below. Begin with `draft.py`.
+It imports `hints`, `grading` and below. Begin with `draft.py`; a rubric is tested in `rubric_test.py`.
 """

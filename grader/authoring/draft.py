@@ -1,25 +1,72 @@
-"""Try the facts of a reference on it, and write a rubric of those that it passes."""
+"""Write a rubric: try the facts of a reference on it, and write those that it passes in TOML, as a person would.
 
+Each criterion has the usual tolerances of its check; those about one link follow each other under its heading.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, islice
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from grader.authoring.elements import element_facts
-from grader.authoring.fact import Fact, Omission, Solution
-from grader.authoring.facts import robot_facts
-from grader.authoring.package_facts import package_facts
-from grader.authoring.rubric_text import USUAL, Head, Row, rubric_text
+from grader.authoring.facts import THE_PACKAGE, Fact, Omission, Solution, element_facts, package_facts, robot_facts
 from grader.checks.outcome import Outcome
 from grader.checks.registry import find_check
 from grader.checks.toml_types import WrongValue
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.grading.rubric import Rubric, read_rubric
 from grader.grading.toml_file import read_toml
-from grader.grading.toml_rows import toml_literal
+from grader.grading.toml_rows import assignment, toml_literal
 from grader.robot.shapes import UnknownShape
-from grader.text import capitalised
+from grader.text import capitalised, printable
+
+WIDTH = 120  # columns
+
+
+# The arguments that all criteria of a check get, with their unit: room for rounding, but not for mistakes.
+_METRES, _DEGREES = ({"tolerance": 0.002}, "metres"), ({"tolerance": 1.0}, "degrees")
+USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
+    **dict.fromkeys(("shows_box", "shows_cylinder", "shows_sphere"), _METRES),
+    "shows_colour": ({"tolerance": 0.01}, "of a channel from 0 to 1"),
+    "frame_at": ({"tolerance": 0.002, "angle": 1.0}, "metres, degrees"),
+    "centre_at": _METRES,
+    **dict.fromkeys(("joint_limits", "joint_axis"), _DEGREES),
+    "mass_is": ({"tolerance": 0.001}, "kilograms"),
+    "inertia_plausible": ({"tolerance": 2.0}, "percent"),
+    **dict.fromkeys(("collision_matches_visual", "collides_as"), _METRES),
+    "kinematics_match_reference": ({"samples": 20}, "random positions, besides the ends of each range"),
+}
+_ROBOT, _PACKAGE = "robot", "package"
+_MAX_ID = 60
+
 
 MAX_FACTS = 2000  # more than the largest robots have; criteria cost the square of their number
+
+
+class Head(NamedTuple):
+    """What a rubric says of the lab. `reference` is a path relative to the rubric.
+
+    `package` is empty without one, and so is `schema`, the path of a JSON Schema for editors.
+    """
+
+    id: str
+    title: str
+    reference: str
+    urdf: str
+    package: str
+    schema: str = ""
+
+
+class DraftCriterion(NamedTuple):
+    """A criterion of a new rubric: a fact that the reference passes, and what the check says of it."""
+
+    fact: Fact
+    title: str
+
+    @property
+    def is_of_package(self) -> bool:
+        """Whether the package is needed for it."""
+        return self.fact.about == THE_PACKAGE
 
 
 class RubricDraft(NamedTuple):
@@ -39,12 +86,12 @@ def draft(solution: Solution, head: Head, path: Path) -> RubricDraft:
             f"the robot has more than {MAX_FACTS} facts, which is too long for a rubric: name a smaller one"
         )
     tried = [it if isinstance(it, Omission) else _tried(solution, it) for it in found]
-    rows = {(row.fact.check, toml_literal(row.fact.arguments)): row for row in tried if isinstance(row, Row)}
+    rows = {(row.fact.check, toml_literal(row.fact.arguments)): row for row in tried if isinstance(row, DraftCriterion)}
     data = rubric_text(head, [*rows.values()]).encode()
     return RubricDraft(data, read_rubric(data, path), tuple(it for it in tried if isinstance(it, Omission)))
 
 
-def _tried(solution: Solution, fact: Fact) -> Row | Omission:
+def _tried(solution: Solution, fact: Fact) -> DraftCriterion | Omission:
     """Return the first of the facts that the reference passes; or what it does not pass, and why."""
     reasons = []
     for one in (fact, *fact.otherwise):
@@ -57,7 +104,7 @@ def _tried(solution: Solution, fact: Fact) -> Row | Omission:
             reasons.append(f"an argument must be {error}")
             continue
         if outcome.status == "passed":
-            return Row(one, capitalised(one.title or outcome.message))
+            return DraftCriterion(one, capitalised(one.title or outcome.message))
         reasons.append(outcome.mistake if outcome.status == "pending" else outcome.message)
     return Omission(fact.words, reasons[0])
 
@@ -77,3 +124,90 @@ def _outcome(solution: Solution, fact: Fact) -> Outcome:
         "package": solution.submission.package,
     }
     return check.function(*(known[name] for name in check.examined), **{**usual, **given})
+
+
+def rubric_text(head: Head, rows: Sequence[DraftCriterion]) -> str:
+    """Return a rubric with a criterion for each row; those with one heading follow each other."""
+    of_package = sum(row.is_of_package for row in rows)
+    lines = [*_head(head, len(rows)), *_defaults({row.fact.check for row in rows})]
+    lines += _part(_ROBOT, "The robot", "urdf", len(rows) - of_package)
+    if of_package:
+        lines += _part(_PACKAGE, "The package", "package", of_package)
+    about = ""
+    for name, row in _by_id(rows).items():
+        if row.fact.about != about:
+            about = row.fact.about
+            lines += ["", f"# --- {printable(about)} ".ljust(WIDTH, "-")]
+        lines += _criterion(name, row)
+    return "\n".join(lines) + "\n"
+
+
+def _by_id(rows: Sequence[DraftCriterion]) -> dict[str, DraftCriterion]:
+    """Return the rows by ids of what they are about and their checks, such as upper-arm-mass-is."""
+    found: dict[str, DraftCriterion] = {}
+    numbers: dict[str, int] = {}  # the last that each name got
+    for row in rows:
+        name = words = re.sub(r"[\W_]+", "-", row.fact.words.lower()).strip("-")[:_MAX_ID].strip("-")
+        while name in found:
+            numbers[words] = numbers.get(words, 1) + 1
+            name = f"{words}-{numbers[words]}"
+        found[name] = row
+    return found
+
+
+def _head(head: Head, points: int) -> Iterator[str]:
+    if head.schema:
+        yield f"#:schema {head.schema}"
+    yield assignment("id", head.id)
+    yield assignment("title", head.title)
+    yield f"{assignment('reference', head.reference)}  # the solution that must get full marks"
+    yield f"{assignment('urdf', head.urdf)}  # where a package keeps the file that is graded"
+    if head.package:
+        yield f"{assignment('package', head.package)}  # the name of the package that is graded"
+    yield assignment("points", points)
+
+
+def _defaults(checks: set[str]) -> Iterator[str]:
+    yield from ("", "[defaults]", assignment("part", _ROBOT), assignment("points", 1))
+    usual = {name: given for name, given in USUAL.items() if name in checks}
+    if usual:
+        yield from ("", "[defaults.with]")
+    yield from (f"{assignment(name, arguments)}  # {unit}" for name, (arguments, unit) in usual.items())
+
+
+def _part(name: str, title: str, needs: str, points: int) -> Iterator[str]:
+    yield from ("", "[[part]]", assignment("id", name), assignment("title", title))
+    yield from (assignment("needs", needs), assignment("points", points))
+
+
+def _criterion(name: str, row: DraftCriterion) -> Iterator[str]:
+    fact = row.fact
+    yield from ("", "[[criterion]]", assignment("id", name))
+    if row.is_of_package:
+        yield assignment("part", _PACKAGE)
+    yield assignment("about", printable(fact.about))
+    yield assignment("title", printable(row.title))
+    yield f"check = {toml_literal(fact.check)}"
+    if len(assignment("with", fact.arguments)) <= WIDTH:
+        if fact.arguments:
+            yield assignment("with", fact.arguments)
+        return
+    yield from ("", "[criterion.with]")
+    for key, value in sorted(fact.arguments.items(), key=lambda item: isinstance(item[1], Mapping)):
+        if not isinstance(value, Mapping) or len(assignment(key, value)) <= WIDTH:
+            yield from toml_lines(key, value)
+            continue
+        yield from ("", f"[criterion.with.{key}]")
+        for inner, item in value.items():
+            yield from toml_lines(inner, item)
+
+
+def toml_lines(key: str, value: Any) -> Iterator[str]:
+    """Yield a line that sets a key, or, of a list that is too long for one, a line for each item."""
+    line = assignment(key, value)
+    if len(line) <= WIDTH or not isinstance(value, list):
+        yield line
+        return
+    yield f"{line.partition(' = ')[0]} = ["
+    yield from (f"    {toml_literal(item)}," for item in value)
+    yield "]"

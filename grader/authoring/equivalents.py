@@ -2,37 +2,27 @@
 
 import re
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from typing import NamedTuple
 
 from lxml import etree
 
-from grader.authoring.trees import (
-    XACRO,
-    add_joint,
-    copied,
-    end,
-    fresh,
-    move_frame,
-    origin,
-    own_elements,
-    parent_joint,
-    pose,
-    set_pose,
-    text_of,
-    vector_of,
-)
 from grader.checks.check import EQUIVALENTS
-from grader.robot.transforms import Transform, unit
+from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_from_rpy, unit
+from grader.xacro.texts import INSTALLED
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import PARTS
-from grader.xml.wanted_element import words_of_foreign
+from grader.xml.wanted_element import FOREIGN, words_of_foreign
+
+XACRO = "http://www.ros.org/wiki/xacro"
+_FOUND = re.compile(rf"\Afile:/*{INSTALLED}/([^/]+)/share/\1/")
+
 
 _SORTED = ("link", "joint", "material", "visual", "collision")  # of these the order does not matter
 _COMMENTS = ("", " a robot ", ' <link name="ghost"/> ', "\n  0.6 / 4\n  ", " $ & % ")
 _NUMBER = re.compile(r"(?<![\w.+-])-?(?:0|[1-9]\d*)(?:\.\d+)?(?![\w.])")  # that xacro writes as it is
 _MAX_DIGITS = 12  # that survive the conversion to a float and back
-_MOVED = origin((0.31, -0.17, 0.23), (0.4, -0.7, 1.1))
+_MOVED = Transform(rotation_from_rpy((0.4, -0.7, 1.1)), (0.31, -0.17, 0.23))
 _SLIDE = 0.19  # metres
 
 
@@ -213,3 +203,119 @@ def _has_dollar(tree: Element) -> bool:
 LAYOUT, *AS_XACRO = EQUIVALENTS[-3:]
 _ALL = (reorder, split_joints, move_frames, rename_links, rename_joints, change_layout, use_properties, use_macro)
 REWRITINGS: dict[str, Rewriting] = dict(zip(EQUIVALENTS, _ALL, strict=True))
+
+
+def copied(root: Element) -> Element:
+    """Return a copy of a tree without comments; paths of meshes that $(find package) gave become package:// ones.
+
+    Its root declares the namespace of xacro.
+    """
+    plain = etree.XMLParser(remove_comments=True, remove_pis=True, remove_blank_text=True)
+    found = etree.fromstring(etree.tostring(root, with_tail=False), plain)
+    copy = etree.Element(found.tag, dict(found.attrib), nsmap={"xacro": XACRO})
+    copy.extend(list(found))
+    for mesh in copy.iter("mesh"):
+        if mesh.get("filename"):
+            mesh.set("filename", _FOUND.sub(r"package://\1/", mesh.get("filename", "")))
+    return copy
+
+
+def text_of(tree: Element, indent: str = "  ") -> str:
+    """Return a tree as text, without namespaces that are not used."""
+    etree.cleanup_namespaces(tree)
+    etree.indent(tree, indent)
+    return etree.tostring(tree, encoding="unicode")
+
+
+def own_elements(tree: Element, *tags: str) -> Iterator[Element]:
+    """Yield the elements with these tags that ROS 2 reads: not those inside of elements for a simulator."""
+    for child in tree:
+        if child.tag not in FOREIGN:
+            yield from child.iter(*tags)
+
+
+def fresh(tree: Element, kind: str) -> str:
+    """Return a name that nothing in the robot has."""
+    return f"extra_{kind}_{len(tree)}"
+
+
+def origin(xyz: Iterable[float], rpy: Iterable[float]) -> Transform:
+    """Return the transform of an origin."""
+    x, y, z = xyz
+    roll, pitch, yaw = rpy
+    return Transform(rotation_from_rpy((roll, pitch, yaw)), (x, y, z))
+
+
+def attribute_text(values: Iterable[float]) -> str:
+    """Return numbers as an attribute contains them."""
+    return " ".join(f"{value + 0.0:.13g}" for value in values)
+
+
+def attribute_numbers(element: Element | None, attribute: str, default: str = "0 0 0") -> list[float]:
+    """Return the numbers of an attribute."""
+    text = default if element is None else element.get(attribute, default)
+    return [float(piece) for piece in text.split()]
+
+
+def vector_of(element: Element | None, attribute: str, default: str = "0 0 0") -> Vector:
+    """Return the three numbers of an attribute."""
+    x, y, z = attribute_numbers(element, attribute, default)
+    return x, y, z
+
+
+def pose(owner: Element) -> Transform:
+    """Return the pose in the `<origin>` of a joint, a visual, a collision or an inertial."""
+    found = owner.find("origin")
+    return origin(attribute_numbers(found, "xyz"), attribute_numbers(found, "rpy"))
+
+
+def set_pose(owner: Element, transform: Transform) -> None:
+    """Write a pose into the `<origin>` of an element."""
+    found = owner.find("origin")
+    if found is None:
+        if transform == IDENTITY:
+            return
+        found = etree.SubElement(owner, "origin")
+    found.set("xyz", attribute_text(transform.translation))
+    found.set("rpy", attribute_text(transform.rpy))
+
+
+def end(joint: Element, role: str) -> Element:
+    """Return the `<parent>` or `<child>` of a joint."""
+    found = joint.find(role)
+    assert found is not None
+    return found
+
+
+def parent_joint(tree: Element, link: str) -> Element | None:
+    """Return the one joint whose child is this link; None of several."""
+    found = [joint for joint in tree.iterchildren("joint") if end(joint, "child").get("link") == link]
+    return found[0] if len(found) == 1 else None
+
+
+def move_frame(tree: Element, link: Element, change: Transform) -> None:
+    """Move a link's frame by `change`, given in the frame, and everything in the link back: nothing else moves."""
+    name = link.get("name", "")
+    held = parent_joint(tree, name)
+    assert held is not None
+    back = change.inverse()
+    set_pose(held, pose(held) @ change)
+    axis = held.find("axis")
+    if axis is not None:
+        axis.set("xyz", attribute_text(back.rotate(vector_of(axis, "xyz"))))
+    elif held.get("type") != "fixed":
+        etree.SubElement(held, "axis", {"xyz": attribute_text(back.rotate((1.0, 0.0, 0.0)))})
+    for element in link.iterchildren("visual", "collision", "inertial"):
+        set_pose(element, back @ pose(element))
+    for joint in tree.iterchildren("joint"):
+        if end(joint, "parent").get("link") == name:
+            set_pose(joint, back @ pose(joint))
+
+
+def add_joint(tree: Element, name: str, parent: str, child: str, transform: Transform) -> Element:
+    """Add a fixed joint."""
+    joint = etree.SubElement(tree, "joint", {"name": name, "type": "fixed"})
+    etree.SubElement(joint, "parent", {"link": parent})
+    etree.SubElement(joint, "child", {"link": child})
+    set_pose(joint, transform)
+    return joint

@@ -1,27 +1,84 @@
-"""The facts of a reference: what may be true of its links, joints and elements, as arguments of checks to be tried."""
+"""The facts of a reference: what may be true of it, as arguments of checks that are to be tried on it.
 
+First those of the robot: its file, links, joints and tree. Then those of the elements for simulators and controllers,
+which ROS 2 itself does not read, and last those of the package.
+"""
+
+import posixpath
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import permutations
 from math import degrees, isfinite
-from typing import Any
+from typing import Any, NamedTuple
 
-from grader.authoring.fact import THE_FILE, THE_ROBOT, Fact, Facts, Omission, Solution
 from grader.checks.mesh_files import mesh_file
 from grader.checks.visuals import MAX_SHAPES
 from grader.errors import MissingElement, NotDecided
+from grader.package.launch.model import Launch
+from grader.package.launch.places import is_of_one_machine
+from grader.package.package import Package
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Collision, Cylinder, Joint, Link, Mesh, Sphere, Visual
+from grader.robot.reader import Reading
 from grader.robot.shapes import is_empty
 from grader.robot.transforms import rotation_from_rpy
+from grader.submission.submission import Submission
 from grader.text import enumerated
-from grader.xml.wanted_element import words_of_foreign
+from grader.xml.parsing import Element
+from grader.xml.wanted_element import foreign_elements, name_of, readable, text_in, words_of_foreign
+
+THE_FILE, THE_ROBOT, THE_PACKAGE = "The file", "The robot", "The package"  # headings
+
+
+class Solution(NamedTuple):
+    """A solution that ROS 2 loads: its submission, its URDF as it was read, and its robot with the joints at 0."""
+
+    submission: Submission
+    reading: Reading
+    robot: Configuration
+
+    @property
+    def root(self) -> Element:
+        """The <robot> that it was read from."""
+        assert self.reading.root is not None  # ROS 2 loads it
+        return self.reading.root
+
+
+class Fact(NamedTuple):
+    """A check with arguments that the reference may pass: `about` is the heading, `words` are those of the id.
+
+    `otherwise` are tried in its place if the reference does not pass it. `title` is by default what the check says.
+    """
+
+    about: str
+    check: str
+    arguments: Mapping[str, Any]
+    words: str
+    otherwise: "Sequence[Fact]" = ()
+    title: str = ""
+
+
+class Omission(NamedTuple):
+    """Something of the reference that no criterion is about, and why."""
+
+    what: str
+    why: str
+
+
+Facts = Iterator[Fact | Omission]
+
 
 _WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")
 _COUNTED = ("revolute", "continuous", "prismatic")
 _SLIDING_TOLERANCE = 0.002  # m: the tolerance of other limits is in degrees
 _MASS_TOLERANCE = 0.001  # kg; of a small mass, a share of it
 _MASS_SHARE = 0.01
+_MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_TRUTH = {"true": True, "false": False}
+_NAMED_BY = ("reference", "name", "filename", "type")
+_OWN_KINDS = (".urdf", ".xacro", ".rviz", ".py", ".xml")
 _LOOSE_INERTIA = 5.0  # percent, for a solution with rounded numbers
 _MAX_TIPS = 20
 
@@ -39,7 +96,8 @@ def robot_facts(solution: Solution) -> Facts:
             except (MissingElement, NotDecided) as error:  # an axis of length zero
                 yield Omission(f"{link.name} joint_axis", str(error))
         yield from _body_facts(link)
-    yield from _tree_facts(solution) if robot.parent_joints else ()
+    if robot.parent_joints:
+        yield from _tree_facts(solution)
 
 
 def _of(link: str, check: str, **arguments: Any) -> Fact:
@@ -180,5 +238,157 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     tips = [name for name, chain in chains.items() if any(joint.type != "fixed" for joint in chain)]
     if tips:
         names = [repr(tip) for tip in tips[:_MAX_TIPS]]
-        title = f"{enumerated(names)} move{'s' * (len(names) == 1)} as in the reference solution"
+        title = f"{enumerated(names)} {'moves' if len(names) == 1 else 'move'} as in the reference solution"
         yield _of_robot("kinematics_match_reference", links=tips[:_MAX_TIPS], match="order")._replace(title=title)
+
+
+Values = dict[str, Any]
+
+
+def element_facts(solution: Solution) -> Facts:
+    """Yield the values in each element for simulators and controllers."""
+    for element in foreign_elements(solution.root):
+        about = f"<{name_of(element)}>"
+        if sum(1 + len(inner.attrib) for inner in element.iter()) > _MAX_VALUES:
+            yield Omission(_label(element), f"it has more than {_MAX_VALUES} elements and attributes")
+            continue
+        attributes = {str(key): str(value) for key, value in element.attrib.items()}
+        for label, path, values in _element_values(element):
+            arguments = {"tag": name_of(element), "attributes": attributes, "path": path, "values": values}
+            given = {key: value for key, value in arguments.items() if value}
+            yield Fact(about, "element_present", given, label)
+
+
+def _element_values(element: Element) -> Iterator[tuple[str, str, Values]]:
+    """Yield the plain values in an element, then those in each child that has elements or attributes.
+
+    Each has a label, the path of the child, and values by their paths in it.
+    """
+    plain: Values = {}
+    deep: list[Element] = []
+    for child in _children(element):
+        if _children(child) or child.attrib:
+            deep.append(child)
+        else:
+            _add(plain, name_of(child), _value(text_in(child)))
+    if plain or not deep:
+        yield _label(element), "", plain
+    for child in deep:
+        yield f"{_label(element)} {_label(child)}", name_of(child), _values_by_path(child)
+
+
+def _values_by_path(element: Element, path: str = "") -> Values:
+    """Return all attributes and texts in an element by their paths; of repeated ones a list."""
+    found: Values = {}
+    for key, text in element.attrib.items():
+        _add(found, f"{path}@{key!s}", _value(str(text)))
+    for child in _children(element):
+        inner = f"{path}{name_of(child)}"
+        if not _children(child) and (text_in(child) or not child.attrib):
+            _add(found, inner, _value(text_in(child)))
+        for key, value in _values_by_path(child, f"{inner}/").items():
+            _add(found, key, value)
+    return found
+
+
+def _add(found: Values, key: str, value: Any) -> None:
+    """Add a value, unless it is a path that exists on one machine only; of several values with one path, a list."""
+    if isinstance(value, str) and is_of_one_machine(value):
+        return
+    if key not in found:
+        found[key] = value
+    else:
+        before = found[key] if isinstance(found[key], list) else [found[key]]
+        found[key] = before + (value if isinstance(value, list) else [value])
+
+
+def _value(text: str) -> str | bool | int | float:
+    """Return the text of an element or attribute as a rubric writes it: a number, true or false, else a string."""
+    word = readable(text.strip())
+    if word in _TRUTH:
+        return _TRUTH[word]
+    if _NUMBER.fullmatch(word) and isfinite(number := float(word)):
+        return int(word) if re.fullmatch(r"-?(?:0|[1-9]\d{0,14})", word) else number
+    return " ".join(word.split())
+
+
+def _children(element: Element) -> list[Element]:
+    return [child for child in element if isinstance(child.tag, str)]
+
+
+def _label(element: Element) -> str:
+    """Return the tag and the name of an element."""
+    return f"{name_of(element)} {next((str(element.get(key)) for key in _NAMED_BY if element.get(key)), '')}"
+
+
+def package_facts(solution: Solution) -> Facts:
+    """Yield what may be true of the package that is graded; the other packages are omitted."""
+    package, path = solution.submission.package, solution.submission.path
+    for other in solution.submission.packages:
+        if other is not package:
+            yield Omission(f"the package {other.name}", "a rubric is about one package")
+    if package is None:
+        return
+    yield _package_fact("package_found", name=package.name)
+    if package.manifest is not None and package.manifest.build_type:
+        yield _package_fact("package_type", build_type=package.manifest.build_type)
+    if not package.is_cmake:
+        yield _package_fact("setup_imports")
+    yield from _installs(package, path if path is not None and package.holds(path) else "")
+    for launch in package.launch_files:
+        yield from _launch_facts(posixpath.basename(launch), package.launch(launch))
+    yield from _rviz_facts(package)
+
+
+def _package_fact(check: str, label: str = "", **arguments: Any) -> Fact:
+    return Fact(THE_PACKAGE, check, arguments, f"{label} {check}".strip())
+
+
+def _installs(package: Package, urdf: str) -> Iterator[Fact]:
+    """Yield that a build installs the URDF, the launch and RViz files, and a file of each other folder."""
+    kinds = {"urdf": [urdf] if urdf else [], "launch": package.launch_files, "rviz": package.rviz_files}
+    for kind, paths in kinds.items():
+        for name in map(posixpath.basename, paths):
+            yield _package_fact("build_installs", name, kind=kind, name=name)
+    patterns = {
+        f"{folder}/*{posixpath.splitext(path)[1]}": None
+        for path in package.installed.values()
+        if (folder := posixpath.dirname(path)) not in ("", "resource")
+        and path not in package.launch_files
+        and not path.endswith(_OWN_KINDS)
+    }
+    yield from (_package_fact("installs_files", pattern, files=[pattern]) for pattern in patterns)
+
+
+def _launch_facts(name: str, launch: Launch) -> Iterator[Fact]:
+    yield _package_fact("launch_found", name, name=name)
+    if nodes := _nodes_that_start(launch):
+        yield _package_fact("launch_starts", name, name=name, nodes=nodes)
+    if launch.named("urdf", "rviz", "include"):
+        yield _package_fact("launch_finds_files", name, name=name)
+
+
+def _nodes_that_start(launch: Launch) -> list[str]:
+    """Return the nodes that start, with what a condition replaces: joint_state_publisher for its GUI, for example."""
+    names = {when: list(dict.fromkeys(it.name for it in launch.nodes if it.when is when)) for when in (True, False)}
+    alike = {name: [it for it in names[False] if name.startswith(it) or it.startswith(name)] for name in names[True]}
+    return [" or ".join(dict.fromkeys((name, *others))) for name, others in alike.items()]
+
+
+def _rviz_facts(package: Package) -> Iterator[Fact]:
+    """Yield what may be true of each RViz file, which is also found by the first launch file that opens it."""
+    opened: dict[str, str] = {}
+    for path in package.launch_files:
+        opened.setdefault(package.rviz_opened(package.launch(path)) or "", posixpath.basename(path))
+    for path in package.rviz_files:
+        rviz, name = package.rviz(path), posixpath.basename(path)
+        of = {"name": name, **({"launch": opened[path]} if path in opened else {})}
+        yield _package_fact("rviz_found", name, **of)
+        if rviz.fixed_frame:
+            yield _package_fact("rviz_fixed_frame", name, **of, frame=rviz.fixed_frame)
+        displays = dict.fromkeys((display.package, display.kind) for display in rviz.displays if display.enabled)
+        for owner, kind in displays:
+            if kind == "RobotModel":
+                yield _package_fact("rviz_shows_robot", name, **of)
+            else:
+                yield _package_fact("rviz_display_on", f"{name} {kind}", **of, kind=f"{owner}/{kind}")

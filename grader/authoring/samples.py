@@ -117,5 +117,9 @@ def _differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
 
 def _actual(result: Result) -> str:
     status = result.outcome.status
-    kind = "carried" if result.carried else "lost" if result.is_lost else status
+    kind: str = status
+    if result.carried:
+        kind = "carried"
+    elif result.is_lost:
+        kind = "lost"
     return _WORDS.get(kind, "passes" if status == "passed" else status)

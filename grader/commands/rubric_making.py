@@ -7,13 +7,11 @@ from functools import partial
 from itertools import chain
 from pathlib import Path
 
-from grader.authoring.draft import RubricDraft, draft
-from grader.authoring.fact import Omission, Solution
+from grader.authoring.draft import Head, RubricDraft, draft
+from grader.authoring.facts import Omission, Solution
 from grader.authoring.mutants import Mutant
-from grader.authoring.rubric_text import Head
+from grader.authoring.rubric_test import MutantOutcome, mutant_outcomes, run_rubric_test
 from grader.authoring.samples import read_samples
-from grader.authoring.testing import mutant_outcomes, run_rubric_test
-from grader.authoring.trial import MutantOutcome
 from grader.checks.tree import urdf_loads
 from grader.classroom.workers.pool import Processes, processors
 from grader.classroom.workers.progress import Progress

@@ -4,8 +4,8 @@ import textwrap
 from collections.abc import Iterator, Sequence
 
 from grader import __version__
+from grader.authoring.rubric_test import RubricTest
 from grader.authoring.samples import Loss
-from grader.authoring.testing import RubricTest
 from grader.grading.criterion import worth
 from grader.report.as_json import SCORE
 from grader.report.json_data import (

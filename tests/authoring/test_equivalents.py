@@ -7,9 +7,8 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from grader.authoring.equivalents import Equivalent, RewritingRules, equivalents
-from grader.authoring.trees import copied
-from grader.authoring.trial import Trial, breaks
+from grader.authoring.equivalents import Equivalent, RewritingRules, copied, equivalents
+from grader.authoring.rubric_test import Trial, breaks
 from grader.checks.check import EQUIVALENTS
 from grader.checks.registry import find_check
 from grader.grading.criterion import Criterion

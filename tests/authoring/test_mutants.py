@@ -3,7 +3,7 @@
 import pytest
 
 from grader.authoring.mutants import mutants
-from grader.authoring.testing import diff
+from grader.authoring.rubric_test import diff
 from tests.authoring.robots import ARM, CHANGES
 
 FOUND = {mutant.id: mutant for mutant in mutants(ARM, "birch.urdf")}

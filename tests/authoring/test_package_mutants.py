@@ -4,8 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from grader.authoring.mutants import Mutant
-from grader.authoring.package_mutants import package_mutants, python_changes
+from grader.authoring.mutants import Mutant, package_mutants, python_changes
 from grader.files.tree import overlaid
 from grader.grading.deciding import decide
 from grader.hints.editing import content

@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from grader.authoring.testing import run_rubric_test
-from grader.authoring.trial import Trial
+from grader.authoring.rubric_test import Trial, run_rubric_test
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric, load_rubric

@@ -10,7 +10,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
-from grader.authoring.trial import Trial
+from grader.authoring.rubric_test import Trial
 from grader.grading.grade import grade
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric as GraderRubric
