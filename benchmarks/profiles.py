@@ -76,7 +76,7 @@ def case(name: str, folder: Path) -> Counter[str]:
         one.run()
         return sampled(lambda: [one.run() for _ in range(1_000 if name == "warm" else 300)])
     if name == "worker":
-        from grader.classroom.run.worker import ClassContext, Task, grade_all
+        from grader.classroom.batch_worker import ClassContext, Task, grade_all
         from grader.grading.rubric import load_rubric
 
         rubric, tasks = load_rubric("lab6"), [Task(path.stem, 0, (path.name,)) for path in sorted(folder.iterdir())]

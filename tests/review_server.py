@@ -9,7 +9,7 @@ from pathlib import Path
 from threading import Thread
 from typing import Any, NamedTuple
 
-from grader.classroom.grades import Class
+from grader.classroom.gradebook import Gradebook
 from grader.classroom.review_items import ReviewFilter
 from grader.commands.local_server import HOST, LocalServer
 from grader.commands.review_page import ReviewPage
@@ -89,7 +89,7 @@ def running(gradebook: Path, criterion: str = "", by: str = "Kim", **options: An
 
 def marks_in(gradebook: Path) -> list[tuple[str, str, str, str]]:
     """Return the marks that count: student, criterion, value, comment."""
-    return sorted((*key, mark.value, mark.comment) for key, mark in Class(gradebook).marks.counting.items())
+    return sorted((*key, mark.value, mark.comment) for key, mark in Gradebook(gradebook).marks.counting.items())
 
 
 def rows_of(gradebook: Path, by: str = "kim") -> list[str]:

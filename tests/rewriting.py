@@ -12,7 +12,7 @@ from random import Random
 from hypothesis import strategies as st
 from lxml import etree
 
-from grader.authoring.equivalents import (
+from grader.authoring.trees import (
     add_joint,
     attribute_numbers,
     attribute_text,
@@ -25,7 +25,7 @@ from grader.authoring.equivalents import (
     pose,
     set_pose,
 )
-from grader.authoring.equivalents import split_joint as split
+from grader.authoring.trees import split_joint as split
 from grader.robot.transforms import IDENTITY
 from grader.xml.parsing import Element
 from tests.writing_style import Style

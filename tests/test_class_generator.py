@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.graded import Graded
+from grader.classroom.batch_worker import ClassContext, Task, grade_all
+from grader.classroom.results import StoredResult
 from grader.classroom.roster import read_roster
-from grader.classroom.run.worker import ClassContext, Task, grade_all
 from grader.classroom.submissions import read_class
 from grader.grading.grade import grade
 from grader.submission.opening import read_submission
@@ -149,7 +149,7 @@ def test_every_mixed_submission_is_opened(layout: str, tmp_path: Path) -> None:
     assert layout == "moodle" or refused >= {"broken-zip", "garbage-zip", "zip-bomb"}
 
 
-def _graded(folder: Path) -> Iterable[tuple[str, Graded]]:
+def _graded(folder: Path) -> Iterable[tuple[str, StoredResult]]:
     """Yield the result of each submission, with the top name of the one that counts."""
     common = ClassContext((str(folder),), LAB6.data, str(LAB6.path))
     for one in read_class([folder], None, rubric_id="lab6").submissions:
@@ -157,7 +157,7 @@ def _graded(folder: Path) -> Iterable[tuple[str, Graded]]:
         yield one.paths[0].partition("/")[0], graded
 
 
-def _lost(graded: Graded) -> set[str]:
+def _lost(graded: StoredResult) -> set[str]:
     """Return the criteria of the URDF that failed or were skipped."""
     lost = {name for name, (_, status, *_) in graded.results.items() if status in ("failed", "skipped")}
     return lost & set(made_up.criteria())

@@ -20,12 +20,12 @@ from grader.grading.toml_rows import assignment, toml_literal
 from grader.robot.shapes import UnknownShape
 from grader.text import capitalised, printable
 
-WIDTH = 120  # columns
+_WIDTH = 120  # columns
 
 
 # The arguments that all criteria of a check get, with their unit: room for rounding, but not for mistakes.
 _METRES, _DEGREES = ({"tolerance": 0.002}, "metres"), ({"tolerance": 1.0}, "degrees")
-USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
+_USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
     **dict.fromkeys(("shows_box", "shows_cylinder", "shows_sphere"), _METRES),
     "shows_colour": ({"tolerance": 0.01}, "of a channel from 0 to 1"),
     "frame_at": ({"tolerance": 0.002, "angle": 1.0}, "metres, degrees"),
@@ -40,7 +40,7 @@ _ROBOT, _PACKAGE = "robot", "package"
 _MAX_ID = 60
 
 
-MAX_FACTS = 2000  # more than the largest robots have; criteria cost the square of their number
+_MAX_FACTS = 2000  # more than the largest robots have; criteria cost the square of their number
 
 
 class Head(NamedTuple):
@@ -57,7 +57,7 @@ class Head(NamedTuple):
     schema: str = ""
 
 
-class DraftCriterion(NamedTuple):
+class _DraftCriterion(NamedTuple):
     """A criterion of a new rubric: a fact that the reference passes, and what the check says of it."""
 
     fact: Fact
@@ -80,18 +80,20 @@ class RubricDraft(NamedTuple):
 def draft(solution: Solution, head: Head, path: Path) -> RubricDraft:
     """Return a rubric for a file at `path` with a criterion for each fact that a check can test. Raises InputError."""
     facts = chain(robot_facts(solution), element_facts(solution), package_facts(solution))
-    found = list(islice(facts, MAX_FACTS + 1))
-    if len(found) > MAX_FACTS:
+    found = list(islice(facts, _MAX_FACTS + 1))
+    if len(found) > _MAX_FACTS:
         raise InputError(
-            f"the robot has more than {MAX_FACTS} facts, which is too long for a rubric: name a smaller one"
+            f"the robot has more than {_MAX_FACTS} facts, which is too long for a rubric: name a smaller one"
         )
     tried = [it if isinstance(it, Omission) else _tried(solution, it) for it in found]
-    rows = {(row.fact.check, toml_literal(row.fact.arguments)): row for row in tried if isinstance(row, DraftCriterion)}
-    data = rubric_text(head, [*rows.values()]).encode()
+    rows = {
+        (row.fact.check, toml_literal(row.fact.arguments)): row for row in tried if isinstance(row, _DraftCriterion)
+    }
+    data = _rubric_text(head, [*rows.values()]).encode()
     return RubricDraft(data, read_rubric(data, path), tuple(it for it in tried if isinstance(it, Omission)))
 
 
-def _tried(solution: Solution, fact: Fact) -> DraftCriterion | Omission:
+def _tried(solution: Solution, fact: Fact) -> _DraftCriterion | Omission:
     """Return the first of the facts that the reference passes; or what it does not pass, and why."""
     reasons = []
     for one in (fact, *fact.otherwise):
@@ -104,7 +106,7 @@ def _tried(solution: Solution, fact: Fact) -> DraftCriterion | Omission:
             reasons.append(f"an argument must be {error}")
             continue
         if outcome.status == "passed":
-            return DraftCriterion(one, capitalised(one.title or outcome.message))
+            return _DraftCriterion(one, capitalised(one.title or outcome.message))
         reasons.append(outcome.mistake if outcome.status == "pending" else outcome.message)
     return Omission(fact.words, reasons[0])
 
@@ -115,7 +117,7 @@ def _outcome(solution: Solution, fact: Fact) -> Outcome:
     assert check is not None
     _, read = read_toml(f"it = {toml_literal(fact.arguments)}".encode(), Path())
     given = {name: check.parameters[name].type.parse(value) for name, value in read["it"].items()}
-    usual, _ = USUAL.get(fact.check, ({}, ""))
+    usual, _ = _USUAL.get(fact.check, ({}, ""))
     known = {
         "urdf": solution.reading,
         "robot": solution.robot,
@@ -126,7 +128,7 @@ def _outcome(solution: Solution, fact: Fact) -> Outcome:
     return check.function(*(known[name] for name in check.examined), **{**usual, **given})
 
 
-def rubric_text(head: Head, rows: Sequence[DraftCriterion]) -> str:
+def _rubric_text(head: Head, rows: Sequence[_DraftCriterion]) -> str:
     """Return a rubric with a criterion for each row; those with one heading follow each other."""
     of_package = sum(row.is_of_package for row in rows)
     lines = [*_head(head, len(rows)), *_defaults({row.fact.check for row in rows})]
@@ -137,14 +139,14 @@ def rubric_text(head: Head, rows: Sequence[DraftCriterion]) -> str:
     for name, row in _by_id(rows).items():
         if row.fact.about != about:
             about = row.fact.about
-            lines += ["", f"# --- {printable(about)} ".ljust(WIDTH, "-")]
+            lines += ["", f"# --- {printable(about)} ".ljust(_WIDTH, "-")]
         lines += _criterion(name, row)
     return "\n".join(lines) + "\n"
 
 
-def _by_id(rows: Sequence[DraftCriterion]) -> dict[str, DraftCriterion]:
+def _by_id(rows: Sequence[_DraftCriterion]) -> dict[str, _DraftCriterion]:
     """Return the rows by ids of what they are about and their checks, such as upper-arm-mass-is."""
-    found: dict[str, DraftCriterion] = {}
+    found: dict[str, _DraftCriterion] = {}
     numbers: dict[str, int] = {}  # the last that each name got
     for row in rows:
         name = words = re.sub(r"[\W_]+", "-", row.fact.words.lower()).strip("-")[:_MAX_ID].strip("-")
@@ -169,7 +171,7 @@ def _head(head: Head, points: int) -> Iterator[str]:
 
 def _defaults(checks: set[str]) -> Iterator[str]:
     yield from ("", "[defaults]", assignment("part", _ROBOT), assignment("points", 1))
-    usual = {name: given for name, given in USUAL.items() if name in checks}
+    usual = {name: given for name, given in _USUAL.items() if name in checks}
     if usual:
         yield from ("", "[defaults.with]")
     yield from (f"{assignment(name, arguments)}  # {unit}" for name, (arguments, unit) in usual.items())
@@ -180,7 +182,7 @@ def _part(name: str, title: str, needs: str, points: int) -> Iterator[str]:
     yield from (assignment("needs", needs), assignment("points", points))
 
 
-def _criterion(name: str, row: DraftCriterion) -> Iterator[str]:
+def _criterion(name: str, row: _DraftCriterion) -> Iterator[str]:
     fact = row.fact
     yield from ("", "[[criterion]]", assignment("id", name))
     if row.is_of_package:
@@ -188,24 +190,24 @@ def _criterion(name: str, row: DraftCriterion) -> Iterator[str]:
     yield assignment("about", printable(fact.about))
     yield assignment("title", printable(row.title))
     yield f"check = {toml_literal(fact.check)}"
-    if len(assignment("with", fact.arguments)) <= WIDTH:
+    if len(assignment("with", fact.arguments)) <= _WIDTH:
         if fact.arguments:
             yield assignment("with", fact.arguments)
         return
     yield from ("", "[criterion.with]")
     for key, value in sorted(fact.arguments.items(), key=lambda item: isinstance(item[1], Mapping)):
-        if not isinstance(value, Mapping) or len(assignment(key, value)) <= WIDTH:
-            yield from toml_lines(key, value)
+        if not isinstance(value, Mapping) or len(assignment(key, value)) <= _WIDTH:
+            yield from _toml_lines(key, value)
             continue
         yield from ("", f"[criterion.with.{key}]")
         for inner, item in value.items():
-            yield from toml_lines(inner, item)
+            yield from _toml_lines(inner, item)
 
 
-def toml_lines(key: str, value: Any) -> Iterator[str]:
+def _toml_lines(key: str, value: Any) -> Iterator[str]:
     """Yield a line that sets a key, or, of a list that is too long for one, a line for each item."""
     line = assignment(key, value)
-    if len(line) <= WIDTH or not isinstance(value, list):
+    if len(line) <= _WIDTH or not isinstance(value, list):
         yield line
         return
     yield f"{line.partition(' = ')[0]} = ["

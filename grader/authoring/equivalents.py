@@ -2,21 +2,27 @@
 
 import re
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from typing import NamedTuple
 
 from lxml import etree
 
+from grader.authoring.trees import (
+    XACRO,
+    copied,
+    end,
+    move_frame,
+    own_elements,
+    parent_joint,
+    split_joint,
+    text_of,
+    vector_of,
+)
 from grader.checks.check import EQUIVALENTS
-from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_from_rpy, unit
-from grader.xacro.texts import INSTALLED
+from grader.robot.transforms import Transform, rotation_from_rpy, unit
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import PARTS
-from grader.xml.wanted_element import FOREIGN, words_of_foreign
-
-XACRO = "http://www.ros.org/wiki/xacro"
-_FOUND = re.compile(rf"\Afile:/*{INSTALLED}/([^/]+)/share/\1/")
-
+from grader.xml.wanted_element import words_of_foreign
 
 _SORTED = ("link", "joint", "material", "visual", "collision")  # of these the order does not matter
 _COMMENTS = ("", " a robot ", ' <link name="ghost"/> ', "\n  0.6 / 4\n  ", " $ & % ")
@@ -42,21 +48,21 @@ class RewritingRules(NamedTuple):
     placed: bool = False
 
 
-Rewriting = Callable[[Element, RewritingRules], bool]  # returns whether it changed anything
+_Rewriting = Callable[[Element, RewritingRules], bool]  # returns whether it changed anything
 
 
 def equivalents(root: Element, rules: RewritingRules) -> Iterator[Equivalent]:
     """Yield a rewriting of a robot of each family, which changes all that the rules and the family allow."""
     rules = rules._replace(named={*rules.named, *words_of_foreign(root)})
     before = text_of(copied(root))
-    for family, rewriting in REWRITINGS.items():
+    for family, rewriting in _REWRITINGS.items():
         tree = copied(root)
         if rewriting(tree, rules):
-            text = text_of(tree, "\t" if family == LAYOUT else "  ")
-            yield Equivalent(family, text, before, family in AS_XACRO)
+            text = text_of(tree, "\t" if family == _LAYOUT else "  ")
+            yield Equivalent(family, text, before, family in _AS_XACRO)
 
 
-def reorder(tree: Element, _: RewritingRules) -> bool:
+def _reorder(tree: Element, _: RewritingRules) -> bool:
     """Reverse the order of elements: links, joints and materials, and those inside of each."""
     # A visual may use the material that another one defines before it.
     free = ("joint", "material", "collision") if tree.find("link/visual/material/*") is not None else _SORTED
@@ -68,7 +74,7 @@ def reorder(tree: Element, _: RewritingRules) -> bool:
     return True
 
 
-def split_joints(tree: Element, _: RewritingRules) -> bool:
+def _split_joints(tree: Element, _: RewritingRules) -> bool:
     """Put an empty link into the middle of fixed joints; each keeps its name, in turn of the upper and lower half."""
     fixed = [joint for joint in tree.iterchildren("joint") if joint.get("type") == "fixed"]
     for index, joint in enumerate(fixed):
@@ -76,22 +82,7 @@ def split_joints(tree: Element, _: RewritingRules) -> bool:
     return bool(fixed)
 
 
-def split_joint(tree: Element, joint: Element, first: Transform, *, is_first: bool) -> None:
-    """Put an empty link into a joint, at `first` in the parent's frame; `is_first` if the upper half keeps the name."""
-    middle, parent, child = fresh(tree, "link"), end(joint, "parent"), end(joint, "child")
-    etree.SubElement(tree, "link", {"name": middle})
-    second = first.inverse() @ pose(joint)
-    if is_first:
-        add_joint(tree, fresh(tree, "joint"), middle, child.get("link", ""), second)
-        set_pose(joint, first)
-        child.set("link", middle)
-    else:
-        add_joint(tree, fresh(tree, "joint"), parent.get("link", ""), middle, first)
-        set_pose(joint, second)
-        parent.set("link", middle)
-
-
-def move_frames(tree: Element, rules: RewritingRules) -> bool:
+def _move_frames(tree: Element, rules: RewritingRules) -> bool:
     """Move the frames of links together with what is in them, where nothing refers to the frame."""
     moved = False
     for link in tree.iterchildren("link"):
@@ -129,13 +120,13 @@ _NAMED = {
 }
 
 
-def rename_links(tree: Element, rules: RewritingRules) -> bool:
+def _rename_links(tree: Element, rules: RewritingRules) -> bool:
     """Rename links and materials that nothing but this file refers to."""
     renamed = [_rename(tree, rules, tag) for tag in ("link", "material")]
     return any(renamed)
 
 
-def rename_joints(tree: Element, rules: RewritingRules) -> bool:
+def _rename_joints(tree: Element, rules: RewritingRules) -> bool:
     """Rename joints that nothing but this file refers to."""
     children = [end(joint, "child").get("link") for joint in tree.iterchildren("joint")]
     is_tree = len(set(children)) == len(children)  # of two parents, the joint that is last by name counts
@@ -152,7 +143,7 @@ def _rename(tree: Element, rules: RewritingRules, tag: str) -> bool:
     return bool(chosen)
 
 
-def change_layout(tree: Element, _: RewritingRules) -> bool:
+def _change_layout(tree: Element, _: RewritingRules) -> bool:
     """Reverse the order of attributes, and add comments; `text_of` changes the white space."""
     for index, element in enumerate([*own_elements(tree, "*")]):
         attributes = [*reversed(element.attrib.items())]
@@ -163,7 +154,7 @@ def change_layout(tree: Element, _: RewritingRules) -> bool:
     return True
 
 
-def use_properties(tree: Element, _: RewritingRules) -> bool:
+def _use_properties(tree: Element, _: RewritingRules) -> bool:
     """Write numbers that occur more than once as properties of xacro."""
     values = [(it, str(key)) for it in own_elements(tree, "*") for key in it.attrib if PARTS.get(str(key))]
     counts = Counter(number for it, key in values for number in _NUMBER.findall(it.get(key, "")))
@@ -182,7 +173,7 @@ def use_properties(tree: Element, _: RewritingRules) -> bool:
     return True
 
 
-def use_macro(tree: Element, _: RewritingRules) -> bool:
+def _use_macro(tree: Element, _: RewritingRules) -> bool:
     """Write the first link as a macro of xacro."""
     link = next((link for link in tree.iterchildren("link") if link.get("name")), None)
     if link is None or _has_dollar(tree):
@@ -200,122 +191,15 @@ def _has_dollar(tree: Element) -> bool:
     return b"$" in etree.tostring(tree)
 
 
-LAYOUT, *AS_XACRO = EQUIVALENTS[-3:]
-_ALL = (reorder, split_joints, move_frames, rename_links, rename_joints, change_layout, use_properties, use_macro)
-REWRITINGS: dict[str, Rewriting] = dict(zip(EQUIVALENTS, _ALL, strict=True))
-
-
-def copied(root: Element) -> Element:
-    """Return a copy of a tree without comments; paths of meshes that $(find package) gave become package:// ones.
-
-    Its root declares the namespace of xacro.
-    """
-    plain = etree.XMLParser(remove_comments=True, remove_pis=True, remove_blank_text=True)
-    found = etree.fromstring(etree.tostring(root, with_tail=False), plain)
-    copy = etree.Element(found.tag, dict(found.attrib), nsmap={"xacro": XACRO})
-    copy.extend(list(found))
-    for mesh in copy.iter("mesh"):
-        if mesh.get("filename"):
-            mesh.set("filename", _FOUND.sub(r"package://\1/", mesh.get("filename", "")))
-    return copy
-
-
-def text_of(tree: Element, indent: str = "  ") -> str:
-    """Return a tree as text, without namespaces that are not used."""
-    etree.cleanup_namespaces(tree)
-    etree.indent(tree, indent)
-    return etree.tostring(tree, encoding="unicode")
-
-
-def own_elements(tree: Element, *tags: str) -> Iterator[Element]:
-    """Yield the elements with these tags that ROS 2 reads: not those inside of elements for a simulator."""
-    for child in tree:
-        if child.tag not in FOREIGN:
-            yield from child.iter(*tags)
-
-
-def fresh(tree: Element, kind: str) -> str:
-    """Return a name that nothing in the robot has."""
-    return f"extra_{kind}_{len(tree)}"
-
-
-def origin(xyz: Iterable[float], rpy: Iterable[float]) -> Transform:
-    """Return the transform of an origin."""
-    x, y, z = xyz
-    roll, pitch, yaw = rpy
-    return Transform(rotation_from_rpy((roll, pitch, yaw)), (x, y, z))
-
-
-def attribute_text(values: Iterable[float]) -> str:
-    """Return numbers as an attribute contains them."""
-    return " ".join(f"{value + 0.0:.13g}" for value in values)
-
-
-def attribute_numbers(element: Element | None, attribute: str, default: str = "0 0 0") -> list[float]:
-    """Return the numbers of an attribute."""
-    text = default if element is None else element.get(attribute, default)
-    return [float(piece) for piece in text.split()]
-
-
-def vector_of(element: Element | None, attribute: str, default: str = "0 0 0") -> Vector:
-    """Return the three numbers of an attribute."""
-    x, y, z = attribute_numbers(element, attribute, default)
-    return x, y, z
-
-
-def pose(owner: Element) -> Transform:
-    """Return the pose in the `<origin>` of a joint, a visual, a collision or an inertial."""
-    found = owner.find("origin")
-    return origin(attribute_numbers(found, "xyz"), attribute_numbers(found, "rpy"))
-
-
-def set_pose(owner: Element, transform: Transform) -> None:
-    """Write a pose into the `<origin>` of an element."""
-    found = owner.find("origin")
-    if found is None:
-        if transform == IDENTITY:
-            return
-        found = etree.SubElement(owner, "origin")
-    found.set("xyz", attribute_text(transform.translation))
-    found.set("rpy", attribute_text(transform.rpy))
-
-
-def end(joint: Element, role: str) -> Element:
-    """Return the `<parent>` or `<child>` of a joint."""
-    found = joint.find(role)
-    assert found is not None
-    return found
-
-
-def parent_joint(tree: Element, link: str) -> Element | None:
-    """Return the one joint whose child is this link; None of several."""
-    found = [joint for joint in tree.iterchildren("joint") if end(joint, "child").get("link") == link]
-    return found[0] if len(found) == 1 else None
-
-
-def move_frame(tree: Element, link: Element, change: Transform) -> None:
-    """Move a link's frame by `change`, given in the frame, and everything in the link back: nothing else moves."""
-    name = link.get("name", "")
-    held = parent_joint(tree, name)
-    assert held is not None
-    back = change.inverse()
-    set_pose(held, pose(held) @ change)
-    axis = held.find("axis")
-    if axis is not None:
-        axis.set("xyz", attribute_text(back.rotate(vector_of(axis, "xyz"))))
-    elif held.get("type") != "fixed":
-        etree.SubElement(held, "axis", {"xyz": attribute_text(back.rotate((1.0, 0.0, 0.0)))})
-    for element in link.iterchildren("visual", "collision", "inertial"):
-        set_pose(element, back @ pose(element))
-    for joint in tree.iterchildren("joint"):
-        if end(joint, "parent").get("link") == name:
-            set_pose(joint, back @ pose(joint))
-
-
-def add_joint(tree: Element, name: str, parent: str, child: str, transform: Transform) -> Element:
-    """Add a fixed joint."""
-    joint = etree.SubElement(tree, "joint", {"name": name, "type": "fixed"})
-    etree.SubElement(joint, "parent", {"link": parent})
-    etree.SubElement(joint, "child", {"link": child})
-    set_pose(joint, transform)
-    return joint
+_LAYOUT, *_AS_XACRO = EQUIVALENTS[-3:]
+_ALL = (
+    _reorder,
+    _split_joints,
+    _move_frames,
+    _rename_links,
+    _rename_joints,
+    _change_layout,
+    _use_properties,
+    _use_macro,
+)
+_REWRITINGS: dict[str, _Rewriting] = dict(zip(EQUIVALENTS, _ALL, strict=True))

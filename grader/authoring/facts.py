@@ -28,7 +28,7 @@ from grader.text import enumerated
 from grader.xml.parsing import Element
 from grader.xml.wanted_element import foreign_elements, name_of, readable, text_in, words_of_foreign
 
-THE_FILE, THE_ROBOT, THE_PACKAGE = "The file", "The robot", "The package"  # headings
+_THE_FILE, _THE_ROBOT, THE_PACKAGE = "The file", "The robot", "The package"  # headings
 
 
 class Solution(NamedTuple):
@@ -66,7 +66,7 @@ class Omission(NamedTuple):
     why: str
 
 
-Facts = Iterator[Fact | Omission]
+_Facts = Iterator[Fact | Omission]
 
 
 _WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")
@@ -83,10 +83,10 @@ _LOOSE_INERTIA = 5.0  # percent, for a solution with rounded numbers
 _MAX_TIPS = 20
 
 
-def robot_facts(solution: Solution) -> Facts:
+def robot_facts(solution: Solution) -> _Facts:
     """Yield what may be true of the file, of each link with its parent joint, and of the robot."""
     robot = solution.robot
-    yield Fact(THE_FILE, "urdf_loads", {}, "urdf_loads")
+    yield Fact(_THE_FILE, "urdf_loads", {}, "urdf_loads")
     for link in robot.robot.links:
         yield from _visual_facts(link)
         joint = robot.parent_joints.get(link.name)
@@ -105,7 +105,7 @@ def _of(link: str, check: str, **arguments: Any) -> Fact:
 
 
 def _of_robot(check: str, **arguments: Any) -> Fact:
-    return Fact(THE_ROBOT, check, arguments, check)
+    return Fact(_THE_ROBOT, check, arguments, check)
 
 
 def _rounded(vector: Sequence[float], digits: int = 6) -> list[float]:
@@ -113,7 +113,7 @@ def _rounded(vector: Sequence[float], digits: int = 6) -> list[float]:
     return [round(value, digits) + 0.0 for value in vector]
 
 
-def _visual_facts(link: Link) -> Facts:
+def _visual_facts(link: Link) -> _Facts:
     """Yield what a link shows; the place and colour of a shape only if no other shape of the link is of its kind."""
     if len(link.visuals) > MAX_SHAPES:
         yield Omission(f"{link.name} visuals", f"it has more than {MAX_SHAPES}")
@@ -157,7 +157,7 @@ def _axis(visual: Visual) -> dict[str, Any]:
     return {"axis": _rounded(rotation_from_rpy(visual.origin.rpy)[2::3], 2), "angle": 1.0}
 
 
-def _body_facts(link: Link) -> Facts:
+def _body_facts(link: Link) -> _Facts:
     """Yield the mass and inertia of a link, and its collision shapes, or that they are those that it shows."""
     if link.inertial is not None:
         least = abs(link.inertial.mass) * _MASS_SHARE
@@ -242,10 +242,10 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
         yield _of_robot("kinematics_match_reference", links=tips[:_MAX_TIPS], match="order")._replace(title=title)
 
 
-Values = dict[str, Any]
+_Values = dict[str, Any]
 
 
-def element_facts(solution: Solution) -> Facts:
+def element_facts(solution: Solution) -> _Facts:
     """Yield the values in each element for simulators and controllers."""
     for element in foreign_elements(solution.root):
         about = f"<{name_of(element)}>"
@@ -259,12 +259,12 @@ def element_facts(solution: Solution) -> Facts:
             yield Fact(about, "element_present", given, label)
 
 
-def _element_values(element: Element) -> Iterator[tuple[str, str, Values]]:
+def _element_values(element: Element) -> Iterator[tuple[str, str, _Values]]:
     """Yield the plain values in an element, then those in each child that has elements or attributes.
 
     Each has a label, the path of the child, and values by their paths in it.
     """
-    plain: Values = {}
+    plain: _Values = {}
     deep: list[Element] = []
     for child in _children(element):
         if _children(child) or child.attrib:
@@ -277,9 +277,9 @@ def _element_values(element: Element) -> Iterator[tuple[str, str, Values]]:
         yield f"{_label(element)} {_label(child)}", name_of(child), _values_by_path(child)
 
 
-def _values_by_path(element: Element, path: str = "") -> Values:
+def _values_by_path(element: Element, path: str = "") -> _Values:
     """Return all attributes and texts in an element by their paths; of repeated ones a list."""
-    found: Values = {}
+    found: _Values = {}
     for key, text in element.attrib.items():
         _add(found, f"{path}@{key!s}", _value(str(text)))
     for child in _children(element):
@@ -291,7 +291,7 @@ def _values_by_path(element: Element, path: str = "") -> Values:
     return found
 
 
-def _add(found: Values, key: str, value: Any) -> None:
+def _add(found: _Values, key: str, value: Any) -> None:
     """Add a value, unless it is a path that exists on one machine only; of several values with one path, a list."""
     if isinstance(value, str) and is_of_one_machine(value):
         return
@@ -321,7 +321,7 @@ def _label(element: Element) -> str:
     return f"{name_of(element)} {next((str(element.get(key)) for key in _NAMED_BY if element.get(key)), '')}"
 
 
-def package_facts(solution: Solution) -> Facts:
+def package_facts(solution: Solution) -> _Facts:
     """Yield what may be true of the package that is graded; the other packages are omitted."""
     package, path = solution.submission.package, solution.submission.path
     for other in solution.submission.packages:

@@ -47,7 +47,7 @@ class Mutant(NamedTuple):
         return text[: self.start] + self.new + text[self.end :]
 
 
-class MutantEdit(NamedTuple):
+class _MutantEdit(NamedTuple):
     """A change of a text between two offsets: its family, and its place by names, with what tells it from others."""
 
     family: str
@@ -59,10 +59,10 @@ class MutantEdit(NamedTuple):
 
 def mutants(text: str, path: str = "", hidden: Collection[str] = ()) -> Iterator[Mutant]:
     """Yield every mutant of a URDF or xacro once; `hidden` are links that must show nothing, which show a box."""
-    return as_mutants(text, path, _changes(text, {f"link {name}" for name in hidden}))
+    return _as_mutants(text, path, _changes(text, {f"link {name}" for name in hidden}))
 
 
-def as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator[Mutant]:
+def _as_mutants(text: str, path: str, changes: Iterable[_MutantEdit]) -> Iterator[Mutant]:
     """Yield the mutants that changes of a file make, each once and with an id of its own."""
     seen: set[tuple[int, int, str]] = set()
     ids: Counter[str] = Counter()
@@ -76,7 +76,7 @@ def as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator[
         yield Mutant(name, family, path, text.count("\n", 0, start) + 1, start, end, new)
 
 
-def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
+def _changes(text: str, hidden: Collection[str]) -> Iterator[_MutantEdit]:
     places = list(_places(text))
     names = {tag: [it.get("name", "") for it, *_ in places if it.tag == tag] for tag in ("link", "joint", "material")}
     for element, label, start in places:
@@ -87,12 +87,12 @@ def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
         (head, is_empty), end = head_end(text, start), element_end(text, start)
         if not len(element) and (element.text or "").strip():
             yield from _of_value(text, label, (head, text.rindex("</", head, end)), "")
-        yield MutantEdit("element deleted", label, start, end, "")
+        yield _MutantEdit("element deleted", label, start, end, "")
         if label in hidden:
             if is_empty:  # <link name="x"/>
-                yield MutantEdit("visual added", label, head - len("/>"), head, f">{_BOX}</link>")
+                yield _MutantEdit("visual added", label, head - len("/>"), head, f">{_BOX}</link>")
             else:
-                yield MutantEdit("visual added", label, head, head, _BOX)
+                yield _MutantEdit("visual added", label, head, head, _BOX)
 
 
 def _places(text: str) -> Iterator[tuple[Element, str, int]]:
@@ -119,25 +119,25 @@ def _places(text: str) -> Iterator[tuple[Element, str, int]]:
 
 def _of_attribute(
     text: str, element: Element, label: str, attribute: Attribute, names: Mapping[str, Sequence[str]]
-) -> Iterator[MutantEdit]:
+) -> Iterator[_MutantEdit]:
     name, span = attribute.name, attribute.value
     place = f"{label} {name}"
-    yield MutantEdit("attribute deleted", place, attribute.start - 1, attribute.end, "")
+    yield _MutantEdit("attribute deleted", place, attribute.start - 1, attribute.end, "")
     if name in _NAMES:
         value = text[slice(*span)]
         known = names.get(str(element.tag), names.get(name, names["link"]))
-        yield MutantEdit("name misspelt", place, *span, misspelt(value))
+        yield _MutantEdit("name misspelt", place, *span, _misspelt(value))
         at = known.index(value) + 1 if value in known else 0
         other = next((it for it in (*known[at:], *known[:at]) if it != value), "")
         if other:
-            yield MutantEdit("name exchanged", f"{place} -> {other}", *span, other)
+            yield _MutantEdit("name exchanged", f"{place} -> {other}", *span, other)
     elif name == "type" and element.tag == "joint":
-        yield from (MutantEdit("type", f"{place} -> {other}", *span, other) for other in JOINT_TYPES)
+        yield from (_MutantEdit("type", f"{place} -> {other}", *span, other) for other in JOINT_TYPES)
     elif name not in _UNTOUCHED and not name.startswith("xmlns"):
         yield from _of_value(text, label, span, name)
 
 
-def _of_value(text: str, label: str, span: tuple[int, int], name: str) -> Iterator[MutantEdit]:
+def _of_value(text: str, label: str, span: tuple[int, int], name: str) -> Iterator[_MutantEdit]:
     """Yield changes of a value: of each number in it, else of the text."""
     start, end = span
     label = f"{label} {name}".rstrip()
@@ -145,11 +145,11 @@ def _of_value(text: str, label: str, span: tuple[int, int], name: str) -> Iterat
     for part, found in zip(_parts(name, len(pieces)), pieces, strict=True):
         for family, number in _alternatives(float(found[0])):
             if number != float(found[0]):
-                yield MutantEdit(family, f"{label}{part}", *found.span(), f"{number:.6g}")
+                yield _MutantEdit(family, f"{label}{part}", *found.span(), f"{number:.6g}")
     value = text[start:end].strip()
     if not pieces and value:
         start = text.index(value, start)
-        yield MutantEdit("text misspelt", label, start, start + len(value), misspelt(value))
+        yield _MutantEdit("text misspelt", label, start, start + len(value), _misspelt(value))
 
 
 def _parts(name: str, count: int) -> list[str]:
@@ -171,7 +171,7 @@ def _alternatives(value: float) -> Iterable[tuple[str, float]]:
     )
 
 
-def misspelt(name: str) -> str:
+def _misspelt(name: str) -> str:
     """Return a text without the letter in its middle."""
     middle = len(name) // 2
     return name[:middle] + name[middle + 1 :] if len(name) > 3 else f"{name}x"
@@ -193,25 +193,25 @@ _READ_OF_MANIFEST = re.compile(r"(name|export/build_type)\b")
 _DISPLAY_TEXTS = (("Class",), ("Description Topic", "Value"), ("Topic", "Value"))
 _MAX_LABEL = 70
 
-Text = Callable[[str], str]  # returns the text of a file by its path in the submission
+_Text = Callable[[str], str]  # returns the text of a file by its path in the submission
 
 
-def package_mutants(package: Package, links: Iterable[str], text: Text) -> Iterator[Mutant]:
+def package_mutants(package: Package, links: Iterable[str], text: _Text) -> Iterator[Mutant]:
     """Yield the mutants of a package; `links` are those of its robot, `text` returns that of a file."""
     for own in package.tree.files:
         path = package.path(own)
         if not _UNUSED.search(own):
             name = path.rpartition("/")[2]
-            renamed = f"{path.removesuffix(name)}{misspelt(name)}"
+            renamed = f"{path.removesuffix(name)}{_misspelt(name)}"
             yield Mutant(f"file deleted: {own}", "file deleted", path, 1, is_deleted=True)
             yield Mutant(f"file renamed: {own}", "file renamed", path, 1, is_deleted=True, renamed=renamed)
         if own in package.rviz_files:
-            yield from as_mutants(text(path), path, _rviz(Source(path, text(path)), own, links))
+            yield from _as_mutants(text(path), path, _rviz(Source(path, text(path)), own, links))
         elif own in (MANIFEST, SETUP) or own in package.launch_files:
-            yield from as_mutants(text(path), path, _file_changes(Source(path, text(path)), own))
+            yield from _as_mutants(text(path), path, _file_changes(Source(path, text(path)), own))
 
 
-def _file_changes(source: Source, label: str) -> Iterator[MutantEdit]:
+def _file_changes(source: Source, label: str) -> Iterator[_MutantEdit]:
     """Yield the changes of a file that builds or starts something, by its format."""
     if source.path.endswith(".py"):
         yield from python_changes(PythonFile(source), label)
@@ -219,10 +219,10 @@ def _file_changes(source: Source, label: str) -> Iterator[MutantEdit]:
     for mutant in mutants(source.text):
         place = mutant.id.partition(": ")[2]
         if mutant.family in _XML_FAMILIES and (label != MANIFEST or _READ_OF_MANIFEST.match(place)):
-            yield MutantEdit(mutant.family, f"{label} {place}", mutant.start, mutant.end, mutant.new)
+            yield _MutantEdit(mutant.family, f"{label} {place}", mutant.start, mutant.end, mutant.new)
 
 
-def _rviz(source: Source, label: str, links: Iterable[str]) -> Iterator[MutantEdit]:
+def _rviz(source: Source, label: str, links: Iterable[str]) -> Iterator[_MutantEdit]:
     """Yield changes of the fixed frame, and of each display: disabled, its class or topic misspelt."""
     try:
         root = read_yaml(source.text.encode("utf-8", "surrogateescape"), source.path)
@@ -230,41 +230,41 @@ def _rviz(source: Source, label: str, links: Iterable[str]) -> Iterator[MutantEd
         return
     frame = root.get("Visualization Manager", "Global Options", "Fixed Frame") if root else None
     if frame is not None and frame.text:
-        for other in (misspelt(frame.text), *links):
-            yield MutantEdit("fixed frame", f"{label} -> {other}", *frame.span, other)
+        for other in (_misspelt(frame.text), *links):
+            yield _MutantEdit("fixed frame", f"{label} -> {other}", *frame.span, other)
     displays = root.get("Visualization Manager", "Displays") if root else None
     for display in displays.items if displays else ():
         yield from _of_display(display, label)
 
 
-def _of_display(display: YamlNode, label: str) -> Iterator[MutantEdit]:
+def _of_display(display: YamlNode, label: str) -> Iterator[_MutantEdit]:
     title, enabled = display.get("Name") or display.get("Class"), display.get("Enabled")
     place = f"{label} {title.text if title else ''}".rstrip()
     if enabled is not None and enabled.text == "true":
-        yield MutantEdit("display disabled", place, *enabled.span, "false")
+        yield _MutantEdit("display disabled", place, *enabled.span, "false")
     for keys in _DISPLAY_TEXTS:
         node = display.get(*keys)
         if node is not None and node.text:
-            yield MutantEdit("text misspelt", f"{place} {'/'.join(keys)}", *node.span, misspelt(node.text))
+            yield _MutantEdit("text misspelt", f"{place} {'/'.join(keys)}", *node.span, _misspelt(node.text))
 
 
-def python_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
+def python_changes(file: PythonFile, label: str) -> Iterator[_MutantEdit]:
     """Yield the changes of a file: an entry of data_files, an action or an import deleted, a string misspelt."""
     is_setup = label == SETUP
     family = "data_files entry deleted" if is_setup else "action removed"
     for item in _entries(file):
         start, end = file.span(item)
         comma = re.compile(r"\s*,").match(file.text, end)
-        yield MutantEdit(family, f"{label} {_short(file, item)}", start, comma.end() if comma else end, "")
+        yield _MutantEdit(family, f"{label} {_short(file, item)}", start, comma.end() if comma else end, "")
     for call in file.calls("add_action"):
         action = call.args[0] if call.args else call
-        yield MutantEdit(family, f"{label} {_short(file, action)}", *file.span(call), "None")
+        yield _MutantEdit(family, f"{label} {_short(file, action)}", *file.span(call), "None")
     for node in file.imports if is_setup else ():
-        yield MutantEdit("import deleted", f"{label} {file.segment(node)}", *file.span(node), "pass")
+        yield _MutantEdit("import deleted", f"{label} {file.segment(node)}", *file.span(node), "pass")
     ignored = [*_for_people(file)]
     for text, start, end in file.literals:
         if text.strip() and not any(first <= start < last for first, last in ignored):
-            yield MutantEdit("string misspelt", f"{label} {text[:_MAX_LABEL]}", start, end, misspelt(text))
+            yield _MutantEdit("string misspelt", f"{label} {text[:_MAX_LABEL]}", start, end, _misspelt(text))
 
 
 def _entries(file: PythonFile) -> Iterator[ast.expr]:

@@ -30,7 +30,6 @@ from grader.grading.rubric import Rubric, read_rubric
 from grader.hints.editing import content, with_files, with_urdf
 from grader.hints.trials import is_worse
 from grader.package.package import MANIFEST
-from grader.robot.normal_form import normal_form
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read, Urdf
@@ -155,7 +154,7 @@ class Trial:
             fate = "faulty"
         elif any(map(self.is_lost, results)):
             fate = "caught"
-        elif is_of_robot and is_same_robot(self.reference.urdf, submission.urdf, self.kept):
+        elif is_of_robot and _is_same_robot(self.reference.urdf, submission.urdf, self.kept):
             fate = "same"
         else:
             fate = "survived"
@@ -176,19 +175,20 @@ class Trial:
     def _must_pass(self, submission: Submission, family: str) -> Collection[str]:
         """Return the criteria on the robot that must still pass; for a URDF on its own, those that need no package."""
         others = ("package", "submission") if submission.is_single else ("package",)
-        return [it.id for it in self.tested if it.check.subject not in others and not breaks(it, family)]
+        asked = (it for it in self.tested if it.check.subject not in others)
+        return [it.id for it in asked if family not in it.check.about.breaks_under(it.arguments)]
 
 
-def is_same_robot(one: Urdf, other: Urdf, kept: Collection[str]) -> bool:
+def _is_same_robot(one: Urdf, other: Urdf, kept: Collection[str]) -> bool:
     """Return whether two URDFs are the same robot; `kept` are names that something outside of the file refers to.
 
     ROS 2's verdict counts, the normal form of the robot, and the elements for simulators and controllers.
     """
-    form = _form(one, kept)
-    return form is not None and form == _form(other, kept)
+    form = _counting_form(one, kept)
+    return form is not None and form == _counting_form(other, kept)
 
 
-def _form(urdf: Urdf, kept: Collection[str]) -> object:
+def _counting_form(urdf: Urdf, kept: Collection[str]) -> object:
     """Return what counts of a file; None if no robot is read."""
     if not isinstance(urdf, Read) or urdf.reading.robot is None or urdf.reading.root is None:
         return None
@@ -196,13 +196,8 @@ def _form(urdf: Urdf, kept: Collection[str]) -> object:
     foreign = [
         etree.tostring(child, with_tail=False) for child in sorted(foreign_elements(root), key=lambda it: str(it.tag))
     ]
-    form = normal_form(robot, {*kept, *words_of_foreign(root)})
+    form = normal_counting_form(robot, {*kept, *words_of_foreign(root)})
     return urdf.loaded.verdict, urdf.reading.undetermined, foreign, form
-
-
-def breaks(criterion: Criterion, family: str) -> bool:
-    """Return whether a criterion may fail under a family of equivalents, as its check declares."""
-    return family in criterion.check.about.breaks_under(criterion.arguments)
 
 
 def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Submission:
@@ -230,11 +225,11 @@ def _texts(value: Any) -> Iterator[str]:
             yield from _texts(item)
 
 
-GradeAll = Callable[[Sequence[Mutant]], Iterable[MutantOutcome]]  # in any order
-Progress = Callable[[int, int], None]  # how many submissions of how many are graded
+_GradeAll = Callable[[Sequence[Mutant]], Iterable[MutantOutcome]]  # in any order
+_Progress = Callable[[int, int], None]  # how many submissions of how many are graded
 
 
-class Survivor(NamedTuple):
+class _Survivor(NamedTuple):
     """A mutant that loses nothing: its diff, and why the rubric ignores it."""
 
     mutant: Mutant
@@ -250,8 +245,8 @@ class RubricTest(NamedTuple):
     tried: int  # mutants that were graded
     caught: int  # mutants that lose points
     same: int  # mutants that are the same robot
-    survivors: tuple[Survivor, ...]  # mutants that lose nothing
-    ignored: tuple[Survivor, ...]  # mutants that lose nothing, and that the rubric ignores
+    survivors: tuple[_Survivor, ...]  # mutants that lose nothing
+    ignored: tuple[_Survivor, ...]  # mutants that lose nothing, and that the rubric ignores
     unused: tuple[str, ...]  # patterns of [[test.ignore]] that match no mutant
     idle: tuple[str, ...]  # criteria that no mutant fails
     faults: tuple[Loss, ...]  # mutants on which a check is faulty
@@ -282,7 +277,7 @@ class RubricTest(NamedTuple):
 
 
 def run_rubric_test(
-    rubric: Rubric, samples: list[Sample] | None, progress: Progress, grade_all: GradeAll
+    rubric: Rubric, samples: list[Sample] | None, progress: _Progress, grade_all: _GradeAll
 ) -> RubricTest:
     """Return the test of a rubric. Raises InputError without a readable reference, RubricError for wrong samples.
 
@@ -297,7 +292,7 @@ def run_rubric_test(
     for outcome in grade_all(chosen):
         outcomes.append(outcome)
         progress(len(samples or ()) + len(outcomes), total)
-    return _result(trial, every, outcomes, of_samples)
+    return _counted(trial, every, outcomes, of_samples)
 
 
 def mutant_outcomes(data: bytes, path: str, mutants: Sequence[Mutant]) -> list[MutantOutcome]:
@@ -310,7 +305,7 @@ def _trial_from(data: bytes, path: str) -> Trial:
     return Trial(read_rubric(data, Path(path)))
 
 
-def _result(
+def _counted(
     trial: Trial, every: Sequence[Mutant], outcomes: Iterable[MutantOutcome], samples: SampleResults | None
 ) -> RubricTest:
     """Return the result of a test: `outcomes` are those of the mutants that were graded, in any order."""
@@ -329,36 +324,38 @@ def _result(
         same=fates["same"],
         survivors=tuple(it for it in survivors if not it.reason),
         ignored=tuple(it for it in survivors if it.reason),
-        unused=tuple(it for it in patterns if not any(_is_match(mutant, it) for mutant in every)),
+        unused=tuple(it for it in patterns if not any(_matches(mutant, it) for mutant in every)),
         idle=tuple(one.id for one in trial.tested if one.id not in failed),
-        faults=tuple(Loss(it.mutant.id, it.faults, _diff(trial, it.mutant)) for it in graded if it.fate == "faulty"),
+        faults=tuple(
+            Loss(it.mutant.id, it.faults, _mutant_diff(trial, it.mutant)) for it in graded if it.fate == "faulty"
+        ),
         equivalents=tuple(it.family for it, _ in tried),
         losses=tuple(
-            Loss(it.family, lost, diff(trial.robot_files[0], it.before, it.text)) for it, lost in tried if lost
+            Loss(it.family, lost, _text_diff(trial.robot_files[0], it.before, it.text)) for it, lost in tried if lost
         ),
         samples=samples,
     )
 
 
-def _survivor(trial: Trial, mutant: Mutant) -> Survivor:
+def _survivor(trial: Trial, mutant: Mutant) -> _Survivor:
     """Return a mutant that loses nothing, with the reason for which the rubric ignores it."""
     ignored = trial.rubric.ignored
-    reasons = (row.reason for row in ignored if any(_is_match(mutant, pattern) for pattern in row.mutants))
-    return Survivor(mutant, _diff(trial, mutant), next(reasons, ""))
+    reasons = (row.reason for row in ignored if any(_matches(mutant, pattern) for pattern in row.mutants))
+    return _Survivor(mutant, _mutant_diff(trial, mutant), next(reasons, ""))
 
 
-def _diff(trial: Trial, mutant: Mutant) -> str:
+def _mutant_diff(trial: Trial, mutant: Mutant) -> str:
     if mutant.is_deleted:
         return f"rename {mutant.path} to {mutant.renamed}" if mutant.renamed else f"delete {mutant.path}"
     text = trial.text(mutant.path)
-    return diff(mutant.path, text, mutant.applied(text))
+    return _text_diff(mutant.path, text, mutant.applied(text))
 
 
-def diff(path: str, before: str, after: str) -> str:
+def _text_diff(path: str, before: str, after: str) -> str:
     """Return the unified diff of two texts of a file, without a line break at its end."""
     return "\n".join(unified_diff(before.splitlines(), after.splitlines(), path, path, n=_CONTEXT, lineterm=""))
 
 
-def _is_match(mutant: Mutant, pattern: str) -> bool:
+def _matches(mutant: Mutant, pattern: str) -> bool:
     """Return whether a pattern is a mutant's id or matches it: brackets in an id are a set of characters to fnmatch."""
     return mutant.id == pattern or fnmatchcase(mutant.id, pattern)

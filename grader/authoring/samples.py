@@ -19,7 +19,7 @@ from grader.submission.opening import open_submission
 from grader.submission.urdf import Read
 from grader.text import printable_path
 
-EXPECTED = "expected.toml"
+_EXPECTED = "expected.toml"
 _TEXT = toml_type(str)
 _VERDICT = toml_type(Literal["clean", "degraded", "rejected", "missing"])
 _WORDS = {"lost": "loses its points", "carried": "fails without a deduction", "pending": "needs manual grading"}
@@ -67,9 +67,9 @@ def read_samples(folder: Path) -> list[Sample]:
     """Return the samples in a folder by name. Raises RubricError for a broken expected.toml, InputError without any."""
     if not folder.is_dir():
         raise InputError(f"{printable_path(folder)} is not a folder with samples")
-    found = [_sample(path) for path in sorted(folder.glob(f"*/{EXPECTED}"))]
+    found = [_sample(path) for path in sorted(folder.glob(f"*/{_EXPECTED}"))]
     if not found:
-        raise InputError(f"{printable_path(folder)} has no samples: no folder in it has an {EXPECTED}")
+        raise InputError(f"{printable_path(folder)} has no samples: no folder in it has an {_EXPECTED}")
     return found
 
 

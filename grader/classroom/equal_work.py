@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from itertools import starmap
 from typing import NamedTuple
 
-from grader.classroom.graded import Graded
+from grader.classroom.results import StoredResult
 from grader.files.reading import sha256_of
 from grader.robot.normal_form import robot_hash, written_form
 from grader.submission.submission import Submission
@@ -41,7 +41,7 @@ def hashes_of(submission: Submission) -> tuple[str, ...]:
     return tuple(forms_of(submission, is_handed_out=True).values())
 
 
-def equal_work(results: Iterable[Graded], handed_out: Iterable[str]) -> list[EqualWork]:
+def equal_work(results: Iterable[StoredResult], handed_out: Iterable[str]) -> list[EqualWork]:
     """Return the groups of students with equal work, without what the course handed out.
 
     The same file comes first, then the same robot, then the same elements.
@@ -58,9 +58,9 @@ def equal_work(results: Iterable[Graded], handed_out: Iterable[str]) -> list[Equ
     return [*starmap(EqualWork, found.items())]
 
 
-def _groups(works: Iterable[tuple[str, Graded]]) -> list[list[Graded]]:
+def _groups(works: Iterable[tuple[str, StoredResult]]) -> list[list[StoredResult]]:
     """Return the groups with the same hash that come from more than one submission, the largest first."""
-    groups: dict[str, list[Graded]] = {}
+    groups: dict[str, list[StoredResult]] = {}
     for form, work in works:
         groups.setdefault(form, []).append(work)
     several = (group for group in groups.values() if len({(one.root, one.paths) for one in group}) > 1)

@@ -7,18 +7,19 @@
 """
 
 import re
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from grader.classroom.listing import ClassListing
-from grader.classroom.people import People
-from grader.classroom.roster import Student
+from grader.classroom.class_files import ClassListing
+from grader.classroom.roster import People, Student, iso_time
+from grader.errors import InputError
 from grader.files.children import Children
-from grader.files.names import BUILD_FOLDERS
-from grader.submission.labs import LabFolders
-from grader.text import printable_path
+from grader.files.names import BUILD_FOLDERS, PACKAGE_FILES
+from grader.names import folded
+from grader.submission.labs import LabFolders, is_part, lab_words
+from grader.text import enumerated, printable_path
 
 # The files that are submissions.
 ENDINGS = (".zip", ".gz", ".tgz", ".bz2", ".xz", ".tar", ".7z", ".rar", ".urdf.xacro", ".urdf", ".xacro")
@@ -46,7 +47,7 @@ _MAX_GROWTH = 1000
 _NAME_IN_CANVAS = re.compile(r"[^\x00-,./:-@[-^`{-\x7f\s]*")
 
 
-class Entry(NamedTuple):
+class NamedPath(NamedTuple):
     """A path in a class folder, and what its `name` tells of the student and the file; a folder ends in a slash."""
 
     path: str
@@ -115,26 +116,26 @@ def is_submission(name: str) -> bool:
     return name.lower().endswith(ENDINGS)
 
 
-def readings_of(name: str, layout: str) -> list[Entry]:
+def readings_of(name: str, layout: str) -> list[NamedPath]:
     """Return how a name can be read: in Canvas as team and 7, or team_7 and 101, of team_7_101_555_lab6.zip."""
     found = [_entry(one) for one in PATTERNS[layout].finditer(name)]
     is_known = layout == "moodle" or bool(found and not found[0].student.name)  # an anonymous student's
     return found[:1] if is_known else [one for one in found if _NAME_IN_CANVAS.fullmatch(one.student.name)]
 
 
-def _entry(found: re.Match[str]) -> Entry:
+def _entry(found: re.Match[str]) -> NamedPath:
     text = {"name": found.string[: found.start()], **dict.fromkeys(("canvas", "moodle", "login"), "")}
     text |= found.groupdict(default="")
     name, canvas, moodle = text["name"], text["canvas"], text["moodle"]
     key = text["login"] or "_".join(filter(None, (name, canvas, moodle)))
     student = Student(key, name, canvas=canvas, moodle=moodle)
     if "plugin" in text:
-        return Entry(found.string, student, plugin=text["plugin"], file=text["file"])
+        return NamedPath(found.string, student, plugin=text["plugin"], file=text["file"])
     upload, is_late = int(text["upload"] or 0), bool(text["late"]) or found[0].startswith("LATE")
-    return Entry(found.string, student, upload=upload, file=text["file"] or "text_entry.html", is_late=is_late)
+    return NamedPath(found.string, student, upload=upload, file=text["file"] or "text_entry.html", is_late=is_late)
 
 
-def entries_of(folder: ClassFolder, layout: str) -> Iterator[Entry]:
+def entries_of(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
     """Yield the submissions by their names; `aliases` are the numbers of which one is the user's."""
     folder.list_refused()
     if layout == "folders":
@@ -157,7 +158,7 @@ def names_in(children: Children) -> dict[str, re.Match[str]]:
     return {name: found for name in names if (found := PATTERNS["folders"].fullmatch(name))}
 
 
-def _folders(folder: ClassFolder) -> Iterator[Entry]:
+def _folders(folder: ClassFolder) -> Iterator[NamedPath]:
     """Yield each folder, archive and URDF, without the prefix of the assignment in its name."""
     read = names_in(folder.children)
     folder.ignore(name for name in folder.names if not {name, f"{name}/"} & read.keys())
@@ -168,7 +169,7 @@ def _folders(folder: ClassFolder) -> Iterator[Entry]:
         if upload and login not in tops and not folder.people.knows(_without(prefix, login)):
             login = name.removesuffix(found["ending"])  # Team (1) and Team (2) are two teams
         own = _without(prefix, login)
-        yield Entry(name.rstrip("/"), Student(own, login=own), login, upload, found["ending"])
+        yield NamedPath(name.rstrip("/"), Student(own, login=own), login, upload, found["ending"])
 
 
 def _without(prefix: str, name: str) -> str:
@@ -185,3 +186,81 @@ def _prefix(names: Collection[str], folder: ClassFolder) -> str:
     before = Counter(name[:end].lower() for name, end in dashes if knows(name[end:]))
     prefix, count = max(before.items(), key=lambda item: (item[1], item[0]), default=("", 0))
     return prefix if count > max(1, known) else ""
+
+
+_MAX_NAMED = 10
+_MAX_TIME = 100  # bytes
+_LOCAL_TIME = len("2026-09-01T10:00:00")
+
+
+def nbgrader(course: ClassFolder) -> Iterator[NamedPath]:
+    """Yield the submissions for one assignment with their times; raises InputError if there is none of its name."""
+    folder = course.inside("submitted") if "submitted" in course.children.folders else course
+    found: dict[str, list[str]] = defaultdict(list)
+    for student in sorted(folder.children.folders):
+        for name in folder.listing.children(folder.start + student).folders:
+            found[name].append(student)
+    wanted = [folder.lab] if folder.lab in found else [name for name in found if folded(name) == folded(folder.lab)]
+    if len(wanted) != 1:
+        named = enumerated([printable_path(name) for name in sorted(found)], _MAX_NAMED) or "none"
+        raise InputError(f"name the assignment to grade with --assignment; there are: {named}")
+    lab = wanted[0]
+    folder.ignore({*folder.children.folders}.difference(found[lab]), f"has no submission for {printable_path(lab)}")
+    folder.ignore(folder.children.files)
+    folder.list_refused()
+    for student in found[lab]:
+        path = f"{folder.start}{student}/{lab}"
+        time = _time_of(folder, path)
+        yield NamedPath(path.removeprefix(course.start), Student(student, login=student), ending="/", submitted=time)
+
+
+def _time_of(folder: ClassFolder, path: str) -> str:
+    """Return the time, in UTC, in the file beside an assignment; empty if there is none."""
+    try:
+        data = folder.listing.read(f"{path}/timestamp.txt", _MAX_TIME)
+    except InputError:
+        return ""
+    time = iso_time(data.decode("utf-8", "replace"))
+    return f"{time}Z" if len(time) == _LOCAL_TIME else time
+
+
+def teams(folder: ClassFolder) -> Iterator[NamedPath]:
+    """Yield the submissions of the students in lab folders, and all other submissions as a whole."""
+    whole = []
+    for team in sorted(folder.children.folders):
+        if students := list(_of_students(folder.inside(team), team)):
+            yield from students
+        else:
+            whole.append(team)
+    yield from entries_of(replace(folder, children=folder.children._replace(folders=whole)), "folders")
+
+
+def _of_students(top: ClassFolder, team: str) -> Iterator[NamedPath]:
+    """Yield the submissions of the students in the lab folders of a team."""
+    for lab in filter(top.labs.is_lab, top.children.folders):
+        below = top.inside(lab)
+        if names := _students(below, team, lab_words(lab)):
+            others = {*below.children.folders}.difference(names)
+            below.ignore(others, "is named like a part of a submission")
+            children = below.children._replace(folders=[name for name in below.children.folders if name in names])
+            for entry in entries_of(replace(below, children=children, people=People(()), lab=""), "folders"):
+                name, path = entry.student.login, f"{team}/{lab}/{entry.path}"
+                yield entry._replace(path=path, student=Student(f"{team}/{name}", name, login=name, group=team))
+
+
+def _students(lab: ClassFolder, team: str, words: Collection[str]) -> set[str]:
+    """Return the names in a lab's folder that are those of students; none if it is one submission.
+
+    Members of the team on the roster are certain, and with them others; without a roster several folders of which none
+    is a package or has the name of a part. The folder of the only member alone stays with the rest of the repository.
+    """
+    people, folders = lab.people, lab.children.folders
+    read = names_in(lab.children).items()
+    known = {name.rstrip("/") for name, found in read if people.knows(found["login"], team)}
+    others = {name for name in folders if name not in known and not is_part(name, words)}
+    is_package = any(lab.listing.has(f"{lab.start}{name}/package.xml") for name in folders)
+    are_students = not (people.students or is_package) and 1 < len(others) == len(folders)
+    if not (lab.is_explicit or known or are_students):
+        return set()
+    is_alone = bool(known) and len(lab.entries) == 1 == len(people.members(team))
+    return set() if is_alone or not PACKAGE_FILES.isdisjoint(lab.children.files) else known | others

@@ -8,8 +8,7 @@ and `submission` the digest of what was graded.
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from grader.classroom.mark_files import COLUMNS, WITHDRAWN, Cells, read_rows
-from grader.classroom.marks import Key, Mark, Marks, collect, mark_in, maxima
+from grader.classroom.marks import COLUMNS, WITHDRAWN, Cells, Key, Mark, Marks, collect, mark_in, maxima, read_rows
 from grader.classroom.typed_names import as_number, criterion_of, find_typed, known, number_in
 from grader.errors import InputError
 from grader.grading.criterion import DEADLINE, TOTAL

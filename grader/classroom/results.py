@@ -6,16 +6,110 @@ it only the comparison of runs and some seconds are lost. A last line that was n
 cut before the next one is appended.
 """
 
+import json
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import chain
 from json.decoder import scanstring  # type: ignore[attr-defined,unused-ignore]
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Literal, NamedTuple, Self
 
-from grader.classroom.graded import Graded, Run, values_in
+from grader.checks.outcome import Status
 from grader.errors import InputError
+from grader.files.reading import sha256_of
 from grader.text import printable_path
+
+Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
+# What is kept of a criterion: points, status, the mistake in words, the criterion that carries it.
+StoredCriterion = tuple[float | None, Status, str, str]
+_DIGITS = 16  # of a hash
+
+
+class StoredResult(NamedTuple):
+    """The result of one submission: where it is, how it went, and what each criterion has.
+
+    `root` is the position of its path in the settings of the class, `paths` are below that. `person` is what the
+    names of the files say of the student. `context` is the hash of all that a result depends on besides the
+    submission. `work` are hashes of the robot in several forms, for equal work; `answers` are the keys of what a person
+    looks at for a criterion: students with the same answer have the same one, and it is empty without an answer.
+    `texts` are those of Word and PDF files by path, in a new result only. `no_documents` says why its documents were
+    not read. Without a `digest` the submission could not be read at all.
+    """
+
+    student: str
+    run: int
+    verdict: Verdict
+    digest: str = ""
+    context: str = ""
+    reason: str = ""
+    root: int = 0
+    paths: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()
+    is_late: bool = False
+    submitted: str = ""
+    person: Mapping[str, str] = {}
+    parts: tuple[str, ...] = ()
+    results: Mapping[str, StoredCriterion] = {}
+    work: Mapping[str, str] = {}
+    answers: Mapping[str, str] = {}
+    no_documents: str = ""
+    texts: Mapping[str, str] = {}
+
+    @property
+    def line(self) -> bytes:
+        """The line of the file, without what is empty, and before it that of the texts."""
+        values = self._asdict()
+        files = values.pop("texts")
+        line = _line_of({name: value for name, value in values.items() if value or name in ("student", "run")})
+        return _line_of({"texts": self.student, "digest": self.digest, "files": files}) + line if files else line
+
+
+class Run(NamedTuple):
+    """A finished run: its number, the time in ISO 8601, and the total of each student who submitted, None while it is
+    open.
+
+    `rubric` is its hash, `context` that of all that results depend on besides the submissions. `unclear` are the
+    students with possible submissions of which none was graded, `others` the totals of those without a submission.
+    """
+
+    run: int
+    time: str
+    version: str
+    rubric: str
+    context: str
+    totals: Mapping[str, str | None]
+    unclear: Sequence[str] = ()
+    others: Mapping[str, str] = {}
+
+    @property
+    def line(self) -> bytes:
+        """The line of the file."""
+        return _line_of(self._asdict())
+
+    @property
+    def students(self) -> Iterable[str]:
+        """The students who submitted, and those who have a total without a submission."""
+        return chain(self.totals, self.others)
+
+    def total(self, student: str) -> str | None:
+        """Return the total of a student; None if there was none, or it was open."""
+        return self.totals.get(student, self.others.get(student))
+
+
+def _line_of(values: Mapping[str, Any]) -> bytes:
+    return f"{json.dumps(values, separators=(',', ':'))}\n".encode()
+
+
+def values_in(line: bytes) -> dict[str, Any]:
+    """Return the values in a line, lists as tuples."""
+    return {key: tuple(value) if isinstance(value, list) else value for key, value in json.loads(line).items()}
+
+
+def digest_of(*parts: object) -> str:
+    """Return the hash of some values: it begins with a letter, so that no spreadsheet takes it for a number."""
+    return f"d{sha256_of(repr(parts).encode())[:_DIGITS]}"
+
 
 _RUN, _GRADED, _TEXTS = b'{"run":', b'{"student":', b'{"texts":'
 
@@ -78,25 +172,25 @@ class Results:
         """The keys of the students with a result, sorted."""
         return sorted(self._places)
 
-    def all(self) -> Iterator[Graded]:
+    def all(self) -> Iterator[StoredResult]:
         """Yield the newest result of each student, in the order of the keys."""
         return (one for one in self.each(self.students) if one is not None)
 
-    def each(self, keys: Iterable[str]) -> Iterator[Graded | None]:
+    def each(self, keys: Iterable[str]) -> Iterator[StoredResult | None]:
         """Yield the newest result of each of some students, None for one without."""
         for values in self._values(self._places, keys):
             with self._whole():
-                found = Graded(**values) if values else None
+                found = StoredResult(**values) if values else None
             yield found
 
-    def of(self, key: str) -> Graded | None:
+    def of(self, key: str) -> StoredResult | None:
         """Return the newest result of a student."""
         return next(self.each([key]))
 
-    def texts(self, graded: Graded) -> dict[str, str]:
+    def texts(self, stored: StoredResult) -> dict[str, str]:
         """Return the texts of the Word and PDF files in a submission as it was graded, by path."""
-        [found] = self._values(self._texts, [graded.student])
-        return dict(found["files"]) if found and found["digest"] == graded.digest else {}
+        [found] = self._values(self._texts, [stored.student])
+        return dict(found["files"]) if found and found["digest"] == stored.digest else {}
 
     def _values(self, places: Mapping[str, int], keys: Iterable[str]) -> Iterator[dict[str, Any]]:
         """Yield the values in a line for each key, none for a key without."""

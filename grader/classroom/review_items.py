@@ -4,9 +4,9 @@ from collections import defaultdict
 from collections.abc import Collection
 from typing import NamedTuple
 
-from grader.classroom.graded import Graded, digest_of
-from grader.classroom.grades import Class
+from grader.classroom.gradebook import Gradebook
 from grader.classroom.marks import Key, Mark
+from grader.classroom.results import StoredResult, digest_of
 from grader.classroom.roster import Student, plain
 from grader.grading.criterion import TOTAL, Criterion
 from grader.text import named
@@ -16,11 +16,11 @@ STATES = {UNMARKED: "unmarked", "marked": "marked", OLDER: "marked before the su
 Place = tuple[str, str]  # a criterion and the key of an answer
 
 
-class Member(NamedTuple):
+class ReviewStudent(NamedTuple):
     """A student of an item, what was graded, the mark or comment that counts, and a number if anonymous."""
 
     student: Student
-    graded: Graded
+    stored: StoredResult
     mark: Mark | None = None
     number: int = 0
 
@@ -34,7 +34,7 @@ class Member(NamedTuple):
         """One of STATES."""
         if self.mark is None or self.mark.points is None:
             return UNMARKED
-        return "marked" if self.mark.submission in ("", self.graded.digest) else OLDER
+        return "marked" if self.mark.submission in ("", self.stored.digest) else OLDER
 
 
 class ReviewItem(NamedTuple):
@@ -45,7 +45,7 @@ class ReviewItem(NamedTuple):
 
     criterion: Criterion
     answer: str
-    members: tuple[Member, ...]
+    members: tuple[ReviewStudent, ...]
 
     @property
     def place(self) -> Place:
@@ -55,7 +55,7 @@ class ReviewItem(NamedTuple):
     @property
     def view(self) -> str:
         """A text that tells whether the item is as a page shows it, without the names of its students."""
-        shown = ((one.student.key, one.graded.digest, one.mark and one.mark._replace(place="")) for one in self.members)
+        shown = ((one.student.key, one.stored.digest, one.mark and one.mark._replace(place="")) for one in self.members)
         return digest_of(self.criterion.id, [*shown])
 
 
@@ -66,7 +66,7 @@ class ReviewFilter(NamedTuple):
     section: str = ""
     state: str = UNMARKED
 
-    def members(self, item: ReviewItem, kept: Collection[Key] = ()) -> tuple[Member, ...]:
+    def members(self, item: ReviewItem, kept: Collection[Key] = ()) -> tuple[ReviewStudent, ...]:
         """Return the students of an item that are shown; those in `kept` whatever their state is."""
         return tuple(
             one
@@ -76,26 +76,26 @@ class ReviewFilter(NamedTuple):
         )
 
 
-def review_items(book: Class, *, is_anonymous: bool = False, with_final: bool = False) -> dict[Place, ReviewItem]:
+def review_items(book: Gradebook, *, is_anonymous: bool = False, with_final: bool = False) -> dict[Place, ReviewItem]:
     """Return what needs manual grading, and what else has a mark: in the rubric's order, each criterion by student.
 
     Those without an answer are the last item of a criterion. Unreadable submissions are omitted: they need a fix, not
     points. So are criteria that the rubric adjusts, and students with a final mark or an excuse, unless `with_final`.
     Students of one submission have the same answers. Numbers and order of anonymous students reveal no names.
     """
-    groups: defaultdict[Place, list[Member]] = defaultdict(list)
+    groups: defaultdict[Place, list[ReviewStudent]] = defaultdict(list)
     keys = sorted(book.keys, key=digest_of) if is_anonymous else book.keys
     order, counting = {key: at for at, key in enumerate(keys, 1)}, book.marks.counting
-    graded = [one for one in book.results.all() if one.verdict != "unreadable" and one.student in book.run.totals]
+    stored = [one for one in book.results.all() if one.verdict != "unreadable" and one.student in book.run.totals]
     # Several files are a submission named after the student, so digests of members differ, and with them the keys:
-    of_files = {(one.root, one.paths): one.answers for one in graded}  # in any order of the items the same
-    for one in sorted(graded, key=lambda one: order[one.student]):
+    of_files = {(one.root, one.paths): one.answers for one in stored}  # in any order of the items the same
+    for one in sorted(stored, key=lambda one: order[one.student]):
         answers = of_files[one.root, one.paths]
         student, number = book.student(one.student, one), order[one.student] * is_anonymous
         for name in one.results if with_final or (one.student, TOTAL) not in counting else ():
             mark = counting.get((one.student, name))
             if name in answers or mark is not None:
-                member = Member(student, one, mark or book.marks.comments.get((one.student, name)), number)
+                member = ReviewStudent(student, one, mark or book.marks.comments.get((one.student, name)), number)
                 groups[name, answers.get(name, one.digest)].append(member)
     rows = {row.id: row for row in book.rubric.criteria if row.adjustment is None}
     items = (ReviewItem(rows[name], answer, (*some,)) for (name, answer), some in groups.items() if name in rows)

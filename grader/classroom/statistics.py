@@ -6,8 +6,8 @@ from decimal import Decimal
 from typing import NamedTuple
 
 from grader.classroom.equal_work import EqualWork, equal_work
-from grader.classroom.grades import Class
-from grader.classroom.student_grade import ClassResult, Reason, StudentGrade
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.student_grade import Reason, SharedResult, StudentGrade
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 
@@ -31,7 +31,7 @@ class CriterionFigures(NamedTuple):
     share: float | None
 
 
-class Mistake(NamedTuple):
+class CommonMistake(NamedTuple):
     """A mistake that several students made in a criterion."""
 
     criterion: str
@@ -56,14 +56,14 @@ class ClassStatistics(NamedTuple):
     late: int
     tenths: Sequence[Sequence[str]]
     criteria: Sequence[CriterionFigures]
-    mistakes: Sequence[Mistake]
+    mistakes: Sequence[CommonMistake]
     sections: dict[str, Summary]
     attention: dict[Reason, list[tuple[str, str]]]
     equal: Sequence[EqualWork]
     names: dict[str, str]
 
 
-def statistics(book: Class, grades: Iterable[StudentGrade]) -> ClassStatistics:
+def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatistics:
     """Return the statistics of the grades of a class."""
     every = list(grades)
     enrolled = [one for one in every if one.student.is_on_roster and (one.has_final or not one.is_gone)]
@@ -78,7 +78,7 @@ def statistics(book: Class, grades: Iterable[StudentGrade]) -> ClassStatistics:
     for one in every:
         for reason, detail in one.concerns.items():
             attention[reason].append((one.student.key, detail))
-    present = [one.graded for one in every if one.graded is not None and not one.is_gone]
+    present = [one.stored for one in every if one.stored is not None and not one.is_gone]
     return ClassStatistics(
         book.rubric,
         most,
@@ -102,9 +102,9 @@ def summary(totals: Iterable[Decimal]) -> Summary:
     return Summary(count, sum(found, Decimal(0)) / count, (found[(count - 1) // 2] + found[count // 2]) / 2)
 
 
-def _of_criteria(book: Class, grades: Iterable[StudentGrade]) -> tuple[list[CriterionFigures], list[Mistake]]:
+def _of_criteria(book: Gradebook, grades: Iterable[StudentGrade]) -> tuple[list[CriterionFigures], list[CommonMistake]]:
     """Return the figures of the criteria, and the most common mistakes."""
-    shared: dict[int, tuple[ClassResult, list[str]]] = {}  # most students of a class have the same few objects
+    shared: dict[int, tuple[SharedResult, list[str]]] = {}  # most students of a class have the same few objects
     for grade in grades:
         for result in grade.results:
             shared.setdefault(id(result), (result, []))[1].append(grade.student.key)
@@ -118,10 +118,10 @@ def _of_criteria(book: Class, grades: Iterable[StudentGrade]) -> tuple[list[Crit
             mistakes[name, message] += keys
     common = sorted(mistakes.items(), key=lambda item: (-len(item[1]), item[0]))[:_MAX_MISTAKES]
     rows = [CriterionFigures(row, counts[row.id], _share(row, counts[row.id], earned[row.id])) for row in book.criteria]
-    return rows, [Mistake(*where, sorted(keys)) for where, keys in common]
+    return rows, [CommonMistake(*where, sorted(keys)) for where, keys in common]
 
 
-def _of(result: ClassResult) -> tuple[str, ...]:
+def _of(result: SharedResult) -> tuple[str, ...]:
     """Return what a result counts as: a mark, a given point, or the status of the check."""
     if result.manual_mark is not None:
         return "marked", "decided"

@@ -6,9 +6,9 @@ from enum import StrEnum
 from functools import cached_property
 from typing import cast
 
-from grader.classroom.graded import Graded
 from grader.classroom.lateness import Lateness
 from grader.classroom.marks import EXCUSED, Mark
+from grader.classroom.results import StoredResult
 from grader.classroom.roster import Student
 from grader.grading.report import Report, Result
 from grader.text import counted_points, format_points
@@ -36,7 +36,7 @@ class Reason(StrEnum):
 _OBSTACLES = {Reason.FAILED, Reason.UNREADABLE, Reason.UNCLEAR, Reason.MISSING, Reason.GONE, Reason.OUTDATED}
 
 
-class ClassResult(Result):
+class SharedResult(Result):
     """A result in a class: most students share it with others, so what follows from it is computed once."""
 
     @cached_property
@@ -71,7 +71,7 @@ class StudentGrade:
     """
 
     student: Student
-    graded: Graded | None
+    stored: StoredResult | None
     report: Report
     late: Lateness = _ON_TIME
     final: Mark | None = None
@@ -103,12 +103,12 @@ class StudentGrade:
         """How the submission went: graded, unreadable, errored, missing or excused."""
         if self.is_excused:
             return "excused"
-        return self.graded.verdict if self.graded is not None else "missing"
+        return self.stored.verdict if self.stored is not None else "missing"
 
     @property
-    def results(self) -> tuple[ClassResult, ...]:
+    def results(self) -> tuple[SharedResult, ...]:
         """The results of the criteria."""
-        return cast("tuple[ClassResult, ...]", self.report.results)
+        return cast("tuple[SharedResult, ...]", self.report.results)
 
     @cached_property
     def score(self) -> Decimal:
@@ -118,7 +118,7 @@ class StudentGrade:
     @cached_property
     def total(self) -> Decimal | None:
         """The final mark, else the points after the late penalty; None for an excuse, and without a submission."""
-        return self.final_points if self.has_final or self.graded is None else self.score + self.late.points
+        return self.final_points if self.has_final or self.stored is None else self.score + self.late.points
 
     @cached_property
     def pending(self) -> Decimal:
@@ -147,14 +147,14 @@ class StudentGrade:
     @cached_property
     def concerns(self) -> dict[Reason, str]:
         """Why a person should look at this grade, each reason with its details."""
-        reason, found = self.graded.reason if self.graded is not None else "", {*self.known}
+        reason, found = self.stored.reason if self.stored is not None else "", {*self.known}
         if any(one.is_faulty for one in self.results):
             found.add(Reason.FAILED)
         if self.status == "unreadable" and self.pending:
             found.add(Reason.UNREADABLE)
         if self.status == "graded" and reason:
             found.add(Reason.SEVERAL)
-        if self.graded is None and Reason.UNCLEAR not in found:
+        if self.stored is None and Reason.UNCLEAR not in found:
             found.add(Reason.MISSING)
         if self.has_final:
             found -= _OBSTACLES - {Reason.GONE}

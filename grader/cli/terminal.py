@@ -13,7 +13,7 @@ from grader.report.screen import Screen, columns
 from grader.text import without_commands
 
 if TYPE_CHECKING:
-    from grader.classroom.workers.progress import Progress
+    from grader.classroom.workers.queue import Progress
 
 _LINE_SECONDS, _TERMINAL_SECONDS = 10.0, 0.1
 

@@ -3,8 +3,8 @@
 from functools import partial
 from pathlib import Path
 
-from grader.classroom.folder import RESULTS, check_gradebook
-from grader.classroom.grades import Class
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.gradebook_folder import RESULTS, check_gradebook
 from grader.classroom.results import Results
 from grader.classroom.statistics import statistics
 from grader.commands.terminal import Terminal, Warn
@@ -16,7 +16,7 @@ from grader.text import first_lines
 _MAX_LINES = 20
 
 
-def warn_of_ignored(book: Class, warn: Warn) -> None:
+def warn_of_ignored(book: Gradebook, warn: Warn) -> None:
     """Print the marks that do not count."""
     for line in first_lines(book.marks.ignored, _MAX_LINES):
         warn(f"this mark does not count: {line}")
@@ -24,7 +24,7 @@ def warn_of_ignored(book: Class, warn: Warn) -> None:
 
 def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *, verbose: bool) -> str:
     """Return the statistics of a class. Raises InputError."""
-    book = Class(gradebook)
+    book = Gradebook(gradebook)
     warn_of_ignored(book, terminal.warn)
     if kind is OutputFormat.JSON:
         from grader.report.class_json import render_class_json
@@ -37,7 +37,7 @@ def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *,
 
 def compare(books: tuple[Path, ...], before: int | None, after: int | None, kind: OutputFormat, screen: Screen) -> str:
     """Return what changed between two runs of a gradebook, or two gradebooks. Raises InputError."""
-    from grader.classroom.changes import changes, snapshot
+    from grader.classroom.grade_changes import changes, snapshot
     from grader.report.changes import render_changes, render_changes_json
 
     if len(books) not in (1, 2):

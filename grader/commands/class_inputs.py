@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from grader.classroom import folder as names
+from grader.classroom import gradebook_folder as names
+from grader.classroom.batch_worker import reference_hashes
 from grader.classroom.equal_work import hashes_of
+from grader.classroom.gradebook_folder import CLASS_FILE, ClassSettings, read_settings, relative, settings_text
 from grader.classroom.lateness import read_time, time_text
 from grader.classroom.roster import Roster, read_roster
-from grader.classroom.run.worker import reference_hashes
-from grader.classroom.settings import CLASS_FILE, ClassSettings, read_settings, relative, settings_text
 from grader.classroom.tables import SIZE_LIMIT
 from grader.commands.rubrics import DEFAULT_RUBRIC, files_of
 from grader.commands.saves import read_arguments

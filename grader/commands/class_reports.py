@@ -10,13 +10,12 @@ from typing import NamedTuple
 from urllib.parse import quote
 
 from grader.checks.outcome import Outcome
-from grader.classroom import folder as names
-from grader.classroom.graded import Graded
-from grader.classroom.grades import Class
+from grader.classroom import gradebook_folder as names
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.results import StoredResult
 from grader.classroom.student_grade import StudentGrade
 from grader.classroom.workers.pool import Processes, WorkerError, processors
-from grader.classroom.workers.progress import Progress
-from grader.classroom.workers.queue import Queue
+from grader.classroom.workers.queue import Progress, Queue
 from grader.commands.terminal import Terminal
 from grader.commands.writing import make_folder, refuse_symlinks, save
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
@@ -70,14 +69,14 @@ class _Task(NamedTuple):
     has_hints: bool = True
 
 
-def report_of(book: Class, grade: StudentGrade, *, has_hints: bool = True) -> Report:
+def report_of(book: Gradebook, grade: StudentGrade, *, has_hints: bool = True) -> Report:
     """Return the report on a student's submission, with the marks, the grade and notes.
 
     There is a note for a final mark, an excuse, a comment, a late penalty, and who graded if a person did. Without
     notes, the report is the same as that of `grader grade`. A submission that has changed since has its points only.
     """
-    if grade.graded is not None:
-        report, _ = book.with_marks(_again(book, grade.graded, has_hints=has_hints), grade.graded)
+    if grade.stored is not None:
+        report, _ = book.with_marks(_again(book, grade.stored, has_hints=has_hints), grade.stored)
     else:
         results = tuple(Result(criterion, _NOTHING) for criterion in book.criteria)
         report = Report(GradedSubmission(grade.student.key), book.rubric, book.settings.parts, results)
@@ -108,7 +107,7 @@ def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
         yield late.reason
 
 
-def _again(book: Class, graded: Graded, *, has_hints: bool) -> Report:
+def _again(book: Gradebook, graded: StoredResult, *, has_hints: bool) -> Report:
     """Return the report on a submission as it was graded, with its details if it is still there."""
     submission = book.reopened(graded) if graded.verdict != "errored" else None
     if submission is None:
@@ -139,8 +138,8 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
     Raises InputError and RubricError, which concern all reports.
     """
     make_folder(run.folder)
-    book = Class(run.gradebook)
-    files = file_names([one.student.key for one in book if one.graded is not None or one.has_final])
+    book = Gradebook(run.gradebook)
+    files = file_names([one.student.key for one in book if one.stored is not None or one.has_final])
     lost = render_reports(run._replace(time=book.run.time), files, terminal, jobs, timeout)
     if Format.HTML in run.formats:
         place = run.gradebook if run.folder == run.gradebook / names.REPORTS else run.folder
@@ -190,8 +189,10 @@ def _write_some(run: ReportRun, tasks: Sequence[_Task]) -> list[tuple[str, str]]
 
 
 @lru_cache(maxsize=1)
-def _class(run: ReportRun) -> Class:
-    return Class(run.gradebook.absolute(), answers=run.answers)  # no report names a rubric by its place in a gradebook
+def _class(run: ReportRun) -> Gradebook:
+    return Gradebook(
+        run.gradebook.absolute(), answers=run.answers
+    )  # no report names a rubric by its place in a gradebook
 
 
 def file_names(keys: Sequence[str]) -> dict[str, str]:
@@ -209,7 +210,7 @@ def _with_digest(key: str) -> str:
     return f"{readable}-{sha256_of(key.encode('utf-8', 'surrogateescape'))}"
 
 
-def write_class_page(book: Class, folder: Path, pages: Mapping[str, str]) -> None:
+def write_class_page(book: Gradebook, folder: Path, pages: Mapping[str, str]) -> None:
     """Write the class's page into a folder, with links to the pages of students, by their names from there."""
     from grader.classroom.statistics import statistics
     from grader.report.pages.class_page import render_class_page

@@ -7,14 +7,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from zipfile import is_zipfile
 
-from grader.classroom import folder as names
-from grader.classroom.grade_table import grade_table
-from grader.classroom.grades import Class
-from grader.classroom.lms.comments import comment_html, lost_points
-from grader.classroom.lms.feedback_zip import canvas_names, moodle_names, write_feedback
-from grader.classroom.lms.fill import Filled, FillOptions, by_reason, fill
+from grader.classroom import gradebook_folder as names
+from grader.classroom.gradebook import Gradebook, grade_table
+from grader.classroom.lms.feedback import canvas_names, comment_html, lost_points, moodle_names, write_feedback
+from grader.classroom.lms.fill import Filled, FillOptions, PublishedGrade, by_reason, fill
 from grader.classroom.lms.forms import FORMS
-from grader.classroom.lms.owners import ClassGrade
 from grader.classroom.student_grade import Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.commands.class_figures import warn_of_ignored
@@ -52,7 +49,7 @@ class ExportRequest:
 def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]:
     """Export the grades to the output file; return what to print, and the exit code. Raises GraderError."""
     _refuse_options(request)
-    book = Class(request.gradebook)
+    book = Gradebook(request.gradebook)
     roots = book.settings.roots(book.folder)
     if request.target == "html":
         from grader.commands import class_reports  # it loads what runs processes
@@ -80,7 +77,7 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
     return b"", ExitCode.PASSED
 
 
-def _exported(request: ExportRequest, book: Class, terminal: Terminal) -> Filled:
+def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Filled:
     """Return the exported file, empty if only feedback is asked for."""
     if request.target == "csv":
         return Filled(_BOM * request.excel + write_table(*grade_table(book, book, is_exported=True)).encode())
@@ -100,15 +97,15 @@ def _exported(request: ExportRequest, book: Class, terminal: Terminal) -> Filled
     return filled
 
 
-def _class_grade(book: Class, grade: StudentGrade, request: ExportRequest, *, has_comment: bool) -> ClassGrade:
+def _class_grade(book: Gradebook, grade: StudentGrade, request: ExportRequest, *, has_comment: bool) -> PublishedGrade:
     """Return a grade as it is published; points that need manual grading count as zero with --pending-as-zero."""
     is_zero = request.pending_as_zero and grade.pending and grade.why_open.endswith("manual grading")
     total = grade.total if is_zero else grade.published
     comment = _comment(book, grade, total) if has_comment and total is not None else ""
-    return ClassGrade(grade.student, total, grade.is_excused, grade.why_open, comment)
+    return PublishedGrade(grade.student, total, grade.is_excused, grade.why_open, comment)
 
 
-def _comment(book: Class, grade: StudentGrade, total: Decimal) -> str:
+def _comment(book: Gradebook, grade: StudentGrade, total: Decimal) -> str:
     from grader.commands import class_reports
 
     report = class_reports.report_of(book, grade, has_hints=False)
@@ -118,18 +115,18 @@ def _comment(book: Class, grade: StudentGrade, total: Decimal) -> str:
     return comment_html(opening, [*lost, *class_reports.notes_of(grade, report)])
 
 
-def _maximum(book: Class) -> Decimal:
+def _maximum(book: Gradebook) -> Decimal:
     return sum((row.maximum for row in book.criteria), Decimal(0))
 
 
-def _feedback(request: ExportRequest, book: Class, numbers: Mapping[str, str], terminal: Terminal) -> bytes:
+def _feedback(request: ExportRequest, book: Gradebook, numbers: Mapping[str, str], terminal: Terminal) -> bytes:
     """Return the zip of the reports, named as the LMS gives them to its students; `numbers` are of --into."""
     from grader.commands import class_reports
 
     kind = Format(request.feedback_format)
-    name, grades = f"report.{kind.ending}", [one for one in book if one.graded is not None or one.has_final]
+    name, grades = f"report.{kind.ending}", [one for one in book if one.stored is not None or one.has_final]
     if request.target == "canvas":
-        paths, without = canvas_names([(one.student, one.graded.paths if one.graded else ()) for one in grades], name)
+        paths, without = canvas_names([(one.student, one.stored.paths if one.stored else ()) for one in grades], name)
     else:
         students = [one.student for one in grades]
         if request.into is not None:

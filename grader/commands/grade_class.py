@@ -9,18 +9,16 @@ from math import isfinite
 from pathlib import Path
 
 from grader import __version__
-from grader.classroom import folder as names
-from grader.classroom.grade_table import grade_table
-from grader.classroom.graded import Run, digest_of
-from grader.classroom.grades import Class
-from grader.classroom.results import Results, ResultsWriter
-from grader.classroom.run.batch import Batch
-from grader.classroom.run.worker import ClassContext
+from grader.classroom import gradebook_folder as names
+from grader.classroom.batch import Batch
+from grader.classroom.batch_worker import ClassContext
+from grader.classroom.gradebook import Gradebook, grade_table
+from grader.classroom.results import Results, ResultsWriter, Run, digest_of
 from grader.classroom.student_grade import StudentGrade
 from grader.classroom.submissions import Intake, read_class
 from grader.classroom.tables import write_table
 from grader.classroom.workers.pool import Processes, processors
-from grader.classroom.workers.progress import Progress
+from grader.classroom.workers.queue import Progress
 from grader.commands.class_figures import warn_of_ignored
 from grader.commands.class_inputs import ClassInputs, ClassRequest, keep_inputs, read_inputs
 from grader.commands.class_reports import ReportRun, refuse_report_folder, write_reports
@@ -72,7 +70,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     if request.output_format is OutputFormat.JSON:
         from grader.report.class_json import render_class_json
 
-        return render_class_json(Class(folder), done)
+        return render_class_json(Gradebook(folder), done)
     return draw(table.print, terminal.screen())
 
 
@@ -92,7 +90,7 @@ def _grade(
         done = _batch(request, inputs, Batch(results, writer, shared, context), intake, terminal)
         time = datetime.now(UTC).isoformat(timespec="milliseconds")
         run = Run(results.next_run, time, __version__, rubric.sha256, context, present, sorted(intake.unclear))
-        book, table = Class(folder, run=run), ClassTable(rubric, verbose=request.verbose)
+        book, table = Gradebook(folder, run=run), ClassTable(rubric, verbose=request.verbose)
         totals: dict[str, str | None] = {}
         others: dict[str, str] = {}
 
@@ -134,13 +132,13 @@ def _executor(request: ClassRequest, inputs: ClassInputs) -> Iterator[tuple[Exec
         with Processes(workers := request.jobs or processors(), request.timeout) as local:
             yield local, workers
         return
-    from grader.classroom.run.cluster import Cluster
+    from grader.classroom.workers.cluster import Cluster
 
     with Cluster(request.cluster, request.timeout, inputs.roots) as remote:
         yield remote, remote.workers
 
 
-def write_grades(book: Class, grades: Iterable[StudentGrade] | None = None) -> None:
+def write_grades(book: Gradebook, grades: Iterable[StudentGrade] | None = None) -> None:
     """Write the grades of a class, by default the current ones, into its gradebook. Raises InputError."""
     table = write_table(*grade_table(book, book if grades is None else grades))
     save(book.folder / names.GRADES, table, book.settings.roots(book.folder), _PRIVATE)

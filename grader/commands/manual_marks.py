@@ -6,11 +6,10 @@ from decimal import Decimal
 from getpass import getuser
 from pathlib import Path
 
-from grader.classroom import folder as names
-from grader.classroom.grades import Class
-from grader.classroom.mark_files import COLUMNS, SURPLUS, WITHDRAWN, Cells, mark_file
+from grader.classroom import gradebook_folder as names
+from grader.classroom.gradebook import Gradebook
 from grader.classroom.mark_import import MarkImport
-from grader.classroom.marks import Mark, append_marks
+from grader.classroom.marks import COLUMNS, SURPLUS, WITHDRAWN, Cells, Mark, append_marks, mark_file
 from grader.classroom.review_items import review_items
 from grader.classroom.student_grade import Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT
@@ -31,7 +30,7 @@ def give_mark(gradebook: Path, row: Cells, warn: Warn) -> str:
     """
     if not (row["student"] and row["criterion"] and (row["points"] or row["comment"])):
         raise InputError("name a STUDENT and a CRITERION, and give POINTS or --comment")
-    book = Class(gradebook)
+    book = Gradebook(gradebook)
     [mark] = _reader(book).marks_in({**_EMPTY, **row})
     now = _append(book, [mark], row["by"])
     for line in _warnings(book, mark):
@@ -45,7 +44,7 @@ def mark_missing(gradebook: Path, row: Cells) -> str:
     """Give a final mark to all students who submitted nothing and have none; return how many. Raises InputError."""
     if row["criterion"] != TOTAL or row["points"] in ("", WITHDRAWN):
         raise InputError(f"write it as --missing {TOTAL} POINTS")
-    book = Class(gradebook)
+    book = Gradebook(gradebook)
     reader = _reader(book)
     missing = [one.student.key for one in book if Reason.MISSING in one.concerns]
     marks = [mark for key in missing for mark in reader.marks_in({**_EMPTY, **row, "student": key})]
@@ -56,7 +55,7 @@ def mark_missing(gradebook: Path, row: Cells) -> str:
 
 def import_marks(gradebook: Path, file: Path, by: str) -> str:
     """Append the marks in a CSV file; return how many. Raises InputError, and records none, if a row is wrong."""
-    book = Class(gradebook)
+    book = Gradebook(gradebook)
     items = review_items(book, with_final=True).items()
     reader = _reader(book)._replace(answers={at: [one.student.key for one in item.members] for at, item in items})
     new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file))
@@ -64,25 +63,25 @@ def import_marks(gradebook: Path, file: Path, by: str) -> str:
     return f"{printable_path(file)}: {len(new)} recorded, {same} the same as before\n"
 
 
-def _reader(book: Class) -> MarkImport:
+def _reader(book: Gradebook) -> MarkImport:
     graded = {one.student: one for one in book.results.all()}
     students = [book.student(key, graded.get(key)) for key in book.keys]
     return MarkImport(students, book.rubric, book.marks, {key: one.digest for key, one in graded.items()})
 
 
-def _append(book: Class, marks: Iterable[Mark], by: str) -> Class:
+def _append(book: Gradebook, marks: Iterable[Mark], by: str) -> Gradebook:
     """Append marks to the file of a grader, and return the class with them; its grades are written."""
     new = [one._replace(by=one.by or by, time=book.marks.next_time((one.student, one.criterion))) for one in marks]
     with suppress(OSError, KeyError):  # of an account without a name: the files of two gradebooks can be merged
         by = by or getuser()
     if new:
         append_marks(mark_file(book.folder / names.MARKS, by), new)
-    now = Class(book.folder)
+    now = Gradebook(book.folder)
     write_grades(now)
     return now
 
 
-def _warnings(before: Class, mark: Mark) -> Iterator[str]:
+def _warnings(before: Gradebook, mark: Mark) -> Iterator[str]:
     """Yield what a mark replaced, and that it does not count."""
     criterion, marks = mark.criterion, before.marks
     if old := marks.counting.get((mark.student, criterion)) or marks.comments.get((mark.student, criterion)):
@@ -95,7 +94,7 @@ def _warnings(before: Class, mark: Mark) -> Iterator[str]:
         yield f"{criterion} is corrected after grading, by [adjust] in the rubric: its marks do not count"
 
 
-def _grade_text(book: Class, grade: StudentGrade) -> str:
+def _grade_text(book: Gradebook, grade: StudentGrade) -> str:
     """Return what counts: an excuse, a final mark, or the points of the criteria."""
     if grade.total is None:
         return "excused" if grade.is_excused else "no submission"

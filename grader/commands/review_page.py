@@ -7,8 +7,8 @@ from contextlib import suppress
 from http import HTTPStatus
 from typing import Any
 
-from grader.classroom.grades import Class
-from grader.classroom.mark_files import is_open_in_libreoffice
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.marks import is_open_in_libreoffice
 from grader.classroom.review_items import STATES, ReviewFilter
 from grader.commands.grade_class import write_grades
 from grader.commands.local_server import SANDBOX, LocalServer, Response
@@ -138,5 +138,5 @@ def review_in_browser(session: ReviewSession, port: int, terminal: Terminal) -> 
             terminal.print(f"{server.url}{page.address(session.following())}\n")
             terminal.warn("open this address in a browser on this machine; Ctrl-C ends the review, all marks are kept")
             server.serve_forever()
-    write_grades(Class(session.folder))
+    write_grades(Gradebook(session.folder))
     return f"{len(session.own)} marked, {session.left} left\n"

@@ -8,7 +8,7 @@ from functools import lru_cache
 from itertools import starmap
 from pathlib import Path
 
-from grader.classroom.grades import Class
+from grader.classroom.gradebook import Gradebook
 from grader.classroom.review_items import ReviewItem
 from grader.classroom.tables import write_table
 from grader.commands.review_session import ReviewSession
@@ -29,7 +29,7 @@ _MAX_TEXT = 30_000  # characters; a cell of Excel has at most 32,767
 
 
 @lru_cache(maxsize=1)  # a page asks for its pictures one by one
-def _graded_again(book: Class, key: str) -> tuple[Submission, Report]:
+def _graded_again(book: Gradebook, key: str) -> tuple[Submission, Report]:
     """Return a student's submission as it was graded, and its report. Raises InputError."""
     graded = book.results.of(key)
     submission = book.reopened(graded) if graded is not None else None
@@ -39,7 +39,7 @@ def _graded_again(book: Class, key: str) -> tuple[Submission, Report]:
     return submission, grade(book.rubric, submission, book.settings.parts, is_one_of_class=True)
 
 
-def open_item(book: Class, item: ReviewItem) -> OpenedItem:
+def open_item(book: Gradebook, item: ReviewItem) -> OpenedItem:
     """Return what a person looks at for an item. Raises InputError if its submission has moved or changed.
 
     Of an anonymous student it has no names of files, because students choose them.
@@ -59,8 +59,8 @@ def open_item(book: Class, item: ReviewItem) -> OpenedItem:
         return OpenedItem(message, answer_lines(outcome), [*starmap(_anonymous, enumerate(pictures, 1))])
     if location is not None:
         places.append(f"{location.path}, line {location.line}" if counts_lines(location) else location.path)
-    root = book.settings.roots(book.folder)[first.graded.root]
-    submitted = ", ".join(str(root / path) for path in first.graded.paths)
+    root = book.settings.roots(book.folder)[first.stored.root]
+    submitted = ", ".join(str(root / path) for path in first.stored.paths)
     paths = [f"{place} in {submitted}" for place in places] or [submitted]
     return OpenedItem(outcome.message, answer_lines(outcome), pictures, paths)
 
@@ -91,7 +91,7 @@ def _students(item: ReviewItem) -> str:
     return "; ".join(one.label if one.number else one.student.key for one in item.members)
 
 
-def _text(book: Class, item: ReviewItem) -> str:
+def _text(book: Gradebook, item: ReviewItem) -> str:
     """Return the answer, else what was found, and the files, which may show more."""
     try:
         opened = open_item(book, item)

@@ -2,13 +2,12 @@
 
 from pathlib import Path
 
-from grader.classroom import folder as names
-from grader.classroom.grades import Class
-from grader.classroom.mark_files import mark_file
-from grader.classroom.marks import Key, Mark, append_marks, mark_in
+from grader.classroom import gradebook_folder as names
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.gradebook_folder import CLASS_FILE
+from grader.classroom.marks import Key, Mark, append_marks, mark_file, mark_in
 from grader.classroom.review_items import Place, ReviewFilter, ReviewItem, review_items
 from grader.classroom.roster import plain
-from grader.classroom.settings import CLASS_FILE
 from grader.classroom.typed_names import criterion_of
 from grader.errors import InputError
 from grader.grading.answers import load_with_answers
@@ -50,7 +49,7 @@ class ReviewSession:
         found = ((path, path.stat()) for pattern in _READ for path in self.folder.glob(pattern))
         stamps = [(path, status.st_ino, status.st_size, status.st_mtime_ns) for path, status in found]
         if stamps != self._stamps:
-            self.book = Class(self.folder)
+            self.book = Gradebook(self.folder)
             rubric = str(self.folder / self.book.settings.rubric)
             self.book.rubric = load_with_answers(rubric, self.answers)
             self.items = review_items(self.book, is_anonymous=self.is_anonymous)
@@ -119,7 +118,7 @@ class ReviewSession:
         new = dict[Key, Mark]()
         for one in item.members:
             key = one.student.key, item.criterion.id
-            mark = mark_in({**cells, "submission": one.graded.digest}, key, item.criterion.points, "")
+            mark = mark_in({**cells, "submission": one.stored.digest}, key, item.criterion.points, "")
             new[key] = mark._replace(time=self.book.marks.next_time(key))
         replaced = [one.mark for one in item.members if one.mark is not None and one.mark.points is not None]
         others = [mark for mark in replaced if mark.by != self.by]

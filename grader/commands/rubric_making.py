@@ -14,7 +14,7 @@ from grader.authoring.rubric_test import MutantOutcome, mutant_outcomes, run_rub
 from grader.authoring.samples import read_samples
 from grader.checks.tree import urdf_loads
 from grader.classroom.workers.pool import Processes, processors
-from grader.classroom.workers.progress import Progress
+from grader.classroom.workers.queue import Progress
 from grader.commands.exit_codes import ExitCode, read_threshold
 from grader.commands.rubrics import load, rubric_summary
 from grader.commands.terminal import Terminal, Warn

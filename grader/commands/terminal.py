@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.report.screen import Screen
 
 if TYPE_CHECKING:
-    from grader.classroom.workers.progress import Progress
+    from grader.classroom.workers.queue import Progress
 
 Warn = Callable[[str], None]
 # Shows the progress of a pass over a class, whose work is named.

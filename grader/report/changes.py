@@ -6,9 +6,9 @@ from operator import itemgetter
 from rich.console import Console
 from rich.text import Text
 
-from grader.classroom.changes import Change, PointsChange
-from grader.classroom.graded import Run
+from grader.classroom.grade_changes import Change, PointsChange
 from grader.classroom.lateness import time_text
+from grader.classroom.results import Run
 from grader.report.console import Page
 from grader.report.criteria import alike
 from grader.report.json_data import (

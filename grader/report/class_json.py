@@ -5,9 +5,9 @@ from operator import itemgetter
 from types import SimpleNamespace
 
 from grader import __version__
-from grader.classroom.grades import Class
+from grader.classroom.gradebook import Gradebook
 from grader.classroom.statistics import COUNTS, CriterionFigures, statistics
-from grader.classroom.workers.progress import Progress
+from grader.classroom.workers.queue import Progress
 from grader.report.json_data import (
     COUNT,
     FLAG,
@@ -69,7 +69,7 @@ _ATTENTION = Record({"reason": (TEXT, itemgetter(0)), "students": (Many(_CONCERN
 
 def _of_report(name: str) -> Key:
     """Return the key of points that only a student with a graded submission has."""
-    return nullable(POINTS), lambda one: exact(getattr(one.report, name)) if one.graded is not None else None
+    return nullable(POINTS), lambda one: exact(getattr(one.report, name)) if one.stored is not None else None
 
 
 _STUDENT = Record(
@@ -77,7 +77,7 @@ _STUDENT = Record(
         "id": (TEXT, "student.key"),
         **inner("student", each(TEXT, "name email section")),
         "status": {"enum": [*_STATUSES]},
-        "reason": (TEXT, lambda one: one.graded.reason if one.graded is not None else ""),
+        "reason": (TEXT, lambda one: one.stored.reason if one.stored is not None else ""),
         "score": _of_report("score"),
         "max_score": _of_report("max_score"),
         "pending": (POINTS, "pending"),
@@ -89,8 +89,8 @@ _STUDENT = Record(
         "carried": (array(TEXT), lambda one: [row.criterion.id for row in one.results if row.carried]),
         "manual_marks": (TOTAL, lambda one: sum(row.manual_mark is not None for row in one.results)),
         "marked_before": (array(TEXT), "older"),
-        "paths": (array(TEXT), lambda one: list(one.graded.paths) if one.graded is not None else []),
-        "submission": (TEXT, lambda one: one.graded.digest if one.graded is not None else ""),
+        "paths": (array(TEXT), lambda one: list(one.stored.paths) if one.stored is not None else []),
+        "submission": (TEXT, lambda one: one.stored.digest if one.stored is not None else ""),
     }
 )
 
@@ -112,7 +112,7 @@ CLASS = Record(
 )
 
 
-def render_class_json(book: Class, done: Progress | None = None) -> str:
+def render_class_json(book: Gradebook, done: Progress | None = None) -> str:
     """Return the statistics and all current grades."""
     students = list(book)
     report = SimpleNamespace(book=book, statistics=statistics(book, students), students=students, run=done)

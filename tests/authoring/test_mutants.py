@@ -3,7 +3,6 @@
 import pytest
 
 from grader.authoring.mutants import mutants
-from grader.authoring.rubric_test import diff
 from tests.authoring.robots import ARM, CHANGES
 
 FOUND = {mutant.id: mutant for mutant in mutants(ARM, "birch.urdf")}
@@ -52,12 +51,3 @@ def test_markup_that_only_ros_2_reads_has_mutants() -> None:
 def test_broken_markup_has_mutants_or_none(text: str) -> None:
     """A text with open or stray tags is no reason to stop."""
     assert all(mutant.applied(text) != text for mutant in mutants(text))
-
-
-def test_a_diff_has_two_lines_around_the_change() -> None:
-    """And the ranges of lines as diff writes them."""
-    before = "".join(f"{number}\n" for number in range(1, 8))
-    assert diff("a.urdf", before, before.replace("4\n", "x\ny\n")).split("\n") == [
-        "--- a.urdf", "+++ a.urdf", "@@ -2,5 +2,6 @@", " 2", " 3", "-4", "+x", "+y", " 5", " 6",
-    ]  # fmt: skip
-    assert diff("a", "", "x\n") == "--- a\n+++ a\n@@ -0,0 +1 @@\n+x"

@@ -1,9 +1,9 @@
 """Which changes leave a robot the same, and which do not."""
 
 import pytest
+from grader.authoring.trial import is_same_robot
 
 from grader.authoring.mutants import mutants
-from grader.authoring.trial import is_same_robot
 from grader.submission.urdf import read_as_ros
 from tests.authoring.robots import ARM, CHANGES
 from tests.hints.behaviour import behaviour, differences

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from pypdf import PdfReader
 
-from grader.classroom.grades import Class
+from grader.classroom.gradebook import Gradebook
 from grader.commands.class_reports import write_class_page
 from tests.browser.conftest import OpenPage
 from tests.classroom.gradebooks import batch, lab_text, make_class, write_submission
@@ -187,7 +187,7 @@ def test_a_class_of_a_thousand(open_page: Open, tmp_path: Path) -> None:
     (tmp_path / "roster.csv").write_text("\n".join(("id,team,section", *rows)))
     (tmp_path / "small.toml").write_text(lab_text())
     assert batch(tmp_path).returncode == 0
-    write_class_page(Class(tmp_path / "book"), tmp_path, {})
+    write_class_page(Gradebook(tmp_path / "book"), tmp_path, {})
     opened = open_page(tmp_path / "index.html")
     assert len(names(opened)) == 200
     opened.page.locator("#students th[data-column=grade] button").click()

@@ -22,7 +22,7 @@ from hypothesis import HealthCheck, seed, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
-from grader.classroom.opening import open_class_submission
+from grader.classroom.class_files import open_class_submission
 from grader.classroom.roster import Roster, Student
 from grader.classroom.submissions import read_class
 from grader.errors import InputError

@@ -8,14 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.graded import Entry, Graded, Run
-from grader.classroom.results import Results, ResultsWriter
+from grader.classroom.results import Results, ResultsWriter, Run, StoredCriterion, StoredResult
 from tests.examples import examples
 
 TEXT = st.text(st.characters(codec="utf-8"), max_size=8)
 ENTRIES = st.dictionaries(TEXT, st.tuples(st.none() | st.sampled_from([0, 1, 2.5]), TEXT, TEXT, TEXT), max_size=2)
 GRADED = st.builds(
-    Graded, TEXT, st.integers(1, 3), st.sampled_from(["graded", "unreadable", "errored"]), TEXT, TEXT, TEXT,
+    StoredResult, TEXT, st.integers(1, 3), st.sampled_from(["graded", "unreadable", "errored"]), TEXT, TEXT, TEXT,
     paths=st.lists(TEXT, max_size=2).map(tuple), is_late=st.booleans(), results=ENTRIES,
     person=st.dictionaries(st.sampled_from(["name", "canvas"]), TEXT), work=st.just({}), answers=st.dictionaries(TEXT, TEXT), texts=st.dictionaries(TEXT, TEXT, max_size=2),
 )  # fmt: skip
@@ -30,14 +29,16 @@ def unsynced() -> Iterator[None]:
         yield
 
 
-def plain(one: Graded) -> Graded:
+def plain(one: StoredResult) -> StoredResult:
     """Return a result with lists in place of tuples, as JSON has them."""
     return one._replace(results={name: (*entry,) for name, entry in one.results.items()})
 
 
 @given(st.lists(GRADED, max_size=6))
 @examples(30)
-def test_the_newest_line_of_each_student_is_read(tmp_path_factory: pytest.TempPathFactory, lines: list[Graded]) -> None:
+def test_the_newest_line_of_each_student_is_read(
+    tmp_path_factory: pytest.TempPathFactory, lines: list[StoredResult]
+) -> None:
     """Results are read as they were written, in the order of the keys."""
     file = tmp_path_factory.mktemp("results") / "results.jsonl"
     with ResultsWriter(file, 0) as writer:
@@ -54,7 +55,7 @@ def test_the_newest_line_of_each_student_is_read(tmp_path_factory: pytest.TempPa
 
 def test_a_torn_last_line_is_ignored_and_cut(tmp_path: Path) -> None:
     """Of every prefix of the file the whole lines count, and the next line is written behind them."""
-    lines = [Graded("ann", 1, "graded", "d1").line, Graded("ben", 1, "graded", "d2").line, RUN.line]
+    lines = [StoredResult("ann", 1, "graded", "d1").line, StoredResult("ben", 1, "graded", "d2").line, RUN.line]
     whole = b"".join(lines)
     ends = [sum(map(len, lines[:number])) for number in range(len(lines) + 1)]
     file = tmp_path / "results.jsonl"
@@ -65,7 +66,7 @@ def test_a_torn_last_line_is_ignored_and_cut(tmp_path: Path) -> None:
         assert found.end == ends[kept]
         assert (len(found.students), len(found.runs)) == (min(kept, 2), int(kept == 3))
         with ResultsWriter(file, found.end) as writer:
-            writer.append(Graded("cid", 1, "graded").line)
+            writer.append(StoredResult("cid", 1, "graded").line)
         assert Results(file).students == [*["ann", "ben"][: min(kept, 2)], "cid"]
 
 
@@ -73,7 +74,7 @@ def test_an_earlier_run_can_be_read(tmp_path: Path) -> None:
     """Up to a run, later lines do not count."""
     file = tmp_path / "results.jsonl"
     second = RUN._replace(run=2)
-    lines = [Graded("ann", 1, "graded", "d1"), RUN, Graded("ann", 2, "graded", "d2"), second]
+    lines = [StoredResult("ann", 1, "graded", "d1"), RUN, StoredResult("ann", 2, "graded", "d2"), second]
     file.write_bytes(b"".join(one.line for one in lines))  # type: ignore[attr-defined]
     first, now = Results(file, 1), Results(file)
     assert [one.digest for one in first.all()] == ["d1"]
@@ -83,5 +84,7 @@ def test_an_earlier_run_can_be_read(tmp_path: Path) -> None:
 
 def test_a_full_line_is_small() -> None:
     """A submission with fifty criteria has less than 4 KB."""
-    results: dict[str, Entry] = {f"right-wheel-forward-{number}": (2.5, "passed", "", "") for number in range(50)}
-    assert len(Graded("student-12345", 1, "graded", results=results).line) < 4096
+    results: dict[str, StoredCriterion] = {
+        f"right-wheel-forward-{number}": (2.5, "passed", "", "") for number in range(50)
+    }
+    assert len(StoredResult("student-12345", 1, "graded", results=results).line) < 4096

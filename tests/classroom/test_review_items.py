@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.graded import digest_of
-from grader.classroom.grades import Class
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.results import digest_of
 from grader.classroom.review_items import ReviewFilter, review_items
 from grader.commands.review_session import ReviewSession
 from grader.errors import InputError
@@ -86,8 +86,8 @@ def test_one_mark_is_a_row_for_each_student(session: ReviewSession, book: Path) 
     give(session, 3, "2", "good")
     assert rows(book) == [(key, "essay", points) for points in "32" for key in ("gum", "holly")]
     give(session, 0, "1")
-    digests = {one.student: one.digest for one in Class(book).results.all()}
-    marks = Class(book).marks.counting
+    digests = {one.student: one.digest for one in Gradebook(book).results.all()}
+    marks = Gradebook(book).marks.counting
     assert {key: marks[key, "essay"].submission for key in ("ash", "cedar")} == {
         key: digests[key] for key in ("ash", "cedar")
     }
@@ -129,7 +129,7 @@ def test_who_has_no_items(book: Path) -> None:
         assert grader("mark", *words, "--gradebook", book).returncode == 0
     rubric = book / "rubric" / "small.toml"
     rubric.write_text(rubric.read_text() + '\n[adjust.picture]\naction = "full"\nreason = "no camera"\n')
-    opened = Class(book)
+    opened = Gradebook(book)
     found = {
         f"{item.criterion.id}: {' '.join(one.student.key for one in item.members)}"
         for item in review_items(opened).values()
@@ -150,7 +150,7 @@ def contents(tmp_path: Path) -> Callable[..., dict[str, list[str]]]:
         (tmp_path / "small.toml").write_text(lab_text())
         assert batch(tmp_path).returncode == 0
         found: dict[str, list[str]] = {}
-        for (criterion, answer), item in review_items(Class(tmp_path / "book")).items():
+        for (criterion, answer), item in review_items(Gradebook(tmp_path / "book")).items():
             keys = " ".join(one.student.key for one in item.members)
             found.setdefault(criterion if answer else f"no {criterion}", []).append(keys)
         return found
@@ -204,7 +204,7 @@ def test_a_team_with_several_files_is_one_item(tmp_path: Path) -> None:
     (tmp_path / "small.toml").write_text(lab_text())
     done = batch(tmp_path)
     assert done.returncode == 0, done.stderr
-    book = Class(tmp_path / "book")
+    book = Gradebook(tmp_path / "book")
     assert sorted(book.keys, key=digest_of) == ["gum", "ash"]
     assert len({one.digest for one in book.results.all()}) == 2
     found = review_items(book).values()

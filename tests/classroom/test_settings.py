@@ -6,8 +6,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.folder import batch_lock, check_free, check_gradebook, make_gradebook
-from grader.classroom.settings import CLASS_FILE, ClassSettings, read_settings, settings_text
+from grader.classroom.gradebook_folder import (
+    CLASS_FILE,
+    ClassSettings,
+    batch_lock,
+    check_free,
+    check_gradebook,
+    make_gradebook,
+    read_settings,
+    settings_text,
+)
 from grader.errors import InputError
 from tests.examples import examples
 

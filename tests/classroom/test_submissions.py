@@ -12,8 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.people import letters
-from grader.classroom.roster import Roster, Student, read_roster
+from grader.classroom.roster import Roster, Student, letters, read_roster
 from grader.classroom.submissions import Intake, read_class
 from grader.errors import InputError
 from tests.classroom.hostile_classes import try_classes

@@ -13,7 +13,7 @@ from zipfile import ZipFile
 
 import pytest
 
-from grader.classroom.grades import Class
+from grader.classroom.gradebook import Gradebook
 from tests.command_line import HANG_TIMEOUT, ROOT
 from tests.tutorial import Step, follow
 
@@ -51,7 +51,7 @@ def test_every_command_works_as_shown(followed: tuple[str, list[Step]]) -> None:
 def test_canvas_gets_what_the_gradebook_holds(folder: Path, followed: tuple[str, list[Step]]) -> None:
     """All marks are in the gradebook; each row of the upload has its student's total, or EX, and nothing else differs."""
     del followed
-    grades = {grade.student.canvas: grade for grade in Class(folder / "lab6-grades")}
+    grades = {grade.student.canvas: grade for grade in Gradebook(folder / "lab6-grades")}
     files = ((folder / name).read_text(encoding="utf-8") for name in ("canvas.csv", "upload.csv"))
     before, after = (list(csv.reader(text.splitlines())) for text in files)
     assert after[:2] == before[:2]
@@ -63,7 +63,7 @@ def test_canvas_gets_what_the_gradebook_holds(folder: Path, followed: tuple[str,
     uploaded = {row[1] for row in after[2:]}
     assert "EX" in {row[-1] for row in after}
     for key, grade in grades.items():
-        is_final = grade.has_final or (grade.graded is not None and grade.graded.verdict == "graded")
+        is_final = grade.has_final or (grade.stored is not None and grade.stored.verdict == "graded")
         assert (key in uploaded) == (is_final and key in rows), key
     assert len(uploaded) == 107
     assert grades["100064"].total == Decimal(0)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.workers.progress import Progress as State
+from grader.classroom.workers.queue import Progress as State
 from grader.cli import terminal
 from tests.classroom.gradebooks import ENVIRONMENT, make_class
 from tests.samples import ROOT

@@ -12,7 +12,7 @@ from urllib.request import urlopen
 
 import pytest
 
-from grader.classroom.grades import Class
+from grader.classroom.gradebook import Gradebook
 from grader.commands import local_server
 from grader.commands.local_server import HOST, MAX_BODY
 from tests.classroom.gradebooks import ENVIRONMENT, PNG, batch, grader, lab_text, refusal, write_submission
@@ -66,7 +66,7 @@ def test_every_mark_is_in_its_file_at_once(review: Review, book: Path) -> None:
     assert review.mark("1", "3,5", " the roots are missing ") == {"go": "2"}
     assert marks_in(book) == [("anna", "essay", "3.5", "the roots are missing")]
     last = (book / "marks" / "kim.csv").read_text().splitlines()[-1]
-    digest = Class(book).grade("anna").graded.digest  # type: ignore[union-attr]
+    digest = Gradebook(book).grade("anna").stored.digest  # type: ignore[union-attr]
     assert last.endswith(f",Kim,anna,essay,3.5,the roots are missing,{digest}")
     for points, why in (
         ("5", "essay is worth 0 to 4 points, not 5"), ("x", "points are a number"), (" ", "points are missing"),

@@ -13,8 +13,8 @@ from unittest.mock import patch
 
 import pytest
 
-from grader.classroom.opening import open_class_submission
-from grader.classroom.run import worker
+from grader.classroom import batch_worker
+from grader.classroom.class_files import open_class_submission
 from grader.classroom.workers import pool
 from grader.classroom.workers.pool import Processes, WorkerError
 from tests.classroom.class_runs import newest
@@ -87,7 +87,7 @@ def changed_before_reading(path: Path, data: bytes | None) -> Iterator[None]:
         return opened(*arguments)  # type: ignore[arg-type]
 
     before = path.read_bytes()
-    with patch.object(worker, "open_class_submission", change_and_open):
+    with patch.object(batch_worker, "open_class_submission", change_and_open):
         yield
     path.write_bytes(before)
 

@@ -11,8 +11,7 @@ from pathlib import Path
 
 from grader.classroom.lms.fill import FillOptions, fill
 from grader.classroom.lms.forms import FORMS
-from grader.classroom.people import People
-from grader.classroom.roster import read_roster
+from grader.classroom.roster import People, read_roster
 from grader.classroom.tables import Table, TableRow, _rows, read_table
 from grader.commands import local_server
 from grader.commands.local_server import LocalServer

@@ -6,7 +6,7 @@ from urllib.parse import unquote
 
 import pytest
 
-from grader.classroom.grades import Class
+from grader.classroom.gradebook import Gradebook
 from grader.commands.class_reports import write_class_page
 from grader.report.class_terminal import percent
 from tests.classroom.gradebooks import batch, grader, lab_text, write_submission
@@ -53,7 +53,7 @@ def test_the_page_says_what_stats_says(tmp_path: Path) -> None:
     (tmp_path / "small.toml").write_text(lab_text("percent_per_day = 10"))
     assert batch(tmp_path).returncode == 0
     book = tmp_path / "book"
-    write_class_page(Class(book), tmp_path, {f"student{at:06}": f"reports/student{at:06}" for at in range(1000)})
+    write_class_page(Gradebook(book), tmp_path, {f"student{at:06}": f"reports/student{at:06}" for at in range(1000)})
     page, printed = ClassPageReader(tmp_path / "index.html"), grader("stats", "--gradebook", book).stdout
     statistics = json.loads(grader("stats", "--gradebook", book, "--format", "json").stdout)["statistics"]
     lines = page.texts("//p[@class='counts']")

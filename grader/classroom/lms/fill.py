@@ -10,10 +10,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import ROUND_FLOOR, Decimal
 from typing import NamedTuple
 
-from grader.classroom.lms.comments import is_own_comment
+from grader.classroom.lms.feedback import is_own_comment
 from grader.classroom.lms.forms import IDS, Form
-from grader.classroom.lms.owners import ClassGrade, match_rows
-from grader.classroom.roster import Student
+from grader.classroom.roster import Student, plain
 from grader.classroom.tables import Table, TableRow, read_table
 from grader.classroom.typed_names import number_in
 from grader.errors import InputError
@@ -28,6 +27,16 @@ _POINTS_ROW = "Points Possible"  # in the first cell, of Canvas
 _THOUSANDS = re.compile(r"\s|[.,](?=.*[.,])")  # in 1.000,00: the last comma or point is decimal
 _COMMA, _WORDS = r"[0-9],[0-9]{1,2}$", r"[^\W\d_]+|\d+"
 _MAX_CHANGES, _MAX_REASONS, _MAX_NAMED, _MAX_COLUMNS = 40, 50, 3, 20
+
+
+class PublishedGrade(NamedTuple):
+    """A student's grade: without a total `why_open` says why; `comment` is HTML from `comment_html`."""
+
+    student: Student
+    total: Decimal | None = None
+    is_excused: bool = False
+    why_open: str = ""
+    comment: str = ""
 
 
 class FillOptions(NamedTuple):
@@ -62,7 +71,7 @@ class _GradeFile(NamedTuple):
     people: dict[TableRow, Student]
     maximum: str
 
-    def changed(self, row: TableRow, grade: ClassGrade) -> tuple[TableRow | None, list[Note]]:
+    def changed(self, row: TableRow, grade: PublishedGrade) -> tuple[TableRow | None, list[Note]]:
         """Return a row with its grade and comment, or None; and notes on it, a change's without a kind."""
         new, who = _cell(grade, self), self.who(row)
         at, comment_at = self.roles["grade"], self.roles.get("comment")
@@ -97,7 +106,7 @@ class _GradeFile(NamedTuple):
         return f"row {row.number}, {next(filter(None, self.people[row]))}"
 
 
-def fill(data: bytes, grades: Sequence[ClassGrade], form: Form, options: FillOptions) -> Filled:
+def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: FillOptions) -> Filled:
     """Return a grade file with the grades in the column of the lab; raises InputError if it is not such a file."""
     file = _read(data, form, options)
     people, titles = [*file.people.values()], file.table.titles
@@ -140,7 +149,7 @@ def by_reason(notes: Iterable[Note]) -> list[str]:
     return first_lines([printable(f"{kind}: {who}: {why}") for kind, why, who in groups], _MAX_REASONS)
 
 
-def _cell(grade: ClassGrade, file: _GradeFile) -> str:
+def _cell(grade: PublishedGrade, file: _GradeFile) -> str:
     """Return the points, rounded down, for 99.996 of 100 is not the maximum, with the file's comma; or an excuse."""
     if grade.total is None:
         return file.form.excuse if grade.is_excused else ""
@@ -218,3 +227,35 @@ def _words(text: str) -> str:
 
 def _list(headers: Sequence[str]) -> str:
     return enumerated([repr(header) for header in headers], _MAX_COLUMNS)
+
+
+def match_rows(rows: Sequence[Student], students: Sequence[Student], lms: str) -> dict[int, int]:
+    """Return the student of each row that fits only one, whom no other row fits."""
+    theirs, ours = [_clues(row, lms) for row in rows], [_clues(student, lms) for student in students]
+    students_of, rows_of = _fitting(theirs, ours), _fitting(ours, theirs)
+    return {row: some[0] for row, some in enumerate(students_of) if [rows_of[at] for at in some] == [[row]]}
+
+
+def _clues(student: Student, lms: str) -> list[set[str]]:
+    """Return what identifies a student, the most reliable first: the id in the LMS, other ids, the name.
+
+    Of a student who is not on the roster it is the id in the LMS alone, for who submits chooses the names.
+    """
+    words = (student.key, student.login, student.sis, student.email), (student.name,)
+    kinds = [(getattr(student, lms.lower(), ""),), *(words if student.is_on_roster else ((), ()))]
+    return [{*map(plain, kind)} - {""} for kind in kinds]
+
+
+def _fitting(some: Sequence[list[set[str]]], others: Sequence[list[set[str]]]) -> list[list[int]]:
+    """Return for each of some the others with its most reliable clue that is known, and no other id in the LMS."""
+    having = defaultdict[tuple[int, str], set[int]](set)
+    for at, clues in enumerate(others):
+        for kind, words in enumerate(clues):
+            for word in words:
+                having[kind, word].add(at)
+    found = []
+    for clues in some:
+        kinds = (set[int]().union(*(having[kind, word] for word in words)) for kind, words in enumerate(clues))
+        fitting = sorted(next(filter(None, kinds), ()))
+        found.append([at for at in fitting if clues[0] == others[at][0] or not (clues[0] and others[at][0])])
+    return found

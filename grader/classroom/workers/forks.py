@@ -7,7 +7,7 @@ from typing import Any
 
 # The modules that a process loads before it forks, late imports included.
 _PRELOAD = (
-    "grader.classroom.run.worker",
+    "grader.classroom.batch_worker",
     "grader.robot.edge_overlap",
     "grader.submission.search",
     "grader.package.problems",

@@ -4,10 +4,33 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Generic, TypeVar
 
 from grader.classroom.workers.pool import WorkerError
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """The progress of a run. `errored` and `unreadable` count submissions that were graded in this run."""
+
+    total: int
+    graded: int = 0
+    unchanged: int = 0
+    unreadable: int = 0
+    errored: int = 0
+
+    @property
+    def done(self) -> int:
+        """The number of submissions that have a result."""
+        return self.graded + self.unchanged
+
+    def with_result(self, verdict: str) -> "Progress":
+        """Return the progress after one more result."""
+        counted = {"unchanged"} if verdict == "unchanged" else {"graded", verdict}
+        return replace(self, **{name: getattr(self, name) + 1 for name in counted})
+
 
 _GROUP_TIME = 0.05  # seconds of work that are worth one message to a worker
 _MAX_GROUP = 64

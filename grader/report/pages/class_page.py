@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from grader import __version__
-from grader.classroom.grades import Class
+from grader.classroom.gradebook import Gradebook
 from grader.classroom.statistics import ClassStatistics
 from grader.classroom.student_grade import StudentGrade
 from grader.report import class_terminal as words
@@ -41,7 +41,7 @@ class Group(NamedTuple):
 
 
 def render_class_page(
-    book: Class, grades: Sequence[StudentGrade], found: ClassStatistics, links: Mapping[str, str]
+    book: Gradebook, grades: Sequence[StudentGrade], found: ClassStatistics, links: Mapping[str, str]
 ) -> str:
     """Return the class's page; `links` are the addresses of students' pages by key, relative to this page."""
     rows = sorted((_row(grade, links) for grade in grades), key=_by_family_name)

@@ -5,7 +5,7 @@ import io
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 
-from grader.classroom.lms.owners import ClassGrade
+from grader.classroom.lms.fill import PublishedGrade
 from grader.classroom.roster import Student
 
 NAMES = (
@@ -20,15 +20,15 @@ STUDENTS = tuple(
 )
 
 
-def graded(number: int) -> ClassGrade:
+def graded(number: int) -> PublishedGrade:
     """Return the grade of a student: some are excused, some are open, the others have three decimals."""
     student = STUDENTS[number]
     if number % 17 == 3:
-        return ClassGrade(student, is_excused=True, why_open="excused")
+        return PublishedGrade(student, is_excused=True, why_open="excused")
     if number % 13 == 5:
-        return ClassGrade(student, why_open="nothing was submitted")
+        return PublishedGrade(student, why_open="nothing was submitted")
     total = Decimal(number * 37 % 1100) / 100 + Decimal("0.004") * (number % 3)
-    return ClassGrade(student, total, comment=f"<p>Well done, s{number:03}.</p>")
+    return PublishedGrade(student, total, comment=f"<p>Well done, s{number:03}.</p>")
 
 
 CLASS = tuple(map(graded, range(len(STUDENTS))))

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.outcome import Outcome
-from grader.classroom.lms.comments import MAX_LINES, comment_html, is_own_comment, lost_points
+from grader.classroom.lms.feedback import MAX_LINES, comment_html, is_own_comment, lost_points
 from grader.grading.report import ManualComment, ManualMark, Result
 from grader.grading.rubric import read_rubric
 from tests.samples import ROOT

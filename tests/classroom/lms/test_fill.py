@@ -11,9 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.lms.fill import Filled, FillOptions, fill
+from grader.classroom.lms.fill import Filled, FillOptions, PublishedGrade, fill
 from grader.classroom.lms.forms import FORMS
-from grader.classroom.lms.owners import ClassGrade
 from grader.classroom.roster import Student
 from grader.classroom.tables import read_table
 from grader.errors import InputError
@@ -23,12 +22,14 @@ NAMES = ("A wheeled base", "lab6")
 CANVAS = "Student,ID,SIS User ID,SIS Login ID,Section,Lab 6 (98765)\n    Points Possible,,,,,100.00\n"
 
 
-def fill_text(text: str | bytes, *grades: ClassGrade, lms: str = "canvas", out_of: int = 100, **more: Any) -> Filled:
+def fill_text(
+    text: str | bytes, *grades: PublishedGrade, lms: str = "canvas", out_of: int = 100, **more: Any
+) -> Filled:
     data = text if isinstance(text, bytes) else text.encode()
     return fill(data, grades, FORMS[lms], FillOptions(Decimal(out_of), NAMES, shown="lms.csv", **more))
 
 
-def grades_in(text: str) -> list[ClassGrade]:
+def grades_in(text: str) -> list[PublishedGrade]:
     """Return the class in a table of students with `total`, `comment`, and `is_on_roster`, which may be no."""
     grades = []
     for row in csv.DictReader(io.StringIO(text)):
@@ -36,7 +37,7 @@ def grades_in(text: str) -> list[ClassGrade]:
         points = Decimal(total) if total not in ("", "EX") else None
         why = "excused" if total == "EX" else "nothing was submitted"
         student = Student(**row, is_on_roster=on_roster != "no")  # type: ignore[arg-type]
-        grades.append(ClassGrade(student, points, total == "EX", why, comment))
+        grades.append(PublishedGrade(student, points, total == "EX", why, comment))
     return grades
 
 
@@ -57,7 +58,7 @@ def test_cases(case: dict[str, Any]) -> None:
 def test_points_never_gain(points: Decimal, maximum: str) -> None:
     """The written points are at most those earned, less than a cent below, with the decimal sign of the maximum."""
     text = CANVAS.replace(",", ";").replace("100.00", maximum) + "Ann;11;;;A;\n"
-    row = fill_text(text, ClassGrade(Student("a", canvas="11"), points)).data.decode().splitlines()[-1]
+    row = fill_text(text, PublishedGrade(Student("a", canvas="11"), points)).data.decode().splitlines()[-1]
     cell = row.rpartition(";")[2]
     assert cell[-3] == maximum[-3]
     assert Decimal(0) <= points - Decimal(cell.replace(",", ".")) < Decimal("0.01")
@@ -82,7 +83,9 @@ def test_only_grades_change(
     for number, (name, section, old, _) in enumerate(students):
         writer.writerow([name.replace("\r", ""), str(number), "", "", section.replace("\r", ""), old])
     data = text.getvalue().encode(encoding)
-    grades = [ClassGrade(Student(f"k{n}", canvas=str(n)), Decimal("58.5")) for n, one in enumerate(students) if one[3]]
+    grades = [
+        PublishedGrade(Student(f"k{n}", canvas=str(n)), Decimal("58.5")) for n, one in enumerate(students) if one[3]
+    ]
     filled = fill_text(data, *grades)
     before, after = read_table(data, "x"), read_table(filled.data, "x")
     assert (before.bom, before.encoding, before.rows[:2]) == (after.bom, after.encoding, after.rows[:2])
@@ -113,12 +116,12 @@ def test_nobody_gets_the_grade_of_another(people: list[tuple[str, set[str], set[
         ids = [true[field] if field in shown else "" for field in ("sis", "login")]
         rows.append([name or "x", true["canvas"], *ids, "A", ""])
         values: dict[str, Any] = {field: true[field] for field in known}
-        grades.append(ClassGrade(Student(true.get(key, f"key{number}"), **values), Decimal(number)))
+        grades.append(PublishedGrade(Student(true.get(key, f"key{number}"), **values), Decimal(number)))
         own[true["canvas"]] = f"{number}.00"
     for number in liars:
         name = people[number % len(people)][0]
         grades.append(
-            ClassGrade(Student(f"login{number}", name, login=f"login{number}", is_on_roster=False), Decimal(99))
+            PublishedGrade(Student(f"login{number}", name, login=f"login{number}", is_on_roster=False), Decimal(99))
         )
     text = io.StringIO()
     csv.writer(text).writerows(rows)
@@ -131,7 +134,8 @@ def test_a_large_class_has_few_lines() -> None:
     """Rows and students without a grade are one line for each reason, and replaced grades are limited."""
     rows = "".join(f"Student {n},{n},,,A,{1 if n < 50 else ''}\n" for n in range(200))
     grades = [
-        ClassGrade(Student(f"k{n}", canvas=str(n)), Decimal(n) if n < 50 else None, why_open="open") for n in range(150)
+        PublishedGrade(Student(f"k{n}", canvas=str(n)), Decimal(n) if n < 50 else None, why_open="open")
+        for n in range(150)
     ]
     lines = fill_text(CANVAS + rows, *grades).lines
     assert lines[0] == "column 'Lab 6 (98765)': 49 filled in, 1 already the same"

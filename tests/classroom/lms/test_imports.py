@@ -2,7 +2,7 @@
 
 from decimal import Decimal
 
-from grader.classroom.lms.feedback_zip import canvas_names, moodle_names, write_feedback
+from grader.classroom.lms.feedback import canvas_names, moodle_names, write_feedback
 from grader.classroom.lms.fill import Filled, FillOptions, fill
 from grader.classroom.lms.forms import FORMS
 from tests.classroom.lms import importers

@@ -16,9 +16,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from grader.classroom import mark_files
-from grader.classroom.mark_files import COLUMNS, WITHDRAWN, is_open_in_libreoffice, mark_file
-from grader.classroom.marks import EXCUSED, Mark, append_marks
+from grader.classroom import marks
+from grader.classroom.marks import COLUMNS, EXCUSED, WITHDRAWN, Mark, append_marks, is_open_in_libreoffice, mark_file
 from grader.classroom.tables import protected, unprotected
 from grader.errors import InputError
 from grader.grading.criterion import DEADLINE, TOTAL
@@ -246,7 +245,7 @@ def test_a_file_that_is_replaced_meanwhile(tmp_path: Path, monkeypatch: pytest.M
         (tmp_path / "new").replace(tmp_path / "marks" / "lee.csv")
 
     (tmp_path / "new").write_text("of the editor")
-    monkeypatch.setattr(mark_files, "lock", replace)
+    monkeypatch.setattr(marks, "lock", replace)
     with pytest.raises(InputError, match=r"another program replaces marks/lee\.csv: try again"):
         appended(tmp_path / "marks", b"", [Mark("", "", "ben", "essay", "1")])
     assert (tmp_path / "marks" / "lee.csv").read_text() == "of the editor"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.opening import open_class_submission
+from grader.classroom.class_files import open_class_submission
 from grader.errors import InputError
 from grader.files import reading
 from grader.files.folder import read_folder

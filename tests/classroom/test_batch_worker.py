@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.graded import Graded
-from grader.classroom.run.worker import ClassContext, Task, grade_all
+from grader.classroom.batch_worker import ClassContext, Task, grade_all
+from grader.classroom.results import StoredResult
 from tests.classroom.class_runs import report_in_process
 from tests.samples import LAB6, ROOT
 
@@ -46,7 +46,7 @@ UNREADABLE = {
 }
 
 
-def graded(top: Path, *paths: str) -> Graded:
+def graded(top: Path, *paths: str) -> StoredResult:
     """Return the result of a submission below a folder."""
     (result,) = grade_all(ClassContext((str(top),), LAB6.data, str(LAB6.path)), [Task("ann", 0, paths)])
     return result

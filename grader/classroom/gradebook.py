@@ -1,22 +1,21 @@
 """The grades of a class, computed from the results, the rubric, the roster and the marks of people."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from grader import __version__
 from grader.checks.outcome import Outcome, Status
-from grader.classroom import folder as names
-from grader.classroom.graded import Graded, Run, digest_of
+from grader.classroom import gradebook_folder as names
+from grader.classroom.class_files import open_class_submission
+from grader.classroom.gradebook_folder import read_settings
 from grader.classroom.lateness import Lateness, lateness
 from grader.classroom.marks import Mark, Marks, read_marks
-from grader.classroom.opening import open_class_submission
-from grader.classroom.results import Results
+from grader.classroom.results import Results, Run, StoredResult, digest_of
 from grader.classroom.roster import Roster, Student, read_roster
-from grader.classroom.settings import read_settings
-from grader.classroom.student_grade import ClassResult, Reason, StudentGrade
-from grader.classroom.tables import SIZE_LIMIT
+from grader.classroom.student_grade import Reason, SharedResult, StudentGrade
+from grader.classroom.tables import SIZE_LIMIT, CellValue
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import DEADLINE, TOTAL, Criterion
@@ -24,13 +23,13 @@ from grader.grading.graded_submission import GradedSubmission
 from grader.grading.report import ManualComment, ManualMark, Report, without_gifts
 from grader.grading.rubric import load_rubric
 from grader.submission.submission import Opening, Submission
-from grader.text import printable_path
+from grader.text import format_points, printable_path
 
 _NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
 _MAX_SHARED = 10_000  # results
 
 
-class Class:
+class Gradebook:
     """A class in a gradebook: iterating yields the grade of every student, in the order of the keys."""
 
     def __init__(self, folder: Path, run: Run | None = None, answers: Path | None = None) -> None:
@@ -73,84 +72,84 @@ class Class:
         """Return the grade of the student with a key."""
         return self._grade(key, self.results.of(key))
 
-    def student(self, key: str, graded: Graded | None) -> Student:
+    def student(self, key: str, stored: StoredResult | None) -> Student:
         """Return a student as the roster has it, completed by the LMS ids in the names of the submission."""
-        person: dict[str, Any] = dict(graded.person) if graded is not None else {}
+        person: dict[str, Any] = dict(stored.person) if stored is not None else {}
         found = self._on_roster.get(key)
         if found is None:
             return Student(key, **person, is_on_roster=self.roster is None)
         return found._replace(**{name: value for name, value in person.items() if not getattr(found, name)})
 
-    def report(self, graded: Graded) -> Report:
+    def report(self, stored: StoredResult) -> Report:
         """Return the points of a result: outcomes without places, values and hints."""
-        unread = graded.reason if graded.verdict == "unreadable" else ""
-        why = f"{unread}; needs manual grading" if unread else graded.reason if graded.verdict == "errored" else ""
-        entries = ((name, graded.results[name]) for name in self._rows if name in graded.results)
+        unread = stored.reason if stored.verdict == "unreadable" else ""
+        why = f"{unread}; needs manual grading" if unread else stored.reason if stored.verdict == "errored" else ""
+        entries = ((name, stored.results[name]) for name in self._rows if name in stored.results)
         results = (self._result(name, status, words or why, by) for name, (_, status, words, by) in entries)
-        submission = GradedSubmission(graded.student, unread=unread)
-        return Report(submission, self.rubric, graded.parts, without_gifts(results, submission))
+        submission = GradedSubmission(stored.student, unread=unread)
+        return Report(submission, self.rubric, stored.parts, without_gifts(results, submission))
 
-    def reopened(self, graded: Graded) -> Submission | None:
+    def reopened(self, stored: StoredResult) -> Submission | None:
         """Return a submission as it was graded; None if it has moved or changed since, or cannot be read."""
         settings, roots = self.settings, self.settings.roots(self.folder)
-        if graded.root >= len(roots) or not graded.paths:
+        if stored.root >= len(roots) or not stored.paths:
             return None
-        root = str(roots[graded.root].resolve())
+        root = str(roots[stored.root].resolve())
         try:
-            opened = open_class_submission(root, graded.paths, graded.names, graded.student, settings.max_size)
-            if digest_of(opened.digest) != graded.digest:
+            opened = open_class_submission(root, stored.paths, stored.names, stored.student, settings.max_size)
+            if digest_of(opened.digest) != stored.digest:
                 return None
-            known = Opening(0, settings.arguments, graded.no_documents, converted=self.results.texts(graded))
+            known = Opening(0, settings.arguments, stored.no_documents, converted=self.results.texts(stored))
             return opened.submission(self.rubric, known)
         except InputError:
             return None
 
-    def _new_result(self, name: str, status: Status, words: str, carried: str) -> ClassResult:
-        return ClassResult(self._rows[name], Outcome(status, words), carried=carried)
+    def _new_result(self, name: str, status: Status, words: str, carried: str) -> SharedResult:
+        return SharedResult(self._rows[name], Outcome(status, words), carried=carried)
 
-    def _grade(self, key: str, graded: Graded | None) -> StudentGrade:
+    def _grade(self, key: str, stored: StoredResult | None) -> StudentGrade:
         whole = (key, TOTAL)
-        student, final = self.student(key, graded), self.marks.counting.get(whole) or self.marks.comments.get(whole)
+        student, final = self.student(key, stored), self.marks.counting.get(whole) or self.marks.comments.get(whole)
         known = {Reason.NOT_ON_ROSTER: not student.is_on_roster, Reason.UNCLEAR: key in self.run.unclear}
-        if graded is None:
+        if stored is None:
             nothing = Report(GradedSubmission(key), self.rubric, self.settings.parts, ())
             return StudentGrade(student, None, nothing, final=final, known=_held(known))
         known[Reason.GONE] = key not in self.run.totals
-        known[Reason.OUTDATED] = self._is_outdated or graded.context != self.run.context
-        report, older = self.with_marks(self.report(graded), graded)
-        if final is not None and _is_older(final, graded):
+        known[Reason.OUTDATED] = self._is_outdated or stored.context != self.run.context
+        report, older = self.with_marks(self.report(stored), stored)
+        if final is not None and _is_older(final, stored):
             older = (*older, TOTAL)
-        late = self._lateness(student, graded, report)
+        late = self._lateness(student, stored, report)
         if final is not None and final.value:
             late = Lateness(late.days, reason=late.reason)
-        return StudentGrade(student, graded, report, late, final, older, _held(known))
+        return StudentGrade(student, stored, report, late, final, older, _held(known))
 
-    def _lateness(self, student: Student, graded: Graded, report: Report) -> Lateness:
+    def _lateness(self, student: Student, stored: StoredResult, report: Report) -> Lateness:
         """Return the lateness; what the roster says counts before what the LMS says."""
-        own = self.marks.counting.get((graded.student, DEADLINE))
+        own = self.marks.counting.get((stored.student, DEADLINE))
         times = student._replace(
-            is_late=graded.is_late if student.is_late is None else student.is_late,
-            submitted=student.submitted or graded.submitted,
+            is_late=stored.is_late if student.is_late is None else student.is_late,
+            submitted=student.submitted or stored.submitted,
             days_late=0.0 if student.is_late is False and student.days_late is None else student.days_late,
         )
         return lateness(self.rubric, times, report.score, self.due, own.value if own is not None else "")
 
-    def with_marks(self, report: Report, graded: Graded) -> tuple[Report, tuple[str, ...]]:
+    def with_marks(self, report: Report, stored: StoredResult) -> tuple[Report, tuple[str, ...]]:
         """Return a report with marks and comments, and the criteria that were marked before the submission changed."""
-        if graded.student not in self._marked:
+        if stored.student not in self._marked:
             return report, ()
         results = {one.criterion.id: one for one in report.results}
         older: list[str] = []
         for name, row in self._rows.items():
-            mark, comment = (found.get((graded.student, name)) for found in (self.marks.counting, self.marks.comments))
+            mark, comment = (found.get((stored.student, name)) for found in (self.marks.counting, self.marks.comments))
             if comment is not None and name in results:
                 results[name] = results[name]._replace(comment=ManualComment(comment.comment, comment.by))
             if mark is None or mark.points is None or row.adjustment is not None:
                 continue
             given = ManualMark(mark.points, mark.by, mark.comment)
-            result = results.get(name) or ClassResult(row, _NOT_SUBMITTED)
+            result = results.get(name) or SharedResult(row, _NOT_SUBMITTED)
             results[name] = result._replace(manual_mark=given, hint=None, comment=None)
-            older += [name] if _is_older(mark, graded) else []
+            older += [name] if _is_older(mark, stored) else []
         return report._replace(results=tuple(results[name] for name in self._rows if name in results)), tuple(older)
 
 
@@ -158,5 +157,40 @@ def _held(facts: Mapping[Reason, bool]) -> frozenset[Reason]:
     return frozenset(reason for reason, holds in facts.items() if holds)
 
 
-def _is_older(mark: Mark, graded: Graded) -> bool:
-    return bool(mark.submission) and mark.submission != graded.digest
+def _is_older(mark: Mark, stored: StoredResult) -> bool:
+    return bool(mark.submission) and mark.submission != stored.digest
+
+
+# Columns before those of the criteria; the last one, `submission`, is the digest of what was graded.
+HEADER = (
+    *("id", "name", "email", "section", "status", "score", "max_score", "pending"),
+    *("late_days", "late_points", "total", "not_final_because"),
+)
+
+
+def grade_table(
+    book: Gradebook, grades: Iterable[StudentGrade], *, is_exported: bool = False
+) -> tuple[list[str], Iterator[list[CellValue]]]:
+    """Return the header, and the rows of grades; what is not decided is empty.
+
+    A table that `is_exported` has a column with the values that `mark --import` takes for marks, so that it knows which
+    of them a person changed.
+    """
+    criteria = [row.id for row in book.rubric.criteria]
+    exported = ["exported"] * is_exported
+    return [*HEADER, *criteria, *exported, "submission"], (_row(one, criteria, is_exported) for one in grades)
+
+
+def _row(grade: StudentGrade, criteria: Sequence[str], is_exported: bool) -> list[CellValue]:
+    student, report, late = grade.student, grade.report, grade.late
+    row: list[CellValue] = [student.key, student.name or None, student.email or None, student.section or None]
+    points: dict[str, str | None] = dict.fromkeys(criteria)
+    numbers: list[CellValue] = [None] * 5
+    if grade.status not in ("missing", "excused"):
+        numbers = [grade.score, report.max_score, grade.pending, late.days, late.points]
+        points |= {one.criterion.id: one.cell for one in grade.results}
+    row += [grade.status, *numbers, grade.total, grade.why_open or None, *points.values()]
+    if is_exported:
+        points[TOTAL] = format_points(grade.total) if grade.total is not None else None
+        row.append(" ".join(f"{name}={text or ''}" for name, text in points.items()))
+    return [*row, grade.stored.digest if grade.stored is not None else None]

@@ -5,10 +5,9 @@ from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.classroom import folder as names
-from grader.classroom.graded import Graded, Run
-from grader.classroom.grades import Class
-from grader.classroom.results import Results
+from grader.classroom import gradebook_folder as names
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.results import Results, Run, StoredResult
 from grader.errors import InputError
 from grader.text import printable_path
 
@@ -42,7 +41,7 @@ class Snapshot(NamedTuple):
 
 def snapshot(folder: Path, number: int | None) -> Snapshot:
     """Return a run of a gradebook, by default the newest one with the current grades. Raises InputError."""
-    book = Class(folder)
+    book = Gradebook(folder)
     if number is None:
         grades = {one.student.key: (one.student.name, one.published) for one in book}
         totals = {key: None if total is None else str(total) for key, (_, total) in grades.items()}
@@ -72,14 +71,14 @@ def _points(value: float | str | None) -> Decimal | None:
     return None if value is None else Decimal(str(value))
 
 
-def _steps(old: Graded, new: Graded) -> Iterator[PointsChange]:
+def _steps(old: StoredResult, new: StoredResult) -> Iterator[PointsChange]:
     for name in dict.fromkeys((*old.results, *new.results)):
         before, after = (_points(entry[0]) if (entry := one.results.get(name)) else None for one in (old, new))
         if before != after:
             yield PointsChange(name, before, after)
 
 
-def _reasons(old: Graded | None, new: Graded | None, before: Run, after: Run) -> Iterator[str]:
+def _reasons(old: StoredResult | None, new: StoredResult | None, before: Run, after: Run) -> Iterator[str]:
     """Yield what may have changed a grade."""
     if old is None or new is None:
         yield from ("no longer there",) * (old is not None) + ("first submission",) * (new is not None)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.grades import Class
+from grader.classroom.gradebook import Gradebook
 from grader.commands.class_reports import report_of
 from grader.report.formats import Format, render
 from tests.classroom.class_runs import (
@@ -175,7 +175,9 @@ def test_reports_quote_unchanged_files_only(tmp_path: Path) -> None:
     quoted = next(line for line in alone.splitlines() if "<" in line and "xyz" in line)
     (folder / "ann/my_robot.urdf").write_text('<robot name="other"/>\n' * 100)
     before = (book / "results.jsonl").read_bytes()
-    texts = {key: render(report_of(Class(book), Class(book).grade(key)), Format.TERMINAL) for key in ("ann", "bea")}
+    texts = {
+        key: render(report_of(Gradebook(book), Gradebook(book).grade(key)), Format.TERMINAL) for key in ("ann", "bea")
+    }
     assert quoted not in texts["ann"]
     assert "The submission has moved or changed" in " ".join(texts["ann"].split())
     assert quoted in texts["bea"]
@@ -207,6 +209,6 @@ def test_awkward_names_are_found_in_the_roster(tmp_path: Path) -> None:
     unmatched, absent = class_with_roster(tmp_path / "class", tmp_path / "roster.csv", 120)
     done = grader("batch", tmp_path / "class", "--gradebook", tmp_path / "lab6", "--roster", tmp_path / "roster.csv")
     assert done.returncode == 0
-    students = {grade.student.key: grade for grade in Class(tmp_path / "lab6")}
+    students = {grade.student.key: grade for grade in Gradebook(tmp_path / "lab6")}
     assert [key for key, grade in students.items() if not grade.student.is_on_roster] == unmatched
-    assert sum(grade.graded is None for grade in students.values()) == absent
+    assert sum(grade.stored is None for grade in students.values()) == absent

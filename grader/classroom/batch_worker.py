@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from grader.checks.outcome import Status
+from grader.classroom.class_files import digest_of_unread, open_class_submission
 from grader.classroom.equal_work import forms_of, hashes_of
-from grader.classroom.graded import Entry, Graded, Verdict, digest_of
-from grader.classroom.opening import digest_of_unread, open_class_submission
+from grader.classroom.results import StoredCriterion, StoredResult, Verdict, digest_of
 from grader.classroom.workers.pool import NO_MEMORY
 from grader.errors import InputError, MachineError
 from grader.files.names import ARCHIVES
@@ -54,14 +54,14 @@ class Task(NamedTuple):
     no_documents: str = ""
 
 
-def grade_all(context: ClassContext, tasks: Sequence[Task]) -> list[Graded]:
+def grade_all(context: ClassContext, tasks: Sequence[Task]) -> list[StoredResult]:
     """Grade submissions one after the other, in isolation: an error affects only its own submission."""
     return [_grade_one(context, task) for task in tasks]
 
 
-def _grade_one(context: ClassContext, task: Task) -> Graded:
+def _grade_one(context: ClassContext, task: Task) -> StoredResult:
     rubric, root = rubric_from(context.rubric, context.rubric_path), context.roots[task.root]
-    result = Graded(task.key, 0, "unchanged", no_documents=task.no_documents)
+    result = StoredResult(task.key, 0, "unchanged", no_documents=task.no_documents)
     try:
         opened = open_class_submission(root, task.paths, task.names, task.key, context.max_size)
         result = result._replace(digest=digest_of(opened.digest))
@@ -93,7 +93,7 @@ def _grade_one(context: ClassContext, task: Task) -> Graded:
     return result if is_handed_out else result._replace(work=forms_of(submission))
 
 
-def _entry(result: Result) -> Entry:
+def _entry(result: Result) -> StoredCriterion:
     """Return what a line keeps of a criterion."""
     outcome = result.outcome
     is_open = outcome.status in ("pending", "errored") and not result.is_adjusted
@@ -113,7 +113,7 @@ def _answers_of(report: Report, digest: str) -> dict[str, str]:
     return {name: content and digest_of(content) for name, content in contents.items()}
 
 
-def undecided(context: ClassContext, result: Graded) -> Graded:
+def undecided(context: ClassContext, result: StoredResult) -> StoredResult:
     """Return the result of a submission that could not be graded: every criterion is undecided."""
     rubric = rubric_from(context.rubric, context.rubric_path)
     status: Status = "errored" if result.verdict == "errored" else "pending"

@@ -7,13 +7,14 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.classroom.listing import ClassListing, listing_of
 from grader.documents.evidence_files import EVIDENCE
 from grader.errors import InputError
+from grader.files.class_folder import ClassDirectory
+from grader.files.class_zip import ClassZip
 from grader.files.members import ARCHIVE_ERRORS, error_text
 from grader.files.names import ROBOT_ENDINGS
-from grader.files.opening import with_inner, without_endings
-from grader.files.reading import URDF_LIMIT
+from grader.files.opening import archive_kind, with_inner, without_endings
+from grader.files.reading import URDF_LIMIT, not_there, read_start
 from grader.files.tree import Tree
 from grader.grading.rubric import Rubric
 from grader.submission.labs import LabFolders
@@ -24,6 +25,29 @@ from grader.text import printable_path
 
 if TYPE_CHECKING:
     import hashlib
+
+
+ClassListing = ClassDirectory | ClassZip
+
+
+def listing_of(path: Path) -> ClassListing:
+    """Return the listing of a class folder or zip; raises InputError if it is neither."""
+    shown = printable_path(path)
+    try:
+        if path.is_dir():
+            return ClassDirectory(path)
+        exists = os.path.lexists(path)
+    except (OSError, ValueError) as error:
+        raise InputError(f"cannot read {shown}: {error}") from None
+    if not exists:
+        raise not_there(path)
+    if archive_kind(read_start(path, 512)) != "zip":
+        raise InputError(
+            f"{shown} is neither a folder nor a zip: name the folder that holds the class's submissions"
+            " (`grader grade` grades a single one)"
+        )
+    return ClassZip(path)
+
 
 _DOCUMENTS = (*EVIDENCE, ".docx", ".doc", ".odt", ".pages", ".ipynb", ".md", ".txt", ".rst", ".rtf")
 _MAX_HASHED = 64 * 1024 * 1024  # bytes of a file that go into the digest; of a larger file its size does

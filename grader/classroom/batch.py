@@ -4,13 +4,11 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from functools import partial
 
-from grader.classroom.graded import Graded
-from grader.classroom.results import Results, ResultsWriter
-from grader.classroom.run.worker import ClassContext, Task, grade_all, undecided
+from grader.classroom.batch_worker import ClassContext, Task, grade_all, undecided
+from grader.classroom.results import Results, ResultsWriter, StoredResult
 from grader.classroom.submissions import ClassSubmission
 from grader.classroom.workers.pool import WorkerError
-from grader.classroom.workers.progress import Progress
-from grader.classroom.workers.queue import Queue
+from grader.classroom.workers.queue import Progress, Queue
 
 _OF_PERSON = ("name", "email", "login", "sis", "canvas", "moodle")
 
@@ -20,7 +18,7 @@ class Batch:
 
     def __init__(self, results: Results, writer: ResultsWriter, shared: ClassContext, context: str) -> None:
         self._results, self._writer, self._shared, self._context = results, writer, shared, context
-        self._at_work: dict[str, tuple[ClassSubmission, Graded | None]] = {}  # with the result that is current
+        self._at_work: dict[str, tuple[ClassSubmission, StoredResult | None]] = {}  # with the result that is current
         self.progress = Progress(0)
 
     def grade(
@@ -55,11 +53,11 @@ class Batch:
         self._at_work[one.student.key] = one, current
         return Task(one.student.key, one.root, one.paths, one.names, current.digest if current is not None else "")
 
-    def _lost(self, task: Task, error: Exception) -> Graded:
+    def _lost(self, task: Task, error: Exception) -> StoredResult:
         reason = str(error) if isinstance(error, WorkerError) else f"{type(error).__name__}: {error}"
-        return undecided(self._shared, Graded(task.key, 0, "errored", reason=reason))
+        return undecided(self._shared, StoredResult(task.key, 0, "errored", reason=reason))
 
-    def _line(self, result: Graded) -> bytes:
+    def _line(self, result: StoredResult) -> bytes:
         """Return the line of a result, empty if the file has it."""
         submission, current = self._at_work.pop(result.student)
         found = current if result.verdict == "unchanged" and current is not None else result

@@ -1,9 +1,11 @@
-"""What a later run needs to grade a class again: the file `class.toml` of a gradebook."""
+"""A gradebook is a folder of plain files: what it holds, how it is recognised, who may write it."""
 
 import json
 import os
+import sys
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
 from datetime import datetime
 from pathlib import Path
@@ -13,7 +15,81 @@ from grader.classroom.lateness import read_time
 from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT, read_capped
 from grader.names import did_you_mean
-from grader.text import printable, printable_path
+from grader.text import printable, printable_path, shell_quoted
+
+RESULTS, GRADES, ROSTER = "results.jsonl", "grades.csv", "roster.csv"
+RUBRIC, MARKS, REPORTS = "rubric", "marks", "reports"
+_LOCK = ".lock"
+_WINDOWS_LOCK_AT = 1 << 30  # beyond the end of the file: others cannot read what is locked
+
+
+def is_gradebook(folder: Path) -> bool:
+    """Return whether a folder is a gradebook."""
+    return (folder / CLASS_FILE).is_file()
+
+
+def check_gradebook(folder: Path) -> None:
+    """Raise InputError if a path is not a gradebook."""
+    shown = printable_path(folder)
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"{shown} is a file: a gradebook is a folder")
+    if not folder.is_dir():
+        raise InputError(
+            f"there is no gradebook {shown}: `grader batch PATH --gradebook {shell_quoted(folder)}` makes it"
+        )
+    if not is_gradebook(folder):
+        raise InputError(f"{shown} is not a gradebook: it has no {CLASS_FILE}")
+
+
+def check_free(folder: Path) -> None:
+    """Raise InputError unless a path is a gradebook, an empty folder, or absent."""
+    is_begun = is_gradebook(folder) or (folder / _LOCK).exists()  # a first run may have been killed
+    if folder.is_dir() and not is_begun and any(folder.iterdir()):
+        raise InputError(f"{printable_path(folder)} is not empty and not a gradebook: name another folder")
+    if folder.exists() and not folder.is_dir():
+        check_gradebook(folder)
+
+
+def make_gradebook(folder: Path) -> None:
+    """Make the folders of a gradebook, unless they exist; only its owner can read them. Raises InputError."""
+    check_free(folder)
+    try:
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        (folder / _LOCK).touch(0o600)
+        (folder / MARKS).mkdir(mode=0o700, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot make the gradebook {printable_path(folder)}: {error.strerror}") from None
+
+
+def lock(handle: int, *, wait: bool = True) -> None:
+    """Lock an open file until it is closed; raises OSError if another process has locked it, without `wait`."""
+    if sys.platform == "win32":
+        import msvcrt
+
+        os.lseek(handle, _WINDOWS_LOCK_AT, os.SEEK_SET)
+        msvcrt.locking(handle, msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK, 1)
+    else:
+        import fcntl
+
+        fcntl.flock(handle, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+
+
+@contextmanager
+def batch_lock(folder: Path) -> Iterator[None]:
+    """Hold the lock of a run over a class; raise InputError while another run holds it. It ends with the process."""
+    try:
+        file = os.fdopen(os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT, 0o600), "r+b")
+    except OSError as error:
+        raise InputError(f"cannot write to the gradebook {printable_path(folder)}: {error.strerror}") from None
+    with file:
+        try:
+            lock(file.fileno(), wait=False)
+        except OSError:
+            raise InputError(
+                f"another `grader batch` writes to {printable_path(folder)}: wait until it has ended"
+            ) from None
+        yield
+
 
 CLASS_FILE = "class.toml"
 _MAX_SIZE = 1024 * 1024

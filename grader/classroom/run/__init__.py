@@ -1,1 +1,0 @@
-"""A run over a class: the batch, the work of a worker process, and a Dask cluster."""
