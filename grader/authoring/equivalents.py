@@ -1,4 +1,7 @@
-"""Equivalents of a reference: the same robot in another file, one of each family. Each must keep full marks."""
+"""Equivalents of a reference: the same robot in another file, one of each family. Each must keep full marks.
+
+`is_same_robot` tells whether a changed file is still the same robot.
+"""
 
 import re
 from collections import Counter
@@ -19,10 +22,12 @@ from grader.authoring.trees import (
     vector_of,
 )
 from grader.checks.check import EQUIVALENTS
+from grader.robot.normal_form import normal_form
 from grader.robot.transforms import Transform, rotation_from_rpy, unit
+from grader.submission.urdf import Read, Urdf
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import PARTS
-from grader.xml.wanted_element import words_of_foreign
+from grader.xml.wanted_element import foreign_elements, words_of_foreign
 
 _SORTED = ("link", "joint", "material", "visual", "collision")  # of these the order does not matter
 _COMMENTS = ("", " a robot ", ' <link name="ghost"/> ', "\n  0.6 / 4\n  ", " $ & % ")
@@ -203,3 +208,24 @@ _ALL = (
     _use_macro,
 )
 _REWRITINGS: dict[str, _Rewriting] = dict(zip(EQUIVALENTS, _ALL, strict=True))
+
+
+def is_same_robot(one: Urdf, other: Urdf, kept: Collection[str]) -> bool:
+    """Return whether two URDFs are the same robot; `kept` are names that something outside of the file refers to.
+
+    ROS 2's verdict counts, the normal form of the robot, and the elements for simulators and controllers.
+    """
+    form = _counting_form(one, kept)
+    return form is not None and form == _counting_form(other, kept)
+
+
+def _counting_form(urdf: Urdf, kept: Collection[str]) -> object:
+    """Return what counts of a file; None if no robot is read."""
+    if not isinstance(urdf, Read) or urdf.reading.robot is None or urdf.reading.root is None:
+        return None
+    robot, root = urdf.reading.robot, urdf.reading.root
+    foreign = [
+        etree.tostring(child, with_tail=False) for child in sorted(foreign_elements(root), key=lambda it: str(it.tag))
+    ]
+    form = normal_form(robot, {*kept, *words_of_foreign(root)})
+    return urdf.loaded.verdict, urdf.reading.undetermined, foreign, form

@@ -14,9 +14,7 @@ from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
 
-from lxml import etree
-
-from grader.authoring.equivalents import Equivalent, RewritingRules, equivalents
+from grader.authoring.equivalents import Equivalent, RewritingRules, equivalents, is_same_robot
 from grader.authoring.mutants import Mutant, mutants, package_mutants
 from grader.authoring.samples import Loss, Sample, SampleResults, tested_samples
 from grader.checks.manual import MANUAL_CHECKS
@@ -32,8 +30,7 @@ from grader.hints.trials import is_worse
 from grader.package.package import MANIFEST
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
-from grader.submission.urdf import Read, Urdf
-from grader.xml.wanted_element import foreign_elements, words_of_foreign
+from grader.submission.urdf import Read
 
 _WORD = re.compile(r"[\w@:.-]+")
 _TEXTS = (".py", ".xml", ".yaml", ".yml", ".rviz", ".launch", ".cfg", ".json", ".txt", ".world", ".sdf")
@@ -154,7 +151,7 @@ class Trial:
             fate = "faulty"
         elif any(map(self.is_lost, results)):
             fate = "caught"
-        elif is_of_robot and _is_same_robot(self.reference.urdf, submission.urdf, self.kept):
+        elif is_of_robot and is_same_robot(self.reference.urdf, submission.urdf, self.kept):
             fate = "same"
         else:
             fate = "survived"
@@ -177,27 +174,6 @@ class Trial:
         others = ("package", "submission") if submission.is_single else ("package",)
         asked = (it for it in self.tested if it.check.subject not in others)
         return [it.id for it in asked if family not in it.check.about.breaks_under(it.arguments)]
-
-
-def _is_same_robot(one: Urdf, other: Urdf, kept: Collection[str]) -> bool:
-    """Return whether two URDFs are the same robot; `kept` are names that something outside of the file refers to.
-
-    ROS 2's verdict counts, the normal form of the robot, and the elements for simulators and controllers.
-    """
-    form = _counting_form(one, kept)
-    return form is not None and form == _counting_form(other, kept)
-
-
-def _counting_form(urdf: Urdf, kept: Collection[str]) -> object:
-    """Return what counts of a file; None if no robot is read."""
-    if not isinstance(urdf, Read) or urdf.reading.robot is None or urdf.reading.root is None:
-        return None
-    robot, root = urdf.reading.robot, urdf.reading.root
-    foreign = [
-        etree.tostring(child, with_tail=False) for child in sorted(foreign_elements(root), key=lambda it: str(it.tag))
-    ]
-    form = normal_counting_form(robot, {*kept, *words_of_foreign(root)})
-    return urdf.loaded.verdict, urdf.reading.undetermined, foreign, form
 
 
 def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Submission:

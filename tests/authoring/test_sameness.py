@@ -1,8 +1,8 @@
 """Which changes leave a robot the same, and which do not."""
 
 import pytest
-from grader.authoring.trial import is_same_robot
 
+from grader.authoring.equivalents import is_same_robot
 from grader.authoring.mutants import mutants
 from grader.submission.urdf import read_as_ros
 from tests.authoring.robots import ARM, CHANGES
