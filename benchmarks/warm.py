@@ -20,7 +20,7 @@ from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
 from grader.python.budget import Budget
 from grader.submission.opening import open_submission, read_submission
-from grader.submission.surroundings import Surroundings
+from grader.submission.urdf import Surroundings
 from grader.xacro.expansion import expand
 
 ZIPPED = ROOT / "submissions/lab6/equivalent-zipped-with-wrapper" / "lab6.zip"

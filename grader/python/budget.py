@@ -32,6 +32,10 @@ class Budget:
         """The parts that were charged."""
         return self.limit - self.left
 
+    def grow(self, limit: int) -> None:
+        """Set another limit, from which what was charged is taken."""
+        self.limit, self.left = limit, limit - self.used
+
     def charge(self, parts: int, characters: int = 0) -> None:
         """Charge parts and characters. Raises OutOfBudget."""
         self.left -= parts + characters // CHARACTERS

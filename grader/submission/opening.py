@@ -1,16 +1,18 @@
 """Opens a submission: a URDF, a folder, an archive or standard input."""
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from grader.errors import InputError
+from grader.errors import InputError, MachineError
 from grader.files.opening import open_tree, tree_name
 from grader.files.reading import read_capped, read_standard_input, read_start
-from grader.files.tree import Tree
+from grader.files.tree import File, Tree, overlaid
+from grader.package.package import MANIFEST
 from grader.python.budget import Budget
 from grader.submission.submission import DEFAULTS, Lab, Opening, Submission
-from grader.submission.urdf import Absent, Unreadable, Urdf, read_as_ros
-from grader.text import printable_path
+from grader.submission.urdf import Absent, Surroundings, Unreadable, Urdf, read_as_ros
+from grader.text import enumerated, printable, printable_path
 
 STANDARD_INPUT = "-"
 # Other files of a lab, which are never meant as a URDF.
@@ -18,6 +20,7 @@ _NO_URDFS = frozenset(
     {".py", ".md", ".rviz", ".yaml", ".yml", ".toml", ".cfg", ".json", ".png", ".jpg", ".jpeg", ".gif", ".pdf", ".docx"}
 )
 _TABLES = frozenset({".csv", ".tsv", ".xlsx", ".xls", ".ods"})
+_MAX_NAMED = 6  # files in a note
 _EXPECTED = "give a .urdf file, or the folder or archive that was submitted"
 
 
@@ -25,8 +28,6 @@ def read_submission(data: bytes, *, identity: str, path: str, opening: Opening =
     """Return the submission that consists of the bytes of one URDF."""
     if not opening.arguments and b"xacro" not in data:
         return Submission(identity, read_as_ros(data, path))
-    from grader.submission.surroundings import Surroundings  # late: most URDFs are no xacro
-
     surroundings = Surroundings(Budget(), arguments=opening.arguments)
     return Submission(identity, read_as_ros(data, path, surroundings), opening=opening, budget=surroundings.budget)
 
@@ -57,10 +58,63 @@ def open_submission(path: str, lab: Lab, opening: Opening = DEFAULTS, *, with_ne
     data = read_capped(place, opening.max_size)
     identity = printable_path(place.stem)
     if with_neighbours and b"xacro" in data:
-        from grader.submission.neighbours import read_with_neighbours  # late: most URDFs are no xacro
-
-        return read_with_neighbours(place, data, identity, opening)
+        return _read_with_neighbours(place, data, identity, opening)
     return read_submission(data, identity=identity, path=printable_path(place.name), opening=opening)
+
+
+def _read_with_neighbours(place: Path, data: bytes, identity: str, opening: Opening) -> Submission:
+    """Return the submission that is one file of xacro, and what it reads from the package around it.
+
+    If it reads anything, its path is relative to the nearest folder above with a package.xml, else to its own folder.
+    """
+    # Late: most URDFs are no xacro.
+    from grader.files.folder import read_folder
+
+    asked: list[str] = []
+    alone = Surroundings(Budget(), arguments=opening.arguments, ask=asked.append)
+    submission = Submission(
+        identity, read_as_ros(data, printable_path(place.name), alone), opening=opening, budget=alone.budget
+    )
+    if not asked:
+        return submission
+    try:
+        folder = place.parent.resolve()
+        root = next((above for above in (folder, *folder.parents) if (above / MANIFEST).is_file()), folder)
+        path = printable((folder / place.name).relative_to(root).as_posix())
+        found = read_folder(root)
+        tree = overlaid(found, {path: data}) if path in found.files or place.is_symlink() else None
+    except (OSError, InputError) as error:
+        MachineError.check(error, printable_path(place.name))
+        tree = None
+    return _with_files_around(submission, tree, path, alone) if tree is not None else submission
+
+
+def _with_files_around(submission: Submission, tree: Tree, path: str, alone: Surroundings) -> Submission:
+    """Return a single file with what is read for it of a tree; `alone`: its surroundings without a tree."""
+    from grader.submission.packages import read_packages
+
+    known: dict[str, bytes] = {}
+
+    def read(file: File, limit: int, *, first: bool = False) -> bytes:
+        data = file.read(limit, first=first)
+        return data if first else known.setdefault(file.path, data)
+
+    recorded = replace(tree, files={name: file._replace(read=partial(read, file)) for name, file in tree.files.items()})
+    packages = read_packages(recorded, Lab(""))
+    data = tree.files[path].read(tree.files[path].size)
+    surroundings = alone._replace(tree=recorded, packages=packages, is_single=True, budget=Budget())
+    urdf = read_as_ros(data, path, surroundings)
+    besides = tuple(sorted(known.keys() - {path}))
+    note = f"{enumerated(besides, _MAX_NAMED)} {'were' if len(besides) > 1 else 'was'} read besides {path}"
+    return replace(
+        submission,
+        urdf=urdf,
+        whole_tree=overlaid(tree, known),
+        notes=(note,) if besides else (),
+        budget=surroundings.budget,
+        neighbours=packages,
+        besides=besides,
+    )
 
 
 def _is_lab(lab: Lab, name: str) -> bool:
@@ -77,12 +131,15 @@ def submission_of(tree: Tree, identity: str, lab: Lab, opening: Opening = DEFAUL
         raise InputError(f"{shown or identity} is empty{reason}")
     # Late: a URDF on its own needs no search.
     from grader.submission.selection import select
-    from grader.submission.surroundings import Surroundings
 
     chosen = select(tree, lab, opening)
     urdf: Urdf = Absent()
-    surroundings = Surroundings(Budget(), tree, chosen.package, chosen.packages, opening.arguments)
-    if (path := chosen.choice.path) is not None:
+    budget = Budget()
+    surroundings = Surroundings(budget, tree, chosen.package, chosen.packages, opening.arguments)
+    was_read = chosen.choice.read_in(surroundings)
+    if was_read is not None:
+        urdf, budget = was_read
+    elif (path := chosen.choice.path) is not None:
         try:
             urdf = read_as_ros(tree.files[path].read(opening.max_size), path, surroundings)
         except InputError as error:  # the rest of the submission is graded
@@ -101,6 +158,6 @@ def submission_of(tree: Tree, identity: str, lab: Lab, opening: Opening = DEFAUL
         is_single=False,
         other_lab=chosen.other_lab,
         opening=opening,
-        budget=surroundings.budget,
+        budget=budget,
         reopen=partial(submission_of, identity=identity, lab=lab, opening=opening),
     )

@@ -14,13 +14,12 @@ from grader.package.package import NO_PACKAGE, Package
 from grader.python.budget import Budget
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
-from grader.submission.urdf import Absent, OtherCandidate, Read, Unreadable, Urdf
+from grader.submission.urdf import Absent, OtherCandidate, Read, Surroundings, Unreadable, Urdf
 from grader.text import was_not_committed
 
 if TYPE_CHECKING:
     from grader.documents.collection import DocumentCollection
     from grader.documents.evidence_files import LabelledFile
-    from grader.submission.surroundings import Surroundings
 
 _WORK_OF_READING = 1_500  # parts of a package's evaluation that take as long as reading a short URDF
 _FILES_OF_READING = 200
@@ -183,10 +182,8 @@ class Submission:
         detail = f"{f': {files}' if count else ''}{was_not_committed(built) if built else ''}"
         raise MissingElement("URDF", "", message="no URDF was submitted", detail=detail)
 
-    def surroundings(self, budget: Budget, tree: Tree | None = None) -> "Surroundings":
+    def surroundings(self, budget: Budget, tree: Tree | None = None) -> Surroundings:
         """Return the files around its URDF: its own, or other ones."""
-        from grader.submission.surroundings import Surroundings  # late: most URDFs are no xacro
-
         return Surroundings(
             budget,
             self.whole_tree if tree is None else tree,

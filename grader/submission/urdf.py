@@ -1,13 +1,18 @@
-"""The URDF of a submission, as one of three states, and what ROS 2 makes of it: read as it is, or expanded by xacro."""
+"""The URDF of a submission, as one of three states, and what ROS 2 makes of it with the files around."""
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
+from grader.errors import InputError, NotDecided
+from grader.files.reading import URDF_LIMIT
+from grader.files.tree import Tree, make_tree, parents
 from grader.names import closest
+from grader.package.package import Package
 from grader.problems import Problem, causes, in_order
 from grader.python.budget import Budget
+from grader.python.values import Undetermined
 from grader.robot.model import Robot
 from grader.robot.reader import Reading, find_xacro, read_robot, read_urdf
 from grader.robot.urdf_problems import RAW_XACRO
@@ -15,9 +20,11 @@ from grader.source import Source
 from grader.xml.catalogue import DOCTYPE, NOT_WELL_FORMED
 
 if TYPE_CHECKING:
-    from grader.submission.surroundings import Surroundings
+    from grader.package.launch.model import NamedFile
 
 _MAX_COMPARED = 50  # links whose names are compared
+_MAX_FOLDERS = 40  # whose launch files are read
+_NO_FILES = make_tree("", (), ())
 
 
 class OtherCandidate(NamedTuple):
@@ -54,6 +61,7 @@ class Read(NamedTuple):
     data: bytes
     reading: Reading
     is_expanded: bool = False
+    has_xacro: bool = False  # so that it is read as the files around say
     as_it_stands: Reading | None = None
 
     @property
@@ -78,37 +86,111 @@ class Read(NamedTuple):
 Urdf = Absent | Unreadable | Read
 
 
-def read_as_ros(data: bytes, path: str, surroundings: "Surroundings | None" = None) -> Read:
+class Surroundings(NamedTuple):
+    """The files and packages around a URDF, as launch files and xacro find them: the Workspace of xacro."""
+
+    budget: Budget  # of what is expanded and evaluated
+    tree: Tree = _NO_FILES
+    graded: Package | None = None
+    packages: tuple[Package, ...] = ()
+    arguments: Mapping[str, str] = {}  # that the user gives xacro
+    is_single: bool = False  # whether the files are those around a single file
+    ask: Callable[[str], object] = lambda _: None  # is called with the name of each other file that xacro reads
+
+    def robot_references(self, path: str) -> "list[NamedFile]":
+        """Return where the launch files of the graded package read a URDF; without one, those in a folder around it."""
+        paths = [path] if self.graded is None and not self.is_single else []
+        around = [self.graded] if self.graded is not None else launch_folders(self.tree, self.packages, paths)
+        return [found for package in around for found in package.robot_references(path.rpartition("/")[2])]
+
+    @property
+    def paths(self) -> Collection[str]:
+        """The paths of the files."""
+        return self.tree.files
+
+    @property
+    def is_part(self) -> bool:
+        """Whether the files may be a part of any package, because there is none among them."""
+        return bool(self.tree.files) and not self.packages
+
+    def package(self, name: str) -> str | None:
+        """Return the folder of a package."""
+        return next((package.folder for package in self.packages if package.name == name), None)
+
+    def read(self, path: str) -> bytes:
+        """Return the bytes of a file. Raises InputError, NotDecided."""
+        file = self.tree.files.get(path)
+        ignored = next((other for other in self.tree.ignored if other.path == path), None)
+        if file is None and ignored is not None:
+            raise NotDecided(str(ignored))
+        if file is None and not self.tree.files:
+            raise NotDecided(f"the included file {path} is not read with a single file: give the folder with both")
+        if file is None and self.is_single and not self.packages:
+            raise NotDecided(f"there is no file {path} in the folder of this single file: give the folder with both")
+        if file is None:
+            raise InputError(f"there is no file {path} in the submission")
+        try:
+            return file.read(URDF_LIMIT)
+        except InputError as error:
+            raise NotDecided(str(error)) from None
+
+    def installed(self, package: str, inside: str) -> str | None:
+        """Return the file at a path in a package once it is built; without any package, the most similar path."""
+        for own in self.packages:
+            if own.name == package:
+                similar = any(f"/{path}".endswith(f"/{inside}") for path in own.tree.files)
+                if own.is_cmake and similar and inside not in own.tree.files:
+                    raise Undetermined(f"whether CMakeLists.txt installs {inside} is not evaluated")
+                source = own.installed.get(f"share/{package}/{inside}")
+                return own.path(source) if source is not None else None
+        if self.packages:
+            return None
+        steps = inside.split("/")
+        for count in range(len(steps), 0, -1):
+            end = "/" + "/".join(steps[-count:])
+            found = [path for path in self.tree.files if f"/{path}".endswith(end)]
+            if len(found) == 1:
+                return found[0]
+        return None
+
+
+def launch_folders(tree: Tree, packages: Sequence[Package], paths: Iterable[str]) -> list[Package]:
+    """Return the nearest folders around these files that have launch files outside of packages, as packages."""
+    packaged = tuple(package.path("") for package in packages)
+    loose = tree.only(lambda path: not path.startswith(packaged)) if packaged else tree
+    files = Package("", loose, None, {}).launch_files
+    folders = {folder for path in files for folder in (*parents(path), "")}
+    around = {folder for path in paths for folder in [it for it in (*parents(path), "") if it in folders][:1]}
+    return [Package(folder, loose.below(folder), None, {}) for folder in sorted(around)[:_MAX_FOLDERS]]
+
+
+def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None) -> Read:
     """Read a URDF as ROS 2 gets it: expanded if a launch file runs xacro on it, or else if its name says xacro.
 
-    Other xacro is loaded as it stands; unless that makes no
-    difference, everything but that is graded on its expansion.
+    Other xacro is loaded as it stands; unless that makes no difference, everything but that is graded on its expansion.
     """
     if not _needs_xacro(data):
         reading = read_urdf(data, path)
         if not any(problem.kind in (DOCTYPE, NOT_WELL_FORMED) for problem in reading.problems):
             return Read(path, data, reading)
     name = path.rpartition("/")[2].lower()
-    if surroundings is None:
-        from grader.submission.surroundings import Surroundings  # late: most URDFs are no xacro
-
-        surroundings = Surroundings(Budget())
+    surroundings = surroundings or Surroundings(Budget())
     launched = surroundings.robot_references(path)
     programs = {reference.by for reference in launched}
     if programs == {"xacro"} if programs else _says_xacro(name):
         given = dict(launched[0].arguments) if launched else {}
-        return Read(path, data, _expand_xacro(data, path, surroundings, given), is_expanded=True)
+        return Read(path, data, _expand_xacro(data, path, surroundings, given), is_expanded=True, has_xacro=True)
     reading = read_urdf(data, path)
     if not any(problem.kind is RAW_XACRO for problem in reading.problems):
-        return Read(path, data, reading)
+        return Read(path, data, reading, has_xacro=True)
     expanded = _expand_xacro(data, path, surroundings, {})
     if expanded.robot is None:
-        return Read(path, data, reading)
+        return Read(path, data, reading, has_xacro=True)
     if reading.verdict == "clean":
         if _model(reading) == _model(expanded):
-            return Read(path, data, reading)
+            return Read(path, data, reading, has_xacro=True)
         reading = reading._replace(verdict="degraded")  # ROS 2 ignores the tags of xacro, and what they stand for
-    return Read(path, data, expanded, is_expanded=True, as_it_stands=reading)
+    return Read(path, data, expanded, is_expanded=True, has_xacro=True, as_it_stands=reading)
 
 
 def known_links(robot: Robot, wanted: Collection[str]) -> int:
@@ -146,7 +228,7 @@ def _needs_xacro(data: bytes) -> bool:
     return (b"$" in data or b"xacro:" in data) and find_xacro(data.decode("utf-8", "replace")) is not None
 
 
-def _expand_xacro(data: bytes, path: str, surroundings: "Surroundings", launched: Mapping[str, str | None]) -> Reading:
+def _expand_xacro(data: bytes, path: str, surroundings: Surroundings, launched: Mapping[str, str | None]) -> Reading:
     """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be read of the text.
 
     The folder that a build installs a package in is called differently in launch files and in xacro. A file that the

@@ -9,7 +9,7 @@ from typing import Any
 _PRELOAD = (
     "grader.classroom.batch_worker",
     "grader.robot.edge_overlap",
-    "grader.submission.search",
+    "grader.submission.selection",
     "grader.package.problems",
     "grader.classroom.workers.fork_server",
 )
