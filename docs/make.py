@@ -14,7 +14,7 @@ from grader.grading.keys import ADJUSTMENT, CARRIED, CRITERION, DEFAULTS, EVIDEN
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
 from grader.hints.hinting import hinted
-from grader.report.rubrics import EFFECTS, EVERY_KIND, default_text, example_blocks, explanation_of
+from grader.report.explanations import EFFECTS, EVERY_KIND, default_text, example_blocks, explanation_of
 from grader.report.terminal import render_terminal
 from grader.submission.opening import open_submission
 

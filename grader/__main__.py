@@ -3,7 +3,7 @@
 import gc
 import sys
 
-_NOT_GRADED, _INTERRUPTED = 2, 130  # as in grader.commands.exit_codes, which is not imported for --version
+_NOT_GRADED, _INTERRUPTED = 2, 130  # as in grader.commands.invocation, which is not imported for --version
 
 
 def main() -> None:

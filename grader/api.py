@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from grader.commands.hints import add_hints
+from grader.commands.hints_and_fix import add_hints
 from grader.commands.rubrics import DEFAULT_RUBRIC
 from grader.grading.grade import grade as grade_submission
 from grader.grading.report import Report

@@ -136,7 +136,7 @@ def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[
         patch("grader.classroom.workers.pool.ProcessPool", _Pool),
         patch("grader.classroom.workers.forks.start_server", bool),
         patch("os.fsync", os.fsync if is_preloaded() else bool),
-        patch("grader.cli.terminal._LINE_SECONDS", inf),  # no line depends on how busy the machine is
+        patch("grader.cli.streams._LINE_SECONDS", inf),  # no line depends on how busy the machine is
         _redirected(0, files[0]),
         _redirected(1, files[1]),
         _redirected(2, files[2]),

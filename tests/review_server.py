@@ -11,8 +11,7 @@ from typing import Any, NamedTuple
 
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.review_items import ReviewFilter
-from grader.commands.local_server import HOST, LocalServer
-from grader.commands.review_page import ReviewPage
+from grader.commands.review_server import HOST, LocalServer, ReviewPage
 from grader.commands.review_session import ReviewSession
 
 _TIMEOUT = 60.0  # seconds, of a machine that is busy

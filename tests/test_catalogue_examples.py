@@ -14,7 +14,7 @@ from grader.checks.registry import own_checks
 from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric
 from grader.package.problems import package_problems
-from grader.report.rubrics import EVERY_KIND, example_blocks, explanation
+from grader.report.explanations import EVERY_KIND, example_blocks, explanation
 from grader.submission.opening import open_submission
 from grader.submission.submission import Lab, Submission
 from grader.submission.urdf import Read

@@ -17,7 +17,7 @@ from grader.checks.outcome import Outcome, judged
 from grader.checks.registry import ENTRY_POINTS, check_names, find_check, own_checks
 from grader.errors import RubricError
 from grader.grading.rubric import load_rubric
-from grader.report.rubrics import checks_text, explanation
+from grader.report.explanations import checks_text, explanation
 from grader.robot.kinematics import Configuration
 from tests.checks.cases import CASE, PACKAGE_CASE, PENDING_CASE
 from tests.checks.outcomes import AnyCheck, ask

@@ -14,8 +14,8 @@ import typer
 
 from grader import __version__
 from grader.cli.ending import outer_limits, quiet_interrupts
-from grader.cli.terminal import warn
-from grader.commands.exit_codes import ExitCode
+from grader.cli.streams import warn
+from grader.commands.invocation import ExitCode
 from grader.commands.rubrics import DEFAULT_RUBRIC
 from grader.commands.writing import write_stdout
 from grader.errors import GraderError
@@ -24,7 +24,7 @@ from grader.text import printable_path, shell_quoted
 # In the order of the help, with the module of each: it holds a function, or a group of commands, of this name.
 COMMANDS = {
     "grade": "grade", "inspect": "inspect", "batch": "batch", "mark": "review", "review": "review",
-    "export": "export", "diff": "gradebook", "stats": "gradebook", "bundle": "rubric", "explain": "explain",
+    "export": "gradebook", "diff": "gradebook", "stats": "gradebook", "bundle": "rubric", "explain": "explain",
     "schema": "explain", "rubric": "rubric",
 }  # fmt: skip
 _LIMITED = ("grade", "inspect")  # the commands that read one submission
@@ -97,9 +97,9 @@ def _discard_reports(words: Sequence[str]) -> None:
     A report that lies there already may be forged by a student, and would count as the result of this run. The refusal
     may be about any of the arguments, so they are not parsed again.
     """
-    from grader.commands.grade import remove_reports
+    from grader.commands.grade_submission import remove_reports
+    from grader.commands.invocation import read_saves
     from grader.commands.rubrics import files_of
-    from grader.commands.saves import read_saves
 
     def values(option: str) -> list[str]:
         joined = [word.removeprefix(f"{option}=") for word in words if word.startswith(f"{option}=")]

@@ -8,7 +8,7 @@ import typer
 
 from grader.classroom.workers import forks
 from grader.cli.options import AnswersOption, ArgOption, FormatOption, PartOption
-from grader.cli.terminal import TERMINAL
+from grader.cli.streams import TERMINAL
 from grader.errors import GraderError
 from grader.report.formats import Format, OutputFormat
 
@@ -82,8 +82,7 @@ def batch(
     if cluster is None and paths:  # a class that is graded may need no workers
         with suppress(OSError):  # it is started again when it is needed
             forks.start_server()  # it loads what grades a submission, while this process loads what the class needs
-    from grader.commands.class_inputs import ClassRequest
-    from grader.commands.grade_class import grade_class
+    from grader.commands.grade_class import ClassRequest, grade_class
 
     for kind in report_format or ():
         if kind.needs == "identity":

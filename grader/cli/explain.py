@@ -25,7 +25,7 @@ def explain(
       grader explain my-criterion --rubric my_lab.toml
     """
     from grader.grading.rubric import load_rubric
-    from grader.report.rubrics import explanation
+    from grader.report.explanations import explanation
 
     return explanation(name, load_rubric(rubric))
 

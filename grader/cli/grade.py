@@ -7,10 +7,10 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import AnswersOption, ArgOption, MaxSizeOption, PartOption, RubricOption
-from grader.cli.terminal import TERMINAL, screen, warn, write_stderr
-from grader.commands.grade import GradeRequest, grade_and_save
+from grader.cli.streams import TERMINAL, screen, warn, write_stderr
+from grader.commands.grade_submission import GradeRequest, grade_and_save
+from grader.commands.invocation import read_saves
 from grader.commands.rubrics import DEFAULT_RUBRIC
-from grader.commands.saves import read_saves
 from grader.commands.writing import write_stdout
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT

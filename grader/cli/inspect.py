@@ -5,8 +5,8 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import ArgOption, MaxSizeOption
-from grader.cli.terminal import screen, warn
-from grader.commands.exit_codes import ExitCode
+from grader.cli.streams import screen, warn
+from grader.commands.invocation import ExitCode
 from grader.commands.writing import write_stdout
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import InspectFormat, render_inspection
@@ -41,7 +41,7 @@ def inspect(
 
       grader inspect my_robot.urdf --format html > my_robot.html
     """
-    from grader.commands.inspect import inspect as read
+    from grader.commands.inspect_urdf import inspect as read
 
     inspection = read(path, joint or [], relative_to, max_size, arg or [], warn)
     write_stdout(render_inspection(inspection, output_format, screen()))

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import AnswersOption, ByOption, GradebookOption
-from grader.cli.terminal import TERMINAL, warn
+from grader.cli.streams import TERMINAL, warn
 from grader.errors import InputError
 
 _CRITERION = "The id of the criterion; total: the whole submission; deadline: the student's own."
@@ -86,9 +86,8 @@ def review(
       grader review --gradebook lab6-grades --sheet sheet.csv
     """
     from grader.classroom.review_items import ReviewFilter
-    from grader.commands.review_page import review_in_browser
-    from grader.commands.review_pictures import write_sheet
-    from grader.commands.review_session import ReviewSession
+    from grader.commands.review_server import review_in_browser
+    from grader.commands.review_session import ReviewSession, write_sheet
 
     if section is not None and not section.strip():
         raise InputError("--section is empty: name a section, or omit it to review all")

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 import typer
 
 from grader.cli.options import AnswersOption, FormatOption, RubricOption
-from grader.cli.terminal import TERMINAL, warn
+from grader.cli.streams import TERMINAL, warn
 from grader.commands import rubrics
 from grader.commands.rubrics import DEFAULT_RUBRIC
 from grader.commands.writing import write_stdout
@@ -56,7 +56,7 @@ def show_rubric(
 
       grader rubric show my_lab.toml --answers my_lab.answers.toml
     """
-    from grader.report.rubrics import rubric_overview
+    from grader.report.explanations import rubric_overview
 
     return rubric_overview(rubrics.load(name, answers))
 
@@ -71,7 +71,7 @@ def list_checks() -> str:
 
       grader rubric checks
     """
-    from grader.report.rubrics import checks_text
+    from grader.report.explanations import checks_text
 
     return checks_text()
 

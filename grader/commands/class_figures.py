@@ -7,7 +7,7 @@ from grader.classroom.gradebook import Gradebook
 from grader.classroom.gradebook_folder import RESULTS, check_gradebook
 from grader.classroom.results import Results
 from grader.classroom.statistics import statistics
-from grader.commands.terminal import Terminal, Warn
+from grader.commands.writing import Terminal, Warn
 from grader.errors import InputError
 from grader.report.formats import OutputFormat
 from grader.report.screen import Screen, draw
@@ -38,7 +38,6 @@ def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *,
 def compare(books: tuple[Path, ...], before: int | None, after: int | None, kind: OutputFormat, screen: Screen) -> str:
     """Return what changed between two runs of a gradebook, or two gradebooks. Raises InputError."""
     from grader.classroom.grade_changes import changes, snapshot
-    from grader.report.changes import render_changes, render_changes_json
 
     if len(books) not in (1, 2):
         raise InputError("name one gradebook, or two")
@@ -50,5 +49,9 @@ def compare(books: tuple[Path, ...], before: int | None, after: int | None, kind
     old, new = snapshot(books[0], before), snapshot(books[-1], after)
     found, runs = [*changes(old, new)], (old.run, new.run)
     if kind is OutputFormat.JSON:
+        from grader.report.class_json import render_changes_json
+
         return render_changes_json(found, runs)
+    from grader.report.class_terminal import render_changes
+
     return draw(partial(render_changes, found, runs), screen)

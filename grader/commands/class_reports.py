@@ -16,8 +16,7 @@ from grader.classroom.results import StoredResult
 from grader.classroom.student_grade import StudentGrade
 from grader.classroom.workers.pool import Processes, WorkerError, processors
 from grader.classroom.workers.queue import Progress, Queue
-from grader.commands.terminal import Terminal
-from grader.commands.writing import make_folder, refuse_symlinks, save
+from grader.commands.writing import Terminal, make_folder, refuse_symlinks, save
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
 from grader.files.reading import sha256_of
 from grader.grading.grade import grade as grade_submission

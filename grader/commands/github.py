@@ -5,8 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.commands.terminal import Warn
-from grader.commands.writing import refuse_symlinks
+from grader.commands.writing import Warn, refuse_symlinks
 from grader.errors import InputError
 from grader.text import printable
 

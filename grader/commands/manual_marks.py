@@ -14,7 +14,7 @@ from grader.classroom.review_items import review_items
 from grader.classroom.student_grade import Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT
 from grader.commands.grade_class import write_grades
-from grader.commands.terminal import Warn
+from grader.commands.writing import Warn
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import DEADLINE, TOTAL

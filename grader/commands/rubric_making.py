@@ -15,10 +15,9 @@ from grader.authoring.samples import read_samples
 from grader.checks.tree import urdf_loads
 from grader.classroom.workers.pool import Processes, processors
 from grader.classroom.workers.queue import Progress
-from grader.commands.exit_codes import ExitCode, read_threshold
+from grader.commands.invocation import ExitCode, read_threshold
 from grader.commands.rubrics import load, rubric_summary
-from grader.commands.terminal import Terminal, Warn
-from grader.commands.writing import missing_folder, save_bytes
+from grader.commands.writing import Terminal, Warn, missing_folder, save_bytes
 from grader.errors import GraderError, InputError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.rubric import Rubric

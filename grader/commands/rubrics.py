@@ -6,9 +6,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.commands.exit_codes import ExitCode
-from grader.commands.terminal import Warn
-from grader.commands.writing import make_folder, save_bytes
+from grader.commands.invocation import ExitCode
+from grader.commands.writing import Warn, make_folder, save_bytes
 from grader.errors import GraderError, MissingElement, NotDecided, RubricError
 from grader.text import counted, format_points, printable, printable_path, shell_quoted
 

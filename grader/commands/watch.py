@@ -11,18 +11,24 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
-from grader.commands.exit_codes import ExitCode
-from grader.commands.grade import GradeRequest, grade_submission, remove_reports, requested_rubric, save_reports
+from grader.commands.grade_submission import (
+    GradeRequest,
+    grade_submission,
+    remove_reports,
+    requested_rubric,
+    save_reports,
+)
+from grader.commands.invocation import ExitCode
 from grader.commands.rubrics import files_of
-from grader.commands.terminal import Terminal
+from grader.commands.writing import Terminal
 from grader.errors import GraderError, InputError, MachineError, RubricError
 from grader.files.folder import read_folder
 from grader.grading.report import Report, Result
 from grader.grading.rubric import find_rubric, shipped_rubrics
-from grader.report.console import Page
 from grader.report.criteria import alike
 from grader.report.formats import Format, render
 from grader.report.screen import draw
+from grader.report.terminal import Page
 from grader.text import enumerated, format_points, printable, printable_path, signed_points
 
 _POLL = 0.1  # seconds between two looks

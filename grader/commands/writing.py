@@ -7,13 +7,36 @@ import errno
 import os
 import stat
 import sys
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager, suppress
 from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError
 from grader.files.names import ROBOT_ENDINGS
+from grader.report.screen import Screen
 from grader.text import printable, printable_path
+
+if TYPE_CHECKING:
+    from grader.classroom.workers.queue import Progress
+
+
+Warn = Callable[[str], None]
+# Shows the progress of a pass over a class, whose work is named.
+ShowClass = Callable[[str], AbstractContextManager[Callable[["Progress"], None]]]
+
+
+class Terminal(NamedTuple):
+    """The terminal of a command.
+
+    `screen` is called before each use, because a terminal can be resized.
+    """
+
+    print: Callable[[str], None]
+    warn: Warn
+    screen: Callable[[], Screen]
+    show_class: ShowClass
+
 
 CHECKOUTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")  # the repository that GitHub Actions and GitLab CI checked out
 _MAX_SYMLINKS = 40  # in one path, as in Linux

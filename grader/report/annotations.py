@@ -12,10 +12,8 @@ from typing import NamedTuple
 
 from grader.grading.report import Report
 from grader.problems import Severity
-from grader.report.content import closing_lines, head, other_problems, score_text
-from grader.report.criteria import Entry, earned_text, is_failure, is_manual, points_of
-from grader.report.details import remarks_on
-from grader.report.document import document
+from grader.report.content import closing_lines, document, head, other_problems, score_text
+from grader.report.criteria import Entry, earned_text, is_failure, is_manual, points_of, remarks_on
 from grader.report.locations import SourceOf, archive_around, location_text, width_of
 from grader.source import Base, Location
 from grader.text import counted_points, printable

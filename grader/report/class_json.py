@@ -1,17 +1,21 @@
-"""A class as JSON, schema grader/class/v1."""
+"""A class as JSON, schema grader/class/v1, and the changes between two runs, schema grader/diff/v1."""
 
+from collections.abc import Sequence
 from functools import partial
 from operator import itemgetter
 from types import SimpleNamespace
 
 from grader import __version__
+from grader.classroom.grade_changes import Change
 from grader.classroom.gradebook import Gradebook
+from grader.classroom.results import Run
 from grader.classroom.statistics import COUNTS, CriterionFigures, statistics
 from grader.classroom.workers.queue import Progress
 from grader.report.json_data import (
     COUNT,
     FLAG,
     GRADER,
+    HASH,
     POINTS,
     RUBRIC,
     TEXT,
@@ -117,3 +121,29 @@ def render_class_json(book: Gradebook, done: Progress | None = None) -> str:
     students = list(book)
     report = SimpleNamespace(book=book, statistics=statistics(book, students), students=students, run=done)
     return to_json(CLASS.data(report))
+
+
+_RUN = Record(
+    {
+        "run": COUNT,
+        "time": TEXT,
+        "grader": (GRADER, lambda run: {"version": run.version}),
+        "rubric": (record({"sha256": HASH}), lambda run: {"sha256": run.rubric}),
+    }
+)
+_SPAN = each(nullable(POINTS), "before after")
+_STEP = Record({"id": TEXT, **_SPAN})
+_CHANGE = Record({"id": (TEXT, "key"), "name": TEXT, **_SPAN, "reasons": (array(TEXT), "why"), "criteria": Many(_STEP)})
+DIFF = Record(  # of the two runs, and the changes
+    {
+        **schema_key("grader/diff/v1"),
+        "from": (_RUN, itemgetter(0)),
+        "to": (_RUN, itemgetter(1)),
+        "students": (Many(_CHANGE), itemgetter(2)),
+    }
+)
+
+
+def render_changes_json(changes: Sequence[Change], runs: tuple[Run, Run]) -> str:
+    """Return the changes as JSON, schema grader/diff/v1."""
+    return to_json(DIFF.data((*runs, changes)))

@@ -1,4 +1,6 @@
-"""A class on a terminal: the table that `batch` prints, the statistics, and the words that other outputs share.
+"""A class on a terminal: the table that `batch` prints, the statistics, what changed between two runs.
+
+The class's page has the same words.
 
 Text of submissions is never interpreted as markup or control codes.
 """
@@ -11,17 +13,31 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from grader.classroom.grade_changes import Change, PointsChange
+from grader.classroom.lateness import time_text
+from grader.classroom.results import Run
 from grader.classroom.statistics import ClassStatistics, CriterionFigures, summary
 from grader.classroom.student_grade import Reason, StudentGrade
 from grader.grading.rubric import Rubric
-from grader.report.console import INDENT, Page
-from grader.text import counted, counted_points, format_points, named, people_text, printable
+from grader.report.criteria import alike
+from grader.report.terminal import INDENT, Page
+from grader.text import (
+    counted,
+    counted_points,
+    first_lines,
+    format_points,
+    named,
+    people_text,
+    printable,
+    signed_points,
+)
 
 _MAX_ROWS = 40
 _MAX_COSTS = 3  # criteria named in a row
 _BAR_WIDTH = 40
 _MAX_MISTAKES, _MAX_GROUPS = 10, 20
 _MAX_NAMED = 12
+_MAX_STEPS = 5  # criteria of a student that changed
 EQUAL_NOTE = (
     "The same robot may differ in names, order, comments and the spelling of numbers. This is no verdict: students who"
     " follow the handout and make the same mistake have the same robot."
@@ -177,3 +193,28 @@ def _show_criteria(rows: Sequence[CriterionFigures], page: Page) -> None:
     page.leave_row()
     page.table(table)
     page.inset(SHARE_NOTE, "dim", 0)
+
+
+def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Console) -> None:
+    """Print the two runs, and by reason whose grade changed, by how much, and in which criteria."""
+    before, after = (f"run {run.run} of {time_text(run.time)}" for run in runs)
+    page = Page(console, [])
+    page.inset(printable(f"From {before} to {after}"), "dim", 0)
+    if not changes:
+        page.inset("nothing changed", indent=0)
+    for why, found in sorted(alike(changes, lambda change: change.why), key=lambda group: -len(group[1])):
+        page.leave_row()
+        page.inset(printable(f"{'; '.join(why)} ({counted(len(found), 'student')})"), "bold", 0)
+        for one in found:
+            steps = [f"{step.id} {_before_and_after(step, 'none')}" for step in one.criteria]
+            total = f"{named(one.key, one.name)}: {_before_and_after(one, 'not final')}"
+            page.inset(printable("; ".join([total, *first_lines(steps, _MAX_STEPS)])), indent=4, head=Text("  "))
+    page.print()
+
+
+def _before_and_after(change: Change | PointsChange, nothing: str) -> str:
+    """Return points before and after: "50 to 60 (+10)"."""
+    before, after = change.before, change.after
+    first, last = (nothing if points is None else format_points(points) for points in (before, after))
+    more = f" ({signed_points(after - before)})" if before is not None and after is not None else ""
+    return f"{first}, as before" if first == last else f"{first} to {last}{more}"

@@ -72,7 +72,7 @@ _SCHEMAS = {
     "inspect": ("inspection", "inspection:INSPECTION"),
     "rubric-test": ("rubric test", "rubric_test:RUBRIC_TEST"),
     "class": ("class", "class_json:CLASS"),
-    "diff": ("diff", "changes:DIFF"),
+    "diff": ("diff", "class_json:DIFF"),
 }
 
 

@@ -10,7 +10,6 @@ from rich.text import Text
 
 from grader.errors import MissingElement, NotDecided
 from grader.report.as_json import PROBLEM
-from grader.report.console import INDENT, LOOKS, Page, block, excerpt_block
 from grader.report.content import UNDECIDED, VERDICTS
 from grader.report.criteria import alike
 from grader.report.json_data import (
@@ -28,6 +27,7 @@ from grader.report.json_data import (
     to_json,
 )
 from grader.report.locations import calls_text
+from grader.report.terminal import INDENT, LOOKS, Page, block, excerpt_block
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.reader import Reading

@@ -10,10 +10,8 @@ from typing import Any
 from lxml import etree
 
 from grader.grading.report import Report, Result
-from grader.report.content import closing_lines, counting_text, head, score_text
-from grader.report.criteria import Entry, earned_text, is_failure, status_of
-from grader.report.details import plain_lines
-from grader.report.document import entries
+from grader.report.content import closing_lines, counting_text, entries, head, score_text
+from grader.report.criteria import Entry, earned_text, is_failure, plain_lines, status_of
 from grader.report.locations import archive_around
 from grader.source import Base
 from grader.text import format_points, printable

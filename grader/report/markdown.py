@@ -11,9 +11,19 @@ from textwrap import indent
 
 from grader.grading.report import Report
 from grader.report import content
-from grader.report.criteria import Answer, CriteriaGroup, Diff, Entry, Line, Section, earned_text, groups, has_passed
-from grader.report.details import SYMBOLS
-from grader.report.document import document
+from grader.report.content import document
+from grader.report.criteria import (
+    SYMBOLS,
+    Answer,
+    CriteriaGroup,
+    Diff,
+    Entry,
+    Line,
+    Section,
+    earned_text,
+    groups,
+    has_passed,
+)
 from grader.report.locations import diff_lines, excerpt_lines, location_text
 from grader.source import Location
 from grader.text import printable

@@ -19,9 +19,8 @@ from typing import Any
 from grader.errors import InputError
 from grader.grading.report import Report, Result
 from grader.report.as_json import ADDITIONS
-from grader.report.criteria import Entry, earned_text, is_failure
-from grader.report.details import plain_lines
-from grader.report.document import entries
+from grader.report.content import entries
+from grader.report.criteria import Entry, earned_text, is_failure, plain_lines
 from grader.report.json_data import exact, to_json
 from grader.report.markdown import criterion_markdown, overview_markdown
 from grader.text import counted_points, printable

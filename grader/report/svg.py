@@ -3,17 +3,19 @@
 It needs no script or other file. A page that contains it adds `STYLE` of `signs.py` to its own rules.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from html import escape
+from itertools import compress
+from math import cos, hypot, sin, tau
 from textwrap import wrap
 
 from grader.grading.report import Report
 from grader.report.content import bonus_line, grade_line, notes, score_text, summary
-from grader.report.criteria import points_of
-from grader.report.details import remarks_on
-from grader.report.drawing.picture import Picture, picture_of, plain_picture
-from grader.report.drawing.views import WIDTH, panels_of
+from grader.report.criteria import points_of, remarks_on
+from grader.report.drawing.picture import Body, Picture, Wheel, picture_of, plain_picture
+from grader.report.drawing.views import PANEL, WIDTH, FreePlaces, Panel, Place, frames_of, from_back_to_front, panels_of
 from grader.report.inspection import Inspection, effect
-from grader.report.signs import STYLE, escaped, key, text, view
+from grader.robot.transforms import AXES, Z_AXIS, Transform
 from grader.text import enumerated, printable
 
 _LEFT, _LINE = 14.0, 15.0  # pixels
@@ -99,3 +101,169 @@ def _headline(title: str, above: Sequence[str]) -> list[str]:
 
 def _height(above: Sequence[str]) -> float:
     return 2.0 * _LEFT + _LINE * len(above) + 8.0
+
+
+_FONT = "12px system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"
+_LOOKS = {
+    "paper": "fill:#fff",
+    "edge": "stroke:#4b5563",
+    "hidden": "stroke:#1c1f23;stroke-opacity:.35",
+    "ground": "stroke:#6b7280;stroke-width:1.5",
+    "halo": "stroke:#fff;stroke-width:5;stroke-opacity:.75",
+    "reference": "stroke:#a3157f;stroke-width:1.8;stroke-dasharray:6 3.5",
+    "dashed": "stroke-dasharray:6 3.5",
+    "axis-x": "stroke:#d01f2e;stroke-width:1.8",
+    "axis-y": "stroke:#00805c;stroke-width:1.8",
+    "axis-z": "stroke:#0a5fd0;stroke-width:1.8",
+    "arrow": "stroke:#1c1f23;stroke-width:2.6",
+    "leader": "stroke:#b3261e;stroke-width:1.2",
+    "badge": "fill:#b3261e",
+    "number": "fill:#fff;font-weight:700;text-anchor:middle",
+    "text": "fill:#1c1f23",
+    "title": "fill:#1c1f23;font-size:17px;font-weight:700",
+    "faint": "fill:#4b5563",
+    "letter": "fill:#1c1f23;stroke:#fff;stroke-width:2.5;paint-order:stroke;font-size:11px;text-anchor:middle",
+}
+STYLE = (
+    f".drawing{{font:{_FONT}}}.drawing path{{fill:none;stroke-linecap:round;stroke-linejoin:round}}"
+    f"{''.join(f'.drawing .{name}{{{rules}}}' for name, rules in _LOOKS.items())}"
+)
+_RADIUS = 9.0  # of a number, in pixels
+_AXIS, _LONG_AXIS, _ARROW = 20.0, 32.0, 30.0  # pixels
+_END_ON = 0.2  # of its length: an axis or arrow that appears shorter is not drawn as one
+_BADGE = 2.0 * _RADIUS + 2.0, 2.0 * _RADIUS + 2.0  # the room of one
+_RINGS = (22.0, 30.0, 40.0, 52.0, 66.0, 84.0, 106.0, 132.0)  # pixels from what a number labels
+_AROUND = [(ring * cos(tau * n / 16), -ring * sin(tau * n / 16)) for ring in _RINGS for n in range(2, 18)]
+_MAX_NAME, _ROW = 60, 18.0
+
+
+def view(panel: Panel, picture: Picture) -> Iterator[str]:
+    """Yield a view: the ground, the shapes from back to front, then the signs."""
+    places = FreePlaces(panel)
+    yield text("faint", (panel.left + 14.0, panel.top + 14.0), panel.title)
+    yield from _ground(panel, picture, places)
+    outlines = [(body, panel.outline(body)) for body in from_back_to_front(picture.scene.bodies, panel)]
+    yield from (_shape(body, outline) for body, outline in outlines)
+    if len(outlines) > 1:  # what a shape hides shows through
+        yield path("hidden", "".join(_polygon(outline) for _, outline in outlines))
+    lines: dict[tuple[str, str], None] = {
+        ("reference", _polygon(panel.outline(body))): None for body in picture.outlines
+    }
+    frames = [("", _AXIS, pose) for pose in frames_of(picture)]
+    frames += [(" dashed", _LONG_AXIS, pose) for pose in picture.frames]
+    lines |= {axis: None for frame in frames for axis in _axes(panel, *frame)}
+    lines |= {("arrow", data): None for wheel in picture.scene.wheels for data in _arrow(panel, wheel)}
+    yield path("halo", "".join(data for _, data in lines))
+    yield from (path(*line) for line in lines)
+    yield from _numbers(panel, picture, places)
+
+
+def _ground(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str]:
+    """Yield the ground where it is seen edge-on and is level."""
+    ground = picture.scene.ground
+    if ground is None or abs(panel.direction(ground.rotate(Z_AXIS))[1] + 1.0) > 1e-3:
+        return
+    y = panel.place(ground.translation)[1]
+    if places.take([(panel.left + PANEL / 2.0, y)], (PANEL, 1.0)):
+        yield path("ground", segment((panel.left + 6.0, y), (panel.left + PANEL - 6.0, y)))
+        places.take([(panel.left + 28.0, y + 9.0)], (44.0, 12.0))
+        yield text("letter", (panel.left + 28.0, y + 12.0), "ground")
+
+
+def _shape(body: Body, outline: list[Place]) -> str:
+    fill = "".join(f"{round(255.0 * value):02x}" for value in body.rgba[:3])
+    points, name = " ".join(f"{number(x)} {number(y)}" for x, y in outline), escaped(body.link[:_MAX_NAME])
+    looks = f'class="edge" fill="#{fill}" fill-opacity="{body.rgba[3]:.2g}"'
+    return f'<polygon {looks} points="{points}"><title>{name}</title></polygon>'
+
+
+def _axes(panel: Panel, look: str, length: float, pose: Transform) -> Iterator[tuple[str, str]]:
+    """Yield the axes of a frame that do not point to the viewer or away: the look and the path of each."""
+    start = panel.place(pose.translation)
+    for name, axis in zip("xyz", AXES, strict=True):
+        across, down, _ = panel.direction(pose.rotate(axis))
+        if hypot(across, down) > _END_ON:
+            yield f"axis-{name}{look}", segment(start, (start[0] + length * across, start[1] + length * down))
+
+
+def _arrow(panel: Panel, wheel: Wheel) -> Iterator[str]:
+    """Yield the path of the driving direction; it keeps to the right of the wheel's centre, so that two are visible."""
+    across, down, _ = panel.direction(wheel.travel)
+    if hypot(across, down) > _END_ON:
+        x, y = panel.place(wheel.centre)
+        yield arrow((x - 7.0 * down, y + 7.0 * across), across, down)
+
+
+def arrow(start: Place, across: float, down: float) -> str:
+    """Return the path data of an arrow in a direction on the sheet."""
+    tip = start[0] + _ARROW * across, start[1] + _ARROW * down
+    barbs = ((tip[0] - 6.0 * across - side * down, tip[1] - 6.0 * down + side * across) for side in (4.2, -4.2))
+    return segment(start, tip) + "".join(segment(tip, barb) for barb in barbs)
+
+
+def _numbers(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str]:
+    """Yield the numbers of callouts beside their points, with lines to them."""
+    for callout in picture.callouts:
+        if callout.point is not None:
+            x, y = panel.place(callout.point)
+            centre = places.take([(x + across, y + down) for across, down in _AROUND], _BADGE) or (x, y)
+            yield path("leader", segment((x, y), centre)) + badge(centre, callout.number)
+
+
+def key(picture: Picture, top: float) -> Iterator[str]:
+    """Yield the meaning of each sign that a drawing has, beside the view from above."""
+    is_shown = (
+        any(callout.point is not None for callout in picture.callouts),
+        picture.outlines or picture.frames,
+        picture.scene.wheels,
+        True,
+        len(picture.scene.bodies) > 1,
+    )
+    for row, (sign, meaning) in enumerate(compress(_key(), is_shown), 1):
+        at = f"{PANEL + 26.0:g} {number(top + row * _ROW)}"
+        yield f'<g transform="translate({at})">{sign}{text("faint", (34.0, 4.0), meaning)}</g>'
+
+
+def _key() -> Iterator[tuple[str, str]]:
+    """Yield each sign with its meaning."""
+    axes = (path(f"axis-{name}", f"M{x} -5L{x} 5") for name, x in (("x", 5), ("y", 13), ("z", 21)))
+    yield badge((12.0, 0.0), 1), "points lost"
+    yield path("reference", "M0 0L26 0"), "reference solution"
+    yield path("arrow", arrow((-3.0, 0.0), 1.0, 0.0)), "driven so by a positive rotation"
+    yield "".join(axes), "axes of a frame: x red, y green, z blue"
+    yield path("hidden", "M0 0L26 0"), "hidden edge"
+
+
+def escaped(words: str) -> str:
+    """Return text as SVG shows it, printable."""
+    return escape(printable(words))
+
+
+def text(look: str, place: Place, words: str) -> str:
+    """Return a label; its place is on its base line."""
+    return f'<text class="{look}" x="{number(place[0])}" y="{number(place[1])}">{escaped(words)}</text>'
+
+
+def number(value: float) -> str:
+    """Return a length in pixels with one decimal."""
+    return f"{round(value, 1) + 0.0:g}"
+
+
+def segment(start: Place, end: Place) -> str:
+    """Return the path data of a straight line."""
+    return f"M{number(start[0])} {number(start[1])}L{number(end[0])} {number(end[1])}"
+
+
+def _polygon(corners: Sequence[Place]) -> str:
+    return f"M{'L'.join(f'{number(x)} {number(y)}' for x, y in corners)}Z"
+
+
+def badge(centre: Place, count: int) -> str:
+    """Return a number in a disc."""
+    disc = f'<circle class="badge" cx="{number(centre[0])}" cy="{number(centre[1])}" r="{_RADIUS:g}"/>'
+    return disc + text("number", (centre[0], centre[1] + 4.2), str(count))
+
+
+def path(look: str, data: str) -> str:
+    """Return lines with the look of a class."""
+    return f'<path class="{look}" d="{data}"/>'

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from grader.classroom.workers.pool import WorkerError
-from grader.cli.terminal import TERMINAL
+from grader.cli.streams import TERMINAL
 from grader.commands import class_reports
 from grader.commands.class_reports import ReportRun, write_reports
 from grader.errors import InputError

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-import grader.commands.hints
-import grader.commands.inspect
+import grader.commands.hints_and_fix
+import grader.commands.inspect_urdf
 import grader.grading.subjects
 import grader.hints.hinting
 import grader.submission.opening
@@ -68,7 +68,7 @@ def test_a_search_for_hints_costs_no_report(
     def stop(*_: object, **__: object) -> None:
         raise fault
 
-    monkeypatch.setattr(grader.commands.hints, "hinted", stop)
+    monkeypatch.setattr(grader.commands.hints_and_fix, "hinted", stop)
     wrong = tmp_path / "my_robot.urdf"
     wrong.write_bytes(URDF.read_bytes().replace(b"0.15 0 0.225", b"0.15 0 0.3"))
     done = run(("grade", wrong))

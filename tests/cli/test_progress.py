@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from grader.classroom.workers.queue import Progress as State
-from grader.cli import terminal
+from grader.cli import streams
 from tests.classroom.gradebooks import ENVIRONMENT, make_class
 from tests.samples import ROOT
 
@@ -66,7 +66,7 @@ def test_a_large_class_fits(work: str, monkeypatch: pytest.MonkeyPatch) -> None:
     screen = type("Terminal", (io.StringIO,), {"isatty": lambda _: True})()
     monkeypatch.setattr(sys, "stderr", screen)
     monkeypatch.setattr(time, "monotonic", iter(range(0, 100_000, 100)).__next__)
-    with terminal.show_class(work) as show:
+    with streams.show_class(work) as show:
         show(State(12345))
         show(State(12345, 7000, 4000, 120, 12))
     *_, line, blank, end = screen.getvalue().split("\r")

@@ -13,9 +13,8 @@ from grader.classroom.lms.fill import FillOptions, fill
 from grader.classroom.lms.forms import FORMS
 from grader.classroom.roster import People, read_roster
 from grader.classroom.tables import Table, TableRow, _rows, read_table
-from grader.commands import local_server
-from grader.commands.local_server import LocalServer
-from grader.commands.review_page import ReviewPage
+from grader.commands import review_server
+from grader.commands.review_server import LocalServer, ReviewPage
 from grader.commands.review_session import ReviewSession
 from grader.errors import RubricError
 from grader.grading.grade import grade
@@ -128,7 +127,7 @@ def requests(data: bytes) -> None:
     server, book = _server()
     before = _marks(book)
     connection = _Connection(data)
-    local_server._Handler(connection, ("127.0.0.1", 1), server)  # type: ignore[arg-type]
+    review_server._Handler(connection, ("127.0.0.1", 1), server)  # type: ignore[arg-type]
     for status in re.findall(rb"(?:\A|\n)HTTP/1\.0 (\d{3}) ", bytes(connection.sent)):
         assert int(status) in _STATUSES, connection.sent
     if _marks(book) != before:
@@ -157,7 +156,7 @@ class _Server(LocalServer):
     """A server without a port."""
 
     def server_bind(self) -> None:
-        self.server_address = local_server.HOST, 80
+        self.server_address = review_server.HOST, 80
 
     def server_activate(self) -> None:
         """Nobody can connect."""
@@ -203,5 +202,5 @@ def sent_requests() -> Iterator[bytes]:
 
 def _answer(data: bytes) -> bytes:
     connection = _Connection(data)
-    local_server._Handler(connection, ("127.0.0.1", 1), _server()[0])  # type: ignore[arg-type]
+    review_server._Handler(connection, ("127.0.0.1", 1), _server()[0])  # type: ignore[arg-type]
     return bytes(connection.sent)

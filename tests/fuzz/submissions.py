@@ -6,7 +6,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from unittest.mock import patch
 
-from grader.commands.hints import add_hints, files_to_fix, write_fix
+from grader.commands.hints_and_fix import add_hints, files_to_fix, write_fix
 from grader.files.tree import make_tree
 from grader.grading.grade import grade
 from grader.grading.report import Hint, Report, Result

@@ -4,7 +4,7 @@ import pytest
 
 from grader.grading.grade import grade
 from grader.hints.hinting import hinted
-from grader.report.document import failures
+from grader.report.content import failures
 from grader.submission.opening import read_submission
 from tests.hints.trials import BASES
 from tests.samples import LAB6, SAMPLES

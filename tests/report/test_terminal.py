@@ -12,9 +12,8 @@ from rich.text import Text
 from grader.grading.grade import grade
 from grader.grading.report import ManualMark, Report
 from grader.grading.rubric import load_rubric
-from grader.report.console import Page, block, excerpt_block
 from grader.report.inspection import Inspection, inspection_terminal, main_root
-from grader.report.terminal import render_terminal
+from grader.report.terminal import Page, block, excerpt_block, render_terminal
 from grader.robot.kinematics import Configuration
 from grader.source import Location, Source
 from grader.submission.opening import read_submission

@@ -10,8 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from grader.report.drawing.picture import Picture
-from grader.report.drawing.scene import Body
+from grader.report.drawing.picture import Body, Picture
 from grader.robot.model import Box, Sphere
 from grader.robot.transforms import Transform, Vector
 

@@ -11,7 +11,7 @@ from grader.classroom.marks import Mark
 from grader.classroom.review_items import OLDER, STATES, UNMARKED, ReviewFilter, ReviewItem
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.grading.criterion import Criterion
-from grader.report.details import model_lines
+from grader.report.criteria import model_lines
 from grader.report.pages.shell import Assets, render_page
 from grader.text import counted, counted_points, format_points, printable, shell_quoted
 

@@ -8,15 +8,13 @@ from markupsafe import Markup
 from grader import __version__
 from grader.grading.report import Report
 from grader.report import content
-from grader.report.criteria import CriteriaGroup, Entry, earned_text, groups, status_of
-from grader.report.details import STATUS_WORDS, SYMBOLS
-from grader.report.document import document
+from grader.report.content import document
+from grader.report.criteria import STATUS_WORDS, SYMBOLS, CriteriaGroup, Entry, earned_text, groups, status_of
 from grader.report.drawing.picture import Picture, picture_of, plain_picture
 from grader.report.inspection import MAX_LISTED, Inspection, effect, lists
 from grader.report.locations import diff_lines, location_text, source_lines
 from grader.report.pages.shell import Assets, render_page
-from grader.report.signs import STYLE
-from grader.report.svg import NO_PICTURE, drawing_element
+from grader.report.svg import NO_PICTURE, STYLE, drawing_element
 from grader.text import format_points, printable
 
 _CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from grader.report.drawing.scene import Body, Scene
+from grader.report.drawing.picture import Body, Scene
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Link, Robot, Sphere
 from grader.robot.shapes import Shape

@@ -10,8 +10,7 @@ from grader.grading.grade import grade
 from grader.grading.graded_submission import GradedSubmission
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
-from grader.report.drawing.picture import Picture, picture_of
-from grader.report.drawing.scene import scene_of
+from grader.report.drawing.picture import Picture, picture_of, scene_of
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
 from grader.source import Source

@@ -7,8 +7,7 @@ import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from grader.report.drawing.picture import Picture
-from grader.report.drawing.scene import Body
+from grader.report.drawing.picture import Body, Picture
 from grader.report.drawing.views import FreePlaces, Panel, from_back_to_front, hull, panels_of
 from grader.robot.model import Box
 from grader.robot.shapes import Shape

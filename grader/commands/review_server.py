@@ -1,24 +1,169 @@
 """Grade what needs manual grading on a page in the browser, item by item, which a server on this machine serves."""
 
+import hmac
 import json
 import re
+import secrets
 from bisect import bisect
+from collections.abc import Callable
 from contextlib import suppress
 from http import HTTPStatus
-from typing import Any
+from http.server import BaseHTTPRequestHandler
+from socket import SHUT_RD, socket
+from socketserver import ThreadingTCPServer
+from threading import Lock, Timer
+from typing import Any, NamedTuple
 
+from grader import __version__
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.marks import is_open_in_libreoffice
 from grader.classroom.review_items import STATES, ReviewFilter
 from grader.commands.grade_class import write_grades
-from grader.commands.local_server import SANDBOX, LocalServer, Response
-from grader.commands.review_pictures import open_item
-from grader.commands.review_session import ReviewSession
-from grader.commands.terminal import Terminal
+from grader.commands.review_session import ReviewSession, open_item
+from grader.commands.writing import Terminal
 from grader.documents.pictures import PDF, EmbeddedPicture
-from grader.errors import GraderError
+from grader.errors import GraderError, InputError
 from grader.report.pages import review as pages
-from grader.text import counted, printable_path
+from grader.text import counted, printable, printable_path
+
+HOST = "127.0.0.1"
+MAX_BODY = 64 * 1024  # bytes; `http.server` limits the headers
+PATIENCE = 15.0  # seconds in which a client must send a whole request, and receive a whole response
+TEXT = "text/plain; charset=utf-8"
+_TOKEN_BYTES = 24
+_HEADERS = {
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cache-Control": "no-store",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "X-Frame-Options": "DENY",
+}
+SANDBOX = "sandbox; default-src 'none'"  # for everything that is not a page
+
+
+class Response(NamedTuple):
+    """A response."""
+
+    body: bytes
+    media_type: str = TEXT
+    status: HTTPStatus = HTTPStatus.OK
+    policy: str = SANDBOX
+
+
+class _RefusedError(Exception):
+    """A request that is refused with a status, and why."""
+
+
+class LocalServer(ThreadingTCPServer):
+    """Serves an application until it is interrupted. `url` is the address with its secret.
+
+    The application gets the parts of the path after the secret, and the body of a POST.
+
+    Raises InputError if the port is taken.
+    """
+
+    daemon_threads = True  # a slow client does not delay the end of the server
+    allow_reuse_address = True
+    request_queue_size = 64
+
+    def __init__(self, application: Callable[[tuple[str, ...], bytes | None], Response], port: int = 0) -> None:
+        self.application, self.lock = application, Lock()
+        self.token = secrets.token_urlsafe(_TOKEN_BYTES)
+        try:
+            super().__init__((HOST, port), _Handler)
+        except OSError as error:
+            raise InputError(f"cannot listen on port {port} of {HOST}: {error.strerror}; name another --port") from None
+        self.port = int(self.server_address[1])
+        self.hosts = tuple(f"{name}:{self.port}" for name in (HOST, "localhost"))
+        self.url = f"http://{self.hosts[0]}/{self.token}/"
+
+    def finish_request(self, request: Any, client_address: Any) -> None:
+        """Serve a connection; the whole request must arrive in time, however slowly its bytes do."""
+        timer = Timer(PATIENCE, _stop_reading, [request])
+        timer.daemon = True
+        timer.start()
+        super().finish_request(request, client_address)
+        timer.cancel()
+
+    def answer(self, path: tuple[str, ...], body: bytes | None) -> Response:
+        """Return the response of the application; a fault of it is one line."""
+        try:
+            with self.lock:
+                return self.application(path, body)
+        except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
+            reason = error.strerror if isinstance(error, OSError) else f"{type(error).__name__}: {error}"
+            message = printable(f"the grader failed on this request: {reason}")
+            return Response(f"{message}\n".encode(), status=HTTPStatus.INTERNAL_SERVER_ERROR)
+
+    def handle_error(self, request: Any, client_address: Any) -> None:
+        """Ignore errors of broken connections."""
+
+
+def _stop_reading(connection: socket) -> None:
+    with suppress(OSError):  # it has ended
+        connection.shutdown(SHUT_RD)
+
+
+class _Handler(BaseHTTPRequestHandler):
+    """Reads one request of a connection (HTTP/1.0), and answers it."""
+
+    server: LocalServer
+    server_version, sys_version = f"grader/{__version__}", ""
+    timeout, policy = PATIENCE, SANDBOX
+
+    def do_GET(self) -> None:
+        """Answer a request: one with a body is from the page, which may change something."""
+        try:
+            path = self._path()
+            body = self._body() if self.command == "POST" else None
+        except _RefusedError as error:
+            self.send_error(*error.args)
+            return
+        response = self.server.answer(path, body)
+        self.policy = response.policy
+        self.send_response(response.status)
+        self.send_header("Content-Type", response.media_type)
+        self.send_header("Content-Length", str(len(response.body)))
+        self.end_headers()
+        self.wfile.write(response.body)
+
+    do_POST = do_GET  # noqa: N815  the name of the base class
+
+    def _path(self) -> tuple[str, ...]:
+        """Return the path after the secret."""
+        if len(self.headers.get_all("Host", [])) != 1 or self.headers["Host"].lower() not in self.server.hosts:
+            raise _RefusedError(HTTPStatus.MISDIRECTED_REQUEST, "wrong host name: use the address of the command")
+        if self.path == "/favicon.ico":  # every browser asks for it
+            raise _RefusedError(HTTPStatus.NO_CONTENT)
+        first, *rest = self.path.partition("?")[0].removeprefix("/").split("/")
+        if not hmac.compare_digest(first.encode(), self.server.token.encode()) or not rest:
+            raise _RefusedError(HTTPStatus.NOT_FOUND, "not found: use the whole address that the command has printed")
+        return tuple(rest)
+
+    def _body(self) -> bytes:
+        """Return the body of a request, which must be JSON from the page."""
+        own = f"http://{self.headers['Host'].lower()}"
+        if self.headers.get("Origin") != own or self.headers.get("Sec-Fetch-Site", "same-origin") != "same-origin":
+            raise _RefusedError(HTTPStatus.FORBIDDEN, "this request is not from the page")
+        if self.headers.get_content_type() != "application/json":
+            raise _RefusedError(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, "the content type must be application/json")
+        length = self.headers.get("Content-Length", "")
+        if not re.fullmatch("[0-9]+", length):
+            raise _RefusedError(HTTPStatus.LENGTH_REQUIRED, "the header Content-Length is missing")
+        if len(length) > 9 or int(length) > MAX_BODY:
+            raise _RefusedError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"at most {MAX_BODY} bytes")
+        return self.rfile.read(int(length))
+
+    def end_headers(self) -> None:
+        """End the headers, which protect every answer."""
+        for name, value in {**_HEADERS, "Content-Security-Policy": self.policy}.items():
+            self.send_header(name, value)
+        super().end_headers()
+
+    def log_message(self, format: str, *arguments: Any) -> None:  # noqa: A002  the name of the base class
+        """Log nothing: addresses contain the secret."""
+
 
 _PAGE_POLICY = "frame-ancestors 'none'"  # the page itself contains the rest
 _PDF_POLICY = "default-src 'none'; frame-ancestors 'self'"

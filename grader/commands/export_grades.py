@@ -15,9 +15,8 @@ from grader.classroom.lms.forms import FORMS
 from grader.classroom.student_grade import Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.commands.class_figures import warn_of_ignored
-from grader.commands.exit_codes import ExitCode
-from grader.commands.terminal import Terminal
-from grader.commands.writing import is_same_file, is_stdout, refuse_symlinks, save_bytes
+from grader.commands.invocation import ExitCode
+from grader.commands.writing import Terminal, is_same_file, is_stdout, refuse_symlinks, save_bytes
 from grader.errors import GraderError, InputError
 from grader.files.reading import read_capped
 from grader.report.formats import Format

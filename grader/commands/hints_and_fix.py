@@ -4,8 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from grader.commands.terminal import Warn
-from grader.commands.writing import make_folder, refuse_inputs, refuse_symlinks, save_bytes
+from grader.commands.writing import Warn, make_folder, refuse_inputs, refuse_symlinks, save_bytes
 from grader.errors import InputError, MachineError, OutOfTime
 from grader.files.names import ROBOT_ENDINGS
 from grader.grading.levels import LEVELS, HintLevel

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from math import isfinite, nan
 
-from grader.commands.saves import read_arguments
-from grader.commands.terminal import Warn
+from grader.commands.invocation import read_arguments
+from grader.commands.writing import Warn
 from grader.errors import GraderError, InputError, MissingElement, NotDecided
 from grader.report.inspection import Inspection, main_root
 from grader.robot.kinematics import Configuration

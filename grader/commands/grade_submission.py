@@ -8,11 +8,9 @@ from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.commands.exit_codes import ExitCode, exit_code, read_threshold
+from grader.commands.invocation import ExitCode, Saves, exit_code, read_arguments, read_threshold
 from grader.commands.rubrics import files_of, load
-from grader.commands.saves import Saves, read_arguments
-from grader.commands.terminal import Warn
-from grader.commands.writing import CHECKOUTS, refuse_inputs, refuse_symlinks, remove_previous, save
+from grader.commands.writing import CHECKOUTS, Warn, refuse_inputs, refuse_symlinks, remove_previous, save
 from grader.errors import GraderError, InputError
 from grader.files.names import ROBOT_ENDINGS
 from grader.grading.levels import HintLevel
@@ -81,7 +79,7 @@ def grade_and_save(request: GradeRequest, warn: Warn) -> GradeRun:
     if request.fix is None or run.fix is None:
         save_reports(request, run, modes)
         return run
-    from grader.commands.hints import files_to_fix, write_fix  # late: few ask for it
+    from grader.commands.hints_and_fix import files_to_fix, write_fix  # late: few ask for it
 
     others = [*files_of(request.rubric, request.answers), *(file for _, file in request.saves)]
     files = files_to_fix(request.fix, request.path, run.report, run.fix, run.besides, others)
@@ -110,7 +108,7 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
             warn(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
     fix = None
     if report.has_failures or request.fix is not None or request.hints is not None:
-        from grader.commands.hints import add_hints  # late: many submissions lose nothing
+        from grader.commands.hints_and_fix import add_hints  # late: many submissions lose nothing
 
         report, fix = add_hints(report, submission, request.hints, warn, is_fixed=request.fix is not None)
     folder = _folder_of(request.path, submission.path) if submission.is_single else None

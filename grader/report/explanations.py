@@ -17,7 +17,7 @@ from grader.grading.toml_rows import assignment, toml_literal
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.problems import Kind
-from grader.report.details import model_lines, sentence
+from grader.report.criteria import model_lines, sentence
 from grader.robot.urdf_problems import CATALOGUE
 from grader.text import enumerated, format_points, printable
 from grader.xacro.catalogue import XACRO_CATALOGUE

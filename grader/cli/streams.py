@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING
 
-from grader.commands.terminal import Terminal
-from grader.commands.writing import write_stdout
+from grader.commands.writing import Terminal, write_stdout
 from grader.report.screen import Screen, columns
 from grader.text import without_commands
 
