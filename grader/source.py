@@ -129,25 +129,13 @@ class LazyLocation(NamedTuple):
     """The place of an element or of one of its attributes, which is computed on demand: most never are.
 
     `tag` counts the element's start tag in document order, from 0. With `inside` the first element of this name in it
-    is meant. Any two are equal, and equal to None: elements are compared by what they are, not by where they are.
+    is meant. Where an element holds one, it takes no part in comparison: elements are compared by what they are.
     """
 
     source: Source
     tag: int
     attribute: str | None = None
     inside: str | None = None
-
-    def __eq__(self, other: object) -> bool:
-        return other is None or isinstance(other, LazyLocation)
-
-    def __ne__(self, other: object) -> bool:
-        return not self == other
-
-    def __hash__(self) -> int:
-        return hash(None)
-
-    def __repr__(self) -> str:
-        return "LazyLocation(...)"
 
     def resolve(self) -> Location:
         """Return the location of the attribute if the element has it, else of the tag."""

@@ -111,9 +111,9 @@ def _link(link: Link, T_link_other: Transform) -> Link:
     if T_link_other == IDENTITY:
         return link
     back = T_link_other.inverse()
-    visuals = tuple(it._replace(origin=_place(back, it.origin)) for it in link.visuals)
+    visuals = tuple(replace(it, origin=_place(back, it.origin)) for it in link.visuals)
     return replace(
-        link, visuals=visuals, collisions=tuple(it._replace(origin=_place(back, it.origin)) for it in link.collisions)
+        link, visuals=visuals, collisions=tuple(replace(it, origin=_place(back, it.origin)) for it in link.collisions)
     )
 
 
@@ -121,10 +121,10 @@ def _joint(joint: Joint, T_parent_other: Transform, T_child_other: Transform) ->
     if joint.origin is None or (T_parent_other, T_child_other) == (IDENTITY, IDENTITY):
         return joint
     T_parent_child = placed_by(T_parent_other.inverse(), joint.origin) @ T_child_other
-    origin = joint.origin._replace(xyz=T_parent_child.translation, rpy=T_parent_child.rpy)
+    origin = replace(joint.origin, xyz=T_parent_child.translation, rpy=T_parent_child.rpy)
     return replace(joint, origin=origin, axis=T_child_other.unrotate(joint.axis) if joint.axis is not None else None)
 
 
 def _place(T: Transform, origin: Origin) -> Origin:
     moved = placed_by(T, origin)
-    return origin._replace(xyz=moved.translation, rpy=moved.rpy)
+    return replace(origin, xyz=moved.translation, rpy=moved.rpy)

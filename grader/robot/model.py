@@ -17,45 +17,50 @@ Vector = tuple[float, float, float]
 INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")  # the components, in the order of Inertial.inertia
 
 
-class Origin(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Origin:
     """The pose of a child frame in its parent: `xyz` in metres, `rpy` in radians about fixed axes."""
 
     xyz: Vector = (0.0, 0.0, 0.0)
     rpy: Vector = (0.0, 0.0, 0.0)
-    location: LazyLocation | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
 _SAME_FRAME = Origin()
 
 
-class Box(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Box:
     """A box about its centre; `size` is the full edge lengths along x, y, z in metres."""
 
     size: Vector
-    location: LazyLocation | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
-class Cylinder(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Cylinder:
     """A cylinder about its centre, its axis along z; lengths in metres."""
 
     radius: float
     length: float
-    location: LazyLocation | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
-class Sphere(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Sphere:
     """A sphere about its centre; its radius in metres."""
 
     radius: float
-    location: LazyLocation | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
-class Mesh(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Mesh:
     """A mesh file. It is never opened, so its extent is unknown."""
 
     filename: str
     scale: Vector = (1.0, 1.0, 1.0)
-    location: LazyLocation | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
 Geometry = Box | Cylinder | Sphere | Mesh
@@ -89,7 +94,8 @@ class Material:
     unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
 
 
-class Visual(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Visual:
     """One shape that a link shows. `material` is resolved; None if ROS 2 has no colour for it, or cannot read it."""
 
     geometry: Geometry
@@ -97,24 +103,26 @@ class Visual(NamedTuple):
     material: Material | None = None
     material_name: str = ""
     has_unreadable_colour: bool = False
-    location: LazyLocation | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
-class Collision(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Collision:
     """One shape that a link collides with."""
 
     geometry: Geometry
     origin: Origin = _SAME_FRAME
-    location: LazyLocation | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
-class Inertial(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Inertial:
     """Mass in kilograms, centre of mass, and ixx, ixy, ixz, iyy, iyz, izz in kg m^2."""
 
     mass: float
     inertia: tuple[float, float, float, float, float, float]
     origin: Origin = _SAME_FRAME
-    location: LazyLocation | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +142,8 @@ class Link:
         return self
 
 
-class Limit(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Limit:
     """A joint's range (rad or m), maximum effort (N m or N) and maximum velocity (rad/s or m/s).
 
     Here and in the other elements of a joint, a number that cannot be read is NaN.
@@ -144,42 +153,46 @@ class Limit(NamedTuple):
     upper: float
     effort: float
     velocity: float
-    location: LazyLocation | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
-class Mimic(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Mimic:
     """This joint's position is `multiplier` times the named joint's, plus `offset`."""
 
     joint: str
     multiplier: float = 1.0
     offset: float = 0.0
-    location: LazyLocation | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
-class Dynamics(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Dynamics:
     """Damping (N m s/rad or N s/m) and static friction (N m or N)."""
 
     damping: float = 0.0
     friction: float = 0.0
-    location: LazyLocation | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
-class SafetyController(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class SafetyController:
     """The range (rad or m) in which a safety controller keeps a joint, and its gains for position and velocity."""
 
     k_velocity: float
     soft_lower_limit: float = 0.0
     soft_upper_limit: float = 0.0
     k_position: float = 0.0
-    location: LazyLocation | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
-class Calibration(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Calibration:
     """The positions (rad or m) at which a joint's reference switch has a rising or falling edge; None if not given."""
 
     rising: float | None = None
     falling: float | None = None
-    location: LazyLocation | None = None
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ and limits that ROS 2 does not use for a type of joint.
 """
 
 from collections.abc import Collection, Iterable, Iterator
+from dataclasses import fields, is_dataclass
 from hashlib import sha256
 from typing import Any
 
@@ -15,7 +16,6 @@ from grader.robot.model import Collision, Cylinder, Dynamics, Geometry, Joint, L
 from grader.robot.reader import Reading
 from grader.robot.shapes import is_empty
 from grader.robot.transforms import AXES, IDENTITY, Transform, unit
-from grader.source import LazyLocation
 from grader.xml.parsing import Element
 
 _MODEL = ("link", "joint", "material")
@@ -133,12 +133,11 @@ def _joint_form(joint: Joint, kept: Collection[str]) -> object:
 
 
 def _rounded(value: Any) -> Any:
-    """Return numbers, also those in tuples, without what computing with them may change."""
-    match value:
-        case LazyLocation():
-            return None
-        case tuple():
-            return tuple(map(_rounded, value))
-        case float():
-            return float(f"{round(value, _DECIMALS):.{_DIGITS}g}") + 0.0
+    """Return numbers, also those in tuples and elements, without what computing with them may change."""
+    if is_dataclass(value):
+        return tuple(_rounded(getattr(value, field.name)) if field.compare else None for field in fields(value))
+    if isinstance(value, tuple):
+        return tuple(map(_rounded, value))
+    if isinstance(value, float):
+        return float(f"{round(value, _DECIMALS):.{_DIGITS}g}") + 0.0
     return value

@@ -55,7 +55,7 @@ def _view_of_link(link: Link) -> Link:
 
 
 def _view_of_visual(visual: Visual) -> Visual:
-    return visual._replace(material=_view_of_material(visual.material)) if visual.material is not None else visual
+    return replace(visual, material=_view_of_material(visual.material)) if visual.material is not None else visual
 
 
 def _view_of_material(material: Material) -> Material:
