@@ -10,10 +10,10 @@ from grader.files.zip_writing import zip_of
 from grader.grading.grade import grade
 from grader.grading.rubric import RUBRIC_FILE, Rubric, shipped_rubrics
 
-SECONDS = 300  # of the ten minutes that Gradescope gives
+_SECONDS = 300  # of the ten minutes that Gradescope gives
 _SCRIPTS = Path(__file__).resolve().parent / "on_gradescope"
 _EXECUTABLES = ("setup.sh", "run_autograder")
-DISTRIBUTION = "urdf-grader"
+_DISTRIBUTION = "urdf-grader"
 _PACKAGE = Path(__file__).resolve().parent.parent
 _EXTRA = re.compile(r"""(?:\band\s+)?\bextra\s*==\s*["']([\w.-]+)["']""")  # and extra == 'documents'
 
@@ -31,7 +31,7 @@ def autograder_zip(rubric: Rubric) -> bytes:
     for name in (*_EXECUTABLES, "autograder.py"):  # a checkout on Windows has line ends that bash does not accept
         files[name] = (_SCRIPTS / name).read_bytes().replace(b"\r\n", b"\n")
     name = rubric.id if rubric.is_shipped else f"source/{RUBRIC_FILE}"
-    settings = {"rubric": name, "sha256": rubric.sha256, "seconds": SECONDS}
+    settings = {"rubric": name, "sha256": rubric.sha256, "seconds": _SECONDS}
     files["autograder.json"] = (json.dumps(settings, indent=1) + "\n").encode()
     needed = requirements("documents")  # the extra reads answers in Word and PDF files
     files["requirements.txt"] = "".join(f"{requirement}\n" for requirement in needed).encode()
@@ -87,10 +87,10 @@ def requirements(extra: str) -> list[str]:
     Raises InputError if none is installed. Those of an editable installation are as old as that: pip writes them.
     """
     try:
-        declared = requires(DISTRIBUTION) or []
+        declared = requires(_DISTRIBUTION) or []
     except PackageNotFoundError:
         raise InputError(
-            f"cannot determine the requirements of the grader: {DISTRIBUTION} is not installed; install it with pip"
+            f"cannot determine the requirements of the grader: {_DISTRIBUTION} is not installed; install it with pip"
         ) from None
     return sorted(filter(None, (_without_extra(requirement, extra) for requirement in declared)))
 

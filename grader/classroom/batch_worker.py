@@ -60,7 +60,7 @@ def grade_all(context: ClassContext, tasks: Sequence[Task]) -> list[StoredResult
 
 
 def _grade_one(context: ClassContext, task: Task) -> StoredResult:
-    rubric, root = rubric_from(context.rubric, context.rubric_path), context.roots[task.root]
+    rubric, root = _rubric_from(context.rubric, context.rubric_path), context.roots[task.root]
     result = StoredResult(task.key, 0, "unchanged", no_documents=task.no_documents)
     try:
         opened = open_class_submission(root, task.paths, task.names, task.key, context.max_size)
@@ -115,7 +115,7 @@ def _answers_of(report: Report, digest: str) -> dict[str, str]:
 
 def undecided(context: ClassContext, result: StoredResult) -> StoredResult:
     """Return the result of a submission that could not be graded: every criterion is undecided."""
-    rubric = rubric_from(context.rubric, context.rubric_path)
+    rubric = _rubric_from(context.rubric, context.rubric_path)
     status: Status = "errored" if result.verdict == "errored" else "pending"
     parts = tuple(part.id for part in rubric.parts if not context.parts or part.id in context.parts)
     results = {row.id: (None, status, "", "") for row in rubric.criteria if row.part in parts}
@@ -124,7 +124,7 @@ def undecided(context: ClassContext, result: StoredResult) -> StoredResult:
 
 def reference_hashes(data: bytes, path: str) -> tuple[str, ...]:
     """Return the hashes of the work in a rubric's reference; raises InputError if nothing can be graded without it."""
-    rubric = rubric_from(data, path)
+    rubric = _rubric_from(data, path)
     if rubric.solution is not None and rubric.compares_with_reference:
         _ = rubric.solution.robot  # raises InputError
     with suppress(InputError):
@@ -154,6 +154,6 @@ def _why_unreadable(submission: Submission) -> str:
 
 
 @lru_cache(maxsize=4)
-def rubric_from(data: bytes, path: str) -> Rubric:
+def _rubric_from(data: bytes, path: str) -> Rubric:
     """Return the rubric in the content of a file, which need not exist; tasks of a run share it."""
     return read_rubric(data, Path(path))

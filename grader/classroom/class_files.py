@@ -53,7 +53,7 @@ _DOCUMENTS = (*EVIDENCE, ".docx", ".doc", ".odt", ".pages", ".ipynb", ".md", ".t
 _MAX_HASHED = 64 * 1024 * 1024  # bytes of a file that go into the digest; of a larger file its size does
 
 
-class OpenedSubmission(NamedTuple):
+class _OpenedSubmission(NamedTuple):
     """A submission before it is graded: its digest, and either the bytes of a single URDF or a file tree.
 
     The digest is the same whether the class is a folder or a zip. `shown` is the path in messages, `max_size` the bytes
@@ -79,7 +79,7 @@ class OpenedSubmission(NamedTuple):
 
 def open_class_submission(
     root: str, paths: tuple[str, ...], names: tuple[str, ...], name: str, max_size: int = URDF_LIMIT
-) -> OpenedSubmission:
+) -> _OpenedSubmission:
     """Open what is at `paths` below a class folder, or in a class zip; raises InputError.
 
     Several files become one submission, called `name`, that contains them as `names`; so does a single document, which
@@ -118,7 +118,7 @@ def _listing(root: str, _stamp: tuple[int, ...]) -> ClassListing:
     return listing_of(Path(root))
 
 
-def _open_single(source: ClassListing, path: str, max_size: int) -> OpenedSubmission:
+def _open_single(source: ClassListing, path: str, max_size: int) -> _OpenedSubmission:
     """Open a folder, an archive, or a URDF under any name."""
     last, shown = printable_path(path.rpartition("/")[2]), printable_path(path)
     if source.is_folder(path):
@@ -127,12 +127,12 @@ def _open_single(source: ClassListing, path: str, max_size: int) -> OpenedSubmis
         name = without_endings(last)
         digest = _digest(name, max_size)
         if (archive := source.archive(path, digest)) is not None:
-            return OpenedSubmission(name, shown, digest.hexdigest(), None, archive, max_size)
+            return _OpenedSubmission(name, shown, digest.hexdigest(), None, archive, max_size)
     if not last.lower().endswith(ROBOT_ENDINGS) and not _is_robot(source, path):
         raise InputError(f"{last} is neither a URDF nor a folder, an archive or a document")
     data, digest = source.read(path, max_size), _digest(last, max_size)
     digest.update(data)
-    return OpenedSubmission(last.rpartition(".")[0] or last, last, digest.hexdigest(), data, None)
+    return _OpenedSubmission(last.rpartition(".")[0] or last, last, digest.hexdigest(), data, None)
 
 
 def _is_document(source: ClassListing, path: str) -> bool:
@@ -155,7 +155,7 @@ def _digest(name: str, max_size: int) -> "hashlib._Hash":
     return sha256(repr(name if max_size == URDF_LIMIT else (name, max_size)).encode())
 
 
-def _opened_tree(name: str, shown: str, tree: Tree, max_size: int) -> OpenedSubmission:
+def _opened_tree(name: str, shown: str, tree: Tree, max_size: int) -> _OpenedSubmission:
     """Return a submission of files, with the hash of all that it is read from: the files, the ignored files, its name.
 
     Build folders are unseen on disk; in a zip they are ordinary folders if they have an entry of their own.
@@ -168,4 +168,4 @@ def _opened_tree(name: str, shown: str, tree: Tree, max_size: int) -> OpenedSubm
             digest.update(file.read(_MAX_HASHED, first=True))
         except InputError as error:
             digest.update(str(error).encode())
-    return OpenedSubmission(name, shown, digest.hexdigest(), None, tree, max_size)
+    return _OpenedSubmission(name, shown, digest.hexdigest(), None, tree, max_size)

@@ -31,7 +31,7 @@ class Change(NamedTuple):
     why: tuple[str, ...]
 
 
-class Snapshot(NamedTuple):
+class _Snapshot(NamedTuple):
     """A run of a gradebook: its totals, the newest results until then, and the names of students."""
 
     run: Run
@@ -39,22 +39,22 @@ class Snapshot(NamedTuple):
     names: Mapping[str, str]
 
 
-def snapshot(folder: Path, number: int | None) -> Snapshot:
+def snapshot(folder: Path, number: int | None) -> _Snapshot:
     """Return a run of a gradebook, by default the newest one with the current grades. Raises InputError."""
     book = Gradebook(folder)
     if number is None:
         grades = {one.student.key: (one.student.name, one.published) for one in book}
         totals = {key: None if total is None else str(total) for key, (_, total) in grades.items()}
-        return Snapshot(
+        return _Snapshot(
             book.run._replace(totals=totals), book.results, {key: name for key, (name, _) in grades.items()}
         )
     results = Results(folder / names.RESULTS, number)
     if not 0 < number <= book.run.run:
         raise InputError(f"{printable_path(folder)} has no run {number}: it has 1 to {book.run.run}")
-    return Snapshot(results.runs[-1], results, {one.student.key: one.student.name for one in book})
+    return _Snapshot(results.runs[-1], results, {one.student.key: one.student.name for one in book})
 
 
-def changes(before: Snapshot, after: Snapshot) -> Iterator[Change]:
+def changes(before: _Snapshot, after: _Snapshot) -> Iterator[Change]:
     """Yield the students for whom something changed, in the order of their keys."""
     runs = (before.run, after.run)
     keys = sorted({*before.results.students, *after.results.students, *(key for run in runs for key in run.students)})

@@ -162,7 +162,7 @@ def _is_older(mark: Mark, stored: StoredResult) -> bool:
 
 
 # Columns before those of the criteria; the last one, `submission`, is the digest of what was graded.
-HEADER = (
+_HEADER = (
     *("id", "name", "email", "section", "status", "score", "max_score", "pending"),
     *("late_days", "late_points", "total", "not_final_because"),
 )
@@ -178,7 +178,7 @@ def grade_table(
     """
     criteria = [row.id for row in book.rubric.criteria]
     exported = ["exported"] * is_exported
-    return [*HEADER, *criteria, *exported, "submission"], (_row(one, criteria, is_exported) for one in grades)
+    return [*_HEADER, *criteria, *exported, "submission"], (_row(one, criteria, is_exported) for one in grades)
 
 
 def _row(grade: StudentGrade, criteria: Sequence[str], is_exported: bool) -> list[CellValue]:

@@ -22,13 +22,13 @@ from grader.submission.labs import LabFolders, is_part, lab_words
 from grader.text import enumerated, printable_path
 
 # The files that are submissions.
-ENDINGS = (".zip", ".gz", ".tgz", ".bz2", ".xz", ".tar", ".7z", ".rar", ".urdf.xacro", ".urdf", ".xacro")
+_ENDINGS = (".zip", ".gz", ".tgz", ".bz2", ".xz", ".tar", ".7z", ".rar", ".urdf.xacro", ".urdf", ".xacro")
 _ID = r"[1-9][0-9]{0,19}"  # Canvas writes no leading zeros
-PATTERNS = {
+_PATTERNS = {
     "folders": re.compile(
         # alice/, alice.urdf; a browser saves further copies as alice (1).zip and alice.tar (1).gz
         r"(?P<login>.+?)(?i:\.tar(?=[ .(]))?(?: ?\((?P<upload>[0-9]{1,4})\))?"
-        rf"(?P<ending>/|(?i:{'|'.join(map(re.escape, ENDINGS))}))",
+        rf"(?P<ending>/|(?i:{'|'.join(map(re.escape, _ENDINGS))}))",
         re.DOTALL,
     ),
     "canvas": re.compile(  # the name is before it
@@ -113,12 +113,12 @@ class ClassFolder:
 
 def is_submission(name: str) -> bool:
     """Return whether a file has the ending of a submission."""
-    return name.lower().endswith(ENDINGS)
+    return name.lower().endswith(_ENDINGS)
 
 
 def readings_of(name: str, layout: str) -> list[NamedPath]:
     """Return how a name can be read: in Canvas as team and 7, or team_7 and 101, of team_7_101_555_lab6.zip."""
-    found = [_entry(one) for one in PATTERNS[layout].finditer(name)]
+    found = [_entry(one) for one in _PATTERNS[layout].finditer(name)]
     is_known = layout == "moodle" or bool(found and not found[0].student.name)  # an anonymous student's
     return found[:1] if is_known else [one for one in found if _NAME_IN_CANVAS.fullmatch(one.student.name)]
 
@@ -155,7 +155,7 @@ def entries_of(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
 def names_in(children: Children) -> dict[str, re.Match[str]]:
     """Return the names of the layout `folders` in a folder, each with what it tells; a folder ends in a slash."""
     names = [f"{name}/" for name in children.folders if name not in BUILD_FOLDERS] + children.files
-    return {name: found for name in names if (found := PATTERNS["folders"].fullmatch(name))}
+    return {name: found for name in names if (found := _PATTERNS["folders"].fullmatch(name))}
 
 
 def _folders(folder: ClassFolder) -> Iterator[NamedPath]:

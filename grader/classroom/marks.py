@@ -31,7 +31,7 @@ from grader.text import enumerated, first_lines, format_points, printable, print
 
 COLUMNS = ("time", "by", "student", "criterion", "points", "comment", "submission")
 Cells = Mapping[str, str]  # of a row, by column
-Rows = list[tuple[str, Cells]]  # the place of each row, file and line, and its cells
+_Rows = list[tuple[str, Cells]]  # the place of each row, file and line, and its cells
 _TITLES = {*COLUMNS, "answer", "exported", "id"}  # known in any spelling
 SURPLUS = ""  # in place of a title: the cells that have none
 WITHDRAWN = "-"  # in place of points: no formula
@@ -39,14 +39,14 @@ _FLAGS = os.O_RDWR | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | g
 _SAFE = re.compile(r"(?!(?:con|prn|aux|nul|com\d|lpt\d)$)[a-z0-9_]{1,40}")  # no device of Windows
 
 
-def read_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], Rows]:
+def read_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], _Rows]:
     """Return a CSV file, the titles of its columns, and its rows; raises InputError if two columns have one title."""
     table = read_table(data, shown, is_from_person=True)
     header, *lines = table.filled or [TableRow(1, 1, (), "")]
     titles = tuple(name if (name := folded(title)) in _TITLES else title.strip() for title in header.values)
     if twice := [title for title, count in Counter(filter(None, titles)).items() if count > 1]:
         raise InputError(f"{shown} has two columns {twice[0]!r}")
-    rows = Rows()
+    rows = _Rows()
     for line in lines:
         row = dict.fromkeys((*COLUMNS, SURPLUS), "")
         for title, cell in zip_longest(titles[: len(line.cells)], map(_read, line.values), fillvalue=SURPLUS):
@@ -63,7 +63,7 @@ def _unix(text: str) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n").strip()
 
 
-def whole_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], Rows]:
+def _whole_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], _Rows]:
     """Return the rows of a file of marks; raises InputError if the last mark in it may be cut.
 
     The last row may be cut where it has no line break: it is refused (12.5 cut to 12 is a wrong mark), unless its last
@@ -83,7 +83,7 @@ def whole_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], Rows]:
     return table, titles, rows
 
 
-def append_rows(path: Path, rows: Sequence[Mapping[str, str]]) -> None:
+def _append_rows(path: Path, rows: Sequence[Mapping[str, str]]) -> None:
     """Append rows to a file of marks, all or none, and wait until they are on the disk; make the file if necessary.
 
     Raises InputError if the file cannot be written, lacks a column, or may be cut at its end.
@@ -122,7 +122,7 @@ def _sync_folder(folder: Path) -> None:
 
 def _encoded(data: bytes, rows: Sequence[Mapping[str, str]], shown: str) -> bytes:
     """Return what appends rows to a file in its own style, with the header or line break that it lacks."""
-    table, titles, old = whole_rows(data, shown)
+    table, titles, old = _whole_rows(data, shown)
     if missing := [name for name in COLUMNS if titles and name not in titles]:
         raise InputError(f"{shown} has no column {enumerated(missing)}: add it to the first line")
     end = (table.rows[0].end if table.rows else "") or "\n"
@@ -180,7 +180,7 @@ class Mark(NamedTuple):
         return number_in(self.value) if self.criterion != DEADLINE else None
 
 
-Reader = Callable[[Cells, str], Iterable[Mark]]  # of the marks in the cells of a row, at a place
+_Reader = Callable[[Cells, str], Iterable[Mark]]  # of the marks in the cells of a row, at a place
 
 
 class Marks(NamedTuple):
@@ -207,20 +207,20 @@ class Marks(NamedTuple):
         """Return the time for a new mark: now, or later, so that it counts. Raises InputError if none would."""
         before, now = self.newest.get(key), datetime.now(UTC)
         if before is None:
-            return utc_text(now)
+            return _utc_text(now)
         if not before.time:
             raise InputError(f"{before.place} has no time, so it counts before every new mark: change that row")
-        return utc_text(max(now, datetime.fromisoformat(before.time) + timedelta(milliseconds=1)))
+        return _utc_text(max(now, datetime.fromisoformat(before.time) + timedelta(milliseconds=1)))
 
 
-def utc_text(time: datetime) -> str:
+def _utc_text(time: datetime) -> str:
     """Return a time that no spreadsheet changes, and that sorts as text."""
     return time.astimezone(UTC).isoformat(timespec="milliseconds")
 
 
 def append_marks(path: Path, marks: Iterable[Mark]) -> None:
-    """Append marks to a grader's file; raises InputError as `append_rows` does."""
-    append_rows(path, [{**{name: getattr(mark, name) for name in COLUMNS}, "points": mark.value} for mark in marks])
+    """Append marks to a grader's file; raises InputError as `_append_rows` does."""
+    _append_rows(path, [{**{name: getattr(mark, name) for name in COLUMNS}, "points": mark.value} for mark in marks])
 
 
 def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
@@ -235,7 +235,7 @@ def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
     return collect(_rows(folder, mistakes), read, mistakes, [])
 
 
-def collect(rows: Iterable[tuple[str, Cells]], read: Reader, mistakes: list[str], ignored: list[str]) -> Marks:
+def collect(rows: Iterable[tuple[str, Cells]], read: _Reader, mistakes: list[str], ignored: list[str]) -> Marks:
     """Return the marks in rows, each with its place; raises InputError if there are mistakes."""
     found: dict[Key, list[Mark]] = defaultdict(list)
     marks = Marks({}, {}, {}, ignored)
@@ -264,7 +264,7 @@ def _rows(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, Cells]]:
         shown = printable_path(Path(folder.name, path.name))
         try:
             data = read_capped(path, SIZE_LIMIT, shown=shown, top=str(path.parent), advice="")
-            yield from (row for row in whole_rows(data, shown)[2] if any(map(row[1].get, COLUMNS)))
+            yield from (row for row in _whole_rows(data, shown)[2] if any(map(row[1].get, COLUMNS)))
         except InputError as error:
             mistakes.append(str(error))
 
@@ -294,7 +294,7 @@ def mark_in(cells: Cells, key: Key, most: Decimal, place: str) -> Mark:
 def _time(text: str) -> str:
     with suppress(ValueError, OverflowError):
         if not text or ((time := datetime.fromisoformat(text)).tzinfo is not None and time.year < MAXYEAR):
-            return utc_text(time) if text else ""
+            return _utc_text(time) if text else ""
     raise InputError(f"{quoted(text)} is not a time: write it as 2026-11-23T14:05:09.123+00:00, or leave it empty")
 
 

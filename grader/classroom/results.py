@@ -101,7 +101,7 @@ def _line_of(values: Mapping[str, Any]) -> bytes:
     return f"{json.dumps(values, separators=(',', ':'))}\n".encode()
 
 
-def values_in(line: bytes) -> dict[str, Any]:
+def _values_in(line: bytes) -> dict[str, Any]:
     """Return the values in a line, lists as tuples."""
     return {key: tuple(value) if isinstance(value, list) else value for key, value in json.loads(line).items()}
 
@@ -136,7 +136,7 @@ class Results:
             if line.startswith(_RUN):
                 # Only the newest are compared.
                 self.runs[-1:] = [run._replace(totals={}, others={}) for run in self.runs[-1:]]
-                self.runs.append(Run(**values_in(line)))
+                self.runs.append(Run(**_values_in(line)))
                 if self.runs[-1].run == until:
                     break
 
@@ -202,7 +202,7 @@ class Results:
                 if key in places:
                     file.seek(places[key])
                 with self._whole():
-                    values = values_in(file.readline()) if key in places else {}
+                    values = _values_in(file.readline()) if key in places else {}
                 yield values
 
 

@@ -16,7 +16,7 @@ STATES = {UNMARKED: "unmarked", "marked": "marked", OLDER: "marked before the su
 Place = tuple[str, str]  # a criterion and the key of an answer
 
 
-class ReviewStudent(NamedTuple):
+class _ReviewStudent(NamedTuple):
     """A student of an item, what was graded, the mark or comment that counts, and a number if anonymous."""
 
     student: Student
@@ -45,7 +45,7 @@ class ReviewItem(NamedTuple):
 
     criterion: Criterion
     answer: str
-    members: tuple[ReviewStudent, ...]
+    members: tuple[_ReviewStudent, ...]
 
     @property
     def place(self) -> Place:
@@ -66,7 +66,7 @@ class ReviewFilter(NamedTuple):
     section: str = ""
     state: str = UNMARKED
 
-    def members(self, item: ReviewItem, kept: Collection[Key] = ()) -> tuple[ReviewStudent, ...]:
+    def members(self, item: ReviewItem, kept: Collection[Key] = ()) -> tuple[_ReviewStudent, ...]:
         """Return the students of an item that are shown; those in `kept` whatever their state is."""
         return tuple(
             one
@@ -83,7 +83,7 @@ def review_items(book: Gradebook, *, is_anonymous: bool = False, with_final: boo
     points. So are criteria that the rubric adjusts, and students with a final mark or an excuse, unless `with_final`.
     Students of one submission have the same answers. Numbers and order of anonymous students reveal no names.
     """
-    groups: defaultdict[Place, list[ReviewStudent]] = defaultdict(list)
+    groups: defaultdict[Place, list[_ReviewStudent]] = defaultdict(list)
     keys = sorted(book.keys, key=digest_of) if is_anonymous else book.keys
     order, counting = {key: at for at, key in enumerate(keys, 1)}, book.marks.counting
     stored = [one for one in book.results.all() if one.verdict != "unreadable" and one.student in book.run.totals]
@@ -95,7 +95,7 @@ def review_items(book: Gradebook, *, is_anonymous: bool = False, with_final: boo
         for name in one.results if with_final or (one.student, TOTAL) not in counting else ():
             mark = counting.get((one.student, name))
             if name in answers or mark is not None:
-                member = ReviewStudent(student, one, mark or book.marks.comments.get((one.student, name)), number)
+                member = _ReviewStudent(student, one, mark or book.marks.comments.get((one.student, name)), number)
                 groups[name, answers.get(name, one.digest)].append(member)
     rows = {row.id: row for row in book.rubric.criteria if row.adjustment is None}
     items = (ReviewItem(rows[name], answer, (*some,)) for (name, answer), some in groups.items() if name in rows)

@@ -218,7 +218,7 @@ _LMS_ID, _EXACT, _WORD, GROUP, _UNCLEAR = range(5)
 _MAX_WORDS = 8
 
 
-class Match(NamedTuple):
+class _Match(NamedTuple):
     """The indices of the students that a submission may belong to, and by what."""
 
     students: tuple[int, ...] = ()
@@ -255,7 +255,7 @@ class People:
         """Return whether a name is that of one student, in a team also the surname, or else of a group."""
         return bool(self.match(Student(name, login=name, group=team)).owners)
 
-    def match(self, claim: Student) -> Match:
+    def match(self, claim: Student) -> _Match:
         """Return whose a submission is by what its name claims; with a `group`, only of a member of that team.
 
         What has the name of a group is the group's, unless an id in it is that of another student: Canvas writes the id
@@ -263,19 +263,19 @@ class People:
         """
         if claim.aliases:
             users = [f"canvas {user}" for user in claim.aliases]
-            return Match(self._having(users, self._known[_LMS_ID]))
+            return _Match(self._having(users, self._known[_LMS_ID]))
         name = letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
         found, group = self._person(claim, name), [] if claim.group else self._groups.get(name, [])
         is_own_name = found.by == _LMS_ID and found.students[0] in self._known[-1].get(name, ())
         if is_own_name or not {*group}.difference(found.students):
             return found
         if found.by == _LMS_ID and claim.canvas:
-            return Match(tuple(group), GROUP) if found.students[0] in group else found
+            return _Match(tuple(group), GROUP) if found.students[0] in group else found
         if found.students or (claim.canvas and any(self.students[index].canvas for index in group)):
-            return Match(tuple(sorted({*found.students, *group})))
-        return Match(tuple(group), GROUP)
+            return _Match(tuple(sorted({*found.students, *group})))
+        return _Match(tuple(group), GROUP)
 
-    def _person(self, claim: Student, name: str) -> Match:
+    def _person(self, claim: Student, name: str) -> _Match:
         """Return the students with the best words of a claim, without those whom the LMS knows by another id."""
         login = plain(claim.login)
         names = [name, login, _surname(login) if claim.group else ""]
@@ -285,8 +285,8 @@ class People:
             if claim.group:
                 found = tuple(index for index in found if index in self.members(claim.group))
             if found:
-                return Match(tuple(at for at in found if not _is_other(self.students[at], claim)), min(by, _WORD))
-        return Match()
+                return _Match(tuple(at for at in found if not _is_other(self.students[at], claim)), min(by, _WORD))
+        return _Match()
 
     def _having(self, words: Iterable[str], table: Mapping[str, tuple[int, ...]]) -> tuple[int, ...]:
         return tuple(sorted({index for word in words for index in table.get(word, ())}))

@@ -15,7 +15,7 @@ COUNTS = ("passed", "failed", "skipped", "pending", "errored", "carried", "marke
 _TENTHS, _MAX_MISTAKES = 10, 20
 
 
-class Summary(NamedTuple):
+class _Summary(NamedTuple):
     """The grades of some students: their number, mean and median."""
 
     students: int
@@ -31,7 +31,7 @@ class CriterionFigures(NamedTuple):
     share: float | None
 
 
-class CommonMistake(NamedTuple):
+class _CommonMistake(NamedTuple):
     """A mistake that several students made in a criterion."""
 
     criterion: str
@@ -51,13 +51,13 @@ class ClassStatistics(NamedTuple):
     rubric: Rubric
     maximum: Decimal
     statuses: dict[str, int]
-    all: Summary | None
+    all: _Summary | None
     open: int
     late: int
     tenths: Sequence[Sequence[str]]
     criteria: Sequence[CriterionFigures]
-    mistakes: Sequence[CommonMistake]
-    sections: dict[str, Summary]
+    mistakes: Sequence[_CommonMistake]
+    sections: dict[str, _Summary]
     attention: dict[Reason, list[tuple[str, str]]]
     equal: Sequence[EqualWork]
     names: dict[str, str]
@@ -95,14 +95,16 @@ def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatisti
     )
 
 
-def summary(totals: Iterable[Decimal]) -> Summary:
+def summary(totals: Iterable[Decimal]) -> _Summary:
     """Return the figures of some grades, of at least one."""
     found = sorted(totals)
     count = len(found)
-    return Summary(count, sum(found, Decimal(0)) / count, (found[(count - 1) // 2] + found[count // 2]) / 2)
+    return _Summary(count, sum(found, Decimal(0)) / count, (found[(count - 1) // 2] + found[count // 2]) / 2)
 
 
-def _of_criteria(book: Gradebook, grades: Iterable[StudentGrade]) -> tuple[list[CriterionFigures], list[CommonMistake]]:
+def _of_criteria(
+    book: Gradebook, grades: Iterable[StudentGrade]
+) -> tuple[list[CriterionFigures], list[_CommonMistake]]:
     """Return the figures of the criteria, and the most common mistakes."""
     shared: dict[int, tuple[SharedResult, list[str]]] = {}  # most students of a class have the same few objects
     for grade in grades:
@@ -118,7 +120,7 @@ def _of_criteria(book: Gradebook, grades: Iterable[StudentGrade]) -> tuple[list[
             mistakes[name, message] += keys
     common = sorted(mistakes.items(), key=lambda item: (-len(item[1]), item[0]))[:_MAX_MISTAKES]
     rows = [CriterionFigures(row, counts[row.id], _share(row, counts[row.id], earned[row.id])) for row in book.criteria]
-    return rows, [CommonMistake(*where, sorted(keys)) for where, keys in common]
+    return rows, [_CommonMistake(*where, sorted(keys)) for where, keys in common]
 
 
 def _of(result: SharedResult) -> tuple[str, ...]:

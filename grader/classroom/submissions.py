@@ -46,7 +46,7 @@ class ClassSubmission(NamedTuple):
     submitted: str = ""
 
 
-def one_each(folder: ClassFolder, entries: Iterable[NamedPath], root: int) -> Iterator[ClassSubmission]:
+def _one_each(folder: ClassFolder, entries: Iterable[NamedPath], root: int) -> Iterator[ClassSubmission]:
     """Yield one submission for each student whom the file names identify."""
     of_student: dict[tuple[Student, str], list[NamedPath]] = defaultdict(list)
     for entry in entries:
@@ -138,7 +138,7 @@ class Intake(NamedTuple):
     ignored: tuple[str, ...]
 
 
-class Owners:
+class _Owners:
     """The submission of each student, by the index on the roster; those that match none; those that are ambiguous."""
 
     def __init__(self, roster: Roster | None, roots: Sequence[tuple[ClassListing, str]]) -> None:
@@ -283,7 +283,7 @@ def _path_key(path: str) -> str:
 
 __all__ = ["ClassSubmission", "Intake", "read_class"]
 
-LAYOUTS = ("folders", "canvas", "moodle", "teams", "nbgrader")
+_LAYOUTS = ("folders", "canvas", "moodle", "teams", "nbgrader")
 
 
 def read_class(
@@ -299,14 +299,14 @@ def read_class(
     `assignment` is the one to grade in nbgrader; `rubric_id` is the name of the lab in names of folders, and `folders`
     are the names of its own (default: its id).
     """
-    if layout not in ("auto", *LAYOUTS):
-        raise InputError(f"there is no layout {layout!r}; the layouts are: auto, {', '.join(LAYOUTS)}")
+    if layout not in ("auto", *_LAYOUTS):
+        raise InputError(f"there is no layout {layout!r}; the layouts are: auto, {', '.join(_LAYOUTS)}")
     ways = (["/".join(path.resolve().parts[-count:]) for path in paths] for count in (1, 2))
     names = next((way for way in ways if len(set(way)) == len(way)), [])
     if not names:
         raise InputError("the class folders have the same names: rename one, so that the roster can name them")
     roots = list(zip(map(listing_of, paths), names, strict=True))
-    owners = Owners(roster, roots)
+    owners = _Owners(roster, roots)
     labs = LabFolders(folders or tuple(filter(None, [rubric_id])))
     found: list[ClassSubmission] = []
     layouts: dict[str, None] = {}
@@ -320,7 +320,7 @@ def read_class(
             raise InputError(f"{what} (grade it with `grader grade {shell_quoted(path)}`)")
         ways_to_read = {"teams": teams, "nbgrader": nbgrader}
         entries = ways_to_read[chosen](folder) if chosen in ways_to_read else entries_of(folder, chosen)
-        some = list(one_each(folder, entries, root))
+        some = list(_one_each(folder, entries, root))
         if not some:
             example = "".join(f": {line}" for line in sorted(owners.ignored)[:1])
             raise InputError(f"there is no submission in {printable_path(path)}{example}")

@@ -21,8 +21,8 @@ from grader.files.reading import capped
 from grader.text import format_points
 
 SIZE_LIMIT = 16 * 1024 * 1024  # bytes
-CELL_LIMIT = 1_000_000
-DELIMITERS = ",;\t"
+_CELL_LIMIT = 1_000_000
+_DELIMITERS = ",;\t"
 _AS_TEXT = re.compile(r'\A="(.*)"\Z', re.DOTALL)  # keeps a spreadsheet from reading a text as a number
 # Possessive, so that an open quote fails in one pass. After a closing quote csv continues with plain text.
 _QUOTED = re.compile(r'"(?:[^"]++|"")*+"')
@@ -99,7 +99,7 @@ def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Tabl
     if "\0" in text:
         raise InputError(f"{shown} is not a CSV file: it contains a NUL character")
     header = re.match(r'\s*((?:"(?:[^"]++|"")*+"|[^"\r\n])*+)', text)
-    found = re.findall(f"[{DELIMITERS}]", re.sub(r'"[^"]*"', "", header[1] if header else "")) or [","]
+    found = re.findall(f"[{_DELIMITERS}]", re.sub(r'"[^"]*"', "", header[1] if header else "")) or [","]
     delimiter = max(dict.fromkeys(found), key=found.count) if is_from_person else found[0]
     return Table(_rows(text, delimiter, shown), delimiter, encoding, bom)
 
@@ -136,8 +136,8 @@ def _rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
             raise InputError(f"{shown} is not a CSV file: a quotation mark in row {len(rows) + 1} is never closed")
         cells.append(found[1])
         count += 1
-        if count > CELL_LIMIT:
-            raise InputError(f"{shown} has more than {CELL_LIMIT} cells, the limit")
+        if count > _CELL_LIMIT:
+            raise InputError(f"{shown} has more than {_CELL_LIMIT} cells, the limit")
         at = found.end()
         if found[2] != delimiter:
             rows.append(TableRow(len(rows) + 1, line, () if cells == [""] else tuple(cells), found[2]))

@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from grader.grading.report import Report
     from grader.source import Base
 
-Annotate = Callable[[str], None]  # writes workflow commands
+_Annotate = Callable[[str], None]  # writes workflow commands
 _MAX_SUMMARY = 1024 * 1024  # bytes: GitHub does not show a longer step summary
 
 
-def publish_report(report: "Report", base: "Base", annotate: Annotate | None, warn: Warn) -> None:
+def publish_report(report: "Report", base: "Base", annotate: _Annotate | None, warn: Warn) -> None:
     """Annotate the findings of a report, and add it to the job summary.
 
     Annotations are workflow commands for standard error, where GitHub reads them as well: standard output is for the
@@ -31,7 +31,7 @@ def publish_report(report: "Report", base: "Base", annotate: Annotate | None, wa
     _add_to_summary(lambda room: cut_markdown(report, room), warn)
 
 
-def publish_refusal(reason: str, annotate: Annotate, warn: Warn) -> None:
+def publish_refusal(reason: str, annotate: _Annotate, warn: Warn) -> None:
     """Annotate why nothing was graded, and add it to the job summary."""
     from grader.report.annotations import command
     from grader.report.markdown import escape

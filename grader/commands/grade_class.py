@@ -71,7 +71,7 @@ class ClassRequest:
 
 
 @dataclass(frozen=True, slots=True)
-class ClassInputs:
+class _ClassInputs:
     """What a run reads: the gradebook and its settings, the rubric as it was named, the roster."""
 
     folder: Path
@@ -91,7 +91,7 @@ class ClassInputs:
         return tuple(root.relative_to(here) if root.is_relative_to(here) else root for root in self.roots)
 
 
-def read_inputs(options: ClassRequest, warn: Warn) -> ClassInputs:
+def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
     """Return the inputs of a run; raise InputError and RubricError. Nothing is written."""
     rubric = load_rubric(options.rubric) if options.rubric is not None else None
     folder = options.gradebook or Path(f"{rubric.id if rubric is not None else DEFAULT_RUBRIC}-grades")
@@ -112,7 +112,7 @@ def read_inputs(options: ClassRequest, warn: Warn) -> ClassInputs:
     roster = None
     if options.roster or roster_file.exists():
         roster = read_roster(_read(roster_file), printable_path(roster_file))
-    inputs = ClassInputs(folder, _updated(options, settings, folder, rubric), rubric, roster)
+    inputs = _ClassInputs(folder, _updated(options, settings, folder, rubric), rubric, roster)
     if not options.paths and (gone := [printable_path(root) for root in inputs.near_roots if not root.exists()]):
         raise InputError(
             f"{enumerated(gone)} of the last run cannot be found: name the new PATH; of several sections, name all"
@@ -149,7 +149,7 @@ def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
         yield from hashes
 
 
-def keep_inputs(inputs: ClassInputs, options: ClassRequest, warn: Warn) -> ClassInputs:
+def _keep_inputs(inputs: _ClassInputs, options: ClassRequest, warn: Warn) -> _ClassInputs:
     """Write the settings and the copies of the roster and the rubric into the gradebook. Raises InputError."""
     folder, settings, rubric = inputs.folder, inputs.settings, inputs.rubric
     if options.roster is not None:
@@ -209,7 +209,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     gc.enable()  # unlike other commands, this one may run for long
     if not isfinite(request.timeout):
         raise InputError(f"--timeout takes a number of seconds, not {request.timeout}")
-    warn, inputs = terminal.warn, read_inputs(request, terminal.warn)
+    warn, inputs = terminal.warn, _read_inputs(request, terminal.warn)
     folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
     if request.due and rubric.late is None:
         no_late = f"because the rubric {rubric.id} has no [late]: only the days late are shown"
@@ -228,7 +228,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     with names.batch_lock(folder):
         results = Results(folder / names.RESULTS)
         _check_same_class(folder, results, intake)
-        inputs = keep_inputs(inputs, request, warn)
+        inputs = _keep_inputs(inputs, request, warn)
         table, done = _grade(request, inputs, results, intake, terminal)
     if formats := tuple(request.report_format or [Format.TERMINAL] * (request.reports is not None)):
         run = ReportRun(folder, request.reports or folder / names.REPORTS, formats, request.answers)
@@ -241,7 +241,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
 
 
 def _grade(
-    request: ClassRequest, inputs: ClassInputs, results: Results, intake: Intake, terminal: Terminal
+    request: ClassRequest, inputs: _ClassInputs, results: Results, intake: Intake, terminal: Terminal
 ) -> tuple[ClassTable, Progress]:
     """Grade what has no current result, append the run, and write the grades of the class."""
     folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
@@ -277,7 +277,7 @@ def _grade(
     return table, done
 
 
-def _batch(request: ClassRequest, inputs: ClassInputs, batch: Batch, intake: Intake, terminal: Terminal) -> Progress:
+def _batch(request: ClassRequest, inputs: _ClassInputs, batch: Batch, intake: Intake, terminal: Terminal) -> Progress:
     """Grade what has no current result, and say how many that were."""
     with _executor(request, inputs) as (executor, workers), terminal.show_class("grading") as show:
         try:
@@ -292,7 +292,7 @@ def _batch(request: ClassRequest, inputs: ClassInputs, batch: Batch, intake: Int
 
 
 @contextmanager
-def _executor(request: ClassRequest, inputs: ClassInputs) -> Iterator[tuple[Executor, int]]:
+def _executor(request: ClassRequest, inputs: _ClassInputs) -> Iterator[tuple[Executor, int]]:
     """Open what runs the tasks; yield it with the number of tasks at a time."""
     if request.cluster is None:
         with Processes(workers := request.jobs or processors(), request.timeout) as local:

@@ -53,7 +53,7 @@ class GradeRequest(NamedTuple):
         return read_threshold(self.fail_under) if self.fail_under is not None else None
 
 
-class GradeRun(NamedTuple):
+class _GradeRun(NamedTuple):
     """A report, its submission's place in a repository, the exit code, and the files read besides a single one."""
 
     report: "Report"
@@ -71,7 +71,7 @@ class GradeRun(NamedTuple):
         return printable(f"exit code 1: could not be decided, and needs manual grading: {names}")
 
 
-def grade_and_save(request: GradeRequest, warn: Warn) -> GradeRun:
+def grade_and_save(request: GradeRequest, warn: Warn) -> _GradeRun:
     """Grade a submission and save its reports. Raises GraderError."""
     rubric = files_of(request.rubric, request.answers) if request.saves else ()
     modes = remove_reports(request.saves, rubric, request.path)
@@ -88,7 +88,7 @@ def grade_and_save(request: GradeRequest, warn: Warn) -> GradeRun:
     return run
 
 
-def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
+def grade_submission(request: GradeRequest, warn: Warn) -> _GradeRun:
     """Grade a submission. Raises GraderError."""
     threshold = request.threshold  # before grading, to refuse a wrong one at once
     for kind in (request.output_format, *(kind for kind, _ in request.saves)):
@@ -113,7 +113,7 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
         report, fix = add_hints(report, submission, request.hints, warn, is_fixed=request.fix is not None)
     folder = _folder_of(request.path, submission.path) if submission.is_single else None
     besides = tuple(folder / path for path in submission.besides) if folder is not None else ()
-    return GradeRun(report, _base_of(request.path, folder), exit_code(report, threshold), fix, besides)
+    return _GradeRun(report, _base_of(request.path, folder), exit_code(report, threshold), fix, besides)
 
 
 def remove_reports(saves: Saves, rubric: Sequence[Path], *paths: str) -> dict[Path, int]:
@@ -143,7 +143,7 @@ def remove_reports(saves: Saves, rubric: Sequence[Path], *paths: str) -> dict[Pa
     return {file: mode for file, mode in modes.items() if mode is not None}
 
 
-def save_reports(request: GradeRequest, run: GradeRun, modes: Mapping[Path, int]) -> None:
+def save_reports(request: GradeRequest, run: _GradeRun, modes: Mapping[Path, int]) -> None:
     """Write the reports that `--save` names, with the permissions of the files before them. Raises InputError."""
     graded = Path(request.path, run.report.submission.path or "")
     for _, file in request.saves:

@@ -28,8 +28,8 @@ from grader.text import counted, printable, printable_path
 
 HOST = "127.0.0.1"
 MAX_BODY = 64 * 1024  # bytes; `http.server` limits the headers
-PATIENCE = 15.0  # seconds in which a client must send a whole request, and receive a whole response
-TEXT = "text/plain; charset=utf-8"
+_PATIENCE = 15.0  # seconds in which a client must send a whole request, and receive a whole response
+_TEXT = "text/plain; charset=utf-8"
 _TOKEN_BYTES = 24
 _HEADERS = {
     "X-Content-Type-Options": "nosniff",
@@ -39,16 +39,16 @@ _HEADERS = {
     "Cross-Origin-Opener-Policy": "same-origin",
     "X-Frame-Options": "DENY",
 }
-SANDBOX = "sandbox; default-src 'none'"  # for everything that is not a page
+_SANDBOX = "sandbox; default-src 'none'"  # for everything that is not a page
 
 
-class Response(NamedTuple):
+class _Response(NamedTuple):
     """A response."""
 
     body: bytes
-    media_type: str = TEXT
+    media_type: str = _TEXT
     status: HTTPStatus = HTTPStatus.OK
-    policy: str = SANDBOX
+    policy: str = _SANDBOX
 
 
 class _RefusedError(Exception):
@@ -67,7 +67,7 @@ class LocalServer(ThreadingTCPServer):
     allow_reuse_address = True
     request_queue_size = 64
 
-    def __init__(self, application: Callable[[tuple[str, ...], bytes | None], Response], port: int = 0) -> None:
+    def __init__(self, application: Callable[[tuple[str, ...], bytes | None], _Response], port: int = 0) -> None:
         self.application, self.lock = application, Lock()
         self.token = secrets.token_urlsafe(_TOKEN_BYTES)
         try:
@@ -80,13 +80,13 @@ class LocalServer(ThreadingTCPServer):
 
     def finish_request(self, request: Any, client_address: Any) -> None:
         """Serve a connection; the whole request must arrive in time, however slowly its bytes do."""
-        timer = Timer(PATIENCE, _stop_reading, [request])
+        timer = Timer(_PATIENCE, _stop_reading, [request])
         timer.daemon = True
         timer.start()
         super().finish_request(request, client_address)
         timer.cancel()
 
-    def answer(self, path: tuple[str, ...], body: bytes | None) -> Response:
+    def answer(self, path: tuple[str, ...], body: bytes | None) -> _Response:
         """Return the response of the application; a fault of it is one line."""
         try:
             with self.lock:
@@ -94,7 +94,7 @@ class LocalServer(ThreadingTCPServer):
         except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
             reason = error.strerror if isinstance(error, OSError) else f"{type(error).__name__}: {error}"
             message = printable(f"the grader failed on this request: {reason}")
-            return Response(f"{message}\n".encode(), status=HTTPStatus.INTERNAL_SERVER_ERROR)
+            return _Response(f"{message}\n".encode(), status=HTTPStatus.INTERNAL_SERVER_ERROR)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Ignore errors of broken connections."""
@@ -110,7 +110,7 @@ class _Handler(BaseHTTPRequestHandler):
 
     server: LocalServer
     server_version, sys_version = f"grader/{__version__}", ""
-    timeout, policy = PATIENCE, SANDBOX
+    timeout, policy = _PATIENCE, _SANDBOX
 
     def do_GET(self) -> None:
         """Answer a request: one with a body is from the page, which may change something."""
@@ -176,7 +176,7 @@ class ReviewPage:
     def __init__(self, session: ReviewSession) -> None:
         self.session = session
 
-    def __call__(self, path: tuple[str, ...], body: bytes | None) -> Response:
+    def __call__(self, path: tuple[str, ...], body: bytes | None) -> _Response:
         """Return the response to a request; errors of the gradebook become messages."""
         at = self._position(path[0])
         try:
@@ -188,7 +188,7 @@ class ReviewPage:
             page = pages.error_page(str(error), self.address(self.session.following(at)))
             return _html(page, HTTPStatus.SERVICE_UNAVAILABLE)
 
-    def _page(self, at: int, path: tuple[str, ...]) -> Response:
+    def _page(self, at: int, path: tuple[str, ...]) -> _Response:
         session, book = self.session, self.session.book
         is_item = 0 <= at < len(session.places)
         match path:
@@ -202,10 +202,10 @@ class ReviewPage:
                 pictures = enumerate(open_item(book, session.item_at(at)).pictures, 1)
                 found = {str(which): one for which, one in pictures}.get(number)
                 if isinstance(found, EmbeddedPicture):
-                    return Response(
-                        found.data, found.kind.media_type, policy=_PDF_POLICY if found.kind is PDF else SANDBOX
+                    return _Response(
+                        found.data, found.kind.media_type, policy=_PDF_POLICY if found.kind is PDF else _SANDBOX
                     )
-        return Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
+        return _Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
 
     def _place(self, at: int) -> dict[str, Any]:
         session, listed = self.session, self.session.listed
@@ -213,7 +213,7 @@ class ReviewPage:
         filters = pages.filters(session.filter, questions, sorted(session.sections.values()))
         return {"number": bisect(listed, at), "total": len(listed), "address": self.address(at), "filters": filters}
 
-    def _act(self, at: int, body: bytes) -> Response:
+    def _act(self, at: int, body: bytes) -> _Response:
         """Execute an action of the page."""
         session, sent = self.session, None
         with suppress(ValueError, RecursionError):
@@ -239,7 +239,7 @@ class ReviewPage:
                 return _json(HTTPStatus.BAD_REQUEST, error="this request is not from the page")
         return _json(go=self.address(at))
 
-    def _mark(self, at: int, points: str, comment: str, shown: str) -> Response:
+    def _mark(self, at: int, points: str, comment: str, shown: str) -> _Response:
         """Save a mark, or return those of others that it would replace."""
         session = self.session
         open_item(session.book, session.item_at(at))  # what has moved or changed cannot be marked
@@ -262,12 +262,12 @@ class ReviewPage:
         return count if address == "end" else at - 1 if at <= count else -1
 
 
-def _html(page: str, status: HTTPStatus = HTTPStatus.OK) -> Response:
-    return Response(page.encode("utf-8", "backslashreplace"), "text/html; charset=utf-8", status, policy=_PAGE_POLICY)
+def _html(page: str, status: HTTPStatus = HTTPStatus.OK) -> _Response:
+    return _Response(page.encode("utf-8", "backslashreplace"), "text/html; charset=utf-8", status, policy=_PAGE_POLICY)
 
 
-def _json(status: HTTPStatus = HTTPStatus.OK, **answer: str) -> Response:
-    return Response(json.dumps(answer).encode(), "application/json", status)
+def _json(status: HTTPStatus = HTTPStatus.OK, **answer: str) -> _Response:
+    return _Response(json.dumps(answer).encode(), "application/json", status)
 
 
 def review_in_browser(session: ReviewSession, port: int, terminal: Terminal) -> str:

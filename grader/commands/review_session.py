@@ -154,7 +154,7 @@ class ReviewSession:
             raise InputError(f"Not saved: {why}: {enumerated(rows, _MAX_NAMED)}. Save again to go on without them.")
 
 
-SHEET_COLUMNS = ("criterion", "answer", "points", "maximum", "comment", "text", "students")
+_SHEET_COLUMNS = ("criterion", "answer", "points", "maximum", "comment", "text", "students")
 _PRIVATE = 0o600
 _MAX_TEXT = 30_000  # characters; a cell of Excel has at most 32,767
 
@@ -213,7 +213,7 @@ def write_sheet(session: ReviewSession, file: Path) -> str:
         (*item.place, "", format_points(item.criterion.maximum), "", texts[item.place], _students(item))
         for item in items
     ]
-    save(file, write_table(SHEET_COLUMNS, rows), session.book.settings.roots(session.folder), _PRIVATE)
+    save(file, write_table(_SHEET_COLUMNS, rows), session.book.settings.roots(session.folder), _PRIVATE)
     command = f"grader mark --import {shell_quoted(file)} --gradebook {shell_quoted(session.folder)}"
     return f"{counted(len(items), 'item')} written for {session.left} marks; fill in the points, then: {command}\n"
 

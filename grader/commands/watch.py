@@ -41,7 +41,7 @@ _CHANGES = {
     "pending": "now needs manual grading",
     "errored": "now errored",
 }
-Stamps = dict[str, tuple[int, ...] | None]
+_Stamps = dict[str, tuple[int, ...] | None]
 
 
 def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
@@ -62,7 +62,7 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
     last: Report | None = None
     terminal.warn(f"watching {printable_path(request.path)}; stop with Ctrl-C")
     try:
-        for besides in changes(watched, frozenset(os.path.realpath(file) for _, file in request.saves)):
+        for besides in _changes(watched, frozenset(os.path.realpath(file) for _, file in request.saves)):
             try:
                 result = grade_submission(request, terminal.warn)
             except (InputError, MachineError, RubricError) as error:
@@ -142,28 +142,28 @@ def _gain(points: Decimal) -> str:
     return f" ({signed_points(points)})" if points else ""
 
 
-def changes(watched: Sequence[Path], own: Collection[str] = ()) -> Iterator[list[Path]]:
+def _changes(watched: Sequence[Path], own: Collection[str] = ()) -> Iterator[list[Path]]:
     """Yield at once and after every change of the watched files and folders, without end.
 
     What is yielded is a list for the files that were read besides, which are watched from then on. `own` are the real
     paths of files that do not count: the reports that are written.
     """
     besides: list[Path] = []
-    seen: Stamps | None = None
-    before: Stamps = {}
+    seen: _Stamps | None = None
+    before: _Stamps = {}
     while True:
         start = time.monotonic()
-        now = stamps([*watched, *besides], own)
+        now = _stamps([*watched, *besides], own)
         if seen is None or before == now != seen:  # what changed since the last look may be half written
             yield besides
-            seen = {**stamps(besides, own), **now}
+            seen = {**_stamps(besides, own), **now}
         before = now
         time.sleep(max(_POLL, _SHARE * (time.monotonic() - start)))
 
 
-def stamps(paths: Iterable[Path], own: Collection[str] = ()) -> Stamps:
+def _stamps(paths: Iterable[Path], own: Collection[str] = ()) -> _Stamps:
     """Return what identifies each file and its content; of a folder, each file and folder that a grading looks at."""
-    found: Stamps = {}
+    found: _Stamps = {}
     for path in paths:
         names: Iterable[str] = ()
         try:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 Warn = Callable[[str], None]
 # Shows the progress of a pass over a class, whose work is named.
-ShowClass = Callable[[str], AbstractContextManager[Callable[["Progress"], None]]]
+_ShowClass = Callable[[str], AbstractContextManager[Callable[["Progress"], None]]]
 
 
 class Terminal(NamedTuple):
@@ -35,7 +35,7 @@ class Terminal(NamedTuple):
     print: Callable[[str], None]
     warn: Warn
     screen: Callable[[], Screen]
-    show_class: ShowClass
+    show_class: _ShowClass
 
 
 CHECKOUTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")  # the repository that GitHub Actions and GitLab CI checked out

@@ -54,14 +54,14 @@ _HINT = Record(
     },
     ("after",),
 )
-KINDS: dict[str, KeyType] = {"bonus": {"const": True}, "adjustment": ADJUSTMENT}  # absent of most criteria
+_KINDS: dict[str, KeyType] = {"bonus": {"const": True}, "adjustment": ADJUSTMENT}  # absent of most criteria
 ADDITIONS = Record(  # the keys that few criteria have: those of the rubric, a manual mark, a comment without points
     {
-        **inner("criterion", KINDS),
+        **inner("criterion", _KINDS),
         "mark": (Record({"points": POINTS, **each(TEXT, "by comment")}), "manual_mark"),
         "comment": Record(each(TEXT, "text by")),
     },
-    (*KINDS, "mark", "comment"),
+    (*_KINDS, "mark", "comment"),
 )
 
 
@@ -116,7 +116,7 @@ _SUBMISSION = Record(
 )
 SCORE = each(POINTS, "score max_score pending")
 _GRADE = Record({"points": nullable(POINTS), "late": NUMBER, "final": (FLAG, "is_final")})
-GRADE = Record({"grade": _GRADE}, ("grade",))  # of a student in a class, if a person or lateness changes the score
+_OF_CLASS = Record({"grade": _GRADE}, ("grade",))  # of a student in a class, if a person or lateness changes the score
 _EVIDENCE = Record({**inner("evidence", each(TEXT, "id part title")), **each(Many(_EXHIBIT), "files possible")})
 REPORT = Record(
     {
@@ -127,13 +127,13 @@ REPORT = Record(
         "notes": (array(TEXT), "all_notes"),
         "parts": array(TEXT),
         **SCORE,
-        **GRADE.keys,
+        **_OF_CLASS.keys,
         "problems": Many(PROBLEM),
         "results": Many(_RESULT),
         "evidence": (Many(_EVIDENCE), "evidence"),
         "other_pictures": Many(_EXHIBIT),
     },
-    GRADE.optional,
+    _OF_CLASS.optional,
 )
 
 

@@ -87,10 +87,10 @@ class ClassTable:
         page.leave_row()
         if self._totals:
             found = summary(self._totals.elements())
-            words = means(found.mean, found.median).capitalize()
+            words = _means(found.mean, found.median).capitalize()
             page.inset(f"{words} ({counted(found.students, 'student')})", indent=0)
         for reason in filter(self._concerns.get, Reason):
-            page.inset(printable(attention_line(reason, self._concerns[reason], verbose=self.verbose)))
+            page.inset(printable(_attention_line(reason, self._concerns[reason], verbose=self.verbose)))
         page.print()
 
 
@@ -123,7 +123,7 @@ def render_class(found: ClassStatistics, console: Console, *, verbose: bool = Fa
     mistakes = [f"{len(one.students):>4}  {one.criterion}: {one.message}" for one in found.mistakes[:_MAX_MISTAKES]]
     equal = [f"{people_text([*map(name, one.students)], _MAX_NAMED)}: {one.equal}" for one in found.equal[:_MAX_GROUPS]]
     attention = [
-        attention_line(reason, [(name(key), detail) for key, detail in those], verbose=verbose)
+        _attention_line(reason, [(name(key), detail) for key, detail in those], verbose=verbose)
         for reason, those in found.attention.items()
     ]
     sections = (
@@ -148,14 +148,14 @@ def head_lines(found: ClassStatistics) -> Iterator[str]:
     counts = [f"{found.statuses[status]} {text}" for status, text in words.items() if status in found.statuses]
     yield ", ".join([*counts, *([f"{found.late} late"] if found.late else [])]) or "no students"
     if found.all is not None:
-        yield f"Grades of {format_points(found.maximum)}: {means(found.all.mean, found.all.median)}"
+        yield f"Grades of {format_points(found.maximum)}: {_means(found.all.mean, found.all.median)}"
     if found.open:
         yield f"{counted(found.open, 'grade')} still {'needs' if found.open == 1 else 'need'} manual grading"
     for name, one in found.sections.items():
-        yield f"Section {name or '(none)'}: {means(one.mean, one.median)} ({counted(one.students, 'student')})"
+        yield f"Section {name or '(none)'}: {_means(one.mean, one.median)} ({counted(one.students, 'student')})"
 
 
-def means(mean: Decimal | float, median: Decimal | float) -> str:
+def _means(mean: Decimal | float, median: Decimal | float) -> str:
     """Return a mean and a median to one decimal."""
     return f"mean {mean:.1f}, median {median:.1f}"
 
@@ -171,7 +171,7 @@ def percent(share: float) -> str:
     return f"{share:.0%}" if share in (0, 1) else f"{min(99, max(1, round(100 * share)))}%"
 
 
-def attention_line(reason: Reason, who: Sequence[tuple[str, str]], *, verbose: bool = False) -> str:
+def _attention_line(reason: Reason, who: Sequence[tuple[str, str]], *, verbose: bool = False) -> str:
     """Return the students who need attention for one reason, each with a detail."""
     names = [f"{name} ({detail})" if detail else name for name, detail in who]
     return f"{reason[:1].upper()}{reason[1:]} ({len(who)}): {people_text(names, len(who) if verbose else _MAX_NAMED)}"

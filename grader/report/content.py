@@ -265,13 +265,13 @@ def _evidence(report: Report) -> Iterator[Line]:
     """Yield the title of each part, then its evidence; last the other pictures."""
     for part, of_part in groupby(report.evidence, key=lambda found: found.evidence.part):
         yield Line("part", printable(report.rubric.part(part).title))
-        yield from (Line("found" if found.files else "missing", evidence_text(found)) for found in of_part)
+        yield from (Line("found" if found.files else "missing", _evidence_text(found)) for found in of_part)
     if report.other_pictures:
         yield Line("part", "Other pictures and documents")
         yield from (Line("found", printable(file.words)) for file in report.other_pictures)
 
 
-def evidence_text(found: EvidenceResult) -> str:
+def _evidence_text(found: EvidenceResult) -> str:
     """Return a piece of evidence with its files, or with those that are perhaps meant."""
     files = ", ".join(file.words for file in found.files)
     perhaps = enumerated([file.words for file in found.possible], _MAX_LISTED, "or")
@@ -296,7 +296,7 @@ def next_command(report: Report) -> str:
     """Return the command that explains the costliest failure, or else what is undecided; empty without either."""
     failed = [failure.result for failure in failures(report) if failure.result.manual_mark is None]
     first = next(iter((*failed, *report.pending_automatic)), None)
-    return explain_command(first.criterion.id, report) if first is not None else ""
+    return _explain_command(first.criterion.id, report) if first is not None else ""
 
 
 def what_is_left(report: Report) -> str:
@@ -305,7 +305,7 @@ def what_is_left(report: Report) -> str:
     return f"{start}: {pending_points(report)}." if report.open_points else f"{start}."
 
 
-def explain_command(name: str, report: Report) -> str:
+def _explain_command(name: str, report: Report) -> str:
     """Return the command that explains a criterion. It shows no part of the rubric's path above the current folder."""
     if report.rubric.is_copy_of_shipped:
         return f"grader explain {name}"

@@ -16,8 +16,8 @@ from grader.report.locations import SourceOf, excerpt_lines, location_text
 from grader.source import Edits, Location
 from grader.text import by_name, capitalised, enumerated, format_points, printable, signed_points
 
-T = TypeVar("T")
-K = TypeVar("K", bound=Hashable)
+_T = TypeVar("_T")
+_K = TypeVar("_K", bound=Hashable)
 
 # Of a submission, of a criterion, and of the list of evidence, problems and files.
 Role = Literal[
@@ -189,9 +189,9 @@ def groups(report: Report) -> Iterator[CriteriaGroup]:
         yield CriteriaGroup(part, about or report.rubric.part(part).title, tuple(results))
 
 
-def alike(items: Iterable[T], key: Callable[[T], K]) -> list[tuple[K, tuple[T, ...]]]:
+def alike(items: Iterable[_T], key: Callable[[_T], _K]) -> list[tuple[_K, tuple[_T, ...]]]:
     """Return each value of a key with the items that have it, in the order of the first ones."""
-    found: dict[K, list[T]] = {}
+    found: dict[_K, list[_T]] = {}
     for item in items:
         found.setdefault(key(item), []).append(item)
     return [(value, tuple(some)) for value, some in found.items()]

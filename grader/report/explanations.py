@@ -71,17 +71,17 @@ def checks_text() -> str:
     return "\n".join(listed)
 
 
-def kind_of(code: str) -> Kind | None:
+def _kind_of(code: str) -> Kind | None:
     """Return the kind of problem with a code; None if there is none."""
     return next((kind for kind in EVERY_KIND if kind.code == code), None)
 
 
 def explanation(name: str, rubric: Rubric) -> str:
     """Return the explanation of a code, a criterion or a check. Raises InputError for another name."""
-    kind = kind_of(name.upper())
+    kind = _kind_of(name.upper())
     if kind is not None:
         texts = [f"{kind.code} ({kind.severity}): {kind.title}", _fill(explanation_of(kind)), EFFECTS[kind.effect]]
-        return _paragraphs([*texts, *examples(kind.code)])
+        return _paragraphs([*texts, *_examples(kind.code)])
     for criterion in rubric.criteria:
         if criterion.id == name:
             return _paragraphs(_criterion_texts(criterion, rubric))
@@ -89,7 +89,7 @@ def explanation(name: str, rubric: Rubric) -> str:
     if check is not None:
         source = f", from the package {check.distribution}" if check.distribution else ""
         texts = [f"{check.name}: a check for rubrics{source}", *map(_fill, check.documentation.paragraphs)]
-        return _paragraphs([*texts, _arguments(check).rstrip("\n"), *examples(check.name)])
+        return _paragraphs([*texts, _arguments(check).rstrip("\n"), *_examples(check.name)])
     known = [kind.code for kind in EVERY_KIND] + [criterion.id for criterion in rubric.criteria] + check_names()
     lists = (
         f"`{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, and reports show the codes"
@@ -159,7 +159,7 @@ def example_blocks(name: str) -> Iterator[tuple[str, str, str]]:
         yield "Right", file, example["right"].rstrip()
 
 
-def examples(name: str) -> Iterator[str]:
+def _examples(name: str) -> Iterator[str]:
     """Yield these blocks as paragraphs."""
     return (f"{title}:\n\n{textwrap.indent(text, '    ')}" for title, _, text in example_blocks(name))
 

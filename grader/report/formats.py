@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from grader.report.inspection import Inspection
     from grader.source import Base
 
-Need = Literal["", "console", "base", "identity"]
+_Need = Literal["", "console", "base", "identity"]
 
 
 class _Row(StrEnum):
@@ -25,10 +25,10 @@ class _Row(StrEnum):
     """
 
     function: str
-    needs: Need
+    needs: _Need
     ending: str
 
-    def __new__(cls, name: str, function: str = "", needs: Need = "", ending: str = "") -> Self:
+    def __new__(cls, name: str, function: str = "", needs: _Need = "", ending: str = "") -> Self:
         """Return a member with its row; the defaults are for a look-up by name alone."""
         member = str.__new__(cls, name)
         member._value_ = name

@@ -29,9 +29,16 @@ def _harmless(text: str) -> str:
 
 
 def _lines(value: Any) -> str:
+    """Return a value as JSON; of a list of objects, those that begin with another key stay on the line before."""
     if not isinstance(value, list) or not value or not isinstance(value[0], dict):
         return _ENCODER.encode(value)
-    return "[\n  " + ",\n  ".join(map(_ENCODER.encode, value)) + "\n ]"
+    first = next(iter(value[0]))
+    text = ""
+    for entry in value:
+        if text:
+            text += ",\n  " if next(iter(entry)) == first else ", "
+        text += _ENCODER.encode(entry)
+    return f"[\n  {text}\n ]"
 
 
 def exact(points: Decimal | None) -> int | float | None:
@@ -54,7 +61,7 @@ def rounded(value: Any) -> Any:
     return [rounded(item) for item in value]
 
 
-K = TypeVar("K")
+_K = TypeVar("_K")
 Schema = dict[str, Any]
 TEXT: Schema = {"type": "string"}
 NUMBER: Schema = {"type": "number"}
@@ -87,7 +94,7 @@ def nullable(schema: Schema) -> Schema:
     return {"anyOf": [schema, {"type": "null"}]}
 
 
-def each(kind: K, names: str) -> dict[str, K]:
+def each(kind: _K, names: str) -> dict[str, _K]:
     """Return keys of one type, from their names between spaces."""
     return dict.fromkeys(names.split(), kind)
 
@@ -135,8 +142,8 @@ class Maybe:
 
 
 KeyType = Schema | Record | Many | Maybe
-Origin = str | Callable[[Any], Any]
-Key = tuple[KeyType, Origin]
+_Origin = str | Callable[[Any], Any]
+Key = tuple[KeyType, _Origin]
 
 
 def _schema(kind: KeyType) -> Schema:
@@ -150,7 +157,7 @@ def _schema(kind: KeyType) -> Schema:
     return kind
 
 
-def _reader(kind: KeyType, origin: Origin) -> Callable[[Any], Any]:
+def _reader(kind: KeyType, origin: _Origin) -> Callable[[Any], Any]:
     """Return the function from a value to what a key of its record has."""
     get = attrgetter(origin) if isinstance(origin, str) else origin
     match kind:

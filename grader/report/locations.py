@@ -12,7 +12,7 @@ _MEANT = r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+""" 
 _ARCHIVE = r"(?is)(.*?\.(?:zip|tar|tgz|tar\.gz))/"
 SourceOf = Callable[[str], Source | None]
 # A line of a file: its number, its text up to the marked part, that part if it has one, and the rest.
-SourceLine = tuple[int, str, str | None, str]
+_SourceLine = tuple[int, str, str | None, str]
 _EXCERPT_WIDTH = 120
 _AROUND = 2  # lines of the source before and after the marked one
 _MAX_WIDTH = 160  # characters of a line on a page
@@ -64,7 +64,7 @@ def excerpt_lines(where: Location, source_of: SourceOf) -> Iterator[str]:
         yield f"{' ' * len(number)} | {' ' * len(before)}{'-' * max(1, len(meant))}"
 
 
-def source_lines(where: Location, source_of: SourceOf) -> list[SourceLine]:
+def source_lines(where: Location, source_of: SourceOf) -> list[_SourceLine]:
     """Return the lines around a location, without their common indentation; none if its line is empty.
 
     Of a very long line it is the part around the marked text.

@@ -128,7 +128,7 @@ def _fold_passed(group: CriteriaGroup) -> str:
         for result in group.results
         if has_passed(result)
     ]
-    return fold(f"{printable(group.title)} {group.points}", lines) if lines else ""
+    return _fold(f"{printable(group.title)} {group.points}", lines) if lines else ""
 
 
 def escape(text: str) -> str:
@@ -156,7 +156,7 @@ def fence(lines: Sequence[str], language: str = "text") -> str:
     return "\n".join((f"{fence}{language}", *lines, fence))
 
 
-def fold(summary: str, lines: list[str]) -> str:
+def _fold(summary: str, lines: list[str]) -> str:
     """Return Markdown below a line of printable text that unfolds it."""
     shown = _MENTION.sub("\\g<0>\u2060", html.escape(summary))
     # CommonMark reads Markdown in HTML only after an empty line.

@@ -33,18 +33,18 @@ def drawing_element(picture: Picture, title: str = "", *, legend: bool = True, a
     """
     panels = panels_of(picture, _height(above) if title else 0.0)
     parts = _headline(title, above) if title else []
-    parts += [f"<g>{''.join(view(panel, picture))}</g>" for panel in panels]
-    parts += key(picture, panels[0].top)
+    parts += [f"<g>{''.join(_view(panel, picture))}</g>" for panel in panels]
+    parts += _key(picture, panels[0].top)
     height, words = panels[-1].top + panels[-1].height, _words(picture)
     lines = [line for part in words if legend for line in _lines(part, _WIDTH)]
-    parts += [text("text", (_LEFT, height + _LINE * number), line) for number, line in enumerate(lines, 1)]
+    parts += [_text("text", (_LEFT, height + _LINE * number), line) for number, line in enumerate(lines, 1)]
     below = _LINE * len(lines) + 6.0 if lines else 0.0
     return _svg(title or "Three views of the robot", " ".join(words), height + below, parts)
 
 
 def _svg(title: str, words: str, height: float, parts: Iterable[str]) -> str:
     size = f'width="{WIDTH:g}" height="{height:.0f}"'
-    said = f"<title>{escaped(title[:_MAX_TITLE])}</title><desc>{escaped(words)}</desc>"
+    said = f"<title>{_escaped(title[:_MAX_TITLE])}</title><desc>{_escaped(words)}</desc>"
     start = f'<svg xmlns="http://www.w3.org/2000/svg" class="drawing" role="img" viewBox="0 0 {WIDTH:g} {height:.0f}"'
     return f'{start} {size}>{said}<rect class="paper" {size}/>{"".join(parts)}</svg>'
 
@@ -95,8 +95,8 @@ def _file(picture: Picture | None, title: str, words: Iterable[str], reason: str
 
 
 def _headline(title: str, above: Sequence[str]) -> list[str]:
-    shown = [text("title", (_LEFT, 26.0), line) for line in _lines(title, _WIDTH / 1.5)[:1]]
-    return shown + [text("faint", (_LEFT, 2.0 * _LEFT + _LINE * number), line) for number, line in enumerate(above, 1)]
+    shown = [_text("title", (_LEFT, 26.0), line) for line in _lines(title, _WIDTH / 1.5)[:1]]
+    return shown + [_text("faint", (_LEFT, 2.0 * _LEFT + _LINE * number), line) for number, line in enumerate(above, 1)]
 
 
 def _height(above: Sequence[str]) -> float:
@@ -137,24 +137,24 @@ _AROUND = [(ring * cos(tau * n / 16), -ring * sin(tau * n / 16)) for ring in _RI
 _MAX_NAME, _ROW = 60, 18.0
 
 
-def view(panel: Panel, picture: Picture) -> Iterator[str]:
+def _view(panel: Panel, picture: Picture) -> Iterator[str]:
     """Yield a view: the ground, the shapes from back to front, then the signs."""
     places = FreePlaces(panel)
-    yield text("faint", (panel.left + 14.0, panel.top + 14.0), panel.title)
+    yield _text("faint", (panel.left + 14.0, panel.top + 14.0), panel.title)
     yield from _ground(panel, picture, places)
     outlines = [(body, panel.outline(body)) for body in from_back_to_front(picture.scene.bodies, panel)]
     yield from (_shape(body, outline) for body, outline in outlines)
     if len(outlines) > 1:  # what a shape hides shows through
-        yield path("hidden", "".join(_polygon(outline) for _, outline in outlines))
+        yield _path("hidden", "".join(_polygon(outline) for _, outline in outlines))
     lines: dict[tuple[str, str], None] = {
         ("reference", _polygon(panel.outline(body))): None for body in picture.outlines
     }
     frames = [("", _AXIS, pose) for pose in frames_of(picture)]
     frames += [(" dashed", _LONG_AXIS, pose) for pose in picture.frames]
     lines |= {axis: None for frame in frames for axis in _axes(panel, *frame)}
-    lines |= {("arrow", data): None for wheel in picture.scene.wheels for data in _arrow(panel, wheel)}
-    yield path("halo", "".join(data for _, data in lines))
-    yield from (path(*line) for line in lines)
+    lines |= {("arrow", data): None for wheel in picture.scene.wheels for data in _travel(panel, wheel)}
+    yield _path("halo", "".join(data for _, data in lines))
+    yield from (_path(*line) for line in lines)
     yield from _numbers(panel, picture, places)
 
 
@@ -165,14 +165,14 @@ def _ground(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str]
         return
     y = panel.place(ground.translation)[1]
     if places.take([(panel.left + PANEL / 2.0, y)], (PANEL, 1.0)):
-        yield path("ground", segment((panel.left + 6.0, y), (panel.left + PANEL - 6.0, y)))
+        yield _path("ground", _segment((panel.left + 6.0, y), (panel.left + PANEL - 6.0, y)))
         places.take([(panel.left + 28.0, y + 9.0)], (44.0, 12.0))
-        yield text("letter", (panel.left + 28.0, y + 12.0), "ground")
+        yield _text("letter", (panel.left + 28.0, y + 12.0), "ground")
 
 
 def _shape(body: Body, outline: list[Place]) -> str:
     fill = "".join(f"{round(255.0 * value):02x}" for value in body.rgba[:3])
-    points, name = " ".join(f"{number(x)} {number(y)}" for x, y in outline), escaped(body.link[:_MAX_NAME])
+    points, name = " ".join(f"{_number(x)} {_number(y)}" for x, y in outline), _escaped(body.link[:_MAX_NAME])
     looks = f'class="edge" fill="#{fill}" fill-opacity="{body.rgba[3]:.2g}"'
     return f'<polygon {looks} points="{points}"><title>{name}</title></polygon>'
 
@@ -183,22 +183,22 @@ def _axes(panel: Panel, look: str, length: float, pose: Transform) -> Iterator[t
     for name, axis in zip("xyz", AXES, strict=True):
         across, down, _ = panel.direction(pose.rotate(axis))
         if hypot(across, down) > _END_ON:
-            yield f"axis-{name}{look}", segment(start, (start[0] + length * across, start[1] + length * down))
+            yield f"axis-{name}{look}", _segment(start, (start[0] + length * across, start[1] + length * down))
 
 
-def _arrow(panel: Panel, wheel: Wheel) -> Iterator[str]:
+def _travel(panel: Panel, wheel: Wheel) -> Iterator[str]:
     """Yield the path of the driving direction; it keeps to the right of the wheel's centre, so that two are visible."""
     across, down, _ = panel.direction(wheel.travel)
     if hypot(across, down) > _END_ON:
         x, y = panel.place(wheel.centre)
-        yield arrow((x - 7.0 * down, y + 7.0 * across), across, down)
+        yield _arrow((x - 7.0 * down, y + 7.0 * across), across, down)
 
 
-def arrow(start: Place, across: float, down: float) -> str:
+def _arrow(start: Place, across: float, down: float) -> str:
     """Return the path data of an arrow in a direction on the sheet."""
     tip = start[0] + _ARROW * across, start[1] + _ARROW * down
     barbs = ((tip[0] - 6.0 * across - side * down, tip[1] - 6.0 * down + side * across) for side in (4.2, -4.2))
-    return segment(start, tip) + "".join(segment(tip, barb) for barb in barbs)
+    return _segment(start, tip) + "".join(_segment(tip, barb) for barb in barbs)
 
 
 def _numbers(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str]:
@@ -207,10 +207,10 @@ def _numbers(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str
         if callout.point is not None:
             x, y = panel.place(callout.point)
             centre = places.take([(x + across, y + down) for across, down in _AROUND], _BADGE) or (x, y)
-            yield path("leader", segment((x, y), centre)) + badge(centre, callout.number)
+            yield _path("leader", _segment((x, y), centre)) + _badge(centre, callout.number)
 
 
-def key(picture: Picture, top: float) -> Iterator[str]:
+def _key(picture: Picture, top: float) -> Iterator[str]:
     """Yield the meaning of each sign that a drawing has, beside the view from above."""
     is_shown = (
         any(callout.point is not None for callout in picture.callouts),
@@ -219,51 +219,51 @@ def key(picture: Picture, top: float) -> Iterator[str]:
         True,
         len(picture.scene.bodies) > 1,
     )
-    for row, (sign, meaning) in enumerate(compress(_key(), is_shown), 1):
-        at = f"{PANEL + 26.0:g} {number(top + row * _ROW)}"
-        yield f'<g transform="translate({at})">{sign}{text("faint", (34.0, 4.0), meaning)}</g>'
+    for row, (sign, meaning) in enumerate(compress(_signs(), is_shown), 1):
+        at = f"{PANEL + 26.0:g} {_number(top + row * _ROW)}"
+        yield f'<g transform="translate({at})">{sign}{_text("faint", (34.0, 4.0), meaning)}</g>'
 
 
-def _key() -> Iterator[tuple[str, str]]:
+def _signs() -> Iterator[tuple[str, str]]:
     """Yield each sign with its meaning."""
-    axes = (path(f"axis-{name}", f"M{x} -5L{x} 5") for name, x in (("x", 5), ("y", 13), ("z", 21)))
-    yield badge((12.0, 0.0), 1), "points lost"
-    yield path("reference", "M0 0L26 0"), "reference solution"
-    yield path("arrow", arrow((-3.0, 0.0), 1.0, 0.0)), "driven so by a positive rotation"
+    axes = (_path(f"axis-{name}", f"M{x} -5L{x} 5") for name, x in (("x", 5), ("y", 13), ("z", 21)))
+    yield _badge((12.0, 0.0), 1), "points lost"
+    yield _path("reference", "M0 0L26 0"), "reference solution"
+    yield _path("arrow", _arrow((-3.0, 0.0), 1.0, 0.0)), "driven so by a positive rotation"
     yield "".join(axes), "axes of a frame: x red, y green, z blue"
-    yield path("hidden", "M0 0L26 0"), "hidden edge"
+    yield _path("hidden", "M0 0L26 0"), "hidden edge"
 
 
-def escaped(words: str) -> str:
+def _escaped(words: str) -> str:
     """Return text as SVG shows it, printable."""
     return escape(printable(words))
 
 
-def text(look: str, place: Place, words: str) -> str:
+def _text(look: str, place: Place, words: str) -> str:
     """Return a label; its place is on its base line."""
-    return f'<text class="{look}" x="{number(place[0])}" y="{number(place[1])}">{escaped(words)}</text>'
+    return f'<text class="{look}" x="{_number(place[0])}" y="{_number(place[1])}">{_escaped(words)}</text>'
 
 
-def number(value: float) -> str:
+def _number(value: float) -> str:
     """Return a length in pixels with one decimal."""
     return f"{round(value, 1) + 0.0:g}"
 
 
-def segment(start: Place, end: Place) -> str:
+def _segment(start: Place, end: Place) -> str:
     """Return the path data of a straight line."""
-    return f"M{number(start[0])} {number(start[1])}L{number(end[0])} {number(end[1])}"
+    return f"M{_number(start[0])} {_number(start[1])}L{_number(end[0])} {_number(end[1])}"
 
 
 def _polygon(corners: Sequence[Place]) -> str:
-    return f"M{'L'.join(f'{number(x)} {number(y)}' for x, y in corners)}Z"
+    return f"M{'L'.join(f'{_number(x)} {_number(y)}' for x, y in corners)}Z"
 
 
-def badge(centre: Place, count: int) -> str:
+def _badge(centre: Place, count: int) -> str:
     """Return a number in a disc."""
-    disc = f'<circle class="badge" cx="{number(centre[0])}" cy="{number(centre[1])}" r="{_RADIUS:g}"/>'
-    return disc + text("number", (centre[0], centre[1] + 4.2), str(count))
+    disc = f'<circle class="badge" cx="{_number(centre[0])}" cy="{_number(centre[1])}" r="{_RADIUS:g}"/>'
+    return disc + _text("number", (centre[0], centre[1] + 4.2), str(count))
 
 
-def path(look: str, data: str) -> str:
+def _path(look: str, data: str) -> str:
     """Return lines with the look of a class."""
     return f'<path class="{look}" d="{data}"/>'

@@ -103,7 +103,7 @@ class Page(NamedTuple):
 
     def mark(self, status: str) -> Text:
         """Return the symbol of a status in its colour."""
-        return Text(symbol(self.console, SYMBOLS[status], ASCII_SYMBOLS[status]), STYLES[status])
+        return Text(_symbol(self.console, SYMBOLS[status], ASCII_SYMBOLS[status]), STYLES[status])
 
     def table(self, table: "Table") -> None:
         """Add a table, which a terminal may be too narrow for."""
@@ -116,7 +116,7 @@ class Page(NamedTuple):
         self.rows.clear()
 
 
-def show_entry(entry: Entry, report: Report, page: Page, number: int = 0) -> None:
+def _show_entry(entry: Entry, report: Report, page: Page, number: int = 0) -> None:
     """Add a criterion; `number` counts failures, of which a short report has only the first with all blocks."""
     head, message, source_of = _head(entry, page), Text(" ".join(entry.texts("finding"))), report.submission.source
     if page.is_tight:
@@ -197,7 +197,7 @@ def block(console: Console, text: Text, indent: int, head: Text | None = None, m
         line.rstrip()
     kept = lines[:most]
     if len(kept) < len(lines):
-        ellipsis = symbol(console, "\u2026", "...")
+        ellipsis = _symbol(console, "\u2026", "...")
         room = max(8, console.width - indent) - len(ellipsis)
         words = kept[-1].plain if kept[-1].cell_len <= room else _LAST_WORD.sub("", kept[-1].plain)
         kept[-1].truncate(min(room, len(_LAST_NUMBER.sub("", words))))
@@ -211,7 +211,7 @@ def excerpt_block(
     """Return the source line of a location, and if wanted a line that underlines the marked part."""
     number = str(where.line)
     before, meant, after = excerpt(source, where, max(8, console.width - indent - len(number) - 3))
-    mark, bar = symbol(console, "\u2500", "-"), symbol(console, "\u2502", "|")
+    mark, bar = _symbol(console, "\u2500", "-"), _symbol(console, "\u2502", "|")
     text = Text.assemble((f"{' ' * indent}{number} {bar} ", "dim"), (before + meant + after).rstrip())
     if is_underlined:
         under = " " * len(before) + mark * max(1, len(meant))
@@ -219,7 +219,7 @@ def excerpt_block(
     return text
 
 
-def symbol(console: Console, fancy: str, plain: str) -> str:
+def _symbol(console: Console, fancy: str, plain: str) -> str:
     """Return a symbol, or its ASCII form if the terminal cannot show it."""
     return fancy if console.encoding.lower().startswith("utf") else plain
 
@@ -247,7 +247,7 @@ def _show_brief(report: Report, found: Document, page: Page) -> None:
     listed = (entry for entry in found.failures if not (entry.result.why_given or entry.first))
     for number, entry in enumerate(listed):
         page.leave_row()
-        show_entry(entry, report, page, number)
+        _show_entry(entry, report, page, number)
     carried = [entry.result for entry in found.failures if entry.result.why_given]
     lines = [*([carried_text(carried)] if carried else []), *(line.text for line in found.skipped)]
     if lines:
@@ -288,7 +288,7 @@ def _show_pending(report: Report, pending: Sequence[Entry], page: Page) -> None:
         results = [entry.result for entry in some]
         if any(one.comment or (is_manual(one) and one.criterion.answer) for one in results):
             for entry in some:
-                show_entry(entry, report, page)
+                _show_entry(entry, report, page)
             continue
         names = enumerated([printable(entry.id) for entry in some], _MAX_NAMES)
         points = worth(result.criterion for result in results).short
@@ -377,7 +377,7 @@ def _show_section(section: Section, report: Report, page: Page) -> None:
     for number, entry in enumerate(section.entries):
         if number and section.title == "Failed":
             page.leave_row()
-        show_entry(entry, report, page)
+        _show_entry(entry, report, page)
     for line in section.lines:
         page.inset(line.text, LOOKS[line.role], 2 * INDENT if line.role in ("found", "missing") else INDENT)
 

@@ -266,7 +266,7 @@ def test_faults_are_messages(review: Review, book: Path, monkeypatch: pytest.Mon
 
 def test_a_request_without_end_is_disconnected(book: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit of time is that of the whole request, not of each part that arrives; others are answered meanwhile."""
-    monkeypatch.setattr(review_server, "PATIENCE", 0.5)
+    monkeypatch.setattr(review_server, "_PATIENCE", 0.5)
     with running(book) as review, socket.create_connection((HOST, review.port), timeout=0.01) as slow:
         assert review.get("1").status == 200
         for _ in range(3000):

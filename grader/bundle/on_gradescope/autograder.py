@@ -14,17 +14,17 @@ from tempfile import TemporaryFile
 from typing import IO, Any, NamedTuple
 
 # Isolated (-I): Python imports nothing from the current folder, the submission or PYTHON* variables.
-GRADER = (sys.executable, "-I", "-X", "utf8", "-m", "grader")
-ENVIRONMENT = {"PATH": os.defpath, "LC_ALL": "C.UTF-8"}
-GRADED, NOT_GRADED = (0, 1, 3), 2  # the grader's exit codes
-MAX_BYTES = 32 * 1024 * 1024
-MAX_CHARACTERS = 2000
-ADVICE = (
+_GRADER = (sys.executable, "-I", "-X", "utf8", "-m", "grader")
+_ENVIRONMENT = {"PATH": os.defpath, "LC_ALL": "C.UTF-8"}
+_GRADED, _NOT_GRADED = (0, 1, 3), 2  # the grader's exit codes
+_MAX_BYTES = 32 * 1024 * 1024
+_MAX_CHARACTERS = 2000
+_ADVICE = (
     "Nothing was graded. Check your submission and submit again. If you cannot find the fault, ask your instructor."
 )
 
 
-class Completed(NamedTuple):
+class _Completed(NamedTuple):
     """The exit code of the grader, None if it took too long, and its output."""
 
     code: int | None
@@ -32,28 +32,28 @@ class Completed(NamedTuple):
     errors: bytes
 
 
-def main(arguments: list[str]) -> int:
+def _main(arguments: list[str]) -> int:
     """Grade, or with --check only test that the grader runs and loads the rubric. Return the exit code."""
     settings = json.loads(Path("source", "autograder.json").read_text(encoding="utf-8"))
     if arguments == ["--check"]:
-        return subprocess.call([*GRADER, "rubric", "show", settings["rubric"]], env=ENVIRONMENT)
+        return subprocess.call([*_GRADER, "rubric", "show", settings["rubric"]], env=_ENVIRONMENT)
     options = ["--rubric", settings["rubric"], "--expect-rubric", settings["sha256"], "--format", "gradescope"]
-    completed = run([*GRADER, "grade", "submission", *options], settings["seconds"])
-    print(f"the grader ended with exit code {completed.code}\n{printable(completed.errors)}".rstrip())
-    results = results_of(completed, settings["seconds"])
+    completed = _run([*_GRADER, "grade", "submission", *options], settings["seconds"])
+    print(f"the grader ended with exit code {completed.code}\n{_printable(completed.errors)}".rstrip())
+    results = _results_of(completed, settings["seconds"])
     if results is None:
         print("its output is not a report; the results say that nothing was graded")
         return 1
-    write(Path("results", "results.json"), results)
+    _write(Path("results", "results.json"), results)
     return 0
 
 
-def run(command: list[str], seconds: float) -> Completed:
+def _run(command: list[str], seconds: float) -> _Completed:
     """Run the grader with a time limit in seconds, at which it and all its children are killed."""
     # Files instead of pipes: a child that keeps a pipe open would block the reader.
     with TemporaryFile() as output, TemporaryFile() as errors:
         process = subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=output, stderr=errors, env=ENVIRONMENT, start_new_session=True
+            command, stdin=subprocess.DEVNULL, stdout=output, stderr=errors, env=_ENVIRONMENT, start_new_session=True
         )
         code: int | None
         try:
@@ -62,29 +62,29 @@ def run(command: list[str], seconds: float) -> Completed:
             code = None
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()
-        return Completed(code, read_start(output), read_start(errors))
+        return _Completed(code, _read_start(output), _read_start(errors))
 
 
-def read_start(file: IO[bytes]) -> bytes:
+def _read_start(file: IO[bytes]) -> bytes:
     """Return the content of a file, of a long one MAX_BYTES + 1 bytes."""
     file.seek(0)
-    return file.read(MAX_BYTES + 1)
+    return file.read(_MAX_BYTES + 1)
 
 
-def results_of(completed: Completed, seconds: float) -> dict[str, Any] | None:
+def _results_of(completed: _Completed, seconds: float) -> dict[str, Any] | None:
     """Return what students see; None if the grader failed."""
     if completed.code is None:
-        return nothing_graded(f"The grader was stopped because it took longer than {seconds:g} seconds.")
-    if completed.code == NOT_GRADED:
-        return nothing_graded(f"The grader could not grade your submission:\n\n{messages(completed.errors)}")
-    return report(completed.output) if completed.code in GRADED else None
+        return _nothing_graded(f"The grader was stopped because it took longer than {seconds:g} seconds.")
+    if completed.code == _NOT_GRADED:
+        return _nothing_graded(f"The grader could not grade your submission:\n\n{_messages(completed.errors)}")
+    return _report(completed.output) if completed.code in _GRADED else None
 
 
-def nothing_graded(why: str) -> dict[str, Any]:
+def _nothing_graded(why: str) -> dict[str, Any]:
     """Return results without points that give the reason."""
     return {
         "score": 0,
-        "output": f"{why}\n\n{ADVICE}",
+        "output": f"{why}\n\n{_ADVICE}",
         "output_format": "text",
         "visibility": "visible",
         "stdout_visibility": "hidden",
@@ -92,34 +92,34 @@ def nothing_graded(why: str) -> dict[str, Any]:
     }
 
 
-def messages(errors: bytes) -> str:
+def _messages(errors: bytes) -> str:
     """Return the grader's messages on standard error, without its name before each line."""
-    return "\n".join(line.removeprefix("grader: ") for line in printable(errors).splitlines())
+    return "\n".join(line.removeprefix("grader: ") for line in _printable(errors).splitlines())
 
 
-def printable(data: bytes) -> str:
+def _printable(data: bytes) -> str:
     """Return the start of a text, with `?` for every character that is not printable."""
-    lines = data.decode("utf-8", "replace")[:MAX_CHARACTERS].split("\n")
+    lines = data.decode("utf-8", "replace")[:_MAX_CHARACTERS].split("\n")
     return "\n".join("".join(c if c.isprintable() else "?" for c in line) for line in lines).strip()
 
 
-def report(output: bytes) -> dict[str, Any] | None:
+def _report(output: bytes) -> dict[str, Any] | None:
     """Return the grader's report; None if the output is not a report."""
-    if len(output) > MAX_BYTES:
+    if len(output) > _MAX_BYTES:
         return None
     try:
-        found = json.loads(output.decode(), parse_constant=refuse_constant)
+        found = json.loads(output.decode(), parse_constant=_refuse_constant)
     except (ValueError, RecursionError):
         return None
     return found if isinstance(found, dict) and isinstance(found.get("score"), int | float) else None
 
 
-def refuse_constant(constant: str) -> float:
+def _refuse_constant(constant: str) -> float:
     """Refuse NaN and Infinity, which Python accepts in JSON and other parsers do not."""
     raise ValueError(constant)
 
 
-def write(path: Path, results: dict[str, Any]) -> None:
+def _write(path: Path, results: dict[str, Any]) -> None:
     """Write the results atomically."""
     temporary = path.with_name("results.json.tmp")
     # An unpaired surrogate is not a character, and not every JSON parser accepts it.
@@ -128,4 +128,4 @@ def write(path: Path, results: dict[str, Any]) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(_main(sys.argv[1:]))

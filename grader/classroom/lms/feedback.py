@@ -67,12 +67,12 @@ def _plain(text: str) -> str:
     return " ".join(html.unescape(_TAG.sub(" ", text)).split())
 
 
-Names = tuple[dict[str, str], dict[str, str]]  # by the student's key: the path in the zip, or why there is none
+_Names = tuple[dict[str, str], dict[str, str]]  # by the student's key: the path in the zip, or why there is none
 _NOT_UTF8 = re.compile(r"[\ud800-\udfff]")  # no name that Canvas has given, and no zip can have it
 _ARCHIVES = (".zip", ".tar.gz", ".tgz")
 
 
-def moodle_names(students: Collection[Student], report: str) -> Names:
+def moodle_names(students: Collection[Student], report: str) -> _Names:
     """Return the paths of files called `report`, by the participant numbers of students."""
     names, without, counts = dict[str, str](), dict[str, str](), Counter(student.moodle for student in students)
     for student in students:
@@ -85,7 +85,7 @@ def moodle_names(students: Collection[Student], report: str) -> Names:
     return names, without
 
 
-def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], report: str) -> Names:
+def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], report: str) -> _Names:
     """Return the names for students and the paths of their files; a group that has the same files shares one."""
     names, users, ending = dict[str, str](), defaultdict[tuple[str, ...], set[str]](set), PurePosixPath(report).suffix
     for student, paths in submissions:

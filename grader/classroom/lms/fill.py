@@ -18,7 +18,7 @@ from grader.classroom.typed_names import number_in
 from grader.errors import InputError
 from grader.text import enumerated, first_lines, format_points, named, people_text, printable
 
-Note = tuple[str, str, str]  # a kind, which begins the message, who is concerned, and why
+_Note = tuple[str, str, str]  # a kind, which begins the message, who is concerned, and why
 _OPEN, _KEPT, _REFUSED = "without a grade", "kept the comment", "the LMS would refuse the grade"
 _UNKNOWN, _MISSING = "in the file, but not in the class", "in the class, but not in the file"
 _TEST_STUDENT = re.compile(r"(?i)student, test|test student|.*_previewuser\d*")  # of Canvas and Blackboard
@@ -71,13 +71,13 @@ class _GradeFile(NamedTuple):
     people: dict[TableRow, Student]
     maximum: str
 
-    def changed(self, row: TableRow, grade: PublishedGrade) -> tuple[TableRow | None, list[Note]]:
+    def changed(self, row: TableRow, grade: PublishedGrade) -> tuple[TableRow | None, list[_Note]]:
         """Return a row with its grade and comment, or None; and notes on it, a change's without a kind."""
         new, who = _cell(grade, self), self.who(row)
         at, comment_at = self.roles["grade"], self.roles.get("comment")
         if why := next(self._why_not(row, new, grade.why_open or "has no grade"), None):
             return None, [(why[0], who, why[1])]
-        notes, old, comment = list[Note](), row.value(at), row.value(comment_at)
+        notes, old, comment = list[_Note](), row.value(at), row.value(comment_at)
         if old.casefold() != new.casefold() and (number_in(old) is None or number_in(old) != number_in(new)):
             notes += [("", who, f"was {old}, becomes {new}")] if old.casefold() not in _NOT_GRADED else []
             row = self.table.changed(row, at, new)
@@ -112,9 +112,9 @@ def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: Fil
     people, titles = [*file.people.values()], file.table.titles
     header = titles[file.roles["grade"]]
     warnings = _check_maximum(file.maximum, f"{header!r} in {form.lms}", options)
-    of_row = match_rows(people, [one.student for one in grades], form.lms)
+    of_row = _match_rows(people, [one.student for one in grades], form.lms)
     rows: dict[TableRow, TableRow | None] = {row: row for row in file.table.rows}
-    notes = list[Note]()
+    notes = list[_Note]()
     for index, (row, one) in enumerate(file.people.items()):
         rows[row] = None
         if index in of_row:
@@ -138,7 +138,7 @@ def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: Fil
     return Filled(file.table._replace(rows=tuple(kept)).encoded(), [*map(printable, lines)], is_complete, numbers)
 
 
-def by_reason(notes: Iterable[Note]) -> list[str]:
+def by_reason(notes: Iterable[_Note]) -> list[str]:
     """Return a line for each reason: who has it, of several how many and the first of them."""
     names = defaultdict[tuple[str, str], list[str]](list)
     for kind, who, why in notes:
@@ -229,7 +229,7 @@ def _list(headers: Sequence[str]) -> str:
     return enumerated([repr(header) for header in headers], _MAX_COLUMNS)
 
 
-def match_rows(rows: Sequence[Student], students: Sequence[Student], lms: str) -> dict[int, int]:
+def _match_rows(rows: Sequence[Student], students: Sequence[Student], lms: str) -> dict[int, int]:
     """Return the student of each row that fits only one, whom no other row fits."""
     theirs, ours = [_clues(row, lms) for row in rows], [_clues(student, lms) for student in students]
     students_of, rows_of = _fitting(theirs, ours), _fitting(ours, theirs)

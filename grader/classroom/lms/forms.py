@@ -46,7 +46,7 @@ class Form(NamedTuple):
         return {role: at for at, title in reversed([*enumerate(titles)]) if (role := role_of.get(title.casefold()))}
 
 
-CANVAS = Form(
+_CANVAS = Form(
     "Canvas",
     {"canvas": "id", "section": "section"},
     ("canvas", "section"),
@@ -55,7 +55,7 @@ CANVAS = Form(
     excuse="EX",
     locked={"grade": "ex n/a"},
 )
-MOODLE = Form(
+_MOODLE = Form(
     "Moodle",
     {
         "moodle": "identifier | id | identifiant | identificador | identificativo | identificatie",
@@ -72,7 +72,7 @@ MOODLE = Form(
     above="raise the maximum there, or give a final mark",
     locked={"locked": "no nein non não nee"},
 )
-BLACKBOARD = Form(
+_BLACKBOARD = Form(
     "Blackboard",
     {},
     (),
@@ -80,11 +80,11 @@ BLACKBOARD = Form(
     re.compile(r"(?P<title>.*?) \[Total Pts: (?P<maximum>[0-9.,]+)(?: [^][]*)?\](?: \|(?P<number>[0-9]+))?", re.DOTALL),
     kept=("last name", "first name", "child course id", "last access", "availability"),
 )
-BRIGHTSPACE = Form(
+_BRIGHTSPACE = Form(
     "Brightspace",
     {},
     (),
     re.compile(r"(?P<title>.*?) Points Grade(?: <Numeric MaxPoints:(?P<maximum>[0-9.,]+)[^>]*>)?", re.DOTALL),
     kept=("last name", "first name", "end-of-line indicator"),
 )
-FORMS = {form.lms.lower(): form for form in (CANVAS, MOODLE, BLACKBOARD, BRIGHTSPACE)}
+FORMS = {form.lms.lower(): form for form in (_CANVAS, _MOODLE, _BLACKBOARD, _BRIGHTSPACE)}

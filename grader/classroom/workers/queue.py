@@ -37,11 +37,11 @@ _MAX_GROUP = 64
 _AHEAD = 3  # groups for each worker: one at work, the others ready
 _MAX_TRIES = 3
 
-Task = TypeVar("Task")
-Result = TypeVar("Result")
+_Task = TypeVar("_Task")
+_Result = TypeVar("_Result")
 
 
-class Queue(Generic[Task, Result]):
+class Queue(Generic[_Task, _Result]):
     """Submits tasks and collects results.
 
     `work` returns the results of tasks in a worker. Where a task fails alone, `again` returns another one to be tried
@@ -53,19 +53,19 @@ class Queue(Generic[Task, Result]):
         self,
         executor: Executor,
         workers: int,
-        work: Callable[[Sequence[Task]], list[Result]],
-        again: Callable[[Task, WorkerError], Task | None],
-        lost: Callable[[Task, Exception], Result],
+        work: Callable[[Sequence[_Task]], list[_Result]],
+        again: Callable[[_Task, WorkerError], _Task | None],
+        lost: Callable[[_Task, Exception], _Result],
         size: int = 0,
     ) -> None:
         self._executor, self._workers, self._size = executor, workers, size
         self._work, self._again, self._lost = work, again, lost
-        self._alone: deque[tuple[Task, int]] = deque()
-        self._running: dict[Future[list[Result]], tuple[Sequence[Task], int]] = {}
+        self._alone: deque[tuple[_Task, int]] = deque()
+        self._running: dict[Future[list[_Result]], tuple[Sequence[_Task], int]] = {}
         self._began = 0.0  # when the first results came: until then workers start
         self._done = 0  # since then
 
-    def results(self, tasks: Iterable[Task]) -> Iterator[list[Result]]:
+    def results(self, tasks: Iterable[_Task]) -> Iterator[list[_Result]]:
         """Yield the results of tasks as they come; no task is taken before it can be submitted."""
         waiting = iter(tasks)
         self._submit_ready(waiting)
@@ -80,7 +80,7 @@ class Queue(Generic[Task, Result]):
                     yield results
             self._submit_ready(waiting)
 
-    def _submit_ready(self, waiting: Iterator[Task]) -> None:
+    def _submit_ready(self, waiting: Iterator[_Task]) -> None:
         while len(self._running) < self._workers * _AHEAD:
             if not self._alone:
                 if not (group := list(islice(waiting, self._group_size))):
@@ -94,7 +94,7 @@ class Queue(Generic[Task, Result]):
                 if tries > 1:  # it was lost when all processes ended: it runs alone
                     return
 
-    def _submit(self, tasks: Sequence[Task], tries: int) -> None:
+    def _submit(self, tasks: Sequence[_Task], tries: int) -> None:
         self._running[self._executor.submit(self._work, tasks)] = (tasks, tries)
 
     @property
@@ -105,7 +105,7 @@ class Queue(Generic[Task, Result]):
         share = self._done // (self._workers * _AHEAD)  # few tasks wait behind one that hangs in their group
         return max(1, min(_MAX_GROUP, share, int(_GROUP_TIME / seconds)))
 
-    def _results(self, future: "Future[list[Result]]") -> list[Result]:
+    def _results(self, future: "Future[list[_Result]]") -> list[_Result]:
         tasks, tries = self._running.pop(future)
         try:
             return future.result()

@@ -19,12 +19,12 @@ from grader.robot.shapes import Shape, UnknownShape, is_empty
 from grader.robot.transforms import Z_AXIS, Transform, Vector
 from grader.text import counted, enumerated, quoted
 
-Rgba = tuple[float, float, float, float]
+_Rgba = tuple[float, float, float, float]
 
 _MAX_BODIES = 500  # in software, a browser draws more only in seconds
 _MAX_COORDINATE = 1e4  # metres
 _MAX_NAMED = 4
-_WITHOUT_MATERIAL: Rgba = (1.0, 0.0, 0.0, 1.0)  # RViz shows such a shape in red
+_WITHOUT_MATERIAL: _Rgba = (1.0, 0.0, 0.0, 1.0)  # RViz shows such a shape in red
 _MESHES, _UNKNOWN = "mesh files are not opened", "the size or place of a shape is zero, too large or not known"
 _NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
 
@@ -38,7 +38,7 @@ class Body(NamedTuple):
     link: str
     shape: Shape
     T_frame_shape: Transform
-    rgba: Rgba
+    rgba: _Rgba
 
 
 class Wheel(NamedTuple):
@@ -158,7 +158,7 @@ def _wheel(scene: Scene, link: str) -> Wheel | None:
 _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
 
 
-class Callout(NamedTuple):
+class _Callout(NamedTuple):
     """The criteria that failed on a link, and the point that marks it in the picture, in metres in the scene's frame.
 
     `point` is None if the link has no pose in the picture; `link` is empty for criteria on the whole robot.
@@ -181,7 +181,7 @@ class Picture:
     scene: Scene
     outlines: tuple[Body, ...]
     frames: tuple[Transform, ...]
-    callouts: tuple[Callout, ...]
+    callouts: tuple[_Callout, ...]
 
 
 def plain_picture(robot: Configuration | None, frame: str | None) -> Picture | None:
@@ -205,7 +205,7 @@ def picture_of(report: Report) -> Picture | None:
     about = _by_link(lost, robot, solution)
     outlines, frames = _expected(scene, reference, about) if reference is not None else ((), ())
     callouts = tuple(
-        Callout(
+        _Callout(
             number,
             link,
             scene.centre(link) or (reference.centre(link) if reference is not None else None),

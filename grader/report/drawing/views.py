@@ -15,9 +15,9 @@ from grader.robot.model import Box, Sphere
 from grader.robot.transforms import Transform, Vector
 
 Place = tuple[float, float]
-Points = Any  # an array of shape (n, 3), or (n, 2) in a view
+_Points = Any  # an array of shape (n, 3), or (n, 2) in a view
 
-WIDTH, TITLE = 600.0, 18.0
+WIDTH, _TITLE = 600.0, 18.0
 PANEL = WIDTH / 2.0  # the width of a view
 _MARGIN = 40.0  # around the robot in each view, for labels
 _KEY_HEIGHT = 130.0
@@ -56,9 +56,9 @@ class Panel(NamedTuple):
         x, y, z = np.array((self.right, self.up, self.near)) @ direction
         return float(x), -float(y), float(z)
 
-    def places(self, points: Points) -> Points:
+    def places(self, points: _Points) -> _Points:
         """Return the positions of points of the frame on the sheet."""
-        centre = self.left + PANEL / 2.0, self.top + (TITLE + self.height) / 2.0
+        centre = self.left + PANEL / 2.0, self.top + (_TITLE + self.height) / 2.0
         across = (np.array(points) - self.middle) @ np.array((self.right, self.up)).T
         return centre + across * (self.scale, -self.scale)
 
@@ -71,10 +71,10 @@ class Panel(NamedTuple):
         """Return the corners of the outline of a body."""
         if isinstance(body.shape, Sphere):
             return hull(self.places(body.T_frame_shape.translation) + _CIRCLE * body.shape.radius * self.scale)
-        return hull(self.places(points_of(body)))
+        return hull(self.places(_points_of(body)))
 
 
-def points_of(body: Body) -> Points:
+def _points_of(body: Body) -> _Points:
     """Return points of the frame whose hull is a body; of a sphere, those that are farthest along the axes."""
     pose, shape = body.T_frame_shape, body.shape
     if isinstance(shape, Sphere):
@@ -83,7 +83,7 @@ def points_of(body: Body) -> Points:
     return points @ np.reshape(pose.rotation, (3, 3)).T + pose.translation
 
 
-def hull(points: Points) -> list[Place]:
+def hull(points: _Points) -> list[Place]:
     """Return the convex hull of points on the sheet, to a tenth of a pixel (Andrew's monotone chain, 1979)."""
     ordered = sorted({(round(float(x), 1), round(float(y), 1)) for x, y in points})
     return [place for half in (ordered, ordered[::-1]) for place in _half_hull(half)] or ordered
@@ -103,7 +103,7 @@ def _half_hull(ordered: list[Place]) -> list[Place]:
 
 def from_back_to_front(bodies: Iterable[Body], panel: Panel) -> list[Body]:
     """Return bodies by the depth of their nearest points; slanted ones that interlock may be in the wrong order."""
-    return sorted(bodies, key=lambda body: float((points_of(body) @ panel.near).max()))
+    return sorted(bodies, key=lambda body: float((_points_of(body) @ panel.near).max()))
 
 
 def panels_of(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
@@ -112,7 +112,7 @@ def panels_of(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
     size = np.maximum(high - low, _SMALLEST)
     scale = min((PANEL - 2.0 * _MARGIN) / size[:2].max(), _MAX_HEIGHT / size[1:].sum())
     rest = tuple((low + high) / 2.0), scale
-    upper, lower = (length * scale + 2.0 * _MARGIN + TITLE for length in size[1:])
+    upper, lower = (length * scale + 2.0 * _MARGIN + _TITLE for length in size[1:])
     upper = max(upper, _KEY_HEIGHT)
     return (
         Panel(*_TOP, 0.0, top, upper, *rest),
@@ -121,9 +121,9 @@ def panels_of(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
     )
 
 
-def _bounds(picture: Picture) -> tuple[Points, Points]:
+def _bounds(picture: Picture) -> tuple[_Points, _Points]:
     """Return the least and the largest coordinates (m) of what a picture shows, in the frame."""
-    shown = [points_of(body) for body in (*picture.scene.bodies, *picture.outlines)]
+    shown = [_points_of(body) for body in (*picture.scene.bodies, *picture.outlines)]
     origins = [pose.translation for pose in (*frames_of(picture), *picture.frames)]
     points = np.concatenate([*shown, origins or [(0.0, 0.0, 0.0)]])
     low, high = points.min(axis=0), points.max(axis=0)
@@ -155,7 +155,7 @@ class FreePlaces:
         panel, (across, down) = self._panel, size
         for x, y in centres:
             is_inside = across / 2.0 <= x - panel.left <= PANEL - across / 2.0
-            is_inside &= TITLE + down / 2.0 <= y - panel.top <= panel.height - down / 2.0
+            is_inside &= _TITLE + down / 2.0 <= y - panel.top <= panel.height - down / 2.0
             if is_inside and all(
                 2.0 * abs(x - a) >= across + width or 2.0 * abs(y - b) >= down + height
                 for a, b, width, height in self._taken

@@ -18,7 +18,7 @@ _MAX_LOST = 2  # criteria in a row
 _LETTERS = str.maketrans({"ł": "l", "ø": "o", "đ": "d", "æ": "ae", "œ": "oe", "ı": "i"})  # have no accents
 
 
-class Row(NamedTuple):
+class _Row(NamedTuple):
     """A student in the table: the cells as text, which may be empty; `link` is the address of the student's page."""
 
     key: str
@@ -32,7 +32,7 @@ class Row(NamedTuple):
     lost: str
 
 
-class Group(NamedTuple):
+class _Group(NamedTuple):
     """A group of students that the table can show: its label, their keys, and the word by which a search finds them."""
 
     label: str
@@ -75,10 +75,10 @@ def render_class_page(
     return render_page("class.html", values, {"groups": shown}, Assets("class.css", "class.js"))
 
 
-def _row(grade: StudentGrade, links: Mapping[str, str]) -> Row:
+def _row(grade: StudentGrade, links: Mapping[str, str]) -> _Row:
     student, late, lost = grade.student, grade.late, [name for _, name in grade.losses]
     penalty = f", {format_points(late.points)}" if late.points else ""
-    return Row(
+    return _Row(
         student.key,
         student.name or student.key,
         links.get(student.key, ""),
@@ -91,7 +91,7 @@ def _row(grade: StudentGrade, links: Mapping[str, str]) -> Row:
     )
 
 
-def _by_family_name(row: Row) -> tuple[str, str, str]:
+def _by_family_name(row: _Row) -> tuple[str, str, str]:
     """Return the family name, which is before a comma or the last word, then the name and the key."""
     family = row.name.partition(",")[0] if "," in row.name else (row.name.split() or [""])[-1]
     return _letters(family), _letters(row.name), row.key
@@ -103,7 +103,7 @@ def _letters(name: str) -> str:
     return "".join(letter for letter in apart if not unicodedata.combining(letter))
 
 
-def _columns(rows: Sequence[Row], found: ClassStatistics) -> list[tuple[str, str, str]]:
+def _columns(rows: Sequence[_Row], found: ClassStatistics) -> list[tuple[str, str, str]]:
     """Return the columns that are not empty: the field of a row, the heading, the class of its cells."""
     columns = (
         ("key", "id" if any(row.name != row.key for row in rows) else "", ""),
@@ -117,7 +117,7 @@ def _columns(rows: Sequence[Row], found: ClassStatistics) -> list[tuple[str, str
     return [column for column in columns if column[1] and any(getattr(row, column[0]) for row in rows)]
 
 
-def _groups(grades: Sequence[StudentGrade], found: ClassStatistics) -> dict[str, Group]:
+def _groups(grades: Sequence[StudentGrade], found: ClassStatistics) -> dict[str, _Group]:
     """Return the groups of students on the page by the id that its buttons use; those at the top are filters."""
     keys, lost = defaultdict[tuple[int, str], list[str]](list), defaultdict[str, list[str]](list)
     has_sections = len({one.student.section for one in grades}) > 1
@@ -134,14 +134,15 @@ def _groups(grades: Sequence[StudentGrade], found: ClassStatistics) -> dict[str,
             keys[place].append(one.student.key)
         for _, name in one.losses:
             lost[name].append(one.student.key)
-    filters = {f"filter-{label}": Group(label, those, label) for (_, label), those in sorted(keys.items())}
-    tenths = {f"grade-{at}": Group(f"a grade of {words.span(found, at)}", of) for at, of in enumerate(found.tenths)}
+    filters = {f"filter-{label}": _Group(label, those, label) for (_, label), those in sorted(keys.items())}
+    tenths = {f"grade-{at}": _Group(f"a grade of {words.span(found, at)}", of) for at, of in enumerate(found.tenths)}
     rows = (row.criterion for row in found.criteria)
-    criteria = {f"criterion-{row.id}": Group(f"lost points in {row.id}", lost[row.id], row.id) for row in rows}
+    criteria = {f"criterion-{row.id}": _Group(f"lost points in {row.id}", lost[row.id], row.id) for row in rows}
     mistakes = {
-        f"mistake-{at}": Group(f"{one.criterion}: {one.message}", one.students) for at, one in enumerate(found.mistakes)
+        f"mistake-{at}": _Group(f"{one.criterion}: {one.message}", one.students)
+        for at, one in enumerate(found.mistakes)
     }
-    same = {f"same-{at}": Group("equal work", work.students) for at, work in enumerate(found.equal)}
+    same = {f"same-{at}": _Group("equal work", work.students) for at, work in enumerate(found.equal)}
     return {**filters, **tenths, **criteria, **mistakes, **same}
 
 

@@ -1,1 +1,0 @@
-"""The files in the root of an autograder for Gradescope. They run there; nothing here imports them."""
