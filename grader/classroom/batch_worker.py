@@ -85,7 +85,7 @@ def _grade_one(context: ClassContext, task: Task) -> StoredResult:
     result = result._replace(parts=report.parts, results=entries, answers=_answers_of(report, result.digest))
     if fault := report.fault:
         return result._replace(verdict="errored", reason=fault)
-    is_handed_out = bool(report.submission.another_robot)  # by the course, so that it is no equal work
+    is_handed_out = bool(report.another_robot)  # by the course, so that it is no equal work
     unread = _why_unreadable(submission)
     verdict: Verdict = "unreadable" if unread else "graded"
     texts = submission.documents.converted

@@ -19,10 +19,10 @@ from grader.classroom.tables import SIZE_LIMIT, CellValue
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import DEADLINE, TOTAL, Criterion
-from grader.grading.graded_submission import GradedSubmission
 from grader.grading.report import ManualComment, ManualMark, Report, without_gifts
 from grader.grading.rubric import load_rubric
 from grader.submission.submission import Opening, Submission
+from grader.submission.urdf import Absent, Unreadable
 from grader.text import format_points, printable_path
 
 _NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
@@ -86,7 +86,8 @@ class Gradebook:
         why = f"{unread}; needs manual grading" if unread else stored.reason if stored.verdict == "errored" else ""
         entries = ((name, stored.results[name]) for name in self._rows if name in stored.results)
         results = (self._result(name, status, words or why, by) for name, (_, status, words, by) in entries)
-        submission = GradedSubmission(stored.student, unread=unread)
+        urdf = Unreadable("", unread) if unread else Absent()
+        submission = Submission(stored.student, urdf, is_single=False)
         return Report(submission, self.rubric, stored.parts, without_gifts(results, submission))
 
     def reopened(self, stored: StoredResult) -> Submission | None:
@@ -112,7 +113,7 @@ class Gradebook:
         student, final = self.student(key, stored), self.marks.counting.get(whole) or self.marks.comments.get(whole)
         known = {Reason.NOT_ON_ROSTER: not student.is_on_roster, Reason.UNCLEAR: key in self.run.unclear}
         if stored is None:
-            nothing = Report(GradedSubmission(key), self.rubric, self.settings.parts, ())
+            nothing = Report(Submission(key, Absent(), is_single=False), self.rubric, self.settings.parts, ())
             return StudentGrade(student, None, nothing, final=final, known=_held(known))
         known[Reason.GONE] = key not in self.run.totals
         known[Reason.OUTDATED] = self._is_outdated or stored.context != self.run.context

@@ -20,10 +20,11 @@ from grader.commands.writing import Terminal, make_folder, refuse_symlinks, save
 from grader.errors import InputError, MachineError, OutOfTime, RubricError
 from grader.files.reading import sha256_of
 from grader.grading.grade import grade as grade_submission
-from grader.grading.graded_submission import Grade, GradedSubmission
-from grader.grading.report import Report, Result
+from grader.grading.report import Grade, Report, Result
 from grader.hints.hinting import hinted
 from grader.report.formats import Format, render
+from grader.submission.submission import Submission
+from grader.submission.urdf import Absent
 from grader.text import (
     by_name,
     counted,
@@ -78,7 +79,8 @@ def report_of(book: Gradebook, grade: StudentGrade, *, has_hints: bool = True) -
         report, _ = book.with_marks(_again(book, grade.stored, has_hints=has_hints), grade.stored)
     else:
         results = tuple(Result(criterion, _NOTHING) for criterion in book.criteria)
-        report = Report(GradedSubmission(grade.student.key), book.rubric, book.settings.parts, results)
+        nothing = Submission(grade.student.key, Absent(), is_single=False)
+        report = Report(nothing, book.rubric, book.settings.parts, results)
     is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
     counting = Grade(grade.total, grade.late.points, grade.final_points is not None) if is_changed else None
     return report._replace(notes=(*report.notes, *notes_of(grade, report)), grade=counting)

@@ -9,7 +9,7 @@ from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.tree import urdf_loads
 from grader.errors import MachineError, MissingElement, NotDecided, OutOfTime, RubricError
 from grader.grading.criterion import Carried, Criterion
-from grader.grading.missing_work import another_robot, by_evidence, missing_work, robot_of
+from grader.grading.missing_work import another_robot, by_evidence, missing_work
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
 from grader.grading.subjects import Subjects
@@ -149,7 +149,7 @@ class _Grading:
         if missing.kind in self._manual:
             return Result(criterion, by_evidence(self.submission, self._manual[missing.kind]))
         if missing.kind == "link":
-            missing = another_robot(self._rubric, robot_of(self.submission.urdf), missing.name) or missing
+            missing = another_robot(self._rubric, self.submission.robot, missing.name) or missing
         first = self._first_miss(criterion, (missing.kind, missing.name))
         if first != criterion.id:
             return Result(criterion, _skip_outcome(first), first)

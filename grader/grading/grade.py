@@ -11,8 +11,7 @@ from grader.checks.manual import MANUAL_CHECKS, evidence_shown
 from grader.errors import InputError
 from grader.grading.criterion import Evidence
 from grader.grading.deciding import decide
-from grader.grading.graded_submission import GradedSubmission
-from grader.grading.missing_work import another_robot, robot_of
+from grader.grading.missing_work import another_robot
 from grader.grading.report import EvidenceResult, Report, Result, without_gifts
 from grader.grading.rubric import Rubric
 from grader.robot.kinematics import Configuration
@@ -50,10 +49,9 @@ def grade(
     """
     is_whole = is_one_of_class or not submission.is_single
     chosen, notes = _choose_parts(rubric, submission, parts, is_whole=is_whole)
-    another = another_robot(rubric, robot_of(submission.urdf))
-    graded = GradedSubmission.of(submission, another.mistake if another is not None else "")
+    another = another_robot(rubric, submission.robot)
     wanted = {criterion.id for criterion in rubric.criteria if criterion.part in chosen}
-    results = without_gifts(decide(rubric, submission, wanted), graded)
+    results = without_gifts(decide(rubric, submission, wanted), submission)
     problems = submission.urdf.problems if isinstance(submission.urdf, Read) else ()
     if submission.package is not None and any(rubric.part(part).needs == "package" for part in chosen):
         from grader.package.problems import package_problems  # a URDF on its own needs none of what reads a package
@@ -66,7 +64,7 @@ def grade(
     if submission.is_costly and rubric.hints != "none" and any(result.is_lost for result in results):
         notes += (_NO_HINTS,)
     return Report(
-        submission=graded,
+        submission=submission,
         rubric=rubric,
         parts=chosen,
         results=results,
@@ -74,6 +72,7 @@ def grade(
         evidence=evidence,
         other_pictures=other_pictures,
         notes=notes,
+        another_robot=another.mistake if another is not None else "",
         by_convention=by_convention,
     )
 
@@ -165,7 +164,7 @@ def _by_convention(
 
 def _convention(rubric: Rubric, submission: Submission) -> "Convention | None":
     """Return how all frames of a robot are turned or moved, compared with the reference."""
-    robot = robot_of(submission.urdf)
+    robot = submission.robot
     if robot is None or rubric.solution is None:
         return None
     from grader.robot.conventions import convention_of  # late: most robots lose few points

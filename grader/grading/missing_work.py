@@ -7,16 +7,11 @@ from grader.errors import MissingElement
 from grader.grading.rubric import Rubric
 from grader.robot.model import Robot
 from grader.submission.submission import Submission
-from grader.submission.urdf import Absent, Read, Urdf, is_another_robot, known_links
+from grader.submission.urdf import Absent, is_another_robot, known_links
 from grader.text import enumerated
 
 _MAX_PICTURES = 50
 _MAX_LISTED = 6
-
-
-def robot_of(urdf: Urdf) -> Robot | None:
-    """Return the robot of a URDF as far as it could be read."""
-    return urdf.reading.robot if isinstance(urdf, Read) else None
 
 
 def another_robot(rubric: Rubric, robot: Robot | None, link: str = "") -> MissingElement | None:
@@ -36,7 +31,7 @@ def another_robot(rubric: Rubric, robot: Robot | None, link: str = "") -> Missin
 def missing_work(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
     """Return what a submission with evidence lacks, the `URDF` or the `package` of this lab, and why."""
     found = {}
-    another = another_robot(rubric, robot_of(submission.urdf))
+    another = another_robot(rubric, submission.robot)
     if isinstance(submission.urdf, Absent):
         found["URDF"] = "no URDF was submitted"
     elif another is not None:

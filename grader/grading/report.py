@@ -8,10 +8,10 @@ from grader import __version__
 from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome
 from grader.grading.criterion import Criterion, Evidence
-from grader.grading.graded_submission import Grade, GradedSubmission
 from grader.grading.rubric import Rubric
 from grader.problems import Problem
 from grader.source import Certainty, Edits, Location
+from grader.submission.submission import Submission
 
 if TYPE_CHECKING:
     from grader.documents.evidence_files import EvidenceFile
@@ -114,6 +114,17 @@ class EvidenceResult(NamedTuple):
     possible: "tuple[EvidenceFile, ...]" = ()
 
 
+class Grade(NamedTuple):
+    """A student's grade in a class: the points that count, None if excused, and the late penalty in them (0 or less).
+
+    `is_final` says that a final mark replaces the points of the criteria.
+    """
+
+    points: Decimal | None
+    late: Decimal = Decimal(0)
+    is_final: bool = False
+
+
 class Report(NamedTuple):
     """The points of one submission under one rubric.
 
@@ -123,7 +134,7 @@ class Report(NamedTuple):
     of the robot costs: no hint corrects one of them alone. `score` is that of the criteria, whatever the `grade` is.
     """
 
-    submission: GradedSubmission
+    submission: Submission
     rubric: Rubric
     parts: tuple[str, ...]
     results: tuple[Result, ...]
@@ -131,6 +142,7 @@ class Report(NamedTuple):
     evidence: tuple[EvidenceResult, ...] = ()
     other_pictures: "tuple[EvidenceFile, ...]" = ()
     notes: tuple[str, ...] = ()
+    another_robot: str = ""
     by_convention: frozenset[str] = frozenset()
     hints_complete: bool = True
     version: str = __version__  # of the grader
@@ -139,7 +151,7 @@ class Report(NamedTuple):
     @property
     def all_notes(self) -> tuple[str, ...]:
         """The notes, the first on a robot that looks like another one, the last on hints that are missing."""
-        first, last = self.submission.another_robot, "" if self.hints_complete else INCOMPLETE_HINTS
+        first, last = self.another_robot, "" if self.hints_complete else INCOMPLETE_HINTS
         return (*filter(None, [first]), *self.notes, *filter(None, [last]))
 
     @property
@@ -199,7 +211,7 @@ class Report(NamedTuple):
         return next((one.outcome.message for one in errored), "")
 
 
-def without_gifts(results: Iterable[Result], submission: GradedSubmission) -> tuple[Result, ...]:
+def without_gifts(results: Iterable[Result], submission: Submission) -> tuple[Result, ...]:
     """Return results in which no adjustment gives points to a submission that could not be read."""
     if not submission.unread:
         return tuple(results)

@@ -110,7 +110,7 @@ _SUBMISSION = Record(
         "path": nullable(TEXT),
         "sha256": nullable(HASH),
         "package": (nullable(TEXT), _package),
-        "other_candidates": Many(Record(each(TEXT, "path reason"))),
+        "other_candidates": (Many(Record(each(TEXT, "path reason"))), "unused_candidates"),
         "ignored": array(TEXT),
     }
 )

@@ -242,7 +242,7 @@ def notes(report: Report) -> list[str]:
 
 def closing(report: Report) -> Iterator[Section]:
     """Yield the evidence, the problems that no criterion has reported, and other candidates with ignored files."""
-    files = [f"Other candidate {file.path}: {file.reason}" for file in report.submission.other_candidates]
+    files = [f"Other candidate {file.path}: {file.reason}" for file in report.submission.unused_candidates]
     files += [f"Ignored: {file}" for file in report.submission.ignored]
     problems = other_problems(report)
     sections = (

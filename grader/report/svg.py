@@ -68,7 +68,7 @@ def _lines(words: str, width: float) -> list[str]:
 def render_svg(report: Report) -> str:
     """Return the drawing of the graded robot as a file; without a robot, a sentence with the reason."""
     words = [grade_line(report), summary(report), bonus_line(report)]
-    words += notes(report)[: bool(report.submission.another_robot)]
+    words += notes(report)[: bool(report.another_robot)]
     for result in report.results:
         words += [f"{printable(result.criterion.id)}: {remark}" for remark in remarks_on(result)]
     return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, NO_PICTURE)

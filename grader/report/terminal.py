@@ -275,7 +275,7 @@ def _show_start(report: Report, page: Page) -> None:
     package = content.package_line(report)
     if package and not (submission.path or "").startswith(folder or "urdf/"):
         page.line(package, "dim")
-    if submission.another_robot:
+    if report.another_robot:
         page.line(content.notes(report)[0], "yellow")
 
 
@@ -316,9 +316,9 @@ def _show_submission(report: Report, page: Page) -> None:
         named = f"; missing: {enumerated(missing, _MAX_FILES)}" if missing and found else ""
         page.line(f"Evidence: {found or 'none'} of {len(report.evidence)} found{named}", "dim")
     _show_problems(report, page)
-    for line in content.notes(report)[bool(submission.another_robot) :]:
+    for line in content.notes(report)[bool(report.another_robot) :]:
         page.line(line, "cyan")
-    others, ignored = [file.path for file in submission.other_candidates], submission.ignored
+    others, ignored = [file.path for file in submission.unused_candidates], submission.ignored
     lines = [f"Not graded: {enumerated(others, _MAX_FILES)} (--verbose says why)"] if others else []
     more = f" (and {len(ignored) - 1} more: --verbose lists them)" if len(ignored) > 1 else ""
     for line in (*lines, *(f"Ignored: {file}{more}" for file in ignored[:1])):

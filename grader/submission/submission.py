@@ -12,6 +12,7 @@ from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.files.tree import File, Tree, make_tree
 from grader.package.package import NO_PACKAGE, Package
 from grader.python.budget import Budget
+from grader.robot.model import Robot
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
 from grader.submission.urdf import Absent, OtherCandidate, Read, Surroundings, Unreadable, Urdf
@@ -106,10 +107,20 @@ class Submission:
 
     @property
     def path(self) -> str | None:
-        """The path of the URDF, relative to the submission."""
-        return None if isinstance(self.urdf, Absent) else self.urdf.path
+        """The path of the URDF, relative to the submission; None without one."""
+        return None if isinstance(self.urdf, Absent) else self.urdf.path or None
 
     @property
+    def robot(self) -> Robot | None:
+        """The robot that is graded; None if there is none."""
+        return self.urdf.reading.robot if isinstance(self.urdf, Read) else None
+
+    @property
+    def unused_candidates(self) -> tuple[OtherCandidate, ...]:
+        """The other candidates that the URDF is not expanded from."""
+        return tuple(it for it in self.other_candidates if it.path not in self.included)
+
+    @cached_property
     def sha256(self) -> str | None:
         """The hash of the URDF's bytes; of a URDF on its own that includes others, of a list of the hashes of all."""
         own = sha256_of(self.urdf.data) if isinstance(self.urdf, Read) else None

@@ -1,11 +1,11 @@
 """The same report with other text wherever a student's text may be."""
 
 from collections.abc import Callable
-from dataclasses import replace
-from typing import NamedTuple, cast
+from dataclasses import dataclass, replace
 
-from grader.grading.graded_submission import GradedPackage, GradedSubmission
+from grader.files.tree import IgnoredFile
 from grader.grading.report import Hint, Report, Result
+from grader.package.package import Package
 from grader.report.content import other_problems
 from grader.source import Location, Source
 from grader.submission.submission import Submission
@@ -15,13 +15,14 @@ from grader.text import printable
 Words = Callable[[], str]
 
 
-class Reworded(NamedTuple):
-    """The files of a submission, each with the same text."""
+@dataclass(frozen=True, eq=False, repr=False)
+class Reworded(Submission):
+    """A submission whose files all have the same text."""
 
-    text: str
-    urdf: Urdf
+    text: str = ""
 
     def source(self, path: str) -> Source:
+        """Return the text, whatever the file."""
         return Source(path, self.text)
 
 
@@ -40,6 +41,7 @@ def recast(report: Report, words: Words) -> Report:
         results=tuple(_result(result, words, path, hints) for result in report.results),
         problems=problems,
         notes=tuple(words() for _ in report.notes),
+        another_robot=f"a {words()}" if report.another_robot else "",
         evidence=tuple(
             file._replace(files=tuple(replace(file, path=path()) for file in file.files)) for file in report.evidence
         ),
@@ -47,29 +49,29 @@ def recast(report: Report, words: Words) -> Report:
     )
 
 
-def _submission(old: GradedSubmission, words: Words, path: Words) -> GradedSubmission:
-    text = "\n".join(f"<a b='{words()}'/>{words()}" for _ in range(3))
-    urdf = _urdf(old.originals.urdf, words) if old.originals is not None else Absent()
-    return GradedSubmission(
+def _submission(old: Submission, words: Words, path: Words) -> Submission:
+    return Reworded(
         words(),
-        path() if old.path is not None else None,
-        old.sha256,
-        GradedPackage(path() if old.package.folder else "", words()) if old.package is not None else None,
-        tuple(OtherCandidate(path(), words()) for _ in old.other_candidates),
-        tuple(words() for _ in old.ignored),
-        old.has_urdf,
-        old.verdict,
-        old.is_single,
-        "unread" if old.unread else "",
-        another_robot=f"a {words()}" if old.another_robot else "",
-        originals=cast("Submission", Reworded(text, urdf)),
+        _urdf(old.urdf, words, path),
+        tuple(OtherCandidate(path(), words()) for _ in old.unused_candidates),
+        tree=replace(old.tree, ignored=tuple(IgnoredFile(path(), words()) for _ in old.ignored)),
+        package=_package(old.package, words, path) if old.package is not None else None,
+        is_single=old.is_single,
+        text="\n".join(f"<a b='{words()}'/>{words()}" for _ in range(3)),
     )
 
 
-def _urdf(old: Urdf, words: Words) -> Urdf:
-    """Return a URDF with other names of the robot, its links and joints."""
-    if not isinstance(old, Read) or old.reading.robot is None:
+def _package(old: Package, words: Words, path: Words) -> Package:
+    manifest = replace(old.manifest, name=words()) if old.manifest is not None else None
+    return replace(old, folder=path() if old.folder else "", manifest=manifest)
+
+
+def _urdf(old: Urdf, words: Words, path: Words) -> Urdf:
+    """Return a URDF with another path, and other names of the robot, its links and joints."""
+    if isinstance(old, Absent):
         return old
+    if not isinstance(old, Read) or old.reading.robot is None:
+        return old._replace(path=path())
     robot = old.reading.robot
     links = {link.name: f"{number}{words()}" for number, link in enumerate(robot.links)}
     joints = {joint.name: f"{number}{words()}" for number, joint in enumerate(robot.joints)}
@@ -87,7 +89,7 @@ def _urdf(old: Urdf, words: Words) -> Urdf:
             for joint in robot.joints
         ),
     )
-    return old._replace(reading=old.reading._replace(robot=renamed))
+    return old._replace(path=path(), reading=old.reading._replace(robot=renamed))
 
 
 def _result(old: Result, words: Words, path: Words, known: dict[str, Hint]) -> Result:

@@ -14,6 +14,8 @@ from grader.grading.report import ManualMark, Report
 from grader.report.formats import Format, render
 from grader.report.pages.student import render_html
 from grader.submission.opening import read_submission
+from grader.submission.submission import Submission
+from grader.submission.urdf import Absent
 from tests.report.reports import AXLE, hinted, marked
 from tests.samples import LAB6, ROOT, SAMPLES
 
@@ -91,5 +93,5 @@ def test_page_says_why_it_has_no_picture() -> None:
     """Nothing was submitted that a picture could show, or it is no longer there."""
     assert "No picture: no robot can be read" in render_html(SAMPLES["pictures-only"].grade())
     report = SAMPLES["lidar-buried"].grade()
-    gone = report._replace(submission=replace(report.submission, originals=None))
+    gone = report._replace(submission=Submission("ash", Absent(), is_single=False))
     assert "No picture: no robot can be read" in render_html(gone)

@@ -2,21 +2,15 @@
 
 from math import dist
 from pathlib import Path
-from typing import cast
 
 import pytest
 
 from grader.grading.grade import grade
-from grader.grading.graded_submission import GradedSubmission
-from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
 from grader.report.drawing.picture import Picture, picture_of, scene_of
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
-from grader.source import Source
 from grader.submission.opening import open_submission
-from grader.submission.submission import Submission
-from grader.submission.urdf import Urdf
 from tests.command_line import run
 
 ROOT = Path(__file__).parents[3]
@@ -48,25 +42,6 @@ def test_a_number_that_overflows_costs_neither_picture_nor_hints(kind: str, pict
     point = next(callout.point for callout in found.callouts if callout.link == "left_wheel")
     assert point is not None
     assert dist(point, (-0.15, 0.2, 0.0)) == pytest.approx(0.025)
-
-
-class Unsafe:
-    """Files that must not be opened again."""
-
-    @property
-    def urdf(self) -> Urdf:
-        """Fail, as the process that graded them did."""
-        raise MemoryError
-
-    def source(self, path: str) -> Source | None:
-        """Fail as well."""
-        raise MemoryError(path)
-
-
-def test_a_submission_that_could_not_be_graded_is_not_opened_again() -> None:
-    """It may be one that crashed the process that graded it."""
-    submission = GradedSubmission("ash", originals=cast("Submission", Unsafe()))
-    assert picture_of(Report(submission, load_rubric("lab6"), (), ())) is None
 
 
 @pytest.mark.parametrize(
