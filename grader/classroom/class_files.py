@@ -1,4 +1,7 @@
-"""Open one submission of a class folder or zip: the same submission that `grader grade` would see, and its digest."""
+"""The folder or zip of a class, and each submission in it: the one that `grader grade` would see, and its digest.
+
+Nothing is extracted.
+"""
 
 import os
 from contextlib import suppress

@@ -60,7 +60,7 @@ def changes(before: _Snapshot, after: _Snapshot) -> Iterator[Change]:
     keys = sorted({*before.results.students, *after.results.students, *(key for run in runs for key in run.students)})
     for key, old, new in zip(keys, before.results.each(keys), after.results.each(keys), strict=True):
         first, last = (_points(one.run.total(key)) for one in (before, after))
-        criteria = [*_steps(old, new)] if old is not None and new is not None else []
+        criteria = [*_points_changes(old, new)] if old is not None and new is not None else []
         if criteria or first != last or (old is None) != (new is None):
             why = tuple(_reasons(old, new, before.run, after.run))
             others = "it was graded again" if criteria else "marks, the roster or the deadline changed"
@@ -71,9 +71,14 @@ def _points(value: float | str | None) -> Decimal | None:
     return None if value is None else Decimal(str(value))
 
 
-def _steps(old: StoredResult, new: StoredResult) -> Iterator[PointsChange]:
+def _stored_points(stored: StoredResult, name: str) -> Decimal | None:
+    """Return the points of a criterion; None if it was not graded, or not decided."""
+    return _points(stored.results[name][0]) if name in stored.results else None
+
+
+def _points_changes(old: StoredResult, new: StoredResult) -> Iterator[PointsChange]:
     for name in dict.fromkeys((*old.results, *new.results)):
-        before, after = (_points(entry[0]) if (entry := one.results.get(name)) else None for one in (old, new))
+        before, after = _stored_points(old, name), _stored_points(new, name)
         if before != after:
             yield PointsChange(name, before, after)
 
@@ -81,14 +86,19 @@ def _steps(old: StoredResult, new: StoredResult) -> Iterator[PointsChange]:
 def _reasons(old: StoredResult | None, new: StoredResult | None, before: Run, after: Run) -> Iterator[str]:
     """Yield what may have changed a grade."""
     if old is None or new is None:
-        yield from ("no longer there",) * (old is not None) + ("first submission",) * (new is not None)
+        if old is not None:
+            yield "no longer there"
+        if new is not None:
+            yield "first submission"
         return
-    is_same = (before.rubric, before.version) == (after.rubric, after.version)
-    reasons = (
-        (old.student in before.totals and old.student not in after.totals, "no longer there"),
-        (old.digest != new.digest, "the submission changed"),
-        (before.rubric != after.rubric, "the rubric changed"),
-        (before.version != after.version, "the grader changed"),
-        (is_same and old.context != new.context, "the parts, the reference, xacro arguments or limits changed"),
-    )
-    yield from (reason for holds, reason in reasons if holds)
+    if old.student in before.totals and old.student not in after.totals:
+        yield "no longer there"
+    if old.digest != new.digest:
+        yield "the submission changed"
+    if before.rubric != after.rubric:
+        yield "the rubric changed"
+    if before.version != after.version:
+        yield "the grader changed"
+    is_same_grader = (before.rubric, before.version) == (after.rubric, after.version)
+    if is_same_grader and old.context != new.context:
+        yield "the parts, the reference, xacro arguments or limits changed"

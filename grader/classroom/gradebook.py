@@ -1,6 +1,9 @@
-"""The grades of a class, computed from the results, the rubric, the roster and the marks of people."""
+"""A gradebook: the grades of a class, computed from the results, the rubric, the roster and the marks of people.
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+Last, the grades as a table, one row a student: `grades.csv`, and `export csv`, which people may change.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -30,7 +33,11 @@ _MAX_SHARED = 10_000  # results
 
 
 class Gradebook:
-    """A class in a gradebook: iterating yields the grade of every student, in the order of the keys."""
+    """A class in a gradebook: iterating yields the grade of every student, in the order of the keys.
+
+    `batch` ends with one, and every other command on a class begins with one. It keeps nothing: the grades are computed
+    again from the files of its folder.
+    """
 
     def __init__(self, folder: Path, run: Run | None = None, answers: Path | None = None) -> None:
         """`run` is one that is not in the file yet; `answers` is the file of the model answers, for those who grade."""
@@ -83,7 +90,9 @@ class Gradebook:
     def report(self, stored: StoredResult) -> Report:
         """Return the points of a result: outcomes without places, values and hints."""
         unread = stored.reason if stored.verdict == "unreadable" else ""
-        why = f"{unread}; needs manual grading" if unread else stored.reason if stored.verdict == "errored" else ""
+        why = stored.reason if stored.verdict == "errored" else ""
+        if unread:
+            why = f"{unread}; needs manual grading"
         entries = ((name, stored.results[name]) for name in self._rows if name in stored.results)
         results = (self._result(name, status, words or why, by) for name, (_, status, words, by) in entries)
         urdf = Unreadable("", unread) if unread else Absent()
@@ -111,19 +120,25 @@ class Gradebook:
     def _grade(self, key: str, stored: StoredResult | None) -> StudentGrade:
         whole = (key, TOTAL)
         student, final = self.student(key, stored), self.marks.counting.get(whole) or self.marks.comments.get(whole)
-        known = {Reason.NOT_ON_ROSTER: not student.is_on_roster, Reason.UNCLEAR: key in self.run.unclear}
+        known = set[Reason]()
+        if not student.is_on_roster:
+            known.add(Reason.NOT_ON_ROSTER)
+        if key in self.run.unclear:
+            known.add(Reason.UNCLEAR)
         if stored is None:
             nothing = Report(Submission(key, Absent(), is_single=False), self.rubric, self.settings.parts, ())
-            return StudentGrade(student, None, nothing, final=final, known=_held(known))
-        known[Reason.GONE] = key not in self.run.totals
-        known[Reason.OUTDATED] = self._is_outdated or stored.context != self.run.context
+            return StudentGrade(student, None, nothing, final=final, known=frozenset(known))
+        if key not in self.run.totals:
+            known.add(Reason.GONE)
+        if self._is_outdated or stored.context != self.run.context:
+            known.add(Reason.OUTDATED)
         report, older = self.with_marks(self.report(stored), stored)
         if final is not None and _is_older(final, stored):
             older = (*older, TOTAL)
         late = self._lateness(student, stored, report)
         if final is not None and final.value:
             late = Lateness(late.days, reason=late.reason)
-        return StudentGrade(student, stored, report, late, final, older, _held(known))
+        return StudentGrade(student, stored, report, late, final, older, frozenset(known))
 
     def _lateness(self, student: Student, stored: StoredResult, report: Report) -> Lateness:
         """Return the lateness; what the roster says counts before what the LMS says."""
@@ -142,7 +157,8 @@ class Gradebook:
         results = {one.criterion.id: one for one in report.results}
         older: list[str] = []
         for name, row in self._rows.items():
-            mark, comment = (found.get((stored.student, name)) for found in (self.marks.counting, self.marks.comments))
+            key = stored.student, name
+            mark, comment = self.marks.counting.get(key), self.marks.comments.get(key)
             if comment is not None and name in results:
                 results[name] = results[name]._replace(comment=ManualComment(comment.comment, comment.by))
             if mark is None or mark.points is None or row.adjustment is not None:
@@ -150,12 +166,9 @@ class Gradebook:
             given = ManualMark(mark.points, mark.by, mark.comment)
             result = results.get(name) or SharedResult(row, _NOT_SUBMITTED)
             results[name] = result._replace(manual_mark=given, hint=None, comment=None)
-            older += [name] if _is_older(mark, stored) else []
+            if _is_older(mark, stored):
+                older.append(name)
         return report._replace(results=tuple(results[name] for name in self._rows if name in results)), tuple(older)
-
-
-def _held(facts: Mapping[Reason, bool]) -> frozenset[Reason]:
-    return frozenset(reason for reason, holds in facts.items() if holds)
 
 
 def _is_older(mark: Mark, stored: StoredResult) -> bool:
@@ -178,8 +191,10 @@ def grade_table(
     of them a person changed.
     """
     criteria = [row.id for row in book.rubric.criteria]
-    exported = ["exported"] * is_exported
-    return [*_HEADER, *criteria, *exported, "submission"], (_row(one, criteria, is_exported) for one in grades)
+    header = [*_HEADER, *criteria]
+    if is_exported:
+        header.append("exported")
+    return [*header, "submission"], (_row(one, criteria, is_exported) for one in grades)
 
 
 def _row(grade: StudentGrade, criteria: Sequence[str], is_exported: bool) -> list[CellValue]:

@@ -1,10 +1,13 @@
-"""A gradebook is a folder of plain files: what it holds, how it is recognised, who may write it."""
+"""The folder of a gradebook: the files in it, how it is recognised, who may write it, and its settings in `class.toml`.
+
+The settings are what a later run needs to grade the class again.
+"""
 
 import json
 import os
 import sys
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
 from datetime import datetime
@@ -19,6 +22,7 @@ from grader.text import printable, printable_path, shell_quoted
 
 RESULTS, GRADES, ROSTER = "results.jsonl", "grades.csv", "roster.csv"
 RUBRIC, MARKS, REPORTS = "rubric", "marks", "reports"
+CLASS_FILE = "class.toml"
 _LOCK = ".lock"
 _WINDOWS_LOCK_AT = 1 << 30  # beyond the end of the file: others cannot read what is locked
 
@@ -91,33 +95,27 @@ def batch_lock(folder: Path) -> Iterator[None]:
         yield
 
 
-CLASS_FILE = "class.toml"
-_MAX_SIZE = 1024 * 1024
+_MAX_SIZE = 1024 * 1024  # bytes of the settings
 _HEAD = "# What `grader batch` needs to grade this class again. An option of the command replaces what is here.\n"
 _ARGUMENTS = "arguments"
 
 
 @dataclass(frozen=True, slots=True)
 class ClassSettings:
-    """The inputs and settings of a class. Paths are relative to the gradebook; `due` is ISO 8601, empty for none.
-
-    `max_size` is in bytes. `rubric` is the copy of the rubric, which an edit may break: its id is known all the same.
-    The hashes are those of the copies as they were made, empty without one; another hash of the file means that
-    somebody edited the copy. `handed_out` are hashes of work that the course handed out, which is no equal work.
-    """
+    """The inputs and settings of a class. Paths are relative to the gradebook."""
 
     submissions: tuple[str, ...] = ()
     layout: str = "auto"
-    assignment: str = ""
-    due: str = ""
-    parts: tuple[str, ...] = ()
-    max_size: int = URDF_LIMIT
-    rubric: str = ""
-    rubric_id: str = ""
-    rubric_hash: str = ""
-    roster_hash: str = ""
-    handed_out: tuple[str, ...] = ()
-    arguments: Mapping[str, str] = field(default_factory=dict)
+    assignment: str = ""  # of nbgrader
+    due: str = ""  # the deadline in ISO 8601
+    parts: tuple[str, ...] = ()  # the ids of those to grade; without any all
+    max_size: int = URDF_LIMIT  # bytes
+    rubric: str = ""  # the copy of the rubric
+    rubric_id: str = ""  # known even if an edit breaks the copy
+    rubric_hash: str = ""  # of the copy as it was made: another one means that somebody edited it
+    roster_hash: str = ""  # of the copy as it was made
+    handed_out: tuple[str, ...] = ()  # hashes of work of the course, which is no equal work
+    arguments: Mapping[str, str] = field(default_factory=dict)  # of xacro
 
     def roots(self, folder: Path) -> tuple[Path, ...]:
         """Return the real paths of the submissions."""
@@ -149,7 +147,11 @@ def read_settings(folder: Path) -> ClassSettings:
         if key not in types:
             raise InputError(f"{shown} has an unknown key {printable(key)!r}{did_you_mean(key, types)}")
         wanted = list if types[key] is tuple else types[key]
-        parts = value if isinstance(value, list) else value.values() if isinstance(value, dict) else ()
+        parts: Iterable[object] = ()
+        if isinstance(value, list):
+            parts = value
+        elif isinstance(value, dict):
+            parts = value.values()
         if type(value) is not wanted or not all(isinstance(part, str) for part in parts):
             names = {list: "a list of texts", dict: "a table of texts", int: "a number", str: "a text"}
             raise InputError(f"{shown}: {key} should be {names[wanted]}")
@@ -161,8 +163,10 @@ def settings_text(settings: ClassSettings) -> str:
     """Return the settings as TOML; `read_settings` returns the same."""
     values = {one.name: getattr(settings, one.name) for one in fields(settings) if one.name != _ARGUMENTS}
     lines = [f"{key} = {_toml(value)}\n" for key, value in values.items()]
-    table = [f"{_toml(key)} = {_toml(value)}\n" for key, value in sorted(settings.arguments.items())]
-    return "".join((_HEAD, *lines, *([f"\n[{_ARGUMENTS}]\n", *table] if table else ())))
+    if settings.arguments:
+        lines.append(f"\n[{_ARGUMENTS}]\n")
+        lines += [f"{_toml(key)} = {_toml(value)}\n" for key, value in sorted(settings.arguments.items())]
+    return "".join((_HEAD, *lines))
 
 
 def _toml(value: object) -> str:

@@ -4,6 +4,7 @@
 - Canvas (canvas-lms, lib/content_zipper.rb): `{name}[_LATE]_{user id}_{upload}_{file}`, `[LATE_]anon_{5 letters}_...`;
   `..._text.html` is a text, `..._link.html` an address; a second `robot.urdf` is saved as `robot-1.urdf`.
 - Moodle (mod/assign/classes/downloader.php): `{full name}_{participant id}_assignsubmission_{plugin}[_{file}]`.
+- Students' folders further down: nbgrader's `submitted/{student}/{lab}`, and `{team}/Lab6/{student}`.
 """
 
 import re
@@ -48,17 +49,17 @@ _NAME_IN_CANVAS = re.compile(r"[^\x00-,./:-@[-^`{-\x7f\s]*")
 
 
 class NamedPath(NamedTuple):
-    """A path in a class folder, and what its `name` tells of the student and the file; a folder ends in a slash."""
+    """A path in a class folder, and what its name tells of the student and the file."""
 
     path: str
     student: Student
-    name: str = ""
-    upload: int = 0
-    ending: str = ""
-    plugin: str = ""
-    file: str = ""
+    name: str = ""  # of the student or team, in the file's name
+    upload: int = 0  # later ones have higher numbers
+    ending: str = ""  # a slash for a folder
+    plugin: str = ""  # of Moodle
+    file: str = ""  # the student's own name of it
     is_late: bool = False
-    submitted: str = ""
+    submitted: str = ""  # ISO 8601
 
     @property
     def order(self) -> tuple[int, bool, str]:

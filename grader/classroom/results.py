@@ -27,34 +27,26 @@ _DIGITS = 16  # of a hash
 
 
 class StoredResult(NamedTuple):
-    """The result of one submission: where it is, how it went, and what each criterion has.
-
-    `root` is the position of its path in the settings of the class, `paths` are below that. `person` is what the
-    names of the files say of the student. `context` is the hash of all that a result depends on besides the
-    submission. `work` are hashes of the robot in several forms, for equal work; `answers` are the keys of what a person
-    looks at for a criterion: students with the same answer have the same one, and it is empty without an answer.
-    `texts` are those of Word and PDF files by path, in a new result only. `no_documents` says why its documents were
-    not read. Without a `digest` the submission could not be read at all.
-    """
+    """The result of one submission: where it is, how it went, and what each criterion has."""
 
     student: str
     run: int
     verdict: Verdict
-    digest: str = ""
-    context: str = ""
-    reason: str = ""
-    root: int = 0
-    paths: tuple[str, ...] = ()
-    names: tuple[str, ...] = ()
+    digest: str = ""  # of the submission; empty if it could not be read at all
+    context: str = ""  # the hash of all that a result depends on besides the submission
+    reason: str = ""  # for the verdict, in words
+    root: int = 0  # the position of its class folder in the settings of the class
+    paths: tuple[str, ...] = ()  # below the class folder
+    names: tuple[str, ...] = ()  # the student's own of several files
     is_late: bool = False
-    submitted: str = ""
-    person: Mapping[str, str] = {}
+    submitted: str = ""  # ISO 8601
+    person: Mapping[str, str] = {}  # what the names of the files say of the student
     parts: tuple[str, ...] = ()
     results: Mapping[str, StoredCriterion] = {}
-    work: Mapping[str, str] = {}
-    answers: Mapping[str, str] = {}
-    no_documents: str = ""
-    texts: Mapping[str, str] = {}
+    work: Mapping[str, str] = {}  # hashes of the robot in several forms, for equal work
+    answers: Mapping[str, str] = {}  # by criterion: students with the same answer have the same key, empty without one
+    no_documents: str = ""  # why its documents were not read
+    texts: Mapping[str, str] = {}  # those of Word and PDF files by path, in a new result only
 
     @property
     def line(self) -> bytes:
@@ -66,21 +58,16 @@ class StoredResult(NamedTuple):
 
 
 class Run(NamedTuple):
-    """A finished run: its number, the time in ISO 8601, and the total of each student who submitted, None while it is
-    open.
-
-    `rubric` is its hash, `context` that of all that results depend on besides the submissions. `unclear` are the
-    students with possible submissions of which none was graded, `others` the totals of those without a submission.
-    """
+    """A finished run, the first of which has the number 1."""
 
     run: int
-    time: str
-    version: str
-    rubric: str
-    context: str
-    totals: Mapping[str, str | None]
-    unclear: Sequence[str] = ()
-    others: Mapping[str, str] = {}
+    time: str  # ISO 8601
+    version: str  # of the grader
+    rubric: str  # its hash
+    context: str  # the hash of all that results depend on besides the submissions
+    totals: Mapping[str, str | None]  # of the students who submitted, None while it is open
+    unclear: Sequence[str] = ()  # students with possible submissions of which none was graded
+    others: Mapping[str, str] = {}  # totals of the students without a submission
 
     @property
     def line(self) -> bytes:

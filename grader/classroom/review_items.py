@@ -91,7 +91,7 @@ def review_items(book: Gradebook, *, is_anonymous: bool = False, with_final: boo
     of_files = {(one.root, one.paths): one.answers for one in stored}  # in any order of the items the same
     for one in sorted(stored, key=lambda one: order[one.student]):
         answers = of_files[one.root, one.paths]
-        student, number = book.student(one.student, one), order[one.student] * is_anonymous
+        student, number = book.student(one.student, one), order[one.student] if is_anonymous else 0
         for name in one.results if with_final or (one.student, TOTAL) not in counting else ():
             mark = counting.get((one.student, name))
             if name in answers or mark is not None:

@@ -1,4 +1,8 @@
-"""The students of a class, from a CSV file of a person or an LMS whose columns are known by their titles."""
+"""The students of a class, and which of them a name or id means.
+
+The roster is a CSV file of a person or an LMS, whose columns are known by their titles. `People` finds the students to
+whom a submission may belong: by an LMS's id, any other id, or a full name, in this order.
+"""
 
 import re
 import unicodedata
@@ -158,6 +162,7 @@ def _normalise(row: dict[str, str]) -> Iterator[str]:
 def _student(row: dict[str, str]) -> Student:
     """Return the student in a row with values as they should be; without a key if it identifies none."""
     own, canvas, moodle = row["id"], row["canvas"], row["moodle"]
+    aliases = (row["github"],) if row["github"] else ()
     login, sis = row["login"] or row["github"], row["sis"] or ("" if own == canvas else own)
     name = row["name"] or f"{row['first']} {row['last']}".strip()
     extension, days_late = _days(row["extension"]), _days(row["late"])
@@ -168,7 +173,7 @@ def _student(row: dict[str, str]) -> Student:
         days_late = None if status is None or due else max(0.0, status - days)
     return Student(
         printable_path(own or row["sis"] or login or row["email"] or name or canvas or moodle), name, row["email"],
-        login, sis, canvas, moodle, tuple(filter(None, [row["github"]])), row["group"], row["section"], due,
+        login, sis, canvas, moodle, aliases, row["group"], row["section"], due,
          row["submitted"], days, is_late, days_late, row["submission"].strip("/"),
     )  # fmt: skip
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from grader.classroom.equal_work import EqualWork, equal_work
 from grader.classroom.gradebook import Gradebook
-from grader.classroom.student_grade import Reason, SharedResult, StudentGrade
+from grader.classroom.student_grade import Reason, StudentGrade
 from grader.grading.criterion import Criterion
 from grader.grading.rubric import Rubric
 
@@ -43,24 +43,22 @@ class ClassStatistics(NamedTuple):
     """The figures of a class. Students who are not on the roster, or whose submission is gone, are in `attention` only.
 
     A grade counts if it is a final mark, or that of a graded submission, after marks, adjustments and the late penalty;
-    points that still need manual grading are not in it yet, and `open` is the number of such grades. `tenths` are the
-    keys of the students in each tenth of the maximum, which itself is in the last one. `attention` are those who need
-    attention, each with details; `names` are those of all students by key.
+    points that still need manual grading are not in it yet.
     """
 
     rubric: Rubric
     maximum: Decimal
-    statuses: dict[str, int]
-    all: _Summary | None
-    open: int
-    late: int
-    tenths: Sequence[Sequence[str]]
+    statuses: dict[str, int]  # students by status
+    all: _Summary | None  # None if no grade counts
+    open: int  # grades with points that still need manual grading
+    late: int  # students
+    tenths: Sequence[Sequence[str]]  # students in each tenth of the maximum, which itself is in the last one
     criteria: Sequence[CriterionFigures]
     mistakes: Sequence[_CommonMistake]
-    sections: dict[str, _Summary]
-    attention: dict[Reason, list[tuple[str, str]]]
+    sections: dict[str, _Summary]  # without any if there is only one
+    attention: dict[Reason, list[tuple[str, str]]]  # students who need attention, each with details
     equal: Sequence[EqualWork]
-    names: dict[str, str]
+    names: dict[str, str]  # of all students, by key
 
 
 def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatistics:
@@ -87,7 +85,7 @@ def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatisti
         sum(one.obstacle is not None for one in counted),
         sum(one.late.days > 0 and not one.has_final for one in enrolled),
         tenths,
-        *_of_criteria(book, counted),
+        *_criteria_figures(book, counted),
         {name: summary(values) for name, values in sorted(sections.items())} if len(sections) > 1 else {},
         {reason: those for reason, those in attention.items() if those},
         equal_work(present, book.settings.handed_out),
@@ -102,35 +100,23 @@ def summary(totals: Iterable[Decimal]) -> _Summary:
     return _Summary(count, sum(found, Decimal(0)) / count, (found[(count - 1) // 2] + found[count // 2]) / 2)
 
 
-def _of_criteria(
+def _criteria_figures(
     book: Gradebook, grades: Iterable[StudentGrade]
 ) -> tuple[list[CriterionFigures], list[_CommonMistake]]:
     """Return the figures of the criteria, and the most common mistakes."""
-    shared: dict[int, tuple[SharedResult, list[str]]] = {}  # most students of a class have the same few objects
-    for grade in grades:
-        for result in grade.results:
-            shared.setdefault(id(result), (result, []))[1].append(grade.student.key)
     counts, earned = defaultdict[str, Counter[str]](Counter), defaultdict[str, Decimal](Decimal)
     mistakes = defaultdict[tuple[str, str], list[str]](list)
-    for result, keys in shared.values():
-        name, message = result.criterion.id, result.outcome.message
-        counts[name].update(dict.fromkeys(_of(result), len(keys)))
-        earned[name] += result.points * len(keys)
-        if message and result.is_lost and result.manual_mark is None and not result.criterion.bonus:
-            mistakes[name, message] += keys
+    for grade in grades:
+        for result in grade.results:
+            name = result.criterion.id
+            for kind in result.kinds:
+                counts[name][kind] += 1
+            earned[name] += result.points
+            if result.mistake:
+                mistakes[name, result.mistake].append(grade.student.key)
     common = sorted(mistakes.items(), key=lambda item: (-len(item[1]), item[0]))[:_MAX_MISTAKES]
     rows = [CriterionFigures(row, counts[row.id], _share(row, counts[row.id], earned[row.id])) for row in book.criteria]
     return rows, [_CommonMistake(*where, sorted(keys)) for where, keys in common]
-
-
-def _of(result: SharedResult) -> tuple[str, ...]:
-    """Return what a result counts as: a mark, a given point, or the status of the check."""
-    if result.manual_mark is not None:
-        return "marked", "decided"
-    if result.carried or result.is_adjusted:
-        return "carried", "decided"
-    status = result.outcome.status
-    return (status,) if status in ("pending", "errored") else (status, "decided")
 
 
 def _share(row: Criterion, found: Counter[str], earned: Decimal) -> float | None:

@@ -17,7 +17,11 @@ _ON_TIME = Lateness()
 
 
 class Reason(StrEnum):
-    """Why a grade needs attention, the most urgent reason first; the last two only keep it from being published."""
+    """Why a grade needs attention, the most urgent reason first; the last two only keep it from being published.
+
+    UNCLEAR means that there are possible submissions, of which none was graded, GONE that the newest run did not find
+    the submission, and OUTDATED that it was graded by another rubric or version, or on other parts.
+    """
 
     FAILED = "the grader failed"
     UNREADABLE = "could not be graded"
@@ -37,7 +41,7 @@ _OBSTACLES = {Reason.FAILED, Reason.UNREADABLE, Reason.UNCLEAR, Reason.MISSING, 
 
 
 class SharedResult(Result):
-    """A result in a class: most students share it with others, so what follows from it is computed once."""
+    """The result of a criterion in a class: most students share it, so what follows from it is computed once."""
 
     @cached_property
     def points(self) -> Decimal:
@@ -55,6 +59,22 @@ class SharedResult(Result):
         return self.outcome.status == "errored" and self.manual_mark is None and not self.is_adjusted
 
     @cached_property
+    def kinds(self) -> tuple[str, ...]:
+        """What it counts as in the figures of a class: a mark, a given point, or the status of the check."""
+        if self.manual_mark is not None:
+            return "marked", "decided"
+        if self.carried or self.is_adjusted:
+            return "carried", "decided"
+        status = self.outcome.status
+        return (status,) if status in ("pending", "errored") else (status, "decided")
+
+    @cached_property
+    def mistake(self) -> str:
+        """The message about a mistake of the student, as a check found it; empty without one."""
+        is_mistake = self.is_lost and self.manual_mark is None and not self.criterion.bonus
+        return self.outcome.message if is_mistake else ""
+
+    @cached_property
     def cell(self) -> str | None:
         """The points in a table; None if they are not decided."""
         return None if self.is_open or self.is_faulty else format_points(self.points)
@@ -62,21 +82,33 @@ class SharedResult(Result):
 
 @dataclass(frozen=True)
 class StudentGrade:
-    """The grade of one student.
+    """The grade of one student: what counts, what is open, and why a person should look at it.
 
-    `report` has the points with the manual marks, without a submission none; `final` is the mark or excuse of the whole
-    submission; `older` are the criteria (or `total`) that were marked before the submission changed; `known` is what
-    the class says: GONE means that the newest run did not find the submission, OUTDATED that it was graded by another
-    rubric, version, or on other parts, and UNCLEAR that there are possible submissions, of which none was graded.
+    A `Gradebook` makes it from the stored result, the marks and the roster, and nothing else decides what a student
+    gets: `grades.csv`, exports, reports, statistics and pages read it. `total` is the grade as it is now, `published`
+    what may leave the house, `obstacle` what is in the way, and `concerns` all that a person should look at.
+
+    A student who submitted nothing has no grade until a person gives a final mark:
+
+    >>> from dataclasses import replace
+    >>> from grader.grading.rubric import load_rubric
+    >>> from grader.submission.submission import Absent, Submission
+    >>> nothing = Report(Submission("ann", Absent(), is_single=False), load_rubric("lab6"), (), ())
+    >>> missing = StudentGrade(Student("ann"), None, nothing)
+    >>> missing.status, missing.published, missing.why_open
+    ('missing', None, 'nothing was submitted')
+    >>> mark = Mark(time="", by="Kim", student="ann", criterion="total", value="12.5")
+    >>> replace(missing, final=mark).published
+    Decimal('12.5')
     """
 
     student: Student
-    stored: StoredResult | None
-    report: Report
+    stored: StoredResult | None  # None without a submission
+    report: Report  # its points with the manual marks; without a submission no results
     late: Lateness = _ON_TIME
-    final: Mark | None = None
-    older: tuple[str, ...] = ()
-    known: frozenset[Reason] = frozenset()
+    final: Mark | None = None  # the mark, comment or excuse of the whole submission
+    older: tuple[str, ...] = ()  # the criteria (or `total`) that were marked before the submission changed
+    known: frozenset[Reason] = frozenset()  # what the class says: NOT_ON_ROSTER, UNCLEAR, GONE, OUTDATED
 
     @property
     def is_excused(self) -> bool:
@@ -176,8 +208,11 @@ class StudentGrade:
     def why_open(self) -> str:
         """Why this grade must not be published yet; empty if it is final."""
         if self.obstacle is Reason.PENDING:
-            return f"{counted_points(self.pending)} need{'s' * (self.pending == 1)} manual grading"
-        return ": ".join(filter(None, (self.obstacle, self.concerns.get(self.obstacle or Reason.PENDING))))
+            return f"{counted_points(self.pending)} {'needs' if self.pending == 1 else 'need'} manual grading"
+        if self.obstacle is None:
+            return ""
+        detail = self.concerns.get(self.obstacle)
+        return f"{self.obstacle}: {detail}" if detail else str(self.obstacle)
 
     @property
     def published(self) -> Decimal | None:

@@ -1,4 +1,8 @@
-"""The submissions of a class, one a student, in one or several folders or zips, and which layout their names prove."""
+"""The submissions of a class, one a student, in one or several folders or zips, and whose each of them is.
+
+The names prove a layout. All files of a student are one submission, of several versions the last. Submissions are
+matched with students by the roster's column `submission`, ids, names and groups.
+"""
 
 import os
 import re
@@ -88,7 +92,8 @@ def _files(
         part = f"{one.plugin}/" if one.plugin else ""
         paths = _files_below(folder.listing, top) if one.path in folders else [top]
         named |= {path: part + (path[len(top) + 1 :] or one.file or one.path) for path in paths}
-        full += [top] * bool(paths)
+        if paths:
+            full.append(top)
     if len(full) > 1:
         return tuple(named), tuple(named.values())
     top = next(iter(full or tops))
@@ -281,8 +286,6 @@ def _path_key(path: str) -> str:
     return f"./{path}" if path.isprintable() else f"./{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"
 
 
-__all__ = ["ClassSubmission", "Intake", "read_class"]
-
 _LAYOUTS = ("folders", "canvas", "moodle", "teams", "nbgrader")
 
 
@@ -307,14 +310,18 @@ def read_class(
         raise InputError("the class folders have the same names: rename one, so that the roster can name them")
     roots = list(zip(map(listing_of, paths), names, strict=True))
     owners = _Owners(roster, roots)
-    labs = LabFolders(folders or tuple(filter(None, [rubric_id])))
+    if not folders and rubric_id:
+        folders = (rubric_id,)
+    labs = LabFolders(folders)
     found: list[ClassSubmission] = []
     layouts: dict[str, None] = {}
     for root, (path, (listing, _)) in enumerate(zip(paths, roots, strict=True)):
         lab, is_explicit = assignment or rubric_id, layout != "auto"
         top = ClassFolder(listing, listing.children(""), "", owners.people, labs, lab, is_explicit, owners.ignored)
         folder = _inner_class(_without_gradebooks(top))
-        chosen = layout if is_explicit else "nbgrader" if assignment else _layout_of(folder)
+        chosen = layout
+        if not is_explicit:
+            chosen = "nbgrader" if assignment else _layout_of(folder)
         if chosen == "teams" and not is_explicit and "package.xml" in folder.children.files:
             what = f"{printable_path(path)} is one submission and not a class: it contains a package.xml"
             raise InputError(f"{what} (grade it with `grader grade {shell_quoted(path)}`)")

@@ -1,7 +1,14 @@
-"""A student's grade as a comment in HTML for an LMS: which points were lost, and why.
+"""What students get back through an LMS: a comment in HTML on their grade, or their report in a zip of all.
 
 Moodle stores the comment unchanged and has it in the next worksheet (mod/assign/feedback/comments/locallib.php). An
 HTML comment at its end holds a hash of the words: without a match, a person has changed or added some.
+
+Moodle, "Upload multiple feedback files in a zip" (mod/assign/feedback/file/importziplib.php): the folder
+`name_participant_type_plugin_` has the files of one student; before Moodle 4.1 only with the last underscore.
+
+Canvas, "Upload Submissions" (app/models/abstract_assignment.rb, infer_comment_context_from_filename): the first two
+numbers between underscores are the user and an attachment of the newest submission. The student sees the file under the
+attachment's name, each member of a group, too.
 """
 
 import html
@@ -42,7 +49,10 @@ def lost_points(results: Iterable[Result]) -> Iterator[str]:
 def comment_html(opening: str, lines: Sequence[str]) -> str:
     """Return a comment in one line: `opening`, which begins with Grade, then a list of lines, of many the first."""
     items = "".join(f"<li>{_escape(line)}</li>" for line in first_lines(lines, MAX_LINES))
-    text = protected(f"<p>{_escape(opening)}</p>" + f"<ul>{items}</ul>" * bool(items))
+    text = f"<p>{_escape(opening)}</p>"
+    if items:
+        text += f"<ul>{items}</ul>"
+    text = protected(text)
     return f"{text}<!-- grader {_hash(text)} -->"
 
 

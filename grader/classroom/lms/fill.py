@@ -1,7 +1,8 @@
 """Fill a grade file of an LMS with the grades of a class, and say what importing it changes.
 
 Only the cells of the grade, and Moodle's comments, are written; every other byte stays. An empty cell may be imported
-as a change, and Moodle's worksheets have rounded grades. So rows of students without a grade are removed.
+as a change, and Moodle's worksheets have rounded grades. So rows of students without a grade are removed. In matching
+rows with students, ids decide over names, and nothing is guessed.
 """
 
 import re
@@ -108,7 +109,7 @@ class _GradeFile(NamedTuple):
 
 def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: FillOptions) -> Filled:
     """Return a grade file with the grades in the column of the lab; raises InputError if it is not such a file."""
-    file = _read(data, form, options)
+    file = _read_grade_file(data, form, options)
     people, titles = [*file.people.values()], file.table.titles
     header = titles[file.roles["grade"]]
     warnings = _check_maximum(file.maximum, f"{header!r} in {form.lms}", options)
@@ -167,25 +168,25 @@ def _check_maximum(text: str, what: str, options: FillOptions) -> list[str]:
     return [] if maximum is not None else [f"the file does not state the maximum of {what}"]
 
 
-def _read(data: bytes, form: Form, options: FillOptions) -> _GradeFile:
+def _read_grade_file(data: bytes, form: Form, options: FillOptions) -> _GradeFile:
     """Return a grade file; raises InputError if it is another file, or if the column of the lab is ambiguous."""
     table = read_table(data, options.shown)
     titles, roles = table.titles, form.roles(table.titles)
     if not (roles.keys() >= {*form.needed} and roles.keys() & {*IDS}):
-        has = _list(titles) or "nothing"
+        has = _listed(titles) or "nothing"
         raise InputError(f"{options.shown} is not a grade file of {form.lms}: its first row has {has}")
     points = next((row for row in table.rows[1:] if _POINTS_ROW in row.value(0)), TableRow(0, 0, (), ""))
     columns = {at: found for at, title in enumerate(titles) if (found := form.grade.fullmatch(title))}
     if "maximum" in roles:
         columns = {at: found for at, found in columns.items() if at + 1 == roles["maximum"]}
     grade = roles["grade"] = _choose(columns, form, options)
-    people = {row: one for row in table.rows[1:] if row is not points and any((one := _student(row, roles))[:7])}
+    people = {row: one for row in table.rows[1:] if row is not points and any((one := _student_in(row, roles))[:7])}
     places = (columns[grade].groupdict().get("maximum"), points.value(grade))
     maxima = (*places, *(row.value(roles.get("maximum")) for row in people))
     return _GradeFile(table, form, roles, people, _THOUSANDS.sub("", next(filter(None, maxima), "")))
 
 
-def _student(row: TableRow, roles: Mapping[str, int]) -> Student:
+def _student_in(row: TableRow, roles: Mapping[str, int]) -> Student:
     """Return the student in a row."""
     login, sis, email, canvas, moodle, name = (row.value(roles.get(role)).removeprefix("#") for role in (*IDS, "name"))
     return Student("", name, email, login, sis, canvas, re.split(r"\D", moodle)[-1])  # of Participant 123
@@ -200,7 +201,7 @@ def _choose(columns: Mapping[int, re.Match[str]], form: Form, options: FillOptio
         found = [*columns]
     if len(found) == 1:
         return found[0]
-    listed = _list([columns[at][0] for at in found or columns])
+    listed = _listed([columns[at][0] for at in found or columns])
     advice = f"choose one with --column: {listed}" if listed else f"create it in {form.lms}, and export again"
     what = f"{'' if options.column.strip() else 'for '}{' or '.join(map(repr, names))}"
     raise InputError(f"{options.shown} has {'several columns' if found else 'no column'} {what}; {advice}")
@@ -225,7 +226,7 @@ def _words(text: str) -> str:
     return f" {' '.join(re.findall(_WORDS, text.casefold()))} "
 
 
-def _list(headers: Sequence[str]) -> str:
+def _listed(headers: Sequence[str]) -> str:
     return enumerated([repr(header) for header in headers], _MAX_COLUMNS)
 
 

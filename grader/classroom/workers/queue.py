@@ -1,4 +1,4 @@
-"""Tasks in an executor: in groups as long as none fails, one by one after a failure."""
+"""Tasks in an executor: in groups as long as none fails, one by one after a failure; and the progress of a run."""
 
 import time
 from collections import deque
@@ -28,8 +28,14 @@ class Progress:
 
     def with_result(self, verdict: str) -> "Progress":
         """Return the progress after one more result."""
-        counted = {"unchanged"} if verdict == "unchanged" else {"graded", verdict}
-        return replace(self, **{name: getattr(self, name) + 1 for name in counted})
+        if verdict == "unchanged":
+            return replace(self, unchanged=self.unchanged + 1)
+        return replace(
+            self,
+            graded=self.graded + 1,
+            unreadable=self.unreadable + (verdict == "unreadable"),
+            errored=self.errored + (verdict == "errored"),
+        )
 
 
 _GROUP_TIME = 0.05  # seconds of work that are worth one message to a worker

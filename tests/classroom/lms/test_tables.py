@@ -126,7 +126,7 @@ def test_other_files_are_refused() -> None:
 
 def test_limits(monkeypatch: pytest.MonkeyPatch) -> None:
     """A file at a limit is read, and one above it is refused."""
-    for name, data in [("SIZE_LIMIT", b"a,b\n"), ("_CELL_LIMIT", b"a\n\nc\nd"), ("CELL_LIMIT", b"a,b\nc,d")]:
+    for name, data in [("SIZE_LIMIT", b"a,b\n"), ("_CELL_LIMIT", b"a\n\nc\nd"), ("_CELL_LIMIT", b"a,b\nc,d")]:
         monkeypatch.setattr(tables, name, 4)
         read_table(data, "x.csv")
         monkeypatch.setattr(tables, name, 3)
