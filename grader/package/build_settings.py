@@ -7,8 +7,7 @@ from configparser import ConfigParser, Error
 
 from grader.errors import InputError
 from grader.package.globbing import PackageListing
-from grader.python.knowledge import unknown_in
-from grader.python.values import Unknown, Value
+from grader.python.values import Unknown, Value, unknown_in
 from grader.text import enumerated
 
 # The arguments that name the Python packages; without one, setuptools searches for packages, but not in the folders

@@ -10,10 +10,9 @@ from typing import NamedTuple
 from grader.files.names import ignored_part
 from grader.names import did_you_mean
 from grader.package.globbing import PackageListing
-from grader.python.knowledge import unknown_in
 from grader.python.library import MAX_PATH, PACKAGE_FOLDER
 from grader.python.parse import Position
-from grader.python.values import PLAIN, Call, Function, Items, QualifiedName, Undetermined, Unknown, Value
+from grader.python.values import PLAIN, Call, Function, Items, QualifiedName, Undetermined, Unknown, Value, unknown_in
 from grader.text import enumerated
 
 _MAX_GUESSES = 10

@@ -12,8 +12,17 @@ from grader.errors import InputError
 from grader.files.names import ignored_part
 from grader.package.globbing import PackageListing
 from grader.python.evaluation import Evaluation
-from grader.python.knowledge import known, path_text
-from grader.python.values import Call, EvaluationFails, FunctionTable, Items, Undetermined, Unknown, Value
+from grader.python.values import (
+    Call,
+    EvaluationFails,
+    FunctionTable,
+    Items,
+    Undetermined,
+    Unknown,
+    Value,
+    known,
+    path_text,
+)
 
 _OUTSIDE = "it reads files outside of the package"
 _GLOB_OPTIONS = ("pathname", "recursive", "root_dir", "include_hidden", "dir_fd")

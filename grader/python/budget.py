@@ -98,6 +98,6 @@ class Budget:
             return 0
         if isinstance(part, py.Items | py.Namespace | py.PlainFunction):  # a plain function itself refuses these
             return 0
-        from grader.python.knowledge import refuse  # late: most gradings evaluate no Python
+        from grader.python.values import refuse  # late: most gradings evaluate no Python
 
         return refuse(part, f"values of the type {type(part).__name__} are not supported")

@@ -9,8 +9,7 @@ from typing import Any
 
 from grader.python import values as py
 from grader.python.budget import Budget
-from grader.python.knowledge import call_plain, checked_key, items_of, iterate, known, reason_of, str_of
-from grader.python.values import too_large
+from grader.python.values import call_plain, checked_key, items_of, iterate, known, reason_of, str_of, too_large
 
 _MAX_DIGITS = 400  # that round leaves
 _OF_SIGNATURE = re.compile(r"positional argument|keyword argument|required keyword")

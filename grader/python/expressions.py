@@ -7,14 +7,13 @@ outside of the allow-list is reached. `files` adds what an expression in a file 
 import ast
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, ClassVar
 
 from grader.python.budget import Budget
 from grader.python.builtins import call, truth
-from grader.python.knowledge import call_plain, iterate
 from grader.python.operators import attribute, compare, operate, subscript
-from grader.python.parse import kinds_of, parse_expression
-from grader.python.values import EvaluationFails, Scope, Undetermined, Value
+from grader.python.parse import parse_expression
+from grader.python.values import EvaluationFails, Scope, Undetermined, Value, call_plain, iterate
 
 _MAX_LENGTH = 4_000  # characters of an expression
 _MAX_KEPT = 200  # characters of an expression that is kept once it is parsed
@@ -64,11 +63,11 @@ class Expressions:
 
     evaluate = value  # of a part of an expression: in a file, it may be Unknown
 
-    def _of_constant(self, node: ast.Constant, scope: Scope) -> Value:
+    def _constant(self, node: ast.Constant, scope: Scope) -> Value:
         del scope
         return node.value
 
-    def _of_name(self, node: ast.Name, scope: Scope) -> Value:
+    def _name(self, node: ast.Name, scope: Scope) -> Value:
         if node.id.startswith("__"):
             raise EvaluationFails(f"names that begin with two underscores are not allowed: {node.id}")
         try:
@@ -76,18 +75,18 @@ class Expressions:
         except KeyError:
             return self._find(node.id)
 
-    def _of_binop(self, node: ast.BinOp, scope: Scope) -> Value:
+    def _binop(self, node: ast.BinOp, scope: Scope) -> Value:
         left, right = self.evaluate(node.left, scope), self.evaluate(node.right, scope)
         return operate(node.op, left, right, self.budget)
 
-    def _of_ifexp(self, node: ast.IfExp, scope: Scope) -> Value:
+    def _ifexp(self, node: ast.IfExp, scope: Scope) -> Value:
         holds = self.test(self.evaluate(node.test, scope), [node.body, node.orelse])
         return self.evaluate(node.body if holds else node.orelse, scope)
 
-    def _of_attribute(self, node: ast.Attribute, scope: Scope) -> Value:
+    def _attribute(self, node: ast.Attribute, scope: Scope) -> Value:
         return attribute(self.evaluate(node.value, scope), node.attr, self.budget)
 
-    def _of_subscript(self, node: ast.Subscript, scope: Scope) -> Value:
+    def _subscript(self, node: ast.Subscript, scope: Scope) -> Value:
         return self.item(self.evaluate(node.value, scope), self.key(node.slice, scope), node)
 
     def item(self, owner: Value, key: Value, node: ast.expr) -> Value:
@@ -95,7 +94,7 @@ class Expressions:
         del node
         return subscript(owner, key, self.budget)
 
-    def _of_unaryop(self, node: ast.UnaryOp, scope: Scope) -> Value:
+    def _unaryop(self, node: ast.UnaryOp, scope: Scope) -> Value:
         if type(node.op) not in _UNARY:
             raise Undetermined("an expression of this kind is not supported")
         operand = self.evaluate(node.operand, scope)
@@ -107,16 +106,16 @@ class Expressions:
         """Return the values of the elements of a list, or of the arguments of a call."""
         return [self.evaluate(element, scope) for element in nodes]
 
-    def _of_list(self, node: ast.List, scope: Scope) -> Value:
+    def _list(self, node: ast.List, scope: Scope) -> Value:
         return self.elements(node.elts, scope)
 
-    def _of_tuple(self, node: ast.Tuple, scope: Scope) -> Value:
+    def _tuple(self, node: ast.Tuple, scope: Scope) -> Value:
         return tuple(self.elements(node.elts, scope))
 
-    def _of_listcomp(self, node: ast.ListComp, scope: Scope) -> Value:
+    def _listcomp(self, node: ast.ListComp, scope: Scope) -> Value:
         return [self.evaluate(node.elt, inner) for inner in self.rounds(node.generators, Scope({}, scope))]
 
-    def _of_compare(self, node: ast.Compare, scope: Scope) -> Value:
+    def _compare(self, node: ast.Compare, scope: Scope) -> Value:
         left = self.evaluate(node.left, scope)
         for op, comparator in zip(node.ops, node.comparators, strict=True):
             right = self.evaluate(comparator, scope)
@@ -125,7 +124,7 @@ class Expressions:
             left = right
         return True
 
-    def _of_boolop(self, node: ast.BoolOp, scope: Scope) -> Value:
+    def _boolop(self, node: ast.BoolOp, scope: Scope) -> Value:
         value: Value = None
         for index, operand in enumerate(node.values, 1):
             value = self.evaluate(operand, scope)
@@ -147,7 +146,7 @@ class Expressions:
         self.budget.measure(bounds)
         return slice(*bounds)
 
-    def _of_call(self, node: ast.Call, scope: Scope) -> Value:
+    def _call(self, node: ast.Call, scope: Scope) -> Value:
         function = self.evaluate(node.func, scope)
         args = self.elements(node.args, scope)
         kwargs: dict[str, Value] = {}
@@ -207,7 +206,22 @@ class Expressions:
         for inner, item in zip(targets, values, strict=True):
             self.bind(inner, item, scope)
 
-    KINDS: Mapping[type, Callable[[Any, Any, Scope], Value]] = {}
+    # The expressions that are evaluated.
+    KINDS: ClassVar[Mapping[type[ast.expr], Callable[[Any, Any, Scope], Value]]] = {
+        ast.Constant: _constant,
+        ast.Name: _name,
+        ast.BinOp: _binop,
+        ast.IfExp: _ifexp,
+        ast.Attribute: _attribute,
+        ast.Subscript: _subscript,
+        ast.UnaryOp: _unaryop,
+        ast.List: _list,
+        ast.Tuple: _tuple,
+        ast.ListComp: _listcomp,
+        ast.Compare: _compare,
+        ast.BoolOp: _boolop,
+        ast.Call: _call,
+    }
 
 
 _UNARY: Mapping[type[ast.unaryop], Callable[[Value], Value]] = {
@@ -215,6 +229,3 @@ _UNARY: Mapping[type[ast.unaryop], Callable[[Value], Value]] = {
     ast.USub: lambda value: -value,
     ast.UAdd: lambda value: +value,
 }
-
-
-Expressions.KINDS = kinds_of(Expressions)

@@ -5,18 +5,24 @@ A statement of any other kind, such as `try` or `while`, ends the evaluation: wh
 
 import ast
 import builtins
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from copy import copy
 from functools import partial
 from io import StringIO
+from operator import setitem
+from pathlib import PurePosixPath
+from typing import Any, ClassVar
 
 from grader.python import values as py
 from grader.python.budget import Budget
 from grader.python.builtins import truth
-from grader.python.file_expressions import FileExpressions
-from grader.python.knowledge import iterate
-from grader.python.library import UNCERTAIN, USUAL_NAMES, import_error, imported_names
+from grader.python.evaluation import NOT_EVALUATED, Evaluation
+from grader.python.library import CONSTANTS, UNCERTAIN, USUAL_NAMES, attribute_error, import_error, imported_names
+from grader.python.operators import has_attribute, operate
 from grader.python.parse import Code, Position, bound_in, own_nodes, position_of
+from grader.python.values import call_plain, iterate, known, refuse, str_of
 
+_PARTS = ("name", "stem", "suffix", "parent", "parents", "parts")  # of a path
 _STEPS = 100_000  # what the evaluation of one file may use
 _IN_ANNOTATIONS = (
     ast.Attribute, ast.Subscript, ast.Constant, ast.BinOp, ast.BitOr, ast.Tuple, ast.List, ast.expr_context, ast.Index,
@@ -31,7 +37,7 @@ class _ReturnFlow(py.EvaluationSignal):
         self.value = value
 
 
-class Interpreter(FileExpressions):
+class Interpreter(Evaluation):
     """Adds the statements of a file to its expressions."""
 
     def __init__(
@@ -88,13 +94,13 @@ class Interpreter(FileExpressions):
         for node in body:
             self.budget.charge(1)
             self.at = position_of(node)
-            kind = getattr(self, f"_on_{type(node).__name__.lower()}", None)
+            kind = self._STATEMENTS.get(type(node))
             if kind is None:
                 raise py.Undetermined(
                     f"a statement of the kind {type(node).__name__} is not evaluated", self.at, is_final=True
                 )
             try:
-                kind(node, scope)
+                kind(self, node, scope)
             except py.EvaluationFails as error:  # of the statement itself, such as an assignment
                 self.error(str(error), position_of(node))
             except py.Undetermined as error:
@@ -103,7 +109,7 @@ class Interpreter(FileExpressions):
                 reason = f"this statement is not evaluated: {error}"
                 raise py.Undetermined(reason, error.at or position_of(node), is_final=True) from None
 
-    def _on_functiondef(self, node: ast.FunctionDef, scope: py.Scope) -> None:
+    def _functiondef(self, node: ast.FunctionDef, scope: py.Scope) -> None:
         at = position_of(node)
         if node.decorator_list or getattr(node, "type_params", []):
             raise py.Undetermined("a function with a decorator or type parameters is not evaluated", at, is_final=True)
@@ -123,27 +129,27 @@ class Interpreter(FileExpressions):
             return flow.value
         return None
 
-    def _on_return(self, node: ast.Return, scope: py.Scope) -> None:
+    def _return(self, node: ast.Return, scope: py.Scope) -> None:
         raise _ReturnFlow(self.evaluate(node.value, scope) if node.value is not None else None)
 
     def _annotation(self, node: ast.expr | None, scope: py.Scope) -> None:
         """Find the names of an annotation, and stop where it calls something."""
         for part in ast.walk(node) if node is not None else ():
             if isinstance(part, ast.Name):
-                self._of_name(part, scope)
+                self._name(part, scope)
             elif not isinstance(part, _IN_ANNOTATIONS):
                 raise py.Undetermined("this annotation is not evaluated", self.at, is_final=True)
 
-    def _on_if(self, node: ast.If, scope: py.Scope) -> None:
+    def _if(self, node: ast.If, scope: py.Scope) -> None:
         self._block(node.body if truth(self.evaluate(node.test, scope)) else node.orelse, scope)
 
-    def _on_for(self, node: ast.For, scope: py.Scope) -> None:
+    def _for(self, node: ast.For, scope: py.Scope) -> None:
         for item in iterate(self.evaluate(node.iter, scope)):
             self.bind(node.target, item, scope)
             self._block(node.body, scope)
         self._block(node.orelse, scope)
 
-    def _on_with(self, node: ast.With, scope: py.Scope) -> None:
+    def _with(self, node: ast.With, scope: py.Scope) -> None:
         value, target = self.evaluate(node.items[0].context_expr, scope), node.items[0].optional_vars
         if isinstance(value, py.Call):
             self.call_value(py.BoundMethod(value, "__enter__"), py.Call("", [], {}, self.at))
@@ -159,19 +165,19 @@ class Interpreter(FileExpressions):
             else:
                 value.method_calls.append(py.Call(f"{value.name}.__exit__", [], {}, self.at, value))
 
-    def _on_annassign(self, node: ast.AnnAssign, scope: py.Scope) -> None:
+    def _annassign(self, node: ast.AnnAssign, scope: py.Scope) -> None:
         if node.value is not None:
             self.bind(node.target, self.evaluate(node.value, scope), scope)
         if scope is self.module:
             self._annotation(node.annotation, scope)
 
-    def _on_expr(self, node: ast.Expr, scope: py.Scope) -> None:
+    def _expr(self, node: ast.Expr, scope: py.Scope) -> None:
         self.evaluate(node.value, scope)
 
-    def _on_pass(self, node: ast.Pass, scope: py.Scope) -> None:
+    def _pass(self, node: ast.Pass, scope: py.Scope) -> None:
         pass
 
-    def _on_import(self, node: ast.Import | ast.ImportFrom, scope: py.Scope) -> None:
+    def _import(self, node: ast.Import | ast.ImportFrom, scope: py.Scope) -> None:
         module = "" if isinstance(node, ast.Import) else "." * node.level + (node.module or "")
         for alias in node.names:
             if (module or alias.name).split(".")[0] in self.local_modules:
@@ -190,15 +196,173 @@ class Interpreter(FileExpressions):
                 raise py.Undetermined(f"the names of {module} are not evaluated", self.at, is_final=True)
             scope.names.update(bound)
 
-    _on_importfrom = _on_import
-
-    def _on_assert(self, node: ast.Assert, scope: py.Scope) -> None:
+    def _assert(self, node: ast.Assert, scope: py.Scope) -> None:
         if not truth(self.evaluate(node.test, scope)):
             self.error("this assertion fails", self.at)
 
-    def _on_raise(self, node: ast.Raise, _: py.Scope) -> None:
+    def _raise(self, node: ast.Raise, _: py.Scope) -> None:
         raised = node.exc.func if isinstance(node.exc, ast.Call) else node.exc
         kind = getattr(builtins, raised.id, None) if isinstance(raised, ast.Name) else None
         if isinstance(kind, type) and issubclass(kind, Exception):
             self.error(f"the file raises {kind.__name__} here", self.at)
         raise py.Undetermined("which error is raised here is not evaluated", self.at, is_final=True)
+
+    def _attribute(self, node: ast.Attribute, scope: py.Scope) -> py.Value:
+        owner, name = self.evaluate(node.value, scope), node.attr
+        match owner:
+            case py.QualifiedName(name="?glob"):  # used without an import: an attribute shows that the module is meant
+                return py.QualifiedName(f"glob.{name}")
+            case py.QualifiedName(name="glob.glob") if name in ("glob", "iglob"):
+                message = f"glob is a function here, so glob.{name} is not defined: write glob(...)"
+                self.error(message, position_of(node))
+                return owner
+            case py.QualifiedName(name=module):
+                full = f"{module}.{name}"
+                error = attribute_error(module, name) if full not in self.functions else None
+                if error is not None:
+                    raise py.EvaluationFails(error)
+                return CONSTANTS.get(full, py.QualifiedName(full))
+            case PurePosixPath() if name in _PARTS:
+                value = getattr(owner, name)
+                return self.budget.checked(list(value) if name == "parents" else value, "path")
+        if isinstance(owner, py.PLAIN) and not has_attribute(owner, name):
+            raise py.EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
+        return py.BoundMethod(owner, name)
+
+    def item(self, owner: py.Value, key: py.Value, node: ast.expr) -> py.Value:
+        """Return the value of owner[key]; of something outside of the file, by the table."""
+        if not isinstance(owner, py.QualifiedName | py.Call):
+            return super().item(owner, key, node)
+        made = py.Call(f"{owner.name}.__getitem__", [key], {}, position_of(node))
+        function = self.functions.get(made.name)
+        if function is None or isinstance(function, py.PlainFunction):
+            raise py.Undetermined(f"{owner.name}[...] {NOT_EVALUATED}")
+        return function(self, made)
+
+    def elements(self, nodes: Sequence[ast.expr], scope: py.Scope) -> list[py.Value]:
+        """Return the values of the elements of a list, or of the arguments of a call."""
+        values: list[py.Value] = []
+        for node in nodes:
+            if not isinstance(node, ast.Starred):
+                values.append(self.evaluate(node, scope))
+                continue
+            try:
+                values += iterate(self.evaluate(node.value, scope))
+            except py.Undetermined as error:
+                raise py.Undetermined(str(error), error.at or position_of(node), is_final=True) from None
+        return values
+
+    def _dict(self, node: ast.Dict, scope: py.Scope) -> py.Value:
+        table: dict[Any, py.Value] = {}
+        for key, value in zip(node.keys, node.values, strict=True):
+            found = self.evaluate(value, scope)
+            if key is not None:
+                call_plain(table.__setitem__, known(self.evaluate(key, scope)), found)
+            elif isinstance(found, dict):
+                table |= found
+            else:
+                refuse(found, "this dict is not supported")
+        return table
+
+    def _joinedstr(self, node: ast.JoinedStr, scope: py.Scope) -> py.Value:
+        pieces = [self.evaluate(piece, scope) for piece in node.values]
+        self.budget.measure(pieces, "text")
+        return self.budget.checked("".join(pieces), "text")
+
+    def _formattedvalue(self, node: ast.FormattedValue, scope: py.Scope) -> py.Value:
+        value = self.evaluate(node.value, scope)
+        self.budget.measure(value, "text")
+        if node.format_spec is not None or node.conversion not in (-1, ord("s")):
+            raise py.Undetermined("a format of this kind is not supported")
+        return str_of(value)
+
+    def _generatorexp(self, node: ast.GeneratorExp, scope: py.Scope) -> py.Value:
+        """Return a generator: the items of its first loop are evaluated now, the rest when it is iterated."""
+        first = iterate(self.evaluate(node.generators[0].iter, scope))
+        rounds = self.rounds(node.generators, py.Scope({}, scope), first)
+        return py.Items(self.evaluate(node.elt, inner) for inner in rounds)
+
+    def _dictcomp(self, node: ast.DictComp, scope: py.Scope) -> py.Value:
+        return {
+            known(self.evaluate(node.key, inner)): self.evaluate(node.value, inner)
+            for inner in self.rounds(node.generators, py.Scope({}, scope))
+        }
+
+    def _lambda(self, node: ast.Lambda, scope: py.Scope) -> py.Value:
+        return self.function(node.args, scope, position_of(node), lambda inner: self.evaluate(node.body, inner))
+
+    def bind(self, target: ast.expr, value: py.Value, scope: py.Scope) -> None:
+        """Bind the names of a target to a value, or change an item."""
+        match target:
+            case ast.Subscript(value=owner, slice=key):
+                self._store(self.evaluate(owner, scope), known(self.key(key, scope)), value, position_of(target))
+            case ast.Attribute(value=owner, attr=name):
+                changed = self.evaluate(owner, scope)
+                if isinstance(changed, py.PLAIN):
+                    raise py.EvaluationFails(f"{type(changed).__name__!r} has no attribute {name!r}")
+                reason = f"a change of the attribute {name} is not evaluated"
+                raise py.Undetermined(reason, position_of(target), is_final=True)
+            case _:
+                super().bind(target, value, scope)
+
+    def _store(self, owner: py.Value, key: py.Value, value: py.Value, at: Position) -> None:
+        """Set an item of a list or dict."""
+        if isinstance(owner, py.QualifiedName | py.Call):
+            made = py.Call(f"{owner.name}.__setitem__", [key, value], {}, at)
+            self.call_value(py.QualifiedName(made.name), made)
+            return
+        if not isinstance(owner, py.PLAIN) or isinstance(key, slice):
+            refuse(owner, "this assignment to an item is not supported")
+        call_plain(setitem, owner, key, value)
+        self.budget.charge(len(owner))
+
+    def _assign(self, node: ast.Assign, scope: py.Scope) -> None:
+        value = self.evaluate(node.value, scope)
+        for target in node.targets:
+            self.bind(target, value, scope)
+
+    def _augassign(self, node: ast.AugAssign, scope: py.Scope) -> None:
+        target = node.target
+        if any(isinstance(part, ast.Call | ast.NamedExpr) for part in ast.walk(target)):
+            raise py.Undetermined("this target is not supported")
+        load = copy(target)
+        load.ctx = ast.Load()
+        before, value = self.evaluate(load, scope), self.evaluate(node.value, scope)
+        if not isinstance(before, py.PLAIN):
+            refuse(before, "this value is not supported")
+        if isinstance(before, list) and isinstance(node.op, ast.Add):
+            before.extend(list(iterate(value)))
+            self.budget.measure(before, "holds")
+        elif isinstance(before, list | dict):
+            raise py.Undetermined("this operator is not supported")
+        else:
+            self.bind(target, operate(node.op, before, value, self.budget), scope)
+
+    KINDS: ClassVar = {
+        **Evaluation.KINDS,
+        ast.Attribute: _attribute,
+        ast.Dict: _dict,
+        ast.JoinedStr: _joinedstr,
+        ast.FormattedValue: _formattedvalue,
+        ast.GeneratorExp: _generatorexp,
+        ast.DictComp: _dictcomp,
+        ast.Lambda: _lambda,
+    }
+
+    # The statements that are evaluated.
+    _STATEMENTS: ClassVar[Mapping[type[ast.stmt], Callable[[Any, Any, py.Scope], None]]] = {
+        ast.FunctionDef: _functiondef,
+        ast.Return: _return,
+        ast.If: _if,
+        ast.For: _for,
+        ast.With: _with,
+        ast.Assign: _assign,
+        ast.AugAssign: _augassign,
+        ast.AnnAssign: _annassign,
+        ast.Expr: _expr,
+        ast.Pass: _pass,
+        ast.Import: _import,
+        ast.ImportFrom: _import,
+        ast.Assert: _assert,
+        ast.Raise: _raise,
+    }

@@ -14,7 +14,7 @@ from pathlib import PurePosixPath
 
 from grader.names import closest, did_you_mean
 from grader.python import values as py
-from grader.python.knowledge import iterate
+from grader.python.values import iterate
 
 MAX_PATH = 4_096  # characters
 PACKAGE_FOLDER = "<package>"  # stands for the name of the package's folder, which the submission does not determine

@@ -9,8 +9,7 @@ from pathlib import PosixPath, PurePosixPath
 
 from grader.python import values as py
 from grader.python.budget import CHARACTERS, Budget
-from grader.python.knowledge import call_plain, items_of, known, refuse, str_of
-from grader.python.values import too_large
+from grader.python.values import call_plain, items_of, known, refuse, str_of, too_large
 
 _WIDE = re.compile(r"\*|\d{3}")
 _FIELD = re.compile(r"\{(?:\w*)\}")

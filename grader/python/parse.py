@@ -8,7 +8,7 @@ import warnings
 from codecs import lookup
 from dataclasses import dataclass
 from io import BytesIO
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from grader.reuse import reuse
 from grader.source import Location, Source
@@ -151,11 +151,3 @@ def bound_in(node: ast.FunctionDef) -> frozenset[str]:
             case ast.alias(name=full, asname=asname):
                 names.add(asname or full.partition(".")[0])
     return frozenset(names - declared)
-
-
-def kinds_of(evaluator: type) -> dict[type, Any]:
-    """Return the methods of an evaluator by the kind of node that each evaluates."""
-    nodes = (kind for kind in vars(ast).values() if isinstance(kind, type) and issubclass(kind, ast.AST))
-    return {
-        kind: found for kind in nodes if (found := getattr(evaluator, f"_of_{kind.__name__.lower()}", None)) is not None
-    }

@@ -1,14 +1,17 @@
-"""The values of Python expressions: Python's own, and stand-ins for functions, iterators and what is not evaluated."""
+"""The values of Python expressions: Python's own, and stand-ins for functions, iterators and what is not evaluated.
+
+What is not known raises Undetermined where it is needed: `known`, `iterate` and `str_of` are the ways to a value.
+"""
 
 import ast
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from functools import cached_property
 from io import StringIO
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, Any, NoReturn, dataclass_transform
+from typing import TYPE_CHECKING, Any, NoReturn
 
 if TYPE_CHECKING:
     from grader.python.parse import Position
+
 
 # A plain value is a str, number, bool, None, list, tuple, dict, range, StringIO (a file) or PurePosixPath.
 Value = Any
@@ -17,6 +20,7 @@ MAX_TEXT = 100_000  # characters
 MAX_PARTS = 20_000  # of a value, with all that it contains
 MAX_BITS = 4_096  # of an integer
 _MAX_MESSAGE = 1_000  # characters
+_MAX_KEY = 2**31  # keys that are larger could all have one hash
 _EMPTY: dict[str, str] = {}
 VIEWS: tuple[Any, ...] = (type(_EMPTY.keys()), type(_EMPTY.values()), type(_EMPTY.items()))
 SCALARS = (str, int, float)
@@ -49,25 +53,14 @@ class Undetermined(EvaluationSignal):
         self.is_final = is_final
 
 
-@dataclass_transform(eq_default=False)
-class Record:
-    """A class with an attribute for each annotation, as a dataclass has them, but made in no time.
-
-    Making a dataclass takes 1 ms of the start of every command.
-    """
-
-    def __init__(self, *values: Any, **named: Any) -> None:
-        for name, value in zip(type(self).__annotations__, values, strict=False):
-            setattr(self, name, value)
-        for name, value in named.items():
-            setattr(self, name, value)
+# These are no dataclasses: making one takes 1 ms of the start of every command.
 
 
-class Unknown(Record):
+class Unknown:
     """A value that is not known, and why."""
 
-    reason: str
-    at: "Position"
+    def __init__(self, reason: str, at: "Position") -> None:
+        self.reason, self.at = reason, at
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Unknown) and (self.reason, self.at) == (other.reason, other.at)
@@ -76,35 +69,29 @@ class Unknown(Record):
         return hash((self.reason, self.at))
 
 
-class QualifiedName(Record):
+class QualifiedName:
     """A module, or something in one, by its full name: os.path.join."""
 
-    name: str
+    def __init__(self, name: str) -> None:
+        self.name = name
 
 
-class BoundMethod(Record):
+class BoundMethod:
     """A method of a value, which is not called yet."""
 
-    owner: Value
-    name: str
+    def __init__(self, owner: Value, name: str) -> None:
+        self.owner, self.name = owner, name
 
 
-class Call(Record):
-    """A call that is recorded, by the full name of what is called; it is its own result.
+class Call:
+    """A call that is recorded, by the full name of what is called; it is its own result."""
 
-    `owner` is the call whose result it is a method of.
-    """
-
-    name: str
-    args: list[Value]
-    kwargs: dict[str, Value]
-    at: "Position"
-    owner: "Call | None" = None
-
-    @cached_property
-    def method_calls(self) -> "list[Call]":
-        """The recorded methods that were called on its own result."""
-        return []
+    def __init__(
+        self, name: str, args: list[Value], kwargs: dict[str, Value], at: "Position", owner: "Call | None" = None
+    ) -> None:
+        """`owner` is the call whose result it is a method of."""
+        self.name, self.args, self.kwargs, self.at, self.owner = name, args, kwargs, at, owner
+        self.method_calls: list[Call] = []  # the recorded ones, of its own result
 
     def argument(self, position: int, *names: str) -> Value:
         """Return an argument by its position or by one of its names; None where it is missing."""
@@ -114,26 +101,32 @@ class Call(Record):
         return self.args[position] if position < len(self.args) else None
 
 
-class Function(Record):
+class Function:
     """A function or lambda of the file. `body` evaluates it in a scope; `local` are the names that its body binds."""
 
-    parameters: ast.arguments
-    scope: "Scope"
-    defaults: dict[str, Value]
-    body: Callable[["Scope"], Value]
-    at: "Position"
-    local: frozenset[str] = frozenset()
+    def __init__(
+        self,
+        parameters: ast.arguments,
+        scope: "Scope",
+        defaults: dict[str, Value],
+        body: Callable[["Scope"], Value],
+        at: "Position",
+        local: frozenset[str] = frozenset(),
+    ) -> None:
+        self.parameters, self.scope, self.defaults, self.body = parameters, scope, defaults, body
+        self.at, self.local = at, local
 
 
-class Scope(Record):
+class Scope:
     """The names that are bound in a scope, and the scope around it.
 
     The names in `local` are bound here sooner or later, and nowhere else until then.
     """
 
-    names: dict[str, Value]
-    outer: "Scope | None" = None
-    local: frozenset[str] = frozenset()
+    def __init__(
+        self, names: dict[str, Value], outer: "Scope | None" = None, local: frozenset[str] = frozenset()
+    ) -> None:
+        self.names, self.outer, self.local = names, outer, local
 
     def find(self, name: str) -> Value:
         """Return the value of a name; raise KeyError, or EvaluationFails for one that is bound later."""
@@ -200,9 +193,108 @@ def parts_of(part: Value) -> Collection[Value]:
     """Return what a value contains."""
     if isinstance(part, dict):
         return [*part.keys(), *part.values()]
-    return part if isinstance(part, list | tuple | range) else [*part] if isinstance(part, VIEWS) else ()
+    if isinstance(part, list | tuple | range):
+        return part
+    return [*part] if isinstance(part, VIEWS) else ()
 
 
 def too_large(what: str) -> NoReturn:
     """Raise Undetermined for a value that grows too large."""
     raise Undetermined(f"a {what} grows too large")
+
+
+def call_plain(function: Callable[..., Value], *args: Value, **kwargs: Value) -> Value:
+    """Return what a function of plain values returns; what it raises is EvaluationFails."""
+    try:
+        return function(*args, **kwargs)
+    except (EvaluationSignal, RecursionError, MemoryError):
+        raise
+    except Exception as error:  # noqa: BLE001  whatever Python raises here, it raises for the student's expression
+        if not has_text([*args, *kwargs.values()]):
+            raise Undetermined("this use of a function, a namespace or an iterator is not supported") from None
+        message = error.args[0] if isinstance(error, KeyError) and error.args else error
+        raise EvaluationFails(f"{type(error).__name__}: {message}") from None
+
+
+def iterate(value: Value) -> Iterator[Value]:
+    """Return what a loop over a value yields, one by one."""
+    if isinstance(value, Items):
+        return value.iterator
+    if isinstance(value, PLAIN) or (callable(value) and not isinstance(value, OPAQUE)):
+        found: Iterator[Value] = call_plain(iter, value)
+        return found
+    return refuse(value, "this loop is not supported")
+
+
+def refuse(value: Value, message: str) -> NoReturn:
+    """Raise Undetermined for a value that is not known, or not supported."""
+    raise Undetermined(reason_of(value) or message, getattr(value, "at", None))
+
+
+def items_of(value: Value) -> list[Value]:
+    """Return what a loop over a value yields, all of it known. Raises Undetermined."""
+    items = list(iterate(value))
+    for item in items if isinstance(value, Items) else ():
+        known(item)
+    return items
+
+
+def known(value: Value) -> Value:
+    """Return a value if all of it is known. Raises Undetermined."""
+    unknown = unknown_in(value)
+    if unknown is not None or isinstance(value, OPAQUE):
+        refuse(unknown or value, "this value is not supported")
+    return value
+
+
+def reason_of(value: Value) -> str:
+    """Return why a value is not known; nothing for a plain one."""
+    match value:
+        case Unknown(reason=reason):
+            return str(reason)
+        case Call(name=name) | QualifiedName(name=name) | BoundMethod(name=name):
+            return f"the value of {name} is not evaluated"
+        case Function():
+            return "this use of a function is not supported"
+    return ""
+
+
+def unknown_in(value: Value) -> Unknown | None:
+    """Return the first unknown value in a value."""
+    pending, seen = [value], set[int]()
+    while pending:
+        item = pending.pop()
+        if isinstance(item, Unknown):
+            return item
+        if isinstance(item, list | tuple | dict) and id(item) not in seen:
+            seen.add(id(item))
+            pending += reversed([*item.values()] if isinstance(item, dict) else [*item])
+    return None
+
+
+def checked_key(key: Value) -> Value:
+    """Return a key of a dict: a text or a number whose hash no other one has. Raises Undetermined for other keys."""
+    if not isinstance(key, str) and not (isinstance(key, int) and abs(key) < _MAX_KEY):
+        raise Undetermined("a key of a dict that is neither a text nor a small whole number is not supported")
+    return key
+
+
+def str_of(value: Value) -> str:
+    """Return str() of a value that is charged; raise Undetermined where it differs between runs, such as an address."""
+    if not isinstance(value, (*SCALARS, PurePosixPath)) and not (isinstance(value, PLAIN) and has_text(value)):
+        raise Undetermined("the text of this value differs between runs")
+    return str(value)
+
+
+def has_text(value: Value) -> bool:
+    """Return whether the text of a value is the same in every run."""
+    if isinstance(value, dict):
+        value = (*value.keys(), *value.values())
+    if isinstance(value, list | tuple):
+        return all(map(has_text, value))
+    return isinstance(value, Items) or not isinstance(value, (*OPAQUE, StringIO, PurePosixPath, *VIEWS))
+
+
+def path_text(value: Value) -> str | None:
+    """Return the text of a path or string; None for other values."""
+    return str(value) if isinstance(value, str | PurePosixPath) else None

@@ -9,8 +9,17 @@ import yaml
 from grader.python.budget import Budget
 from grader.python.builtins import BUILTINS, MATH, make_dict
 from grader.python.expressions import evaluate
-from grader.python.knowledge import call_plain, checked_key, str_of
-from grader.python.values import DottedDict, EvaluationFails, Namespace, PlainFunction, Undetermined, Value
+from grader.python.values import (
+    DottedDict,
+    EvaluationFails,
+    Namespace,
+    PlainFunction,
+    Undetermined,
+    Value,
+    call_plain,
+    checked_key,
+    str_of,
+)
 
 _OLD_BUILTINS = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")
 _NOT_IN_XACRO = ("iter", "next")

@@ -7,8 +7,7 @@ from keyword import iskeyword
 from grader.names import did_you_mean, near
 from grader.python.budget import Budget
 from grader.python.expressions import evaluate
-from grader.python.knowledge import str_of
-from grader.python.values import MAX_TEXT, EvaluationFails, Undetermined, Value, too_large
+from grader.python.values import MAX_TEXT, EvaluationFails, Undetermined, Value, str_of, too_large
 from grader.xacro.functions import GLOBALS
 from grader.xacro.scopes import (
     Definition,

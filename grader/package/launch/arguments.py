@@ -10,8 +10,7 @@ from grader.package.launch.model import not_evaluated
 from grader.package.launch.substitutions import PERFORMS
 from grader.package.launch.value_types import CHECKS, is_entity, is_text, items_in, kind_of, wrong_text, wrong_typed
 from grader.python.evaluation import Evaluation, record
-from grader.python.knowledge import iterate, known
-from grader.python.values import Call, EvaluationFails, Function, Items, Undetermined, Unknown, Value
+from grader.python.values import Call, EvaluationFails, Function, Items, Undetermined, Unknown, Value, iterate, known
 
 _ACTIONS = (
     "Node", "ExecuteProcess", "LogInfo", "LaunchDescription", "DeclareLaunchArgument", "SetLaunchConfiguration",

@@ -33,13 +33,13 @@ class Contents:
 class UnknownText(Unknown):
     """A value that is not known, but certainly is a text."""
 
-    __slots__ = ()
-
 
 class FileText(UnknownText):
     """The text of a file, as a Python function gives it."""
 
-    contents: Contents
+    def __init__(self, reason: str, at: Position, contents: Contents) -> None:
+        super().__init__(reason, at)
+        self.contents = contents
 
 
 Resolved = str | Contents | Unknown

@@ -11,10 +11,8 @@ from grader.package.launch.arguments import LaunchFunctions
 from grader.package.launch.model import Contents, Context, FileText, UnknownText
 from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.launch.substitutions import resolve
-from grader.python.calls import Calls
 from grader.python.evaluation import Evaluation, record
 from grader.python.interpreter import Interpreter
-from grader.python.knowledge import known, path_text
 from grader.python.library import standard_functions
 from grader.python.parse import Code, Position
 from grader.python.values import (
@@ -25,6 +23,8 @@ from grader.python.values import (
     Undetermined,
     Unknown,
     Value,
+    known,
+    path_text,
 )
 
 _MODULE = "python_launch_file"  # the __name__ of a launch file
@@ -183,7 +183,7 @@ def _variable(_: Evaluation, call: Call) -> Value:
     return (UnknownText if isinstance(default, str) else Unknown)(reason, call.at)
 
 
-def _join_paths(evaluation: Calls, call: Call) -> Value:
+def _join_paths(evaluation: Evaluation, call: Call) -> Value:
     """Return what os.path.join returns; it fails for substitutions."""
     if any(isinstance(value, Call) and class_named(value.name) is not None for value in call.args):
         raise EvaluationFails("os.path.join takes strings, not substitutions: use PathJoinSubstitution([...])")

@@ -12,9 +12,8 @@ from grader.package.launch.places import HOME, SHARE
 from grader.python.budget import Budget, OutOfBudget
 from grader.python.builtins import BUILTINS, MATH
 from grader.python.expressions import evaluate
-from grader.python.knowledge import str_of
 from grader.python.parse import Position
-from grader.python.values import MAX_TEXT, Call, EvaluationFails, Namespace, Undetermined, Unknown, Value
+from grader.python.values import MAX_TEXT, Call, EvaluationFails, Namespace, Undetermined, Unknown, Value, str_of
 
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
 PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown

@@ -8,7 +8,6 @@ import yaml
 
 from grader.package.launch.api import ENTITY, SUBSTITUTION, class_named, is_a
 from grader.package.launch.model import UnknownText
-from grader.python.knowledge import iterate
 from grader.python.parse import Position
 from grader.python.values import (
     VIEWS,
@@ -20,6 +19,7 @@ from grader.python.values import (
     Undetermined,
     Unknown,
     Value,
+    iterate,
 )
 
 BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
