@@ -9,7 +9,7 @@ from grader.python.values import parts_of, too_large
 READING = 500_000  # parts that reading one submission may produce or look at: some 0.5 s
 PYTHON_LIMIT = 128 * 1024  # bytes of a file; a syntax tree takes several hundred times as much
 CHARACTERS, _BITS = 16, 256  # that count as one part
-FOLDER = "the name of a folder on the machine is not known"
+_FOLDER = "the name of a folder on the machine is not known"
 
 
 class OutOfBudget(py.EvaluationSignal):
@@ -77,7 +77,7 @@ class Budget:
             for stand_in in self.stand_ins:
                 rest = text.removeprefix(stand_in)
                 if stand_in.strip("/") in rest or (rest != text and not rest.startswith("/") and rest):
-                    raise py.Undetermined(FOLDER)
+                    raise py.Undetermined(_FOLDER)
         return value
 
     def _size_alone(self, part: py.Value, kind: str) -> int:
@@ -86,7 +86,7 @@ class Budget:
             if len(part) > py.MAX_TEXT:
                 too_large("text")
             if self.stand_ins and kind == "plain" and any(stand_in in part for stand_in in self.stand_ins):
-                raise py.Undetermined(FOLDER)
+                raise py.Undetermined(_FOLDER)
             return len(part) // CHARACTERS
         if isinstance(part, int):
             if part.bit_length() > py.MAX_BITS:

@@ -16,11 +16,11 @@ _OF_SIGNATURE = re.compile(r"positional argument|keyword argument|required keywo
 _FAST_GROWING = ("factorial", "comb", "perm", "prod", "lcm")
 
 # Calls a function value with arguments, for the functions that call others: map, filter, sorted.
-Apply = Callable[[py.Value, list[py.Value]], py.Value]
+_Apply = Callable[[py.Value, list[py.Value]], py.Value]
 
 
 def call(
-    function: py.Value, args: list[py.Value], kwargs: dict[str, py.Value], budget: Budget, apply: Apply
+    function: py.Value, args: list[py.Value], kwargs: dict[str, py.Value], budget: Budget, apply: _Apply
 ) -> py.Value:
     """Return what a call of a function of the allow-list returns."""
     if not isinstance(function, py.PlainFunction):
@@ -103,15 +103,15 @@ def _next(value: py.Value, *default: py.Value) -> py.Value:
         return _refuse("the end of an iterator")
 
 
-def _map(apply: Apply, function: py.Value, first: py.Value, *lists: py.Value) -> py.Items:
+def _map(apply: _Apply, function: py.Value, first: py.Value, *lists: py.Value) -> py.Items:
     return py.Items(apply(function, list(items)) for items in zip(*map(iterate, (first, *lists)), strict=False))
 
 
-def _filter(apply: Apply, function: py.Value, values: py.Value) -> py.Items:
+def _filter(apply: _Apply, function: py.Value, values: py.Value) -> py.Items:
     return py.Items(_kept(apply, function, iterate(values)))
 
 
-def _kept(apply: Apply, function: py.Value, items: Iterator[py.Value]) -> Iterator[py.Value]:
+def _kept(apply: _Apply, function: py.Value, items: Iterator[py.Value]) -> Iterator[py.Value]:
     for item in items:
         if truth(item if function is None else apply(function, [item])):
             yield item

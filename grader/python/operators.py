@@ -53,18 +53,18 @@ def method(owner: py.Value, name: str, budget: Budget) -> py.PlainFunction | Non
 
     def charged(*args: py.Value, **kwargs: py.Value) -> py.Value:
         if run is not _get:
-            budget.charge(budget.measure(owner, kind), sum(search_cost(owner, value) for value in args))
+            budget.charge(budget.measure(owner, kind), sum(_search_cost(owner, value) for value in args))
         return call_plain(run, owner, *args, **kwargs)
 
     return py.PlainFunction(name, charged, kind, getattr(owner, name))
 
 
-def search_cost(text: py.Value, part: py.Value) -> int:
+def _search_cost(text: py.Value, part: py.Value) -> int:
     """Return how many characters a search for one text in another looks at, at most."""
     return len(text) * len(part) // 16 if isinstance(text, str) and isinstance(part, str) else 0
 
 
-def percent_format(template: str, value: py.Value) -> str:
+def _percent_format(template: str, value: py.Value) -> str:
     """Return template % value."""
     if _WIDE.search(template):
         raise py.Undetermined("this format is not supported")
@@ -135,7 +135,7 @@ def operate(op: ast.operator, left: py.Value, right: py.Value, budget: Budget) -
         made = 0
         match op, left, right:
             case ast.Mod(), str(), _:
-                operation, made = percent_format, size * left.count("%")
+                operation, made = _percent_format, size * left.count("%")
             case (ast.Mult(), str() as text, int() as times) | (ast.Mult(), int() as times, str() as text):
                 made = len(text) * times // CHARACTERS
             case (ast.Mult(), list() | tuple(), int() as times) | (ast.Mult(), int() as times, list() | tuple()):
@@ -175,7 +175,7 @@ def compare(op: ast.cmpop, left: py.Value, right: py.Value, budget: Budget) -> b
         if not isinstance(value, py.PLAIN) and not (isinstance(value, py.Items) and isinstance(op, ast.Eq | ast.NotEq)):
             refuse(value, "this comparison is not supported")
     if type(left) not in _NUMBERS or type(right) not in _NUMBERS:
-        budget.charge(budget.measure(left) + budget.measure(right), search_cost(right, left))
+        budget.charge(budget.measure(left) + budget.measure(right), _search_cost(right, left))
     return bool(call_plain(_COMPARISONS[type(op)], left, right))
 
 

@@ -210,7 +210,7 @@ def call_plain(function: Callable[..., Value], *args: Value, **kwargs: Value) ->
     except (EvaluationSignal, RecursionError, MemoryError):
         raise
     except Exception as error:  # noqa: BLE001  whatever Python raises here, it raises for the student's expression
-        if not has_text([*args, *kwargs.values()]):
+        if not _has_text([*args, *kwargs.values()]):
             raise Undetermined("this use of a function, a namespace or an iterator is not supported") from None
         message = error.args[0] if isinstance(error, KeyError) and error.args else error
         raise EvaluationFails(f"{type(error).__name__}: {message}") from None
@@ -281,17 +281,17 @@ def checked_key(key: Value) -> Value:
 
 def str_of(value: Value) -> str:
     """Return str() of a value that is charged; raise Undetermined where it differs between runs, such as an address."""
-    if not isinstance(value, (*SCALARS, PurePosixPath)) and not (isinstance(value, PLAIN) and has_text(value)):
+    if not isinstance(value, (*SCALARS, PurePosixPath)) and not (isinstance(value, PLAIN) and _has_text(value)):
         raise Undetermined("the text of this value differs between runs")
     return str(value)
 
 
-def has_text(value: Value) -> bool:
+def _has_text(value: Value) -> bool:
     """Return whether the text of a value is the same in every run."""
     if isinstance(value, dict):
         value = (*value.keys(), *value.values())
     if isinstance(value, list | tuple):
-        return all(map(has_text, value))
+        return all(map(_has_text, value))
     return isinstance(value, Items) or not isinstance(value, (*OPAQUE, StringIO, PurePosixPath, *VIEWS))
 
 
