@@ -13,7 +13,7 @@ from grader.package.package import MANIFEST, SETUP, Package
 from grader.text import enumerated, first_lines
 
 if TYPE_CHECKING:
-    from grader.package.globbing import EmptyGlob
+    from grader.package.file_search import EmptyGlob
     from grader.package.setup_py import Setup
 
 
@@ -166,7 +166,9 @@ def _why_not_installed(package: Package, setup: "Setup", files: Sequence[str], k
         message += ": no entry of data_files in setup.py names it"
         return MissingElement(what, package.folder, message=message)
     problem = f"the pattern {empty.pattern!r} in setup.py matches no file"
-    from grader.package.problems import why_no_match  # late: a URDF on its own needs none of what reads a package
+    from grader.package.package_problems import (
+        why_no_match,  # late: a URDF on its own needs none of what reads a package
+    )
 
     detail, at = why_no_match(package, empty.pattern), setup.location(empty.at)
     message += f": {problem}"

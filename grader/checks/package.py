@@ -65,7 +65,7 @@ def _readable_manifest(package: Package) -> "Manifest":
     manifest = package.manifest
     if manifest is not None and manifest.unread:
         raise NotDecided(manifest.unread, "package.xml cannot be read")
-    from grader.package.catalogue import BAD_MANIFEST
+    from grader.package.problem_kinds import BAD_MANIFEST
 
     if manifest is None:
         where = f"the folder {package.folder!r}" if package.folder else "the submission"

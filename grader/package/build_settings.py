@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from configparser import ConfigParser, Error
 
 from grader.errors import InputError
-from grader.package.globbing import PackageListing
+from grader.package.file_search import PackageListing
 from grader.python.values import Unknown, Value, unknown_in
 from grader.text import enumerated
 

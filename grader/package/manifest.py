@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from grader.package import catalogue
+from grader.package import problem_kinds as kinds
 from grader.problems import Problem
 from grader.reuse import reuse
 from grader.source import Location, Source
@@ -32,11 +32,11 @@ def read_manifest(data: bytes, path: str) -> Manifest:
     try:
         file = XmlFile(data, source)
     except XmlFault as fault:
-        problem = Problem(catalogue.BAD_MANIFEST, f"package.xml is not readable as XML: {fault}", fault.location)
+        problem = Problem(kinds.BAD_MANIFEST, f"package.xml is not readable as XML: {fault}", fault.location)
         return Manifest(source, None, "", (problem,), start, start)
     root = file.root
     if root.tag != "package":
-        problem = Problem(catalogue.BAD_MANIFEST, f"the root of package.xml is <{root.tag}>, not <package>", start)
+        problem = Problem(kinds.BAD_MANIFEST, f"the root of package.xml is <{root.tag}>, not <package>", start)
         return Manifest(source, None, "", (problem,), start, start)
     name = root.find("name")
     kind = next((element for element in root.findall("export/build_type") if not element.get("condition")), None)
@@ -57,16 +57,16 @@ def _problems(file: XmlFile) -> Iterator[Problem]:
         found = root.findall(tag)
         if not any((element.text or "").strip() for element in found):
             message = f"<{tag}> of package.xml is empty" if found else f"package.xml has no <{tag}>"
-            yield Problem(catalogue.INCOMPLETE_MANIFEST, message, file.location(found[0] if found else root))
+            yield Problem(kinds.INCOMPLETE_MANIFEST, message, file.location(found[0] if found else root))
         for element in found:
             email = element.get("email") or ""
             if tag == "maintainer" and not email.strip():
                 message = "<maintainer> of package.xml has no email"
-                yield Problem(catalogue.INCOMPLETE_MANIFEST, message, file.location(element))
+                yield Problem(kinds.INCOMPLETE_MANIFEST, message, file.location(element))
             is_text = tag in ("license", "maintainer", "description")
             if is_text and "todo" in f"{element.text or ''} {email}".lower():
-                yield Problem(catalogue.STILL_TO_DO, f"<{tag}> of package.xml is still TODO", file.location(element))
+                yield Problem(kinds.STILL_TO_DO, f"<{tag}> of package.xml is still TODO", file.location(element))
     version = root.get("format", "1")
     if version not in ("2", "3"):
         message = f"package.xml has format {version[:20]}; ROS 2 packages use format 3"
-        yield Problem(catalogue.OLD_FORMAT, message, file.location(root))
+        yield Problem(kinds.OLD_FORMAT, message, file.location(root))

@@ -142,7 +142,9 @@ class Package:
         names = {path.rpartition("/")[2]: path for path in reversed(files)}
         stem = launch_stem(name)
         similar = closest(name, names) or next((other for other in names if launch_stem(other) == stem), None)
-        return names[similar] if similar else files[0] if files else None
+        if similar:
+            return names[similar]
+        return files[0] if files else None
 
     def launch(self, path: str, text: bytes | None = None) -> "Launch":
         """Return a launch file, evaluated: as it is, or with another text."""
@@ -200,7 +202,7 @@ class Package:
 
     def has_package(self, name: str) -> bool:
         """Return whether a package certainly is on the machine: submitted, declared as needed, or part of ROS 2."""
-        from grader.package.launch.known_files import is_of_ros  # late: as the readers of launch files
+        from grader.package.launch.nodes import is_of_ros  # late: as the readers of launch files
 
         return self.find(name) is not None or self.depends_on(name) or is_of_ros(name)
 

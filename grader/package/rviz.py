@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from grader.package import catalogue
+from grader.package import problem_kinds as kinds
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.problems import Problem
 from grader.reuse import reuse
@@ -66,10 +66,10 @@ class RvizFile:
             if display.package == "rviz":
                 kind = display.kind
                 message = f"rviz/{kind} is a class of ROS 1; in ROS 2 it is rviz_default_plugins/{kind}"
-                found.append(Problem(catalogue.ROS1_CLASS, message, display.location))
+                found.append(Problem(kinds.ROS1_CLASS, message, display.location))
         if not any(display.kind == "TF" and display.enabled for display in self.displays):
             start = Location(self.source.path, 1, 1)
-            found.append(Problem(catalogue.NO_TF, "the file has no enabled TF display", start))
+            found.append(Problem(kinds.NO_TF, "the file has no enabled TF display", start))
         return tuple(found)
 
 
@@ -81,10 +81,10 @@ def read_rviz(data: bytes, path: str) -> RvizFile:
     try:
         manager = read_yaml(data, path).get("Visualization Manager")
         message = "there is no 'Visualization Manager': this is not an RViz file"
-        problem = Problem(catalogue.BAD_RVIZ, message, start)
+        problem = Problem(kinds.BAD_RVIZ, message, start)
     except YamlFault as fault:
         manager = None
-        problem = Problem(catalogue.BAD_RVIZ, f"not readable as YAML: {fault}", fault.location)
+        problem = Problem(kinds.BAD_RVIZ, f"not readable as YAML: {fault}", fault.location)
     if manager is None:
         return RvizFile(source, problem, None, start, ())
     frame = manager.get("Global Options", "Fixed Frame")

@@ -15,7 +15,7 @@ from grader.grading.rubric import Rubric
 from grader.grading.toml_file import read_toml
 from grader.grading.toml_rows import assignment, toml_literal
 from grader.names import did_you_mean
-from grader.package.catalogue import PACKAGE_CATALOGUE
+from grader.package.problem_kinds import PACKAGE_CATALOGUE
 from grader.problems import Kind
 from grader.report.criteria import model_lines, sentence
 from grader.robot.urdf_problems import CATALOGUE

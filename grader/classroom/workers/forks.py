@@ -10,7 +10,7 @@ _PRELOAD = (
     "grader.classroom.batch_worker",
     "grader.robot.edge_overlap",
     "grader.submission.selection",
-    "grader.package.problems",
+    "grader.package.package_problems",
     "grader.classroom.workers.fork_server",
 )
 

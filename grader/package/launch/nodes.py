@@ -1,42 +1,72 @@
-"""The nodes that a launch file starts, and the files that they are given: the robot, the configuration of RViz."""
+"""The nodes that a launch file starts, as launch_ros does: their parameters, and the files that they are given.
+
+These files are the robot and the configuration of RViz. `known_launch_files.toml` lists the nodes that launch files of
+well-known packages start, which submissions include but do not contain.
+"""
 
 import re
 import shlex
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from pathlib import Path, PurePosixPath
+from typing import Any
 
-from grader.package.launch.model import STATE_PUBLISHER, Contents, Context, Findings, NamedFile, Resolved, StartedNode
-from grader.package.launch.parameters import tables_in
+import yaml
+
+from grader.package.launch.arguments import FILE, OPENED, SCALARS, TYPED, boolean, items_in, kind_of, type_of
+from grader.package.launch.model import (
+    STATE_PUBLISHER,
+    Contents,
+    Context,
+    Findings,
+    NamedFile,
+    Purpose,
+    Resolved,
+    StartedNode,
+    UnknownText,
+)
+from grader.package.launch.places import PREFIX, ROS, SHARE
 from grader.package.launch.substitutions import PART_UNKNOWN, known_text, resolve
-from grader.package.launch.value_types import OPENED, TYPED, items_in
 from grader.python.parse import Position
 from grader.python.values import Call, EvaluationFails, EvaluationSignal, Undetermined, Unknown, Value
 
 _RVIZ = "rviz2"
+_GIVEN: Mapping[str, Purpose] = {STATE_PUBLISHER: "urdf", _RVIZ: "rviz"}  # the nodes that are given a file
+# Packages that ROS 2 consists of, or that labs take for granted, whether package.xml names them or not.
+_OF_ROS = frozenset(
+    {"rviz2", "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui", "xacro", "tf2_ros",
+     "rclpy", "rclcpp", "launch", "launch_ros", "ros2launch", "turtlesim", "demo_nodes_cpp", "demo_nodes_py",
+     "rqt_graph", "rqt_gui", "tf2_tools", "rosbag2", "ros2bag", "teleop_twist_keyboard"}
+)  # fmt: skip
+_MAX_YAML = 200_000  # characters
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")
 _STARTS = re.compile(rf"ros2\s+(run|launch)|rviz2|{PART_UNKNOWN}")
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _NAMESPACE = re.compile(r"|/|/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 
 
-def check_namespace(value: Value, context: Context, at: Position) -> None:
-    """Raise Undetermined for a namespace that may not be valid, or stands below one that the file itself sets."""
-    text = known_text(value, context, at)
-    if _NAMESPACE.fullmatch(text) is None or isinstance(context.arguments.get("ros_namespace"), str):
-        raise Undetermined(f"whether the namespace {text!r} is valid is not evaluated", at)
+def start_node(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
+    """Add the node that a Node action starts, and the files that it is given."""
+    package, executable = (_attempt(call.kwargs.get(name), context, call.at) for name in ("package", "executable"))
+    if not isinstance(package, str) or not isinstance(executable, str):
+        unknown = next((it.reason for it in (package, executable) if isinstance(it, Unknown)), "")
+        findings.add_unknown(f"the program of a node is not evaluated: {unknown}".removesuffix(": "), call.at)
+        return
+    prefix = _frame_prefix(call, context) if executable == STATE_PUBLISHER else ""
+    findings.nodes.append(StartedNode(package, executable, when, findings.locate(call.at), prefix))
+    if when is not False and executable == STATE_PUBLISHER:
+        _find_description(findings, call, context)
+    elif when is not False and executable == _RVIZ:
+        _find_configuration(findings, call, context)
 
 
-def evaluate_process(call: Call, context: Context) -> None:
-    """Evaluate what launch does with the arguments of a process besides their texts. Raises EvaluationSignal."""
-    if "cmd" in call.kwargs and not items_in(call.kwargs["cmd"]):
-        raise EvaluationFails("cmd is empty", call.at)
-    try:
-        shlex.split(known_text(call.kwargs.get("prefix") or "", context, call.at))
-    except ValueError:
-        raise EvaluationFails("the quotes in a prefix are not closed", call.at) from None
-    output = call.kwargs.get("output", "log")
-    if not isinstance(output, dict) and (text := known_text(output, context, call.at)) not in _OUTPUTS:
-        raise EvaluationFails(f"output={text!r} is not one of {', '.join(_OUTPUTS)}", call.at)
-    if isinstance(output, dict) and not output.keys() <= {"stdout", "stderr", "both"}:
-        raise EvaluationFails("output has the keys stdout, stderr and both only", call.at)
+def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
+    """Add that a command starts nodes, if it does."""
+    words = " ".join(_words_of(call.kwargs["cmd"], context, call.at))
+    if when is not False and _STARTS.search(words):
+        findings.add_unknown("the nodes that a command starts are not evaluated", call.at)
 
 
 def evaluate_node(call: Call, context: Context) -> None:
@@ -62,26 +92,26 @@ def evaluate_node(call: Call, context: Context) -> None:
             raise EvaluationFails(f"the package {reason}", call.at)
 
 
-def start_node(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
-    """Add the node that a Node action starts, and the files that it is given."""
-    package, executable = (_attempt(call.kwargs.get(name), context, call.at) for name in ("package", "executable"))
-    if not isinstance(package, str) or not isinstance(executable, str):
-        unknown = next((it.reason for it in (package, executable) if isinstance(it, Unknown)), "")
-        findings.add_unknown(f"the program of a node is not evaluated: {unknown}".removesuffix(": "), call.at)
-        return
-    prefix = _frame_prefix(call, context) if executable == STATE_PUBLISHER else ""
-    findings.nodes.append(StartedNode(package, executable, when, findings.locate(call.at), prefix))
-    if when is not False and executable == STATE_PUBLISHER:
-        _find_description(findings, call, context)
-    elif when is not False and executable == _RVIZ:
-        _find_configuration(findings, call, context)
+def evaluate_process(call: Call, context: Context) -> None:
+    """Evaluate what launch does with the arguments of a process besides their texts. Raises EvaluationSignal."""
+    if "cmd" in call.kwargs and not items_in(call.kwargs["cmd"]):
+        raise EvaluationFails("cmd is empty", call.at)
+    try:
+        shlex.split(known_text(call.kwargs.get("prefix") or "", context, call.at))
+    except ValueError:
+        raise EvaluationFails("the quotes in a prefix are not closed", call.at) from None
+    output = call.kwargs.get("output", "log")
+    if not isinstance(output, dict) and (text := known_text(output, context, call.at)) not in _OUTPUTS:
+        raise EvaluationFails(f"output={text!r} is not one of {', '.join(_OUTPUTS)}", call.at)
+    if isinstance(output, dict) and not output.keys() <= {"stdout", "stderr", "both"}:
+        raise EvaluationFails("output has the keys stdout, stderr and both only", call.at)
 
 
-def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
-    """Add that a command starts nodes, if it does."""
-    words = " ".join(_words_of(call.kwargs["cmd"], context, call.at))
-    if when is not False and _STARTS.search(words):
-        findings.add_unknown("the nodes that a command starts are not evaluated", call.at)
+def check_namespace(value: Value, context: Context, at: Position) -> None:
+    """Raise Undetermined for a namespace that may not be valid, or stands below one that the file itself sets."""
+    text = known_text(value, context, at)
+    if _NAMESPACE.fullmatch(text) is None or isinstance(context.arguments.get("ros_namespace"), str):
+        raise Undetermined(f"whether the namespace {text!r} is valid is not evaluated", at)
 
 
 def _frame_prefix(call: Call, context: Context) -> str | None:
@@ -91,26 +121,6 @@ def _frame_prefix(call: Call, context: Context) -> str | None:
     given += [word.partition(":=")[2] for word in words if word.startswith("frame_prefix:=")]
     found = _attempt(_inner_value(given[-1]), context, call.at) if given else ""
     return found if isinstance(found, str) and PART_UNKNOWN not in found else None
-
-
-def _attempt(value: Value, context: Context, at: Position) -> Resolved:
-    """Return the text of a value; Unknown where launch may fail, which is added elsewhere."""
-    try:
-        return resolve(value, context, at) if value is not None else Unknown("there is none", at)
-    except EvaluationSignal as signal:
-        return Unknown(str(signal), signal.at or at)
-
-
-def _words_of(value: Value, context: Context, at: Position) -> list[str]:
-    """Return the words of a command, of which each item of a list is one."""
-    items = value if isinstance(value, list | tuple | str) else [value] if value is not None else []
-    texts = [_attempt(item, context, at) for item in items]
-    return [text if isinstance(text, str) else PART_UNKNOWN for text in texts]
-
-
-def _inner_value(value: Value) -> Value:
-    """Return the value in ParameterValue; another value as it is."""
-    return value.kwargs["value"] if isinstance(value, Call) and value.name in TYPED else value
 
 
 def _find_description(findings: Findings, call: Call, context: Context) -> None:
@@ -194,3 +204,179 @@ def _display_config(words: list[str]) -> str | None:
         if word.startswith(("-d", "--display-config")):
             return word.removeprefix("-d") if word[2:3].isspace() else PART_UNKNOWN
     return None
+
+
+def _attempt(value: Value, context: Context, at: Position) -> Resolved:
+    """Return the text of a value; Unknown where launch may fail, which is added elsewhere."""
+    try:
+        return resolve(value, context, at) if value is not None else Unknown("there is none", at)
+    except EvaluationSignal as signal:
+        return Unknown(str(signal), signal.at or at)
+
+
+def _words_of(value: Value, context: Context, at: Position) -> list[str]:
+    """Return the words of a command, of which each item of a list is one."""
+    items = value
+    if not isinstance(value, list | tuple | str):
+        items = [] if value is None else [value]
+    texts = [_attempt(item, context, at) for item in items]
+    return [text if isinstance(text, str) else PART_UNKNOWN for text in texts]
+
+
+def _inner_value(value: Value) -> Value:
+    """Return the value in ParameterValue; another value as it is."""
+    return value.kwargs["value"] if isinstance(value, Call) and value.name in TYPED else value
+
+
+def evaluate_parameters(parameters: Value, context: Context, at: Position) -> None:
+    """Evaluate the parameters of a node, as launch_ros does first. Raises EvaluationSignal and Undetermined."""
+    for item in items_in(parameters) or ():
+        if isinstance(item, dict):
+            evaluate_dict(item, context, at)
+        elif isinstance(item, Call) and item.name in (*TYPED, FILE):
+            raise Undetermined("a parameter of this kind is not evaluated", item.at)
+        elif not isinstance(item, PurePosixPath):
+            resolve(item, context, at)
+
+
+def evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> None:
+    """Evaluate a dict of parameters. Raises EvaluationSignal."""
+    for key, value in table.items():
+        name = resolve(list(key) if isinstance(key, tuple) else key, context, at)
+        shown = name if isinstance(name, str) else "?"
+        match value:
+            case dict():
+                evaluate_dict(value, context, at)
+            case Call() if value.name in TYPED:
+                _evaluate_typed(value, context)
+            case UnknownText():
+                resolve(value, context, at)
+            case list() | tuple() | range():
+                _evaluate_list(shown, list(value), context, at)
+            case Call() | Unknown():
+                _read_as_yaml(shown, value, context, at)
+
+
+def _evaluate_list(name: str, items: list[Value], context: Context, at: Position) -> None:
+    kinds = {type(item) for item in items if isinstance(item, SCALARS)}
+    if any(isinstance(item, Call) for item in items) and all(isinstance(it, str | Call | Unknown) for it in items):
+        _read_as_yaml(name, items, context, at)
+    elif not items or not all(isinstance(item, SCALARS) for item in items):
+        raise Undetermined(f"the value of the parameter {name!r} is not evaluated", at)
+    elif len(kinds) > 1 and kinds != {int, float}:
+        raise EvaluationFails(f"the parameter {name!r} is a list of values of different types", at)
+
+
+def _evaluate_typed(call: Call, context: Context) -> None:
+    value = call.kwargs["value"]
+    if isinstance(value, UnknownText):
+        resolve(value, context, call.at)
+    if isinstance(value, (*SCALARS, UnknownText)) or (
+        isinstance(value, list | tuple) and not any(isinstance(it, Call) for it in value)
+    ):
+        return
+    try:
+        kind = type_of(call)
+    except Undetermined as error:
+        raise Undetermined(f"{error} is not evaluated", call.at) from None
+    if kind is None:
+        _read_as_yaml("value", value, context, call.at)
+        return
+    text = resolve(value, context, call.at)
+    if kind is str:
+        return
+    if not isinstance(text, str):
+        raise Undetermined("the value of a parameter is not evaluated", call.at)
+    try:
+        boolean(text, call.at) if kind is bool else kind(text)
+    except ValueError:
+        raise EvaluationFails(f"the value {text[:40]!r} of a parameter is not {kind.__name__}", call.at) from None
+
+
+def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> None:
+    found = _yaml_of(name, value, context, at)
+    if isinstance(found, list) and _is_uniform(found):
+        return
+    if not isinstance(found, (*SCALARS, bytes)):
+        hint = "write ParameterValue(..., value_type=str)"
+        raise EvaluationFails(f"the parameter {name!r} is read as YAML, and is {kind_of(found)} then: {hint}", at)
+
+
+def _yaml_of(name: str, value: Value, context: Context, at: Position) -> Any:
+    """Return the value of a text as YAML. Raises EvaluationSignal."""
+    found = resolve(value, context, at)
+    if isinstance(found, Unknown):
+        raise Undetermined(f"the value of the parameter {name!r} is not evaluated: {found.reason}", at)
+    text = context.text_of(found.path) if isinstance(found, Contents) else found
+    if text is None:
+        return ""  # a file that is not there is reported for itself
+    try:
+        if len(text) > _MAX_YAML:
+            raise Undetermined(f"the parameter {name!r} is too long to be read as YAML", at)
+        return yaml.load(text or "''", Loader=_LOADER)  # noqa: S506  a safe loader
+    except (yaml.YAMLError, ValueError, RecursionError):
+        if isinstance(found, Contents) and found.by == "xacro":
+            raise Undetermined(
+                f"whether the output of xacro is YAML, as which {name!r} is read, is not evaluated", at
+            ) from None
+        hint = "write ParameterValue(..., value_type=str)"
+        raise EvaluationFails(f"the parameter {name!r} is read as YAML, which fails: {hint}", at) from None
+
+
+def _is_uniform(values: list[Any]) -> bool:
+    kind = type(values[0]) if values else None
+    return kind in SCALARS and all(isinstance(value, kind) for value in values if kind)
+
+
+def tables_in(parameters: Value) -> Iterator[dict[Any, Value]]:
+    """Yield the dicts among the parameters of a node."""
+    if isinstance(parameters, list):
+        yield from (table for table in parameters if isinstance(table, dict))
+
+
+def is_of_ros(package: str) -> bool:
+    """Return whether a package is on every machine that runs ROS 2 in a lab."""
+    return package in _OF_ROS or package in _started_by()
+
+
+def start_known_file(findings: Findings, path: str, call: Call, context: Context) -> bool:
+    """Add what an included launch file of a well-known package starts; return whether the path is that of one."""
+    prefix, _, name = path.rpartition("/share/")
+    package, _, file = name.partition("/launch/")
+    nodes = _started_by().get(package, {}).get(file) if prefix.startswith((PREFIX, ROS)) else None
+    if nodes is None:
+        return False
+    findings.nodes += [StartedNode(node, node, context.when, findings.locate(call.at)) for node in nodes]
+    for node in nodes:
+        if node in _GIVEN and package != "urdf_launch":
+            findings.refer(_GIVEN[node], Unknown(f"{name} decides which file {node} gets", call.at), call)
+    if package == "urdf_launch":
+        _refer_files(findings, call, context, is_shown=_RVIZ in nodes)
+    return True
+
+
+def _refer_files(findings: Findings, call: Call, context: Context, *, is_shown: bool) -> None:
+    """Add the files that the arguments of urdf_launch name."""
+    given = [context.arguments.get(key) for key in ("urdf_package", "urdf_package_path")]
+    match given:
+        case [str() as package, str() as urdf]:
+            findings.refer("urdf", Contents(f"{SHARE}/{package}/{urdf}", "xacro"), call)
+        case _:
+            unknown = next(value for value in given if not isinstance(value, str))
+            is_missing = None in given or isinstance(unknown, Contents)
+            message = "urdf_launch needs the arguments urdf_package and urdf_package_path"
+            findings.refer("urdf", None if is_missing else unknown, call, wrong=message)
+    opened = context.arguments.get("rviz_config")
+    if is_shown and opened is None:
+        message = "urdf_launch is included without rviz_config, so it opens its own configuration, not the lab's"
+        findings.refer("rviz", None, call, wrong=message)
+    elif is_shown:
+        findings.refer("rviz", opened, call)
+
+
+@cache
+def _started_by() -> Mapping[str, Mapping[str, Sequence[str]]]:
+    """Return the nodes that the launch files of well-known packages start, by package and name of the file."""
+    text = Path(__file__).with_name("known_launch_files.toml").read_text("utf-8")
+    table: dict[str, dict[str, list[str]]] = tomllib.loads(text)
+    return table

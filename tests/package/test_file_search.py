@@ -15,8 +15,7 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from grader.files.tree import File, Tree, make_tree
-from grader.package.file_functions import file_functions
-from grader.package.globbing import ORDERS, PackageListing
+from grader.package.file_search import ORDERS, PackageListing, file_functions
 from grader.python.interpreter import Interpreter
 from grader.python.library import standard_functions
 from grader.python.parse import Code, parse

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from fnmatch import fnmatchcase
 
 from grader.names import did_you_mean
-from grader.package import catalogue
+from grader.package import problem_kinds as kinds
 from grader.package.launch.model import Launch
 from grader.package.launch.places import is_of_one_machine, one_machine_only
 from grader.package.package import MANIFEST, RESOURCE_INDEX, Package
@@ -37,48 +37,51 @@ def _sort(problems: Iterable[Problem]) -> list[Problem]:
 
 def _setup_problems(package: Package, setup: Setup) -> Iterator[Problem]:
     if fault := setup.fault:
-        kind = catalogue.SETUP_SYNTAX if fault.sure else catalogue.SETUP_UNKNOWN
+        kind = kinds.SETUP_SYNTAX if fault.sure else kinds.SETUP_UNKNOWN
         what = "Python cannot read setup.py" if fault.sure else "setup.py is not read"
         yield Problem(kind, f"{what}: {fault.message}", fault.location)
         return
     for error in setup.faults:
-        yield Problem(catalogue.SETUP_NAME, error.message, setup.location(error.at))
+        yield Problem(kinds.SETUP_NAME, error.message, setup.location(error.at))
     for stop in setup.stops:
-        yield Problem(catalogue.SETUP_STOPS, stop.message + stop.hint, setup.location(stop.at))
+        yield Problem(kinds.SETUP_STOPS, stop.message + stop.hint, setup.location(stop.at))
     for empty in setup.empty:
         message = f"the pattern {empty.pattern!r} in setup.py matches no file{why_no_match(package, empty.pattern)}"
-        yield Problem(catalogue.EMPTY_GLOB, message, setup.location(empty.at))
+        yield Problem(kinds.EMPTY_GLOB, message, setup.location(empty.at))
     for unknown in setup.unknown:
         message = f"cannot be determined statically: {unknown.reason}"
-        yield Problem(catalogue.SETUP_UNKNOWN, message, setup.location(unknown.at))
+        yield Problem(kinds.SETUP_UNKNOWN, message, setup.location(unknown.at))
     start, targets = setup.location(setup.called_at), setup.installed()
     declared = package.manifest.name if package.manifest is not None else None
     is_known = not (setup.unknown or setup.stops)
     if declared is not None and setup.name is not None and setup.name != declared:
         message = f"package.xml names the package {declared!r}, setup.py names it {setup.name!r}"
-        yield Problem(catalogue.OTHER_NAME, message, start)
+        yield Problem(kinds.OTHER_NAME, message, start)
         is_known = False  # the entries are missing under one of the two names in any case
     if is_known and RESOURCE_INDEX + package.name not in targets:
         message = f"data_files has no entry for the resource index: resource/{package.name} is not installed"
-        yield Problem(catalogue.NO_MARKER, message, start)
+        yield Problem(kinds.NO_MARKER, message, start)
     if is_known and f"share/{package.name}/package.xml" not in targets:
         message = f"data_files does not install package.xml in share/{package.name}"
-        yield Problem(catalogue.NO_MANIFEST_ENTRY, message, start)
+        yield Problem(kinds.NO_MANIFEST_ENTRY, message, start)
     elif not is_known and MANIFEST not in targets.values() and MANIFEST not in setup.source.text:
         message = f"setup.py does not name package.xml, which data_files should install in share/{package.name}"
-        yield Problem(catalogue.NO_MANIFEST_ENTRY, message, start)
+        yield Problem(kinds.NO_MANIFEST_ENTRY, message, start)
 
 
 def _launch_problems(launch: Launch) -> Iterator[Problem]:
     if launch.unread:
         message = f"the launch file is not read: {launch.unread}"
-        yield Problem(catalogue.LAUNCH_UNKNOWN, message, Location(launch.source.path, 1, 1))
-    kinds = (catalogue.LAUNCH_SYNTAX, catalogue.LAUNCH_FAULT, catalogue.LAUNCH_UNKNOWN)
-    for kind, faults in zip(kinds, (filter(None, [launch.syntax]), launch.faults, launch.unknown), strict=True):
-        yield from (Problem(kind, fault.message, fault.location) for fault in faults)
+        yield Problem(kinds.LAUNCH_UNKNOWN, message, Location(launch.source.path, 1, 1))
+    if launch.syntax is not None:
+        yield Problem(kinds.LAUNCH_SYNTAX, launch.syntax.message, launch.syntax.location)
+    for fault in launch.faults:
+        yield Problem(kinds.LAUNCH_FAULT, fault.message, fault.location)
+    for unknown in launch.unknown:
+        yield Problem(kinds.LAUNCH_UNKNOWN, unknown.message, unknown.location)
     for reference in launch.references:
         if reference.path is not None and is_of_one_machine(reference.path):
-            yield Problem(catalogue.HARD_CODED, one_machine_only(reference.path), reference.location)
+            yield Problem(kinds.HARD_CODED, one_machine_only(reference.path), reference.location)
 
 
 def why_no_match(package: Package, pattern: str) -> str:
