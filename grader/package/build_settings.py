@@ -42,12 +42,12 @@ _OF_TOOLS = re.compile(
 _MAX_SETTINGS = 64 * 1024  # bytes
 
 # A fault, or what is not evaluated.
-Finding = str | Unknown
+_Finding = str | Unknown
 
 
 def argument_findings(
     kwargs: Mapping[str, Value], listing: PackageListing, unknown: Callable[[str], Unknown], is_configured: bool
-) -> Iterator[Finding]:
+) -> Iterator[_Finding]:
     """Yield what is wrong with the arguments of setup() besides data_files, and what of them is not evaluated."""
     for name, value in kwargs.items():
         if name not in _CHECKED and value is not None and not (name in _USUAL and _USUAL[name](value)):
@@ -84,7 +84,7 @@ _USUAL: Mapping[str, Callable[[Value], bool]] = {
 }
 
 
-def _version(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> Iterator[Finding]:
+def _version(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
     version = kwargs.get("version")
     if isinstance(version, str):
         if version and not _VERSION.fullmatch(version):
@@ -93,7 +93,7 @@ def _version(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> 
         yield unknown_in(version) or unknown("this version is not evaluated")
 
 
-def _entry_points(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> Iterator[Finding]:
+def _entry_points(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
     groups = kwargs.get("entry_points")
     if groups is None:
         return
@@ -110,7 +110,7 @@ def _entry_points(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]
 
 def _packages(
     kwargs: Mapping[str, Value], listing: PackageListing, unknown: Callable[[str], Unknown]
-) -> Iterator[Finding]:
+) -> Iterator[_Finding]:
     packages = kwargs.get("packages")
     if isinstance(packages, list | tuple) and all(isinstance(it, str) for it in packages):
         for name in packages:
@@ -120,7 +120,7 @@ def _packages(
         yield unknown("this value of packages is not evaluated")
 
 
-def _discovery(listing: PackageListing) -> Iterator[Finding]:
+def _discovery(listing: PackageListing) -> Iterator[_Finding]:
     """Yield the error of setuptools where it searches for packages and finds several."""
     folders = [name for name in listing.names("") if name in listing.folders and name.isidentifier()]
     found = sorted(name for name in folders if name not in _NO_PACKAGES and not name.startswith("_"))
@@ -128,7 +128,7 @@ def _discovery(listing: PackageListing) -> Iterator[Finding]:
         yield f"packages=[...] is missing, and setuptools cannot choose between the folders {enumerated(found)}"
 
 
-def file_findings(listing: PackageListing, unknown: Callable[[str], Unknown]) -> Iterator[Finding]:
+def file_findings(listing: PackageListing, unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
     """Yield what is wrong with setup.cfg and pyproject.toml, and what of them is not evaluated."""
     for name, read in (("setup.cfg", _cfg), ("pyproject.toml", _toml)):
         if name in listing.files:
@@ -138,7 +138,7 @@ def file_findings(listing: PackageListing, unknown: Callable[[str], Unknown]) ->
                 yield unknown(f"{name} cannot be read")
 
 
-def _cfg(text: str, unknown: Callable[[str], Unknown]) -> Iterator[Finding]:
+def _cfg(text: str, unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
     parser = ConfigParser()
     parser.optionxform = str  # type: ignore[assignment,method-assign]
     try:
@@ -157,14 +157,14 @@ def _cfg(text: str, unknown: Callable[[str], Unknown]) -> Iterator[Finding]:
             yield unknown(f"the section [{section}] of setup.cfg is not evaluated")
 
 
-def _options(section: str, others: set[str], unknown: Callable[[str], Unknown]) -> Iterator[Finding]:
+def _options(section: str, others: set[str], unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
     if section == "install" and "script_dir" in others:
         yield "setup.cfg sets script_dir in [install], where it is called install_scripts"
     elif others:
         yield unknown(f"the option {min(others)} in [{section}] of setup.cfg is not evaluated")
 
 
-def _toml(text: str, unknown: Callable[[str], Unknown]) -> Iterator[Finding]:
+def _toml(text: str, unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
     try:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:

@@ -42,7 +42,7 @@ _ROOT = f"/{PACKAGE_FOLDER}"
 _SETUPS = ("setuptools.setup", "distutils.core.setup", "?.setup")
 
 
-class InstalledFile(NamedTuple):
+class _InstalledFile(NamedTuple):
     """One installed file: its path in the package, its path below the prefix, and the position that installs it."""
 
     source: str
@@ -50,7 +50,7 @@ class InstalledFile(NamedTuple):
     at: Position
 
 
-class InstallError(NamedTuple):
+class _InstallError(NamedTuple):
     """Something in data_files that cannot be installed, so that the build stops."""
 
     path: str
@@ -71,8 +71,8 @@ class Setup:
     source: Source
     fault: SyntaxFault | None = None
     name: str | None = None
-    copies: tuple[InstalledFile, ...] = ()
-    stops: tuple[InstallError, ...] = ()
+    copies: tuple[_InstalledFile, ...] = ()
+    stops: tuple[_InstallError, ...] = ()
     empty: tuple[EmptyGlob, ...] = ()
     faults: tuple[PythonError, ...] = ()
     unknown: tuple[Unknown, ...] = ()  # with any of these, a file that is not among the copies may be installed as well
@@ -217,8 +217,8 @@ class _DataFiles:
     root: str  # the absolute path that stands for the package's folder
     written: Mapping[str, Position]  # where each text is written
     is_first: bool = True  # whether it is the run of setup.py in which colcon asks for data_files
-    copies: list[InstalledFile] = field(default_factory=list)
-    stops: list[InstallError] = field(default_factory=list)
+    copies: list[_InstalledFile] = field(default_factory=list)
+    stops: list[_InstallError] = field(default_factory=list)
     unknown: list[Unknown] = field(default_factory=list)  # what is installed as well, or elsewhere
     doubts: list[Unknown] = field(default_factory=list)  # with these, whether the build succeeds is not known either
 
@@ -251,7 +251,7 @@ class _DataFiles:
 
     def stop(self, reason: str, at: Position, path: str = "") -> None:
         """Add an error that stops the build."""
-        self.stops.append(InstallError(path, reason, self._origin(path, at)))
+        self.stops.append(_InstallError(path, reason, self._origin(path, at)))
 
     def _entry(self, entry: Value, at: Position) -> None:
         """Add an entry, which colcon takes as a file, or as a tuple of a folder and a list of files."""
@@ -331,21 +331,21 @@ class _DataFiles:
             self._copy(path, folder, at)
         elif path is not None and not self._copy(path, folder, at):
             reason = f"it is a folder, and only files can be installed{self._narrower(path)}"
-            self.stops.append(InstallError(text, reason, at))
+            self.stops.append(_InstallError(text, reason, at))
         elif path is None and str(PurePosixPath(text)) in self.listing.files:
             self.stop("there is no such file: a path of a file does not end in /", at, text)
         elif path is None and ignored_part(posixpath.normpath(text)):
             self._give_up(None, f"{text} is an ignored file", at)
         elif path is None:
             guess = did_you_mean(text, self.listing.files) if len(self.stops) < _MAX_GUESSES else ""
-            self.stops.append(InstallError(text, "there is no such file", at, guess))
+            self.stops.append(_InstallError(text, "there is no such file", at, guess))
 
     def _copy(self, path: str | None, folder: str, at: Position) -> bool:
         """Install a file of the package; return whether it is one."""
         if path is None or path not in self.listing.files:
             return False
         target = posixpath.normpath(posixpath.join(folder, posixpath.basename(path)))
-        self.copies.append(InstalledFile(path, target, at))
+        self.copies.append(_InstalledFile(path, target, at))
         return True
 
     def _narrower(self, folder: str) -> str:

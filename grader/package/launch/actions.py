@@ -36,7 +36,7 @@ from grader.python.values import (
 _MAX_ACTIONS = 5_000
 _MAX_DEPTH = 40
 _LATE = ("sigterm_timeout", "sigkill_timeout", "default_value")  # arguments that are not evaluated at once
-PROCESSES = ("Node", "ExecuteProcess")
+_PROCESSES = ("Node", "ExecuteProcess")
 # Takes the path of a launch file below the prefix and the context for it; returns why it is not read, or nothing.
 Include = Callable[[str, Context], str]
 CIRCULAR_INCLUDE = "it includes itself"
@@ -120,7 +120,7 @@ class ActionVisitor:
             _KINDS.get(kind, _refuse)(self, call, context, when)
         except EvaluationSignal as signal:
             self.findings.add(signal, call.at, when)
-            if not isinstance(signal, EvaluationFails) and kind not in PROCESSES and when is not False:
+            if not isinstance(signal, EvaluationFails) and kind not in _PROCESSES and when is not False:
                 self.findings.add_unknown(str(signal), signal.at or call.at)
         if when:
             for contents, at in context.reads[start:]:
@@ -371,7 +371,7 @@ def _process(visitor: ActionVisitor, call: Call, context: Context, when: bool | 
 
 # What each kind of action does, besides the evaluation of its arguments.
 _KINDS: Mapping[str, Callable[[ActionVisitor, Call, Context, bool | None], None]] = {
-    **dict.fromkeys(PROCESSES, _process), "LogInfo": _nothing, "LaunchDescription": _description,
+    **dict.fromkeys(_PROCESSES, _process), "LogInfo": _nothing, "LaunchDescription": _description,
     "DeclareLaunchArgument": _declare, "SetLaunchConfiguration": _assign, "GroupAction": _group,
     **dict.fromkeys(("SetEnvironmentVariable", "AppendEnvironmentVariable"), _environment),
     "IncludeLaunchDescription": _include, "OpaqueFunction": _opaque_function, "TimerAction": _timer,

@@ -135,13 +135,13 @@ def _wrong(cls: LaunchClass, call: Call, name: str, value: Value) -> str:
         message = _SPECIAL[cls.short](call) if cls.short in _SPECIAL else ""
         return f"{cls.short}: {message}" if message else ""
     test = cls.parameters[name].check
-    own = CHECKS.get(test.removesuffix("?"))
+    own = _CHECKS.get(test.removesuffix("?"))
     wanted = own(value) if own is not None and not (value is None and test.endswith("?")) else ""
     tail = "" if wanted.startswith("has a value") else f", not {kind_of(value)}"
     return f"{name} of {cls.short} {wanted}{tail}" if wanted else ""
 
 
-def is_text(value: Value) -> bool:
+def _is_text(value: Value) -> bool:
     """Return whether a value is a string or a substitution. Raises Undetermined."""
     match value:
         case UnknownText():
@@ -157,7 +157,7 @@ def is_text(value: Value) -> bool:
     return isinstance(value, str)
 
 
-def is_entity(call: Call) -> bool:
+def _is_entity(call: Call) -> bool:
     """Return whether a call makes an action, or a description of some. Raises Undetermined."""
     if class_named(call.name) is None:
         raise Undetermined(f"the result of {call.name}")
@@ -176,12 +176,12 @@ def items_in(value: Value) -> list[Value] | None:
     return list(value) if isinstance(value, kinds) else None
 
 
-def wrong_text(value: Value) -> str:
+def _wrong_text(value: Value) -> str:
     """Return what is wrong with a value that has to be a text, or nothing. Raises Undetermined."""
     if isinstance(value, _COLLECTIONS):
-        wrong = next((item for item in value if not is_text(item)), "")
+        wrong = next((item for item in value if not _is_text(item)), "")
         return f"takes strings and substitutions, not {kind_of(wrong)} in a list" if wrong != "" else ""
-    return "" if is_text(value) else "takes a string or a substitution"
+    return "" if _is_text(value) else "takes a string or a substitution"
 
 
 def kind_of(value: Value) -> str:
@@ -193,22 +193,24 @@ def kind_of(value: Value) -> str:
     return _NAMES.get(type(value), f"a {type(value).__name__}")
 
 
-def typed(kind: type) -> Callable[[Value], str]:
+def _typed(kind: type) -> Callable[[Value], str]:
     """Return the check of a value of a type, or of a substitution whose text is read as one."""
 
     def checked(value: Value) -> str:
         if isinstance(value, str | int | float):
             return "" if isinstance(value, kind) else f"takes {_WANTED[kind]} or a substitution"
         if isinstance(value, list | tuple) and any(isinstance(item, Call | Unknown) for item in value):
-            return wrong_text(value)
+            return _wrong_text(value)
         return (
-            "" if not isinstance(value, _COLLECTIONS) and is_text(value) else f"takes {_WANTED[kind]} or a substitution"
+            ""
+            if not isinstance(value, _COLLECTIONS) and _is_text(value)
+            else f"takes {_WANTED[kind]} or a substitution"
         )
 
     return checked
 
 
-def wrong_parameters(value: Value) -> str:
+def _wrong_parameters(value: Value) -> str:
     """Return what is wrong with the parameters of a node, or nothing. Raises Undetermined."""
     if isinstance(value, Unknown):
         raise Undetermined(value.reason)
@@ -220,14 +222,14 @@ def wrong_parameters(value: Value) -> str:
 def _wrong_item(item: Value) -> str:
     if isinstance(item, PurePosixPath) or (isinstance(item, Call) and item.name in (*TYPED, FILE)):
         return ""
-    return _wrong_dict(item) if isinstance(item, dict) else wrong_text(item)
+    return _wrong_dict(item) if isinstance(item, dict) else _wrong_text(item)
 
 
 def _wrong_dict(table: dict[Any, Value]) -> str:
-    return next(filter(None, (wrong_text(key) or wrong_parameter(value) for key, value in table.items())), "")
+    return next(filter(None, (_wrong_text(key) or _wrong_parameter(value) for key, value in table.items())), "")
 
 
-def wrong_parameter(value: Value) -> str:
+def _wrong_parameter(value: Value) -> str:
     """Return what is wrong with the value of a parameter, or nothing. Raises Undetermined."""
     match value:
         case dict():
@@ -238,11 +240,11 @@ def wrong_parameter(value: Value) -> str:
             return ""
         case list() | tuple() | range():
             items = [item for item in value if not isinstance(item, SCALARS)]
-            return next(filter(None, map(wrong_text, items)), "")
-    return "" if is_text(value) else f"has a value that is {kind_of(value)}"
+            return next(filter(None, map(_wrong_text, items)), "")
+    return "" if _is_text(value) else f"has a value that is {kind_of(value)}"
 
 
-def wrong_typed(call: Call) -> str:
+def _wrong_typed(call: Call) -> str:
     """Return what is wrong with the value of ParameterValue, or nothing. Raises Undetermined."""
     value, kind = call.kwargs["value"], type_of(call)
     if isinstance(value, UnknownText):
@@ -252,7 +254,7 @@ def wrong_typed(call: Call) -> str:
     if isinstance(value, list | tuple) and not any(isinstance(it, Call | Unknown) for it in value):
         is_wrong = kind is not None or not all(isinstance(it, SCALARS) for it in value)
         return f"the value is {kind_of(value)}" if is_wrong else ""
-    return wrong_text(value)
+    return _wrong_text(value)
 
 
 def type_of(call: Call) -> "type | None":
@@ -269,17 +271,17 @@ def type_of(call: Call) -> "type | None":
 
 def _texts(value: Value) -> str:
     items = items_in(value)
-    return "has to be a list: put [ ] around it" if items is None else next(filter(None, map(wrong_text, items)), "")
+    return "has to be a list: put [ ] around it" if items is None else next(filter(None, map(_wrong_text, items)), "")
 
 
 def _mapping(value: Value) -> str:
     if not isinstance(value, dict):
         return "" if items_in(value) is None and isinstance(value, Unknown) else "has to be a dict"
-    return next(filter(None, (wrong_text(item) for pair in value.items() for item in pair)), "")
+    return next(filter(None, (_wrong_text(item) for pair in value.items() for item in pair)), "")
 
 
 def _period(value: Value) -> str:
-    return "" if isinstance(value, str) else typed(float)(value)  # a string is read as a number
+    return "" if isinstance(value, str) else _typed(float)(value)  # a string is read as a number
 
 
 def _actions(value: Value) -> str:
@@ -292,14 +294,14 @@ def _remappings(value: Value) -> str:
             raise Undetermined(rule.reason)
         if not isinstance(rule, tuple) or len(rule) != 2:
             return "takes pairs: ('from', 'to')"
-        if wrong := wrong_text(rule[0]) or wrong_text(rule[1]):
+        if wrong := _wrong_text(rule[0]) or _wrong_text(rule[1]):
             return wrong
     return "has to be a list: put [ ] around it" if items_in(value) is None else ""
 
 
-CHECKS: Mapping[str, Callable[[Value], str]] = {
-    "text": wrong_text, "texts": _texts, "mapping": _mapping, "bool": typed(bool), "float": _period,
-    "remappings": _remappings, "actions": _actions, "parameters": wrong_parameters, "parameter": wrong_parameter,
+_CHECKS: Mapping[str, Callable[[Value], str]] = {
+    "text": _wrong_text, "texts": _texts, "mapping": _mapping, "bool": _typed(bool), "float": _period,
+    "remappings": _remappings, "actions": _actions, "parameters": _wrong_parameters, "parameter": _wrong_parameter,
 }  # fmt: skip
 
 
@@ -325,7 +327,7 @@ def _declaration(call: Call) -> str:
 
 def _include(call: Call) -> str:
     source, given = call.kwargs["launch_description_source"], call.kwargs.get("launch_arguments")
-    if not (isinstance(source, Call) and is_a(source.name, SOURCE)) and (wrong := wrong_text(source)):
+    if not (isinstance(source, Call) and is_a(source.name, SOURCE)) and (wrong := _wrong_text(source)):
         return f"the first argument {wrong}, not {kind_of(source)}"
     if isinstance(given, dict):
         return "launch_arguments is given a dict: add .items() to it"
@@ -343,7 +345,7 @@ def _opaque(call: Call) -> str:
 def _event_handler(call: Call) -> str:
     value, target = call.kwargs.get("on_exit", call.kwargs.get("on_start")), call.kwargs.get("target_action")
     items = value if isinstance(value, list) else [value]
-    if not isinstance(value, Function) and not all(isinstance(it, Call) and is_entity(it) for it in items):
+    if not isinstance(value, Function) and not all(isinstance(it, Call) and _is_entity(it) for it in items):
         raise Undetermined("what this event handler executes")
     if not isinstance(target, Call | None) or (target is not None and not is_a(target.name, PROCESS)):
         raise Undetermined("the target of this event handler")
@@ -357,7 +359,9 @@ def _description(call: Call) -> str:
 
 def _text_substitution(call: Call) -> str:
     text = call.kwargs["text"]
-    return "" if isinstance(text, str) or (is_text(text) and not isinstance(text, Call)) else f"text is {kind_of(text)}"
+    return (
+        "" if isinstance(text, str) or (_is_text(text) and not isinstance(text, Call)) else f"text is {kind_of(text)}"
+    )
 
 
 def _timer(call: Call) -> str:
@@ -374,6 +378,6 @@ def _group(call: Call) -> str:
 
 _SPECIAL: Mapping[str, Callable[[Call], str]] = {
     "DeclareLaunchArgument": _declaration, "OpaqueFunction": _opaque, "IncludeLaunchDescription": _include,
-    "LaunchDescription": _description, "TextSubstitution": _text_substitution, "ParameterValue": wrong_typed,
+    "LaunchDescription": _description, "TextSubstitution": _text_substitution, "ParameterValue": _wrong_typed,
     "GroupAction": _group, "TimerAction": _timer, **dict.fromkeys(("OnProcessExit", "OnProcessStart"), _event_handler),
 }  # fmt: skip

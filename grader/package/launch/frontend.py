@@ -64,7 +64,7 @@ _RAW = ("shell", "emulate_tty", "scoped")
 
 
 @dataclass(slots=True)
-class Entity:
+class _Entity:
     """One element of a launch file: <node pkg="..."/>, or `- node: {pkg: ...}`.
 
     `attributes` are texts in XML, values in YAML. `nested` has the elements in it by their names, `actions` those that
@@ -74,14 +74,14 @@ class Entity:
     kind: str
     at: Position
     attributes: dict[str, Any] = field(default_factory=dict)
-    nested: "dict[str, list[Entity]]" = field(default_factory=dict)
-    actions: "list[Entity]" = field(default_factory=list)
+    nested: "dict[str, list[_Entity]]" = field(default_factory=dict)
+    actions: "list[_Entity]" = field(default_factory=list)
     is_yaml: bool = False
     has_actions: bool = True  # in YAML: whether it is a list, or has the key children
     error: str = ""  # what is wrong with its form
 
 
-def read_frontend(data: bytes, source: Source, *, is_yaml: bool) -> Entity | LaunchFault:
+def read_frontend(data: bytes, source: Source, *, is_yaml: bool) -> _Entity | LaunchFault:
     """Return the root entity of a launch file in XML or YAML, or why it cannot be read. Never raises."""
     try:
         root = _YamlReader().root(data, source.path) if is_yaml else _xml_root(XmlFile(data, source))
@@ -96,11 +96,11 @@ def read_frontend(data: bytes, source: Source, *, is_yaml: bool) -> Entity | Lau
     return LaunchFault(f"{what}; ros2 launch starts nothing", Location(source.path, 1, 1))
 
 
-def _xml_root(file: XmlFile) -> Entity:
-    def entity(element: Element, depth: int) -> Entity:
+def _xml_root(file: XmlFile) -> _Entity:
+    def entity(element: Element, depth: int) -> _Entity:
         location = file.location(element)
         attributes = {str(name): str(value) for name, value in element.attrib.items()}
-        found = Entity(str(element.tag), Position(location.line, location.column), attributes)
+        found = _Entity(str(element.tag), Position(location.line, location.column), attributes)
         found.actions = [entity(it, depth + 1) for it in element.iterchildren("*") if depth < _MAX_DEPTH]
         for inner in found.actions:
             found.nested.setdefault(inner.kind, []).append(inner)
@@ -115,7 +115,7 @@ class _YamlReader:
 
     count: int = 0
 
-    def root(self, data: bytes, path: str) -> Entity | None:
+    def root(self, data: bytes, path: str) -> _Entity | None:
         """Return the entity of the whole file; None where its only key is not launch."""
         root = read_yaml(data, path)
         node = root.get("launch")
@@ -123,9 +123,9 @@ class _YamlReader:
             return None
         return self.entity("launch", node, 0)
 
-    def entries(self, listed: YamlNode, depth: int) -> list[Entity]:
+    def entries(self, listed: YamlNode, depth: int) -> list[_Entity]:
         """Return the actions of a list, each below its own key. Raises EvaluationFails."""
-        found: list[Entity] = []
+        found: list[_Entity] = []
         for item in listed.items:
             table = item.value if isinstance(item.value, dict) else {}
             if len(table) != 1:
@@ -135,9 +135,9 @@ class _YamlReader:
             found += [self.entity(kind, value, depth + 1) for kind, value in table.items()]
         return found
 
-    def entity(self, kind: str, node: YamlNode, depth: int) -> Entity:
+    def entity(self, kind: str, node: YamlNode, depth: int) -> _Entity:
         """Return one action or element."""
-        entity = Entity(kind, _position(node), is_yaml=True)
+        entity = _Entity(kind, _position(node), is_yaml=True)
         self.count += 1
         if depth > _MAX_DEPTH or self.count > _MAX_ENTITIES:
             raise EvaluationFails("the launch file has too many elements", _position(node))
@@ -175,7 +175,7 @@ def _position(node: YamlNode) -> Position:
     return Position(node.location.line, node.location.column)
 
 
-def actions_of(parent: Entity, findings: Findings) -> list[Value]:
+def actions_of(parent: _Entity, findings: Findings) -> list[Value]:
     """Return the actions in an entity; errors, which stop the launch, are added to the findings."""
     found: list[Value] = []
     for entity in parent.actions:
@@ -188,7 +188,7 @@ def actions_of(parent: Entity, findings: Findings) -> list[Value]:
     return found
 
 
-def _action(entity: Entity, findings: Findings) -> Call:
+def _action(entity: _Entity, findings: Findings) -> Call:
     kind = entity.kind
     if kind not in _ACTIONS:
         if kind in front_end("action"):
@@ -205,7 +205,7 @@ def _action(entity: Entity, findings: Findings) -> Call:
     return _checked(Call(front_end("action")[kind], [], kwargs, entity.at))
 
 
-def _attributes(entity: Entity, known: str) -> dict[str, Any]:
+def _attributes(entity: _Entity, known: str) -> dict[str, Any]:
     """Return the attributes of an entity, of their types. Raises EvaluationSignal."""
     if entity.error:
         raise EvaluationFails(entity.error, entity.at)
@@ -236,11 +236,11 @@ def _attributes(entity: Entity, known: str) -> dict[str, Any]:
     }
 
 
-def _typed(entity: Entity, name: str, value: Any, kind: str) -> Any:
+def _typed(entity: _Entity, name: str, value: Any, kind: str) -> Any:
     wanted = _TYPES[kind] if kind else str
     if not entity.is_yaml:
-        return value if wanted is str else typed_text(value, wanted, entity.at)
-    if not is_typed(value, wanted, entity.at):
+        return value if wanted is str else _typed_text(value, wanted, entity.at)
+    if not _is_typed(value, wanted, entity.at):
         what = f"{name} of {entity.kind} is {value!r}, which YAML reads as {type(value).__name__}"
         raise EvaluationFails(f"{what}: {'put quotes around it' if wanted is str else f'write a {kind}'}", entity.at)
     return value
@@ -255,37 +255,37 @@ def _checked(call: Call) -> Call:
     return call
 
 
-def _condition_of(given: dict[str, Any], entity: Entity) -> Call | None:
+def _condition_of(given: dict[str, Any], entity: _Entity) -> Call | None:
     """Take the condition out of the attributes."""
     own = {name: given.pop(name) for name in ("if", "unless") if name in given}
     if len(own) > 1:
         raise EvaluationFails("if and unless cannot be used together", entity.at)
     for name, text in own.items():
         kind = "if_condition.IfCondition" if name == "if" else "unless_condition.UnlessCondition"
-        kwargs = {"predicate_expression": parse_value(text, entity.at)}
+        kwargs = {"predicate_expression": _parse_value(text, entity.at)}
         return Call(f"launch.conditions.{kind}", [], kwargs, entity.at)
     return None
 
 
-def _value(entity: Entity, name: str, value: Any) -> Value:
+def _value(entity: _Entity, name: str, value: Any) -> Value:
     if entity.kind == "arg" and name in ("name", "description"):
         return value  # without substitutions
     if name in ("cmd", "args"):
-        return command_line(value, entity.at)
+        return _command_line(value, entity.at)
     if name == "on_exit":
         if value != "shutdown":
             raise EvaluationFails(f"on_exit is 'shutdown', not {value!r}", entity.at)
         return [Call(front_end("action")["shutdown"], [], {}, entity.at)]
     if name == "respawn" or entity.kind == "set_parameter":
         text = "launch.substitutions.text_substitution.TextSubstitution"
-        parts = parse_value(value, entity.at)
+        parts = _parse_value(value, entity.at)
         return [Call(text, [], {"text": it}, entity.at) if isinstance(it, str) else it for it in parts]
     if name == "period":
-        return parse_if_text(value, entity.at)
-    return parse_value(value, entity.at) if isinstance(value, str) and name not in _RAW else value
+        return _parse_if_text(value, entity.at)
+    return _parse_value(value, entity.at) if isinstance(value, str) and name not in _RAW else value
 
 
-def _add_elements(entity: Entity, kwargs: dict[str, Value]) -> None:
+def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
     """Add the arguments that the elements in an entity stand for."""
     if "children" in _ACTIONS[entity.kind]:
         return
@@ -296,20 +296,20 @@ def _add_elements(entity: Entity, kwargs: dict[str, Value]) -> None:
             case "remap" | "arg":
                 pair = ("from", "to") if name == "remap" else ("name", "value")
                 given = [(it, _attributes(it, _NESTED[name])) for it in inner]
-                found = [tuple(parse_value(values[key], it.at) for key in pair) for it, values in given]
+                found = [tuple(_parse_value(values[key], it.at) for key in pair) for it, values in given]
                 kwargs["remappings" if name == "remap" else "launch_arguments"] = found
             case "choice":
                 kwargs["choices"] = [_attributes(it, _NESTED[name])["value"] for it in inner]
 
 
-def _parameter(entity: Entity) -> Value:
+def _parameter(entity: _Entity) -> Value:
     """Return an item of the parameters of a node. Raises EvaluationSignal."""
     given = _attributes(entity, _NESTED["param"])
     if ("from" in given) == ("name" in given):
         raise EvaluationFails("a <param> has either name or from", entity.at)
     if "from" in given:
-        return parse_value(str(given["from"]), entity.at)
-    parts, inner, kind = parse_value(given["name"], entity.at), entity.nested.get("param"), given.get("type")
+        return _parse_value(str(given["from"]), entity.at)
+    parts, inner, kind = _parse_value(given["name"], entity.at), entity.nested.get("param"), given.get("type")
     name: Value = parts[0] if len(parts) == 1 and isinstance(parts[0], str) else tuple(parts)
     if inner:
         if "value" in given or "type" in given:
@@ -323,29 +323,29 @@ def _parameter(entity: Entity) -> Value:
     if kind not in (None, "str", "yaml"):
         raise Undetermined(f"a <param> of the type {kind} is not evaluated", entity.at)
     value = entity.attributes["value"] if not entity.is_yaml and kind == "str" else given["value"]
-    kwargs: dict[str, Value] = {"value": parse_if_text(value, entity.at)}
+    kwargs: dict[str, Value] = {"value": _parse_if_text(value, entity.at)}
     if kind == "str":
         kwargs["value_type"] = Call("builtins.str", [], {}, entity.at)
     return {name: _checked(Call(TYPED[0], [], kwargs, entity.at))}
 
 
-def parse_value(text: str, at: Position) -> list[Value]:
+def _parse_value(text: str, at: Position) -> list[Value]:
     """Return a value as a list of strings and substitutions. Raises EvaluationFails."""
     parser = _ValueParser(text, at)
     found = parser.template("", 0)
     return found or [""]
 
 
-def parse_if_text(value: Any, at: Position) -> Any:
+def _parse_if_text(value: Any, at: Position) -> Any:
     """Return a value; a text is parsed. Raises EvaluationFails."""
-    parts = parse_value(value, at) if isinstance(value, str) else [value]
+    parts = _parse_value(value, at) if isinstance(value, str) else [value]
     return parts[0] if len(parts) == 1 and not isinstance(parts[0], Call) else parts
 
 
-def command_line(text: str, at: Position) -> list[list[Value]]:
+def _command_line(text: str, at: Position) -> list[list[Value]]:
     """Return the words of a line as launch splits it: strings are split, the values of substitutions are not."""
     words: list[list[Value]] = [[]]
-    for piece in parse_value(text, at):
+    for piece in _parse_value(text, at):
         if not isinstance(piece, str):
             words[-1].append(piece)
             continue
@@ -364,7 +364,7 @@ def command_line(text: str, at: Position) -> list[list[Value]]:
     return [word for word in words if word]
 
 
-def typed_text(text: str, kind: type | None, at: Position) -> Any:
+def _typed_text(text: str, kind: type | None, at: Position) -> Any:
     """Return the value of a text in XML as a type, by default any scalar; a text that is none of it stays a text."""
     if kind is float:
         try:
@@ -376,12 +376,12 @@ def typed_text(text: str, kind: type | None, at: Position) -> Any:
         found = yaml.safe_load(text) if text else text
     except (yaml.YAMLError, ValueError, RecursionError):
         return text
-    if not is_typed(found, kind, at):
+    if not _is_typed(found, kind, at):
         raise EvaluationFails(f"{text[:40]!r} is of no type that is accepted here: put quotes in it", at)
     return found
 
 
-def is_typed(value: Any, kind: type | None, at: Position) -> bool:
+def _is_typed(value: Any, kind: type | None, at: Position) -> bool:
     """Return whether a value is a text or of a type; with None, whether it is a scalar. Raises Undetermined."""
     if isinstance(value, list) and kind is None:
         raise Undetermined("a list in this place is not evaluated", at)

@@ -116,7 +116,7 @@ def check_namespace(value: Value, context: Context, at: Position) -> None:
 
 def _frame_prefix(call: Call, context: Context) -> str | None:
     """Return the parameter frame_prefix of a node."""
-    given = [table["frame_prefix"] for table in tables_in(call.kwargs.get("parameters")) if "frame_prefix" in table]
+    given = [table["frame_prefix"] for table in _tables_in(call.kwargs.get("parameters")) if "frame_prefix" in table]
     words = _words_of(call.kwargs.get("arguments"), context, call.at)
     given += [word.partition(":=")[2] for word in words if word.startswith("frame_prefix:=")]
     found = _attempt(_inner_value(given[-1]), context, call.at) if given else ""
@@ -127,7 +127,7 @@ def _find_description(findings: Findings, call: Call, context: Context) -> None:
     """Add the file that robot_state_publisher gets the robot from."""
     given = call.kwargs.get("parameters") or []
     parameters = given if isinstance(given, list | tuple) else [given]
-    descriptions = [table["robot_description"] for table in tables_in(parameters) if "robot_description" in table]
+    descriptions = [table["robot_description"] for table in _tables_in(parameters) if "robot_description" in table]
     if descriptions:
         _refer_description(findings, descriptions[-1], call, context)
         return
@@ -328,7 +328,7 @@ def _is_uniform(values: list[Any]) -> bool:
     return kind in SCALARS and all(isinstance(value, kind) for value in values if kind)
 
 
-def tables_in(parameters: Value) -> Iterator[dict[Any, Value]]:
+def _tables_in(parameters: Value) -> Iterator[dict[Any, Value]]:
     """Yield the dicts among the parameters of a node."""
     if isinstance(parameters, list):
         yield from (table for table in parameters if isinstance(table, dict))

@@ -1,6 +1,6 @@
 """Read a launch file in any of its languages, and the launch files that it includes.
 
-One in Python is evaluated without running it: `PythonLaunchFile` gives what the functions that it calls return.
+One in Python is evaluated without running it: `_PythonLaunchFile` gives what the functions that it calls return.
 """
 
 import posixpath
@@ -182,7 +182,7 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
         syntax = LaunchFault(f"Python cannot read the file: {code.message}", code.location)
         return Launch(code.source, syntax) if code.sure else Launch(code.source, unknown=(syntax,), doubts=(syntax,))
     findings = Findings(lambda position: location_in(code.source, position))
-    file = PythonLaunchFile(context)
+    file = _PythonLaunchFile(context)
     entry = file.run(code, installed).get(_ENTRY)
     visitor = ActionVisitor(findings, include, file.call)
     interpreter = file.interpreter
@@ -204,7 +204,7 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
     return _launch(code.source, findings, tuple(_forgotten(node, findings) for node in nodes))
 
 
-def _add_python(findings: Findings, file: "PythonLaunchFile") -> None:
+def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
     """Add what Python raises, what is not evaluated, and what the file reads."""
     interpreter = file.interpreter
     if interpreter.doubt is not None:
@@ -252,7 +252,7 @@ def _launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ..
 
 
 @dataclass(slots=True)
-class PythonLaunchFile:
+class _PythonLaunchFile:
     """The evaluation of a launch file; `context` is that of the action which calls one of its functions."""
 
     context: Context
