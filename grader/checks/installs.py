@@ -166,9 +166,8 @@ def _why_not_installed(package: Package, setup: "Setup", files: Sequence[str], k
         message += ": no entry of data_files in setup.py names it"
         return MissingElement(what, package.folder, message=message)
     problem = f"the pattern {empty.pattern!r} in setup.py matches no file"
-    from grader.package.package_problems import (
-        why_no_match,  # late: a URDF on its own needs none of what reads a package
-    )
+    # Late: a URDF on its own needs none of what reads a package.
+    from grader.package.package_problems import why_no_match
 
     detail, at = why_no_match(package, empty.pattern), setup.location(empty.at)
     message += f": {problem}"

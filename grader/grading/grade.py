@@ -54,9 +54,8 @@ def grade(
     results = without_gifts(decide(rubric, submission, wanted), submission)
     problems = submission.urdf.problems if isinstance(submission.urdf, Read) else ()
     if submission.package is not None and any(rubric.part(part).needs == "package" for part in chosen):
-        from grader.package.package_problems import (
-            package_problems,  # a URDF on its own needs none of what reads a package
-        )
+        # Late: a URDF on its own needs none of what reads a package.
+        from grader.package.package_problems import package_problems
 
         problems += package_problems(submission.package)
     evidence, other_pictures = _evidence_of(rubric, submission, chosen if is_whole else ())

@@ -95,9 +95,15 @@ class Package:
         file = self.tree.files.get(SETUP)
         if file is None:
             return None
-        from grader.package.setup_py import read_setup_file
+        from grader.package.setup_py import Setup, read_setup
+        from grader.python.parse import SyntaxFault
 
-        return read_setup_file(file, self.path(SETUP), self.tree, self.budget)
+        own = self.path(SETUP)
+        try:
+            return read_setup(file.read(PYTHON_LIMIT), own, self.tree, self.budget)
+        except InputError as error:
+            source = Source(own, "")
+            return Setup(source, SyntaxFault(source, str(error), Location(own, 1, 1), sure=False))
 
     @cached_property
     def installed(self) -> dict[str, str]:

@@ -29,13 +29,13 @@ class Display:
 
     def is_on(self, setting: str) -> bool:
         """Return whether one of its own settings is on; a missing one is."""
-        return switched_on(self.node.get(setting), default=True)
+        return _switched_on(self.node.get(setting), default=True)
 
     @property
     def is_enabled(self) -> bool:
         """Whether it is enabled itself, whatever its group is."""
         # rviz_common's Display::load sets Value first, and then Enabled.
-        return switched_on(self.node.get("Enabled"), default=switched_on(self.node.get("Value"), default=False))
+        return _switched_on(self.node.get("Enabled"), default=_switched_on(self.node.get("Value"), default=False))
 
     @property
     def location(self) -> Location:
@@ -93,7 +93,7 @@ def read_rviz(data: bytes, path: str) -> RvizFile:
     return RvizFile(source, None, frame.text if frame else None, location, displays)
 
 
-def switched_on(node: YamlNode | None, *, default: bool) -> bool:
+def _switched_on(node: YamlNode | None, *, default: bool) -> bool:
     """Return a setting as RViz reads it: everything but false, 0 and the empty text is on (QVariant::toBool)."""
     if node is None or node.text is None:
         return default

@@ -11,13 +11,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
-from grader.errors import InputError
 from grader.files.names import ignored_part
-from grader.files.tree import File, Tree
+from grader.files.tree import Tree
 from grader.names import did_you_mean
 from grader.package.build_settings import argument_findings, file_findings
 from grader.package.file_search import ORDERS, EmptyGlob, PackageListing, file_functions
-from grader.python.budget import PYTHON_LIMIT, Budget
+from grader.python.budget import Budget
 from grader.python.evaluation import Evaluation, PythonError
 from grader.python.interpreter import Interpreter
 from grader.python.library import MAX_PATH, PACKAGE_FOLDER, standard_functions
@@ -108,21 +107,13 @@ def location_in(source: Source, position: Position) -> Location:
     return Location(source.path, position.line, column + 1)
 
 
-def read_setup_file(file: File, path: str, tree: Tree, budget: Budget) -> Setup:
-    """Read and evaluate the setup.py of a package with these files. Never raises."""
-    try:
-        code = parse(file.read(PYTHON_LIMIT), path)
-    except InputError as error:
-        code = SyntaxFault(Source(path, ""), str(error), Location(path, 1, 1), sure=False)
-    return read_setup(code, tree, budget)
-
-
-def read_setup(code: Code | SyntaxFault, tree: Tree, budget: Budget | None = None) -> Setup:
+def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None) -> Setup:
     """Evaluate the setup.py of a package with these files; its work is charged to the budget. Never raises.
 
     The file system lists a folder in any order. If there are several files, other orders are evaluated as well. colcon
     runs the file twice, with __file__ as "setup.py" and as an absolute path. What differs between these is unknown.
     """
+    code = parse(data, path)
     if isinstance(code, SyntaxFault):
         return Setup(code.source, code)
     budget = budget or Budget()

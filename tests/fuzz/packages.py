@@ -35,8 +35,7 @@ def with_file(path: str, data: bytes) -> Tree:
 def setup(data: bytes) -> None:
     """What a setup.py installs are files of the package, at paths below the prefix; what is wrong has a place."""
     text = _python_text(data)
-    code = parse(data, "setup.py")
-    found = read_setup(code, with_file("setup.py", data))
+    found = read_setup(data, "setup.py", with_file("setup.py", data))
     for copy in found.copies:
         assert copy.source in {*_TREE.files, "setup.py"}
         assert ".." not in copy.target.split("/"), copy

@@ -2,8 +2,7 @@
 
 import pytest
 
-from grader.package.rviz import RvizFile, read_rviz, switched_on
-from grader.package.yaml_nodes import YamlNode, read_yaml
+from grader.package.rviz import RvizFile, read_rviz
 from tests.examples import spread
 from tests.work import limited_work
 
@@ -165,21 +164,12 @@ def test_enabled(settings: str, is_on: bool) -> None:
     assert [display.enabled for display in displays(f"Class: a/B, {settings}").displays] == [is_on]
 
 
-def test_switched_on() -> None:
-    """A missing value is the default; a list is no setting."""
-    assert [switched_on(None, default=value) for value in (True, False)] == [True, False]
-    assert [switched_on(node(text), default=False) for text in ("[a]", "no", "off", "0", "0.0")] == [
-        False,
-        True,
-        True,
-        False,
-        True,
-    ]
-
-
-def node(text: str) -> YamlNode:
-    """Return a value of YAML."""
-    return read_yaml(text.encode(), "a")
+def test_settings_of_displays() -> None:
+    """A missing setting, or one that is a list, is on; RViz reads every text but false and 0 as on."""
+    settings = {"[a]": True, "no": True, "off": True, "0": False, "0.0": True, "false": False}
+    for text, is_on in settings.items():
+        [display] = displays(f"Class: a/B, Shown: {text}").displays
+        assert (display.is_on("Shown"), display.is_on("Other")) == (is_on, True)
 
 
 def test_class_without_a_package() -> None:

@@ -9,7 +9,6 @@ import pytest
 
 from grader.files.folder import read_folder
 from grader.package.setup_py import Setup, read_setup
-from grader.python.parse import parse
 from tests.oracles.python_setups import Ran, run_all
 from tests.package.my_robot import write_package
 
@@ -82,7 +81,7 @@ def wrong(setup: Setup, ran: Ran) -> str:
 def compared(folder: Path, texts: list[str]) -> list[str]:
     """Return the differences of some files from what Python does with them."""
     tree = read_folder(folder)
-    setups = [read_setup(parse(text.encode(), "setup.py"), tree) for text in texts]
+    setups = [read_setup(text.encode(), "setup.py", tree) for text in texts]
     pairs = zip(texts, setups, run_all(folder, texts), strict=True)
     return [f"{found}:\n{text}" for text, setup, ran in pairs if (found := wrong(setup, ran))]
 
@@ -97,7 +96,7 @@ def test_statements_at_random_places(package: Path) -> None:
     """Some hundred of the variations, the same in every run; some are decided each way."""
     texts = Random(46).sample(list(variations()), 300)
     assert compared(package, texts) == []
-    setups = [read_setup(parse(text.encode(), "setup.py"), read_folder(package)) for text in texts]
+    setups = [read_setup(text.encode(), "setup.py", read_folder(package)) for text in texts]
     assert sum(setup.doubt is None and not setup.faults for setup in setups) > 60
 
 

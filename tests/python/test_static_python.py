@@ -26,7 +26,7 @@ _TREE = make_tree("my_robot", [File(path, 0, read_nothing) for path in FILES], [
 def evaluated(text: str | bytes) -> Setup:
     """Return the evaluation of a setup.py, which must take little work."""
     with limited_work(60_000_000):
-        return read_setup(parse(text.encode() if isinstance(text, str) else text, "setup.py"), _TREE)
+        return read_setup(text.encode() if isinstance(text, str) else text, "setup.py", _TREE)
 
 
 def is_fully_known(setup: Setup) -> bool:
