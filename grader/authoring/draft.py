@@ -15,8 +15,7 @@ from grader.checks.registry import find_check
 from grader.checks.toml_types import WrongValue
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.grading.rubric import Rubric, read_rubric
-from grader.grading.toml_file import read_toml
-from grader.grading.toml_rows import assignment, toml_literal
+from grader.grading.toml_file import assignment, read_toml, toml_literal
 from grader.robot.shapes import UnknownShape
 from grader.text import capitalised, printable
 

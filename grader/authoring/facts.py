@@ -12,7 +12,7 @@ from itertools import permutations
 from math import degrees, isfinite
 from typing import Any, NamedTuple
 
-from grader.checks.mesh_files import mesh_file
+from grader.checks.meshes import mesh_file
 from grader.checks.visuals import MAX_SHAPES
 from grader.errors import MissingElement, NotDecided
 from grader.package.launch.model import Launch

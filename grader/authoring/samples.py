@@ -12,8 +12,7 @@ from grader.grading.grade import grade
 from grader.grading.keys import NAMES
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
-from grader.grading.toml_file import complain_of, read_toml
-from grader.grading.toml_rows import KeyTable, TomlRowReader
+from grader.grading.toml_file import KeyTable, TomlRowReader, complain_of, read_toml
 from grader.names import did_you_mean
 from grader.submission.opening import open_submission
 from grader.submission.urdf import Read

@@ -1,4 +1,4 @@
-"""Checks of what a link shows: shapes of a size, or nothing."""
+"""Checks of what a link shows: shapes of a size, in a colour, or nothing."""
 
 from collections.abc import Sequence
 from itertools import permutations
@@ -6,24 +6,26 @@ from math import cos, radians
 from typing import TypeVar
 
 from grader.checks.check import About
-from grader.checks.outcome import Outcome, failed, judged, measured, other_unit, passed, place, point, within
-from grader.checks.toml_types import NonNegative, Size
-from grader.checks.visuals import VISIBLE, all_within, main_visual, shape_name, visuals
-from grader.errors import MissingElement
+from grader.checks.outcome import SLACK, Outcome, failed, judged, measured, other_unit, passed, place, point, within
+from grader.checks.toml_types import Colour, NonNegative, Size
+from grader.checks.visuals import VISIBLE, ShapeName, all_within, main_visual, shape_name, visuals
+from grader.errors import MissingElement, NotDecided
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Box, Cylinder, Sphere, Visual
+from grader.robot.model import Box, Cylinder, Material, Sphere, Visual
 from grader.robot.transforms import IDENTITY_ROTATION, Vector, rotation_from_rpy
 
 ABOUT = {
     "shows_box": About(("box", "visual"), picture="outline"),
     "shows_cylinder": About(("cylinder", "visual"), picture="outline"),
     "shows_sphere": About(("sphere", "visual"), picture="outline"),
+    "shows_colour": About(("material",)),
+    "shows_grey": About(("material",)),
     "shows_nothing": About(("visual",)),
 }
 
 _ALIGNED = cos(radians(1.0))
 
-Shown = TypeVar("Shown", Box, Cylinder, Sphere)
+_Shown = TypeVar("_Shown", Box, Cylinder, Sphere)
 
 
 def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNegative) -> Outcome:
@@ -87,6 +89,64 @@ def shows_sphere(robot: Configuration, *, link: str, radius: NonNegative, tolera
     return measured(what, best.radius, radius, tolerance, at=place(best.location, "radius"))
 
 
+def shows_colour(
+    robot: Configuration, *, link: str, colour: Colour, tolerance: NonNegative, shape: ShapeName = "any"
+) -> Outcome:
+    """A link is shown in a colour: red, green, blue and, if a fourth channel is given, opacity, each from 0 to 1.
+
+    With an opacity below 0.01 it is invisible, which is never correct, unless the fourth channel demands it.
+
+    Args:
+        link: The link that is examined.
+        colour: Red, green, blue and, if it is to be checked, opacity, each from 0 to 1.
+        tolerance: How far each channel may be off, on the scale from 0 to 1.
+        shape: Which of several visuals counts: the largest of this shape or, without one, the largest of all.
+    """
+    visual = main_visual(robot, link, shape)
+    if visual.material is None or _has_only_texture(visual.material):
+        return _colourless(link, visual)
+    actual = visual.material.rgba[: len(colour)]
+    fine = all_within(actual, colour, tolerance)
+    message = f"{link!r} is shown in {'rgba' if len(colour) == 4 else 'rgb'} {point(actual)}"
+    if not fine:
+        message += f"; it should be {point(colour)}"
+    is_wanted = len(colour) == 4 and colour[3] < VISIBLE
+    invisible = "" if is_wanted else _invisible(visual.material)
+    return judged(
+        fine and not invisible,
+        message + invisible,
+        actual,
+        colour,
+        tolerance,
+        at=place(visual.material.location, "rgba"),
+    )
+
+
+def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: NonNegative) -> Outcome:
+    """A link is shown in a grey (red = green = blue) of at least the given level, from 0 to 1, and not invisible.
+
+    Below 0.01, the opacity makes it invisible; otherwise opacity is not checked.
+
+    Args:
+        link: The link that is examined.
+        at_least: The darkest grey that passes, from 0 (black) to 1 (white).
+        tolerance: How far red, green and blue may be apart, on the scale from 0 to 1.
+    """
+    visual = main_visual(robot, link)
+    if visual.material is None or _has_only_texture(visual.material):
+        return _colourless(link, visual)
+    actual = visual.material.rgba[:3]
+    message = f"{link!r} is shown in rgb {point(actual)}"
+    is_grey = within(max(actual), min(actual), tolerance)
+    is_light = min(actual) >= at_least - SLACK
+    if not is_grey:
+        message += ", which is not grey; red, green and blue should be equal"
+    elif not is_light:
+        message += f"; each should be at least {at_least:g}"
+    invisible, at = _invisible(visual.material), place(visual.material.location, "rgba")
+    return judged(is_grey and is_light and not invisible, message + invisible, actual, at_least, tolerance, at=at)
+
+
 def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
     """A link exists and shows nothing: no visual, or only invisible ones (without a size, or with an alpha below 0.01).
 
@@ -106,7 +166,7 @@ def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
     return failed(message, shown[0].location)
 
 
-def _visuals_of_kind(robot: Configuration, link: str, kind: type[Shown]) -> list[tuple[Visual, Shown]]:
+def _visuals_of_kind(robot: Configuration, link: str, kind: type[_Shown]) -> list[tuple[Visual, _Shown]]:
     """Return the visuals of a link that show a shape of a kind; raise MissingElement where there is none."""
     pairs = ((visual, visual.geometry) for visual in visuals(robot, link))
     found = [(visual, shape) for visual, shape in pairs if isinstance(shape, kind)]
@@ -131,3 +191,29 @@ def _edges(visual: Visual, box: Box) -> Vector | None:
 
 def _difference(actual: Sequence[float] | None, expected: Sequence[float]) -> float:
     return float("inf") if actual is None else max(abs(a - b) for a, b in zip(actual, expected, strict=True))
+
+
+def _invisible(material: Material) -> str:
+    """Return the end of a message on a colour that nobody sees; empty for one that shows."""
+    alpha = material.rgba[3]
+    return (
+        "" if alpha >= VISIBLE else f"; its alpha is {alpha:g}, so it is invisible; it should be at least {VISIBLE:g}"
+    )
+
+
+def _has_only_texture(material: Material) -> bool:
+    # ROS 2 gives a material black where it has a texture and no colour.
+    return material.rgba == Material("").rgba and material.texture != ""
+
+
+def _colourless(link: str, visual: Visual) -> Outcome:
+    if visual.material is not None:
+        raise NotDecided(f"{link!r} is shown with a texture, which the grader does not open", "textures are not opened")
+    if visual.has_unreadable_colour:
+        at = place(visual.location, None, "material")
+        return failed(f"{link!r} has no colour: ROS 2 cannot read that of its material {visual.material_name!r}", at)
+    if visual.material_name:
+        message = f"{link!r} has no colour: the material {visual.material_name!r} is not defined here"
+        at = place(visual.location, "name", "material")
+        return failed(message, at, mistake=f"{link!r} has no colour: its material is not defined")
+    return failed(f"{link!r} has no material, so RViz shows it in its default colour, red", place(visual.location))

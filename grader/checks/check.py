@@ -22,12 +22,12 @@ EQUIVALENTS = (
     "xacro properties",
     "xacro macro",
 )
-BreaksUnder = Callable[[Mapping[str, Any]], Collection[str]]
+_BreaksUnder = Callable[[Mapping[str, Any]], Collection[str]]
 _SECTION = r"(?m)^(Args|Arguments|Examples?|Notes?|Raises|Returns):\s*$"
 _ARGUMENT = r"^\*{0,2}(\w+)(?:\s*\([^)]*\))?:\s+"
 
 
-def nothing(arguments: Mapping[str, Any]) -> Collection[str]:
+def _nothing(arguments: Mapping[str, Any]) -> Collection[str]:
     """Break under no equivalent, as most checks do: they are about behaviour."""
     del arguments
     return ()
@@ -49,7 +49,7 @@ class About(NamedTuple):
     """
 
     looks_at: tuple[str, ...] = ()
-    breaks_under: BreaksUnder = nothing
+    breaks_under: _BreaksUnder = _nothing
     picture: Literal["", "outline", "wheel", "frame"] = ""
 
 
@@ -58,10 +58,10 @@ LINK_ARGUMENTS = ("link", "leader", "relative_to", "parent", "holds", "on", "of"
 
 
 Subject = Literal["urdf", "robot", "package", "submission", "reference"]
-SUBJECTS: tuple[Subject, ...] = get_args(Subject)
+_SUBJECTS: tuple[Subject, ...] = get_args(Subject)
 
 
-class Parameter(NamedTuple):
+class _Parameter(NamedTuple):
     """One argument of a check: its annotation, and its default if it has one."""
 
     name: str
@@ -86,7 +86,7 @@ class Check(NamedTuple):
     name: str
     function: Callable[..., Outcome]
     examined: tuple[Subject, ...]
-    parameters: Mapping[str, Parameter]
+    parameters: Mapping[str, _Parameter]
     distribution: str = ""
     about: About = About()
 
@@ -117,10 +117,10 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
     parameters = {}
     for name, default in ((parameter.name, parameter.default) for parameter in rest[len(also) :]):
         is_required = default is inspect.Parameter.empty
-        parameters[name] = Parameter(name, hints[name], is_required, None if is_required else default)
-    main = subject.name if subject.name in SUBJECTS else "robot"
+        parameters[name] = _Parameter(name, hints[name], is_required, None if is_required else default)
+    main = subject.name if subject.name in _SUBJECTS else "robot"
     examined = tuple(
-        name for given in (main, *(parameter.name for parameter in also)) for name in SUBJECTS if name == given
+        name for given in (main, *(parameter.name for parameter in also)) for name in _SUBJECTS if name == given
     )
     name = function.__name__
     about = getattr(sys.modules.get(function.__module__), "ABOUT", {}).get(name, About())
@@ -131,7 +131,7 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
 
 def _is_subject(parameter: inspect.Parameter) -> bool:
     """Return whether a parameter after the first is another object that is examined: it is no keyword-only argument."""
-    return parameter.kind is parameter.POSITIONAL_OR_KEYWORD and parameter.name in SUBJECTS
+    return parameter.kind is parameter.POSITIONAL_OR_KEYWORD and parameter.name in _SUBJECTS
 
 
 class Documentation(NamedTuple):

@@ -1,14 +1,25 @@
 """Checks of a launch file: its name, the nodes that it starts, and whether a build installs the files that it names."""
 
 import posixpath
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from grader.checks.check import About
-from grader.checks.launch_places import ENDINGS, WORDS, FilePlace, fault_that_stops, launch_of, path_of, place_of
 from grader.checks.outcome import Outcome, failed, judged, passed
-from grader.errors import MissingElement, NotDecided
-from grader.package.launch.places import is_launch_named, is_of_one_machine, one_machine_only
+from grader.errors import InputError, MissingElement, NotDecided
+from grader.files.reading import URDF_LIMIT
+from grader.names import closest
+from grader.package.launch.places import (
+    BY_UTF8,
+    HOME,
+    PREFIX,
+    ROS,
+    SHARE,
+    WORKING_FOLDER,
+    is_launch_named,
+    is_of_one_machine,
+    one_machine_only,
+)
 from grader.package.package import Package
 from grader.source import Location
 from grader.text import enumerated
@@ -16,16 +27,35 @@ from grader.text import enumerated
 if TYPE_CHECKING:
     from grader.package.launch.model import Launch, NamedFile, Purpose
 
+
 # What the edits for hints may change.
 ABOUT = {
     "launch_found": About(("launch",)),
     "launch_starts": About(("launch",)),
     "launch_finds_files": About(("launch",)),
 }
+_WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file", "read": "file"}
+_ENDINGS = {
+    "urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".launch", ".yaml", ".yml"),
+    "read": ("",)
+}  # fmt: skip
+
 
 _UNKNOWN_FILES = "cannot determine statically which files it names"
 _ON_ONE_MACHINE = "the launch file looks for files at paths that exist on one machine only"
 _NOT_INSTALLED = "the launch file looks for files where a build does not install them"
+
+
+class _FilePlace(NamedTuple):
+    """Where a launch file looks for a file: found there, or why it is not. `missing`: a build does not install it.
+
+    `mistake` is the text without what differs between students.
+    """
+
+    file: "NamedFile"
+    state: Literal["found", "wrong", "unknown", "missing"]
+    text: str = ""
+    mistake: str = ""
 
 
 def launch_found(package: Package, *, name: str) -> Outcome:
@@ -34,7 +64,7 @@ def launch_found(package: Package, *, name: str) -> Outcome:
     Args:
         name: The file's name, such as view.launch.py.
     """
-    path = path_of(package, name)
+    path = _path_of(package, name)
     if is_launch_named(path, name):
         return passed(f"the launch file is {path}")
     detail = f"; the package has {path}{package.built('launch', name)}"
@@ -52,9 +82,9 @@ def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool 
         nodes: The nodes, each as "package/executable", or as one name if both are the same; "a or b" leaves a choice.
         built: Whether a build must install the files that it reads; if not, files of the package count as found.
     """
-    launch = launch_of(package, name)
+    launch = _launch_of(package, name)
     if launch.faults:
-        raise fault_that_stops(package, name, launch)
+        raise _fault_that_stops(package, name, launch)
     places = _places(package, launch, "read", "urdf", "include", built=built)
     if wrong := [it for it in places if it.state == "wrong" and _stops(it.file)]:
         return _wrong(package, wrong)
@@ -78,6 +108,37 @@ def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool 
     return judged(True, f"the launch file starts {', '.join(sorted(started))}", tuple(sorted(started)), tuple(nodes))
 
 
+def launch_finds_files(package: Package, *, name: str, built: bool = True, started: bool = True) -> Outcome:
+    """The launch file looks for the URDF and RViz files where a build of the package installs them.
+
+    What it reads as text, with `open` or `cat`, must be UTF-8, unless it names the encoding.
+
+    Args:
+        name: The file's name, such as view.launch.py.
+        built: Whether a build must install the files; if not, files of the package count as found.
+        started: Whether ros2 launch starts the file; if not, what stops it, and what is unknown then, does not count.
+    """
+    launch = _launch_of(package, name)
+    places = _places(package, launch, "urdf", "rviz", "include", built=built)
+    if not started:
+        places = _others(places)
+    wrong = [it for it in places if it.state == "wrong"]
+    if wrong:
+        return _wrong(package, wrong)
+    if not started:
+        return passed("the launch file looks for no file in a wrong place")
+    unknown = next((it for it in places if it.state == "unknown"), None)
+    if launch.faults and (unknown or all(it.file.purpose == "include" for it in places)):
+        raise _fault_that_stops(package, name, launch)
+    if all(it.file.purpose == "include" for it in places):
+        raise _no_files(launch)
+    if unknown is not None:
+        raise NotDecided(unknown.text, _UNKNOWN_FILES)
+    if not launch.faults:
+        _check_starts(launch)
+    return _found(places)
+
+
 def _check_starts(launch: "Launch") -> None:
     """Raise NotDecided if it is not known whether the launch file starts."""
     if launch.doubts:
@@ -86,9 +147,9 @@ def _check_starts(launch: "Launch") -> None:
         raise NotDecided(f"{what}: line {at.line}: {message}", what)
 
 
-def _places(package: Package, launch: "Launch", *purposes: "Purpose", built: bool) -> list[FilePlace]:
+def _places(package: Package, launch: "Launch", *purposes: "Purpose", built: bool) -> list[_FilePlace]:
     """Return where a launch file looks for files. Raises MissingElement for one that a build does not install."""
-    places = [place_of(package, file) for file in launch.named(*purposes)]
+    places = [_place_of(package, file) for file in launch.named(*purposes)]
     present = set(map(posixpath.basename, package.tree.files))
     for it in places:
         is_needed = built or posixpath.basename(it.file.path or "") not in present
@@ -121,56 +182,25 @@ def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | 
     return "", next((node.location for node in similar), None)
 
 
-def launch_finds_files(package: Package, *, name: str, built: bool = True, started: bool = True) -> Outcome:
-    """The launch file looks for the URDF and RViz files where a build of the package installs them.
-
-    What it reads as text, with `open` or `cat`, must be UTF-8, unless it names the encoding.
-
-    Args:
-        name: The file's name, such as view.launch.py.
-        built: Whether a build must install the files; if not, files of the package count as found.
-        started: Whether ros2 launch starts the file; if not, what stops it, and what is unknown then, does not count.
-    """
-    launch = launch_of(package, name)
-    places = _places(package, launch, "urdf", "rviz", "include", built=built)
-    if not started:
-        places = _others(places)
-    wrong = [it for it in places if it.state == "wrong"]
-    if wrong:
-        return _wrong(package, wrong)
-    if not started:
-        return passed("the launch file looks for no file in a wrong place")
-    unknown = next((it for it in places if it.state == "unknown"), None)
-    if launch.faults and (unknown or all(it.file.purpose == "include" for it in places)):
-        raise fault_that_stops(package, name, launch)
-    if all(it.file.purpose == "include" for it in places):
-        raise _no_files(launch)
-    if unknown is not None:
-        raise NotDecided(unknown.text, _UNKNOWN_FILES)
-    if not launch.faults:
-        _check_starts(launch)
-    return _found(places)
-
-
-def _others(places: Sequence[FilePlace]) -> list[FilePlace]:
+def _others(places: Sequence[_FilePlace]) -> list[_FilePlace]:
     """Return files that a launch does not stop at, but for unknown ones and those with the mistake that stops it."""
     stopping = {_is_local(it) for it in places if it.state == "wrong" and _stops(it.file)}
     others = (it for it in places if not _stops(it.file) and it.state != "unknown")
     return [it for it in others if it.state != "wrong" or _is_local(it) not in stopping]
 
 
-def _is_local(place: FilePlace) -> bool:
+def _is_local(place: _FilePlace) -> bool:
     return place.file.path is not None and is_of_one_machine(place.file.path)
 
 
-def _found(places: Sequence[FilePlace]) -> Outcome:
+def _found(places: Sequence[_FilePlace]) -> Outcome:
     if any(it.state == "missing" for it in places):
         return passed("the launch file looks for files of the package")
     found = dict.fromkeys(it.text for it in places if it.text)
     return passed(f"a build installs {enumerated(found)}, where the launch file looks")
 
 
-def _wrong(package: Package, wrong: Sequence[FilePlace]) -> Outcome:
+def _wrong(package: Package, wrong: Sequence[_FilePlace]) -> Outcome:
     message = "; ".join(dict.fromkeys(it.text for it in wrong))
     is_local = any(map(_is_local, wrong))
     if is_local:
@@ -188,7 +218,7 @@ def _no_files(launch: "Launch") -> NotDecided | MissingElement:
     return MissingElement("named file", "", message="the launch file names neither a URDF nor an RViz file")
 
 
-def _missing(package: Package, place: FilePlace) -> MissingElement:
+def _missing(package: Package, place: _FilePlace) -> MissingElement:
     """Return what the package is missing for a named file, by the kinds and names that the checks of packages use."""
     setup, purpose, name = package.setup, place.file.purpose, package.folder
     kind = f"installed {purpose}"
@@ -196,6 +226,139 @@ def _missing(package: Package, place: FilePlace) -> MissingElement:
         kind = "setup.py"
     elif not setup.is_called:
         kind = "call of setup"
-    elif not any(path.lower().endswith(ENDINGS[purpose]) for path in package.tree.files):
-        kind, name = f"{WORDS[purpose]} in the package", ""
+    elif not any(path.lower().endswith(_ENDINGS[purpose]) for path in package.tree.files):
+        kind, name = f"{_WORDS[purpose]} in the package", ""
     return MissingElement(kind, name, message=place.text, location=place.file.location)
+
+
+def _place_of(package: Package, file: "NamedFile") -> _FilePlace:
+    """Return whether a launch file finds a file that it names."""
+    if file.path is None or file.reason:
+        return _FilePlace(file, "wrong" if file.sure else "unknown", file.reason)
+    what, path = _WORDS[file.purpose], posixpath.normpath(file.path)
+    if path.startswith(f"{SHARE}/"):
+        owner, _, rest = path.removeprefix(f"{SHARE}/").partition("/")
+        other = package.find(owner)
+        if other is None:
+            return _in_unknown_package(package, owner, rest, file)
+        return _in_package(other, f"share/{owner}/{rest}", file)
+    fault = _fault_of_path(package, path)
+    if fault:
+        return _FilePlace(file, "wrong", f"the launch file looks for the {what} at {fault}")
+    return _FilePlace(file, "unknown", f"the {what} {path.removeprefix(PREFIX)} is not part of the package")
+
+
+def _fault_of_path(package: Package, path: str) -> str:
+    """Return a path that is not below a share folder, with why no file is there; empty where that is not known."""
+    if is_of_one_machine(path):
+        return f"{path.replace(HOME, '~')}, which exists on one machine only"
+    if path.startswith(WORKING_FOLDER) or not path.startswith("/"):
+        shown = path.removeprefix(WORKING_FOLDER + "/")
+        if shown.startswith("~"):
+            return f"{shown}, but nothing replaces ~ by the home folder"
+        return f"{shown}, relative to the folder that ros2 launch is started from"
+    if not path.startswith((PREFIX, ROS)) and posixpath.basename(path) in map(posixpath.basename, package.tree.files):
+        return f"{path}: joining a path that begins with / drops the folders before it"
+    return ""
+
+
+def _in_unknown_package(package: Package, owner: str, rest: str, file: "NamedFile") -> _FilePlace:
+    """Return what is known of a path in the share folder of a package that is not part of the submission."""
+    what = _WORDS[file.purpose]
+    fault = "" if package.depends_on(owner) else _fault_of_owner(package, owner, rest, what)
+    if fault:
+        return _FilePlace(file, "wrong", fault)
+    if file.purpose == "include":
+        return _FilePlace(file, "found")
+    return _FilePlace(file, "unknown", f"the {what} is in {owner!r}, which is not part of the submission")
+
+
+def _fault_of_owner(package: Package, owner: str, rest: str, what: str) -> str:
+    """Return how the name of a package that is not part of the submission is wrong; empty where that is not known."""
+    # A path may lack a slash after the package's name: get_package_share_directory(...) + 'my_robot.urdf'.
+    more = owner.removeprefix(package.name)
+    is_known = more in package.tree.folders if rest else more in map(posixpath.basename, package.tree.files)
+    if owner.startswith(package.name) and is_known:
+        path = posixpath.join("share", owner, rest).rstrip("/")
+        return f"the launch file looks for the {what} at {path}: a slash is missing after {package.name!r}"
+    if closest(owner, [package.name]):
+        return f"the launch file looks in a package {owner!r}, but the graded package is named {package.name!r}"
+    return ""
+
+
+def _in_package(owner: Package, target: str, file: "NamedFile") -> _FilePlace:
+    """Return whether a build of a package installs a file at the path where it is looked for."""
+    setup, what = owner.setup, _WORDS[file.purpose]
+    if owner.is_cmake or (setup is not None and setup.fault is not None and not setup.fault.sure):
+        return _FilePlace(file, "unknown", f"cannot determine statically whether a build installs the {what}")
+    if setup is None or setup.fault is not None:
+        return _FilePlace(file, "missing", f"a build installs no {what}: there is no setup.py that Python can read")
+    installed = setup.installed()
+    if target in installed:
+        return _undecodable(owner, installed[target], file) or _FilePlace(file, "found", target)
+    if setup.unknown:
+        return _FilePlace(file, "unknown", f"cannot determine statically whether a build installs {target}")
+    return _not_there(owner, installed, target, file)
+
+
+def _undecodable(owner: Package, path: str, file: "NamedFile") -> _FilePlace | None:
+    """Return where reading a file stops the launch file, because its text is not UTF-8; None where it does not."""
+    try:
+        if file.by in BY_UTF8:
+            owner.tree.files[path].read(URDF_LIMIT).decode()
+    except UnicodeDecodeError as error:
+        line = error.object.count(b"\n", 0, error.start) + 1
+        mistake = f"reading the {_WORDS[file.purpose]} stops the launch file with a UnicodeDecodeError: it is not UTF-8"
+        detail = f" (line {line} of {posixpath.basename(path)}); save it as UTF-8"
+        return _FilePlace(file, "wrong", mistake + detail, mistake)
+    except InputError:
+        pass  # other criteria report it
+    return None
+
+
+def _not_there(owner: Package, installed: Iterable[str], target: str, file: "NamedFile") -> _FilePlace:
+    """Return where else a build installs a file, or what the package has instead of it."""
+    name, looks = posixpath.basename(target), f"the launch file looks for the {_WORDS[file.purpose]} at {target}"
+    others = [path for path in installed if posixpath.basename(path) == name]
+    if others:
+        return _FilePlace(file, "wrong", f"{looks}, but a build installs it as {others[0]}")
+    names = set(map(posixpath.basename, owner.tree.files))
+    if name in names:
+        return _FilePlace(file, "missing", f"{looks}, but a build does not install {name}")
+    own, is_include = posixpath.basename(file.location.path), file.purpose == "include"
+    alike = sorted(it for it in names - {own} if it.lower().endswith(_ENDINGS[file.purpose]))
+    message = f"{looks}, but the package has no file {name!r}"
+    if not alike and not is_include:
+        return _FilePlace(file, "missing", message)
+    similar = closest(name, alike) or (alike[0] if len(alike) == 1 and not is_include else None)
+    return _FilePlace(file, "wrong", f"{message}; there is {similar!r}" if similar else message)
+
+
+def _path_of(package: Package, name: str) -> str:
+    """Return the path of a launch file. Raises MissingElement."""
+    path = package.launch_file(name)
+    if path is None:
+        raise package.missing("launch")
+    return path
+
+
+def _launch_of(package: Package, name: str) -> "Launch":
+    """Return a launch file, evaluated. Raises MissingElement, and NotDecided for one that is not read."""
+    path = _path_of(package, name)
+    launch = package.launch(path)
+    if launch.unread:
+        raise NotDecided(launch.unread, "the launch file cannot be read")
+    if launch.syntax is not None:
+        raise MissingElement("launch file", path, message=launch.syntax.message, location=launch.syntax.location)
+    return launch
+
+
+def _fault_that_stops(package: Package, name: str, launch: "Launch") -> MissingElement:
+    """Return the fault of a launch file that starts nothing because of it."""
+    path, first = _path_of(package, name), launch.faults[0]
+    return MissingElement("launch file", path, message=_faults(launch), location=first.location, problem=first.message)
+
+
+def _faults(launch: "Launch") -> str:
+    messages = list(dict.fromkeys(fault.message for fault in launch.faults))
+    return f"{messages[0]} (and {len(messages) - 1} more)" if len(messages) > 1 else messages[0]

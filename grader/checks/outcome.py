@@ -2,19 +2,19 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
-from math import isfinite
+from math import isfinite, isnan
 from typing import Literal, NamedTuple
 
 from grader.robot.transforms import Vector
 from grader.source import LazyLocation, Location
 
 Status = Literal["passed", "failed", "skipped", "pending", "errored"]
-Measured = bool | float | str | tuple[float, ...] | tuple[str, ...] | Mapping[str, str] | None
-AnyPlace = Location | LazyLocation | None
+_Measured = bool | float | str | tuple[float, ...] | tuple[str, ...] | Mapping[str, str] | None
+_AnyPlace = Location | LazyLocation | None
 
 # A tolerance includes its end: 0.152 is within 0.002 of 0.15, although the floats differ by slightly more.
 SLACK = 1e-9
-SIDES = ("too large", "too small")
+_SIDES = ("too large", "too small")
 _UNITS = ((1000.0, "millimetres"), (100.0, "centimetres"))
 _FEW, _MANY = 100.0, 1e7  # from here on: no decimals, an exponent
 
@@ -34,8 +34,8 @@ class Outcome(NamedTuple):
 
     status: Status
     message: str
-    measured: Measured = None
-    expected: Measured = None
+    measured: _Measured = None
+    expected: _Measured = None
     tolerance: float | None = None
     unit: str | None = None
     location: Location | None = None
@@ -88,12 +88,12 @@ def passed(message: str) -> Outcome:
     return Outcome("passed", message)
 
 
-def pending(message: str, cause: str = "", at: AnyPlace = None, *, problem: str = "") -> Outcome:
+def pending(message: str, cause: str = "", at: _AnyPlace = None, *, problem: str = "") -> Outcome:
     """Return the outcome for manual grading; `cause` is the reason without what differs between students."""
     return Outcome("pending", message, location=location_of(at), mistake=cause, problem=problem)
 
 
-def failed(message: str, at: AnyPlace = None, *, detail: str = "", problem: str = "", mistake: str = "") -> Outcome:
+def failed(message: str, at: _AnyPlace = None, *, detail: str = "", problem: str = "", mistake: str = "") -> Outcome:
     """Return the outcome for a fact that is not true.
 
     `detail` ends the message with what differs between students; `mistake` replaces a message in which something else
@@ -106,12 +106,12 @@ def failed(message: str, at: AnyPlace = None, *, detail: str = "", problem: str 
 def judged(
     fine: bool,
     message: str,
-    actual: Measured = None,
-    expected: Measured = None,
+    actual: _Measured = None,
+    expected: _Measured = None,
     tolerance: float | None = None,
     unit: str | None = None,
     *,
-    at: AnyPlace = None,
+    at: _AnyPlace = None,
     detail: str = "",
 ) -> Outcome:
     """Return a measurement that passes or fails; only a failure has a place to look at."""
@@ -121,7 +121,7 @@ def judged(
     return Outcome(status, message + detail, actual, expected, tolerance, unit, location, mistake)
 
 
-def location_of(at: AnyPlace) -> Location | None:
+def location_of(at: _AnyPlace) -> Location | None:
     """Return the place in the file, computed on demand: most places are never used."""
     return at.resolve() if isinstance(at, LazyLocation) else at
 
@@ -132,7 +132,13 @@ def within(actual: float, expected: float, tolerance: float) -> bool:
 
 
 def measured(
-    what: str, actual: float, expected: float, tolerance: float, *, sides: tuple[str, str] = SIDES, at: AnyPlace = None
+    what: str,
+    actual: float,
+    expected: float,
+    tolerance: float,
+    *,
+    sides: tuple[str, str] = _SIDES,
+    at: _AnyPlace = None,
 ) -> Outcome:
     """Compare one length in metres: "the radius of 'wheel' is 0.2 m; it should be 0.1 m (100 mm too large)"."""
     fine = within(actual, expected, tolerance)
@@ -144,7 +150,7 @@ def measured(
 
 
 def measured_point(
-    what: str, actual: Vector, expected: Vector, tolerance: float, frame: str, *, at: AnyPlace = None
+    what: str, actual: Vector, expected: Vector, tolerance: float, frame: str, *, at: _AnyPlace = None
 ) -> Outcome:
     """Compare a point in a frame, in metres; each coordinate must be within the tolerance."""
     pairs = zip("xyz", actual, expected, strict=True)
@@ -163,9 +169,14 @@ def other_unit(actual: Sequence[float], expected: Sequence[float]) -> str:
     return f"a URDF is in metres, not in {unit}" if unit else ""
 
 
-def difference(off: float, over: str = SIDES[0], under: str = SIDES[1]) -> str:
+def difference(off: float, over: str = _SIDES[0], under: str = _SIDES[1]) -> str:
     """Return how far a length in metres is off, and to which side."""
     return f"{in_millimetres(off)} {over if off > 0 else under}"
+
+
+def number_text(value: float, digits: int = 9) -> str:
+    """Return a number of a URDF for a message."""
+    return "missing or unreadable" if isnan(value) else f"{value + 0.0:.{digits}g}"
 
 
 def in_millimetres(length: float) -> str:

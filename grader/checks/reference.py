@@ -29,8 +29,8 @@ ABOUT = {
     )
 }
 
-MatchBy = Literal["name", "order"]
-Samples = Annotated[
+_MatchBy = Literal["name", "order"]
+_Samples = Annotated[
     int, Constraint("from 1 to 10000", lambda value: 1 <= value <= 10_000, {"minimum": 1, "maximum": 10_000})
 ]
 _MAX_NAMED = 8  # joints in a message
@@ -47,10 +47,10 @@ def kinematics_match_reference(
     reference: Configuration,
     *,
     links: list[str],
-    samples: Samples = 100,
+    samples: _Samples = 100,
     tolerance: NonNegative = 0.002,
     angle: NonNegative = 1.0,
-    match: MatchBy = "name",
+    match: _MatchBy = "name",
     relative_to: str = "",
 ) -> Outcome:
     """The links move as in the reference solution when the joints move within its limits.
@@ -72,8 +72,8 @@ def kinematics_match_reference(
     joints = _pair_joints(robot, reference, bases, pairs, match)
     if isinstance(joints, Outcome):
         return joints
-    pair = RobotPair((robot, reference), bases, pairs, joints, tolerance, angle)
-    return MotionComparison(pair, samples).outcome()
+    pair = _RobotPair((robot, reference), bases, pairs, joints, tolerance, angle)
+    return _MotionComparison(pair, samples).outcome()
 
 
 def _link_name(robot: Configuration, link: str) -> str:
@@ -103,11 +103,11 @@ def _pair_joints(
     reference: Configuration,
     bases: tuple[str, str],
     pairs: Sequence[tuple[str, str]],
-    match: MatchBy,
+    match: _MatchBy,
 ) -> list[tuple[Joint, Joint]] | Outcome:
     """Return the joints of the robot that move links, each with that of the reference, or the failure to pair them."""
-    own = movers(robot, bases[0], [link for link, _ in pairs])
-    others = movers(reference, bases[1], [link for _, link in pairs])
+    own = _movers(robot, bases[0], [link for link, _ in pairs])
+    others = _movers(reference, bases[1], [link for _, link in pairs])
     shown = enumerated([quoted(link) for link, _ in pairs], _MAX_NAMED)
     if match == "order":
         if len(own) != len(others):
@@ -147,7 +147,7 @@ def _wrong_type(joint: Joint, other: Joint) -> Outcome | None:
     return failed(message, place(joint.location, "type"), detail=f" (joint {quoted(joint.name)})")
 
 
-class Offset(NamedTuple):
+class _Offset(NamedTuple):
     """How far a link is from its place, in metres and degrees, with the joints at these positions."""
 
     link: str
@@ -156,7 +156,7 @@ class Offset(NamedTuple):
     positions: tuple[float, ...]
 
 
-class RobotPair(NamedTuple):
+class _RobotPair(NamedTuple):
     """A robot and another one: their paired joints and links, and the links in whose frames poses are compared.
 
     Offsets are compared by how many times they are larger than the tolerances: metres of a distance, degrees of an
@@ -170,7 +170,7 @@ class RobotPair(NamedTuple):
     tolerance: float
     angle: float
 
-    def offset(self, positions: tuple[float, ...]) -> Offset:
+    def offset(self, positions: tuple[float, ...]) -> _Offset:
         """Return the largest offset at these positions of the joints."""
         pairs = zip(self.joints, positions, strict=True)
         own = {joint.name: position for (joint, _), position in pairs if joint.mimic is None}  # a mimic joint follows
@@ -179,7 +179,7 @@ class RobotPair(NamedTuple):
         for (name, _), wanted in zip(self.links, self._reference_poses(positions), strict=True):
             pose = posed.pose(name, relative_to=self.bases[0])
             distance = dist(pose.translation, wanted.translation)
-            found.append(Offset(name, distance, _angle(pose, wanted), positions))
+            found.append(_Offset(name, distance, _angle(pose, wanted), positions))
         return max(found, key=lambda offset: (self.times(offset), offset.distance))
 
     def _reference_poses(self, positions: tuple[float, ...]) -> tuple[Transform, ...]:
@@ -192,21 +192,21 @@ class RobotPair(NamedTuple):
             known[key] = tuple(posed.pose(link, relative_to=self.bases[1]) for link in links)
         return known[key]
 
-    def times(self, offset: Offset) -> float:
+    def times(self, offset: _Offset) -> float:
         """Return how far an offset exceeds the tolerances, rounded, so that equal ones are equal; infinite for NaN."""
         shares = offset.distance / max(self.tolerance, _LEAST), offset.angle / max(self.angle, _LEAST)
         return max(round(share, 6) if share >= 0 else inf for share in shares)
 
 
-class MotionComparison:
+class _MotionComparison:
     """The offsets of a pair of robots at the sampled positions: all joints at 0, one joint moved, and random ones."""
 
-    def __init__(self, pair: RobotPair, samples: int) -> None:
+    def __init__(self, pair: _RobotPair, samples: int) -> None:
         joints = [joint for _, joint in pair.joints]
         self._pair, self._tolerance, self._angle = pair, pair.tolerance, pair.angle
         self._zero = (0.0,) * len(joints)
-        self._singles = [*singles(joints)]
-        self._random = random_positions(joints, samples) if joints else []
+        self._singles = [*_singles(joints)]
+        self._random = _random_positions(joints, samples) if joints else []
 
     def outcome(self) -> Outcome:
         """Return whether all offsets are within the tolerances, else the largest one, and when the robots differ."""
@@ -240,13 +240,13 @@ class MotionComparison:
         names = [quoted(link) for link, _ in self._pair.links]
         return f"{enumerated(names, _MAX_NAMED)} {'moves' if len(names) == 1 else 'move'}"
 
-    def _is_within(self, offset: Offset) -> bool:
+    def _is_within(self, offset: _Offset) -> bool:
         return offset.distance <= self._tolerance + SLACK and offset.angle <= self._angle + SLACK
 
-    def _text(self, offset: Offset) -> str:
+    def _text(self, offset: _Offset) -> str:
         return f"{in_millimetres(offset.distance)} and {in_degrees(offset.angle)}"
 
-    def _positions(self, offset: Offset) -> str:
+    def _positions(self, offset: _Offset) -> str:
         if not any(offset.positions):
             return "all joints at 0"
         moved = [
@@ -264,7 +264,7 @@ def _angle(one: Transform, other: Transform) -> float:
     return degrees(2.0 * asin(min(dist(one.rotation, other.rotation) / (2.0 * sqrt(2.0)), 1.0)))
 
 
-def movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[str, Joint]:
+def _movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[str, Joint]:
     """Return the joints that move links relative to a base by their names, along the chain to each link.
 
     Instead of a mimic joint it is the joint that leads it. Raises MissingElement, and NotDecided where a mimic is not
@@ -296,7 +296,7 @@ def _leader(robot: Robot, joint: Joint) -> Joint | None:
         joint = robot.joint(joint.mimic.joint)
 
 
-def singles(joints: Sequence[Joint]) -> Iterator[tuple[int, tuple[float, ...]]]:
+def _singles(joints: Sequence[Joint]) -> Iterator[tuple[int, tuple[float, ...]]]:
     """Yield positions with one joint at an end of its range, or between, and the others at 0; each with its index."""
     for index, joint in enumerate(joints):
         low, high = _range(joint)
@@ -304,7 +304,7 @@ def singles(joints: Sequence[Joint]) -> Iterator[tuple[int, tuple[float, ...]]]:
             yield index, tuple(position if other == index else 0.0 for other in range(len(joints)))
 
 
-def random_positions(joints: Sequence[Joint], count: int) -> list[tuple[float, ...]]:
+def _random_positions(joints: Sequence[Joint], count: int) -> list[tuple[float, ...]]:
     """Return random positions within the ranges of joints, always the same ones."""
     from random import Random  # late: few rubrics need it, and it takes long to import
 

@@ -34,23 +34,23 @@ class Constraint(NamedTuple):
         return hash((self.must_be, self.holds))
 
 
-AtLeastZero = Constraint("at least 0", lambda value: value >= 0, {"minimum": 0})
-EachAtLeastZero = Constraint(
+_AtLeastZero = Constraint("at least 0", lambda value: value >= 0, {"minimum": 0})
+_EachAtLeastZero = Constraint(
     "at least 0 in each number", lambda values: min(values) >= 0, {"items": {"type": "number", "minimum": 0}}
 )
-EachFromZeroToOne = Constraint(
+_EachFromZeroToOne = Constraint(
     "from 0 to 1 in each number",
     lambda values: min(values) >= 0 and max(values) <= 1,
     {"items": {"type": "number", "minimum": 0, "maximum": 1}},
 )
-NotZero = Constraint("a direction: not 0 in each number", any, {"contains": {"not": {"const": 0}}})
+_NotZero = Constraint("a direction: not 0 in each number", any, {"contains": {"not": {"const": 0}}})
 
-NonNegative = Annotated[float, AtLeastZero]
-Count = Annotated[int, AtLeastZero]
-Size = Annotated[Vector, EachAtLeastZero]
-RadiusAndLength = Annotated[tuple[float, float], EachAtLeastZero]
-Direction = Annotated[Vector, NotZero]
-Colour = Annotated[tuple[float, float, float] | tuple[float, float, float, float], EachFromZeroToOne]
+NonNegative = Annotated[float, _AtLeastZero]
+Count = Annotated[int, _AtLeastZero]
+Size = Annotated[Vector, _EachAtLeastZero]
+RadiusAndLength = Annotated[tuple[float, float], _EachAtLeastZero]
+Direction = Annotated[Vector, _NotZero]
+Colour = Annotated[tuple[float, float, float] | tuple[float, float, float, float], _EachFromZeroToOne]
 
 Scalar = str | float | bool
 Content = Scalar | list[Scalar]

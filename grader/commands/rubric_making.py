@@ -12,7 +12,7 @@ from grader.authoring.facts import Omission, Solution
 from grader.authoring.mutants import Mutant
 from grader.authoring.rubric_test import MutantOutcome, mutant_outcomes, run_rubric_test
 from grader.authoring.samples import read_samples
-from grader.checks.tree import urdf_loads
+from grader.checks.loading import urdf_loads
 from grader.classroom.workers.pool import Processes, processors
 from grader.classroom.workers.queue import Progress
 from grader.commands.invocation import ExitCode, read_threshold

@@ -23,16 +23,16 @@ def load_with_answers(name: str, file: Path | None = None) -> Rubric:
     path = find_rubric(name)
     rubric = read_rubric(read_capped(path, advice=""), path, answers=True)
     if file is not None:
-        return read_answers(rubric, file)
+        return _read_answers(rubric, file)
     if not rubric.answers or missing_answers(rubric):
         return rubric
     own = _file(rubric)
     if not own.resolve().is_relative_to(path.parent.resolve()):
         raise RubricError((f"{printable_path(own)}: the answers file must be in the rubric's folder",))
-    return read_answers(rubric, own)
+    return _read_answers(rubric, own)
 
 
-def read_answers(rubric: Rubric, file: Path) -> Rubric:
+def _read_answers(rubric: Rubric, file: Path) -> Rubric:
     """Return a rubric with the model answers in a file as well, which can be the rubric itself.
 
     Raises RubricError or InputError.
@@ -42,7 +42,7 @@ def read_answers(rubric: Rubric, file: Path) -> Rubric:
         return rubric
     text, table = read_toml(data, file)
     complain_of(_complaints(rubric, table), text, file)
-    return with_answers(rubric, table)
+    return _with_answers(rubric, table)
 
 
 def missing_answers(rubric: Rubric) -> str:
@@ -54,7 +54,7 @@ def missing_answers(rubric: Rubric) -> str:
     )
 
 
-def with_answers(rubric: Rubric, answers: Mapping[str, str]) -> Rubric:
+def _with_answers(rubric: Rubric, answers: Mapping[str, str]) -> Rubric:
     """Return the rubric with these model answers, by the ids of their criteria, in addition to its own."""
     criteria = (row._replace(answer=answers.get(row.id, row.answer)) for row in rubric.criteria)
     return replace(rubric, criteria=tuple(criteria))

@@ -76,7 +76,7 @@ class Criterion(NamedTuple):
         return self.adjustment is not None and self.adjustment.action == "full"
 
 
-class Worth(NamedTuple):
+class _Worth(NamedTuple):
     """The maximum of some criteria, and the points of extra credit in addition to it."""
 
     points: Decimal
@@ -95,13 +95,13 @@ class Worth(NamedTuple):
         return " + ".join(filter(None, (format_points(self.points) if self.points or not extra else "", extra)))
 
 
-def worth(criteria: Iterable[Criterion]) -> Worth:
+def worth(criteria: Iterable[Criterion]) -> _Worth:
     """Return what criteria are worth together."""
     points = bonus = Decimal(0)
     for criterion in criteria:
         points += criterion.maximum
         bonus += criterion.points - criterion.maximum
-    return Worth(points, bonus)
+    return _Worth(points, bonus)
 
 
 class Part(NamedTuple):

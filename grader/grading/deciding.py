@@ -1,22 +1,29 @@
-"""Decide criteria: run the rubric's checks in order, and attribute each failure."""
+"""Decide criteria: run the rubric's checks in order, and attribute each failure.
+
+Evidence may take the place of work that a submission lacks, its URDF or its package, in manual grading.
+"""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from grader.checks.check import Check
+from grader.checks.loading import urdf_loads
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
-from grader.checks.tree import urdf_loads
 from grader.errors import MachineError, MissingElement, NotDecided, OutOfTime, RubricError
 from grader.grading.criterion import Carried, Criterion
-from grader.grading.missing_work import another_robot, by_evidence, missing_work
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
 from grader.grading.subjects import Subjects
+from grader.robot.model import Robot
 from grader.robot.shapes import UnknownShape
 from grader.source import LazyLocation, Location
 from grader.submission.submission import Submission
-from grader.submission.urdf import Absent
+from grader.submission.urdf import Absent, is_another_robot, known_links
+from grader.text import enumerated
+
+_MAX_PICTURES = 50
+_MAX_LISTED = 6
 
 
 def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> Iterator[Result]:
@@ -34,7 +41,7 @@ def _manual_subjects(rubric: Rubric, submission: Submission) -> Mapping[str, str
     Without a URDF, `without_urdf` decides for the package as well.
     """
     is_wanted = "manual" in (rubric.without_urdf, rubric.without_package)
-    lacking = missing_work(rubric, submission) if is_wanted else {}
+    lacking = _missing_work(rubric, submission) if is_wanted else {}
     if rubric.without_urdf == "manual" and "URDF" in lacking:
         return lacking
     return {"package": lacking["package"]} if rubric.without_package == "manual" and "package" in lacking else {}
@@ -147,7 +154,7 @@ class _Grading:
     def _miss(self, criterion: Criterion, missing: MissingElement) -> Result:
         """Return a failure for the first criterion that misses a thing; later ones would repeat it and are skipped."""
         if missing.kind in self._manual:
-            return Result(criterion, by_evidence(self.submission, self._manual[missing.kind]))
+            return Result(criterion, _by_evidence(self.submission, self._manual[missing.kind]))
         if missing.kind == "link":
             missing = another_robot(self._rubric, self.submission.robot, missing.name) or missing
         first = self._first_miss(criterion, (missing.kind, missing.name))
@@ -186,3 +193,41 @@ def _fault_outcome(check: Check, fault: str) -> Outcome:
     if check.distribution:
         return Outcome("errored", f"the check {check.name} of the package {check.distribution} is faulty: {fault}")
     return Outcome("errored", f"the grader itself failed ({fault.partition(':')[0]}); please report it")
+
+
+def another_robot(rubric: Rubric, robot: Robot | None, link: str = "") -> MissingElement | None:
+    """Return the error for a robot that is another one, and so has no `link`; None if it may be that of the lab."""
+    if robot is None or not is_another_robot(robot, rubric.links):
+        return None
+    count = known_links(robot, rubric.links)
+    links = f"only {count} of the {len(rubric.links)} links" if count else "none of the links"
+    missing = f"there is no link {link!r}, and " if link else ""
+    message = f"{missing}this looks like another robot: it has {links} that the rubric names"
+    names = enumerated([repr(link.name) for link in robot.links], _MAX_LISTED) or "no link"
+    detail = f" ({enumerated(sorted(rubric.links), _MAX_LISTED)}); it has {names}"
+    location = robot.links[0].location if robot.links else None
+    return MissingElement("robot of the lab", "", message=message, detail=detail, location=location)
+
+
+def _missing_work(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
+    """Return what a submission with evidence lacks, the `URDF` or the `package` of this lab, and why."""
+    found = {}
+    another = another_robot(rubric, submission.robot)
+    if isinstance(submission.urdf, Absent):
+        found["URDF"] = "no URDF was submitted"
+    elif another is not None:
+        found["URDF"] = another.mistake
+    package = submission.package
+    if package is None:
+        found["package"] = submission.no_package[0]
+    elif package.name != rubric.package and submission.other_lab and package.folder.startswith(submission.other_lab):
+        found["package"] = f"no package was submitted for this lab; {package.name!r} is in the folder of another lab"
+    return found if found and not submission.is_single and submission.evidence_files else {}
+
+
+def _by_evidence(submission: Submission, reason: str) -> Outcome:
+    """Return the outcome of a criterion of what a submission lacks, for this reason, where evidence takes its place."""
+    paths = tuple(file.path for file in submission.evidence_files[:_MAX_PICTURES])
+    verb = "was" if len(paths) == 1 else "were"
+    message = f"{reason}, but {enumerated(paths, _MAX_LISTED)} {verb} submitted; needs manual grading"
+    return pending(message, f"{reason}, but evidence")._replace(measured=paths)

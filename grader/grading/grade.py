@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 from grader.checks.manual import MANUAL_CHECKS, evidence_shown
 from grader.errors import InputError
 from grader.grading.criterion import Evidence
-from grader.grading.deciding import decide
-from grader.grading.missing_work import another_robot
+from grader.grading.deciding import another_robot, decide
 from grader.grading.report import EvidenceResult, Report, Result, without_gifts
 from grader.grading.rubric import Rubric
 from grader.robot.kinematics import Configuration

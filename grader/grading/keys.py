@@ -1,17 +1,24 @@
-"""The keys of a rubric, each declared once: the loader, its messages, the JSON Schema and a page use these tables."""
+"""The keys of a rubric, each declared once: the loader, its messages, the JSON Schema and a page use these tables.
 
+The JSON Schema, for editors, also has the arguments of every installed check.
+"""
+
+import json
 from collections.abc import Mapping
 from datetime import datetime
 from decimal import Decimal
 from typing import Any, Literal
 
+from grader.checks.check import Check
+from grader.checks.registry import check_names, usable_check
 from grader.checks.toml_types import Constraint, TomlType, constrained, described, simple_type, toml_type
 from grader.grading.levels import HintLevel
-from grader.grading.toml_rows import KeyTable
+from grader.grading.toml_file import KeyTable
 
 MAX_POINTS = 1_000_000
-MAX_CHOICES = 9  # one key each
+_MAX_CHOICES = 9  # one key each
 _DECIMALS = 4  # of points: gradebooks store them as whole numbers of ten-thousandths
+_DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def _is_number(value: Any) -> bool:
@@ -19,7 +26,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _are_choices(value: Any) -> bool:
-    is_table = isinstance(value, dict) and len(value) <= MAX_CHOICES and all(map(_is_number, value.values()))
+    is_table = isinstance(value, dict) and len(value) <= _MAX_CHOICES and all(map(_is_number, value.values()))
     return is_table and all(
         text == text.strip() != ""
         and text.isprintable()
@@ -83,8 +90,12 @@ _FOLDERS = constrained(
     ),
 )
 _CHOICES = simple_type(
-    f"a table of at most {MAX_CHOICES} comments without a semicolon, each with points below 0",
-    {"type": "object", "additionalProperties": {"type": "number", "exclusiveMaximum": 0}, "maxProperties": MAX_CHOICES},
+    f"a table of at most {_MAX_CHOICES} comments without a semicolon, each with points below 0",
+    {
+        "type": "object",
+        "additionalProperties": {"type": "number", "exclusiveMaximum": 0},
+        "maxProperties": _MAX_CHOICES,
+    },
     _are_choices,
     lambda table: {text: Decimal(points) for text, points in table.items()},
 )
@@ -235,3 +246,40 @@ RUBRIC = KeyTable(
     },
     required=("id", "title", "part", "criterion"),
 )
+
+
+_Schema = dict[str, Any]
+
+
+def rubric_schema() -> _Schema:
+    """Return the JSON Schema of a rubric, with the arguments of every check, also of installed plug-ins."""
+    named = {name: usable_check(name) for name in check_names()}
+    checks = [check for check in named.values() if check is not None]
+    facts = [check.documentation.fact if check is not None else "" for check in named.values()]
+    schema, criterion = RUBRIC.schema, CRITERION.schema
+    carried = criterion["properties"]["carried"]
+    for row in (criterion, carried, carried["items"]):
+        row["properties"]["check"] |= {"enum": list(named), "x-taplo": {"docs": {"enumValues": facts}}}
+        # In a row with allOf, taplo completes no key.
+        row |= {"if": {"required": ["check"]}, "then": {"$ref": "#/$defs/arguments"}}
+    # Only the loader knows which of the missing keys and arguments the defaults give.
+    criterion["required"] = [key for key in criterion["required"] if key not in DEFAULTS.keys]
+    schema["properties"]["criterion"]["items"] = criterion
+    defaults = {check.name: {"$ref": f"#/$defs/{check.name}"} for check in checks}
+    schema["properties"]["defaults"]["properties"]["with"] |= {"properties": defaults, "additionalProperties": False}
+    tables = [KeyTable(check.name, {name: _argument(check, name) for name in check.parameters}) for check in checks]
+    definitions = {table.name: table.schema for table in tables}
+    chosen = [({"check": {"const": name}}, {"with": arguments}) for name, arguments in defaults.items()]
+    rules = [{"if": {"properties": it, "required": ["check"]}, "then": {"properties": then}} for it, then in chosen]
+    definitions["arguments"] = {"allOf": rules}
+    return {"$schema": _DRAFT, "title": "grader rubric", **schema, "$defs": definitions}
+
+
+def _argument(check: Check, name: str) -> TomlType:
+    """Return the type of an argument with its meaning, and its default if a rubric can give that."""
+    parameter, meaning = check.parameters[name], check.documentation.arguments.get(name, "")
+    try:
+        json.dumps(parameter.default, allow_nan=False)
+    except (TypeError, ValueError):  # of a plug-in
+        return described(parameter.type, meaning)
+    return described(parameter.type, meaning, **({} if parameter.default is None else {"default": parameter.default}))

@@ -12,7 +12,7 @@ from grader.files.tree import File
 from grader.grading.report import Report, Result
 from grader.submission.submission import Submission
 
-PICTURE = "[picture]"  # in a written answer: there is one
+_PICTURE = "[picture]"  # in a written answer: there is one
 _MAX_PICTURES, _MAX_BYTES = 40, 96 * 1024 * 1024  # of one criterion
 
 
@@ -53,7 +53,7 @@ def content_of(result: Result, report: Report) -> str:
     found, is_certain = result.outcome.measured, not result.outcome.problem
     if not (_is_question(result) and isinstance(found, str) and is_certain) or _loose_files(report):
         return ""
-    is_whole = not any(sign in found for sign in (PICTURE, "![", "]("))
+    is_whole = not any(sign in found for sign in (_PICTURE, "![", "]("))
     return "\n".join(filter(None, map(str.rstrip, found.splitlines()))) if is_whole else ""
 
 
@@ -92,7 +92,7 @@ def _files(result: Result) -> tuple[str, ...]:
     place = result.outcome.location
     if place is None or not _is_question(result):
         return ()
-    shown = CONVERTED if PICTURE in str(result.outcome.measured) else (".pdf",)
+    shown = CONVERTED if _PICTURE in str(result.outcome.measured) else (".pdf",)
     return (place.path,) if place.path.lower().endswith(shown) else ()
 
 

@@ -1,10 +1,10 @@
 """A rubric: the facts that are checked, and their points. It is loaded strictly: all mistakes are reported at once."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
-from functools import cache, lru_cache
+from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -14,18 +14,53 @@ from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of, shipped_folder
 from grader.grading.criterion import Adjustment, Carried, Criterion, Evidence, Ignored, Late, Part
 from grader.grading.levels import HintLevel
-from grader.grading.reference import ReferenceSolution
-from grader.grading.toml_file import complain_of, key_lines, read_toml
-from grader.grading.toml_rows import TomlRow
+from grader.grading.toml_file import TomlRow, complain_of, key_lines, read_toml
 from grader.grading.validation import BoundCarried, BoundCheck, Validation
 from grader.names import did_you_mean
+from grader.robot.kinematics import Configuration
 from grader.robot.link_tree import is_selector, texts_in
-from grader.submission.submission import Lab
+from grader.robot.reader import Reading, find_xacro, read_urdf
+from grader.submission.opening import open_submission
+from grader.submission.submission import Lab, Submission
 from grader.text import printable_path, shell_quoted
 
 _URDF = "robot.urdf"
 RUBRIC_FILE = "rubric.toml"  # in the folder of a shipped rubric
 _LIST = "(`grader rubric list` lists the rubrics that come with the grader)"
+
+
+class ReferenceSolution:
+    """A rubric's own solution; no more is read than is needed. Properties raise InputError where it cannot be read."""
+
+    def __init__(self, path: Path, lab: Lab, missing: Callable[[], str]) -> None:
+        self._path, self._lab, self._missing = path, lab, missing
+
+    @cached_property
+    def submission(self) -> Submission:
+        """The solution as a submission."""
+        if not self._path.exists():
+            raise InputError(self._missing())
+        return open_submission(str(self._path), self._lab)
+
+    @cached_property
+    def reading(self) -> Reading:
+        """Its URDF; the rest is not read where the URDF is known and is no xacro."""
+        file = self._path / self._lab.urdf
+        if file.suffix == ".urdf" and file.is_file():
+            reading = read_urdf(read_capped(file), self._lab.urdf)
+            if find_xacro(reading.source.text) is None:
+                return reading
+        try:
+            return self.submission.needed_urdf()
+        except LookupError as error:
+            raise InputError(f"the reference {self._path} cannot be compared with: {error}") from None
+
+    @cached_property
+    def robot(self) -> Configuration:
+        """Its robot, with the joints at 0."""
+        if self.reading.robot is None:
+            raise InputError(f"the reference {self._path} cannot be compared with: it has no robot")
+        return Configuration(self.reading.robot)
 
 
 @dataclass(frozen=True, slots=True)

@@ -67,7 +67,7 @@ class Subjects:
         """
         if self.robot is None or "reference" in check.examined:
             return arguments
-        return {key: named_links(value, self.robot) for key, value in arguments.items()}
+        return {key: _named_links(value, self.robot) for key, value in arguments.items()}
 
     def _at(self, robot: Configuration, at: Mapping[str, float]) -> Configuration:
         key = tuple(at.items())
@@ -90,7 +90,7 @@ class Subjects:
 def check_selectors(robot: Configuration, criterion: Criterion) -> None:
     """Raise MissingElement or NotDecided if a criterion names a link by a place that no link has, or several have."""
     carried = [dict(one.arguments) for one in criterion.carried]
-    named_links([dict(criterion.arguments), *carried, [*criterion.at]], robot)
+    _named_links([dict(criterion.arguments), *carried, [*criterion.at]], robot)
 
 
 def _joint(robot: Configuration, name: str) -> Joint:
@@ -109,15 +109,15 @@ def _joint(robot: Configuration, name: str) -> Joint:
     return joint
 
 
-def named_links(value: Any, robot: Configuration) -> Any:
+def _named_links(value: Any, robot: Configuration) -> Any:
     """Return a value with each selector replaced by the name of its link; raises MissingElement and NotDecided."""
     match value:
         case str():
             return selected_link(robot.known, robot.known_parents, value)
         case list() | tuple():
-            return type(value)(named_links(item, robot) for item in value)
+            return type(value)(_named_links(item, robot) for item in value)
         case Mapping():
-            return {key: named_links(item, robot) for key, item in value.items()}
+            return {key: _named_links(item, robot) for key, item in value.items()}
     return value
 
 

@@ -11,8 +11,7 @@ from grader.checks.toml_types import WrongValue
 from grader.errors import InputError
 from grader.grading import keys
 from grader.grading.criterion import DEADLINE, TOTAL
-from grader.grading.toml_file import TomlPath
-from grader.grading.toml_rows import KeyTable, TomlRow, TomlRowReader, shorten_value
+from grader.grading.toml_file import KeyTable, TomlPath, TomlRow, TomlRowReader, shorten_value
 from grader.robot.link_tree import is_selector, texts_in
 from grader.text import enumerated
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.errors import InputError
 from grader.grading.grade import grade
 from grader.grading.levels import HintLevel
-from grader.grading.reference import ReferenceSolution
 from grader.grading.report import Hint, Report, Result
+from grader.grading.rubric import ReferenceSolution
 from grader.hints.editing import edited_files, with_files
 from grader.hints.robot.draft import Draft
 from grader.hints.search import HintSearch

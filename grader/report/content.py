@@ -5,7 +5,7 @@ from decimal import Decimal
 from itertools import groupby
 from typing import NamedTuple
 
-from grader.checks.tree import urdf_loads
+from grader.checks.loading import urdf_loads
 from grader.grading.criterion import worth
 from grader.grading.report import EvidenceResult, Report
 from grader.problems import Problem

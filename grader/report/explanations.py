@@ -12,8 +12,7 @@ from grader.errors import InputError
 from grader.files.reading import shipped_folder
 from grader.grading.criterion import Criterion, worth
 from grader.grading.rubric import Rubric
-from grader.grading.toml_file import read_toml
-from grader.grading.toml_rows import assignment, toml_literal
+from grader.grading.toml_file import assignment, read_toml, toml_literal
 from grader.names import did_you_mean
 from grader.package.problem_kinds import PACKAGE_CATALOGUE
 from grader.problems import Kind

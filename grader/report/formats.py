@@ -78,7 +78,7 @@ _SCHEMAS = {
 
 def json_schema(name: str) -> dict[str, Any]:
     """Return the schema of a report, rubric, inspection, class, diff or rubric test."""
-    from grader.grading.schema import rubric_schema
+    from grader.grading.keys import rubric_schema
 
     if name == "rubric":
         return rubric_schema()

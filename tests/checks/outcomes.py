@@ -14,8 +14,7 @@ from grader.checks.outcome import Outcome
 from grader.errors import MissingElement
 from grader.grading.criterion import Criterion, Part
 from grader.grading.grade import grade
-from grader.grading.reference import ReferenceSolution
-from grader.grading.rubric import Rubric
+from grader.grading.rubric import ReferenceSolution, Rubric
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
 from grader.submission.submission import Lab, Submission

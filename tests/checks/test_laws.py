@@ -7,19 +7,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.checks.appearance import shows_box
+from grader.checks.appearance import shows_box, shows_grey
 from grader.checks.collisions import collision_matches_visual
-from grader.checks.colours import shows_grey
 from grader.checks.contact import clear_of
-from grader.checks.elements import element_present
 from grader.checks.heights import bottom_at_height
 from grader.checks.inertia import inertia_plausible
 from grader.checks.joints import joint_axis
 from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
 from grader.checks.placement import centre_at, frame_at
 from grader.checks.reference import kinematics_match_reference
-from grader.checks.tree import held_by
+from grader.checks.structure import held_by
 from grader.checks.xacro_source import xacro_uses
+from grader.checks.xml_elements import element_present
 from grader.errors import MissingElement, NotDecided
 from grader.robot.inertia import turned as turned_inertia
 from grader.robot.inertia import uniform_solid

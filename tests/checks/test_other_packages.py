@@ -14,8 +14,8 @@ from grader.checks.outcome import Outcome, passed
 from grader.errors import InputError
 from grader.grading.criterion import Criterion, Part
 from grader.grading.grade import grade
+from grader.grading.keys import rubric_schema
 from grader.grading.rubric import Rubric
-from grader.grading.schema import rubric_schema
 from grader.robot.kinematics import Configuration
 from grader.submission.opening import read_submission
 from tests.checks.robots import BASE, PATH, scene

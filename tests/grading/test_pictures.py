@@ -6,10 +6,10 @@ from decimal import Decimal
 
 import pytest
 
+from grader.checks.loading import urdf_loads
 from grader.checks.manual import answered, evidence_shown
 from grader.checks.outcome import Outcome
 from grader.checks.registry import own_checks
-from grader.checks.tree import urdf_loads
 from grader.documents.pictures import EmbeddedPicture
 from grader.grading.criterion import Criterion
 from grader.grading.pictures import may_have_pictures, pictures_of

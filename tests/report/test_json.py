@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.grading.grade import grade
+from grader.grading.keys import rubric_schema
 from grader.grading.rubric import load_rubric
-from grader.grading.schema import rubric_schema
 from grader.report.as_json import render_json
 from grader.report.formats import json_schema
 from grader.report.inspection import Inspection, inspection_json, main_root

@@ -24,11 +24,11 @@ _KNOWN = Constraint(
     lambda codes: set(codes) <= set(_CODES),
     {"items": {"enum": _CODES}},
 )
-Codes = Annotated[list[str], _KNOWN]
+_Codes = Annotated[list[str], _KNOWN]
 _MAX_NAMED = 5  # codes in a message
 
 
-def without_problems(urdf: Reading, submission: Submission, *, problems: Codes) -> Outcome:
+def without_problems(urdf: Reading, submission: Submission, *, problems: _Codes) -> Outcome:
     """The URDF has none of these problems.
 
     What cannot be determined statically needs manual grading.

@@ -1,75 +1,33 @@
-"""Checks of the tree of links: whether ROS 2 loads it, its root, its joints, their types and names."""
+"""Checks of the tree of links: its root, its joints, their types and names, and how many there are."""
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Collection, Mapping
+from typing import Any
 
 from grader.checks.check import About
-from grader.checks.comparison import named, number_text
-from grader.checks.outcome import Outcome, failed, passed, pending, place
+from grader.checks.outcome import Outcome, failed, judged, number_text, passed, place
+from grader.checks.toml_types import Count
 from grader.errors import MissingElement
 from grader.names import did_you_mean
-from grader.problems import Problem, kinds_in
 from grader.robot.joints import MOVING_TYPES
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
-from grader.robot.reader import Reading
-from grader.robot.urdf_problems import RAW_XACRO
 from grader.text import counted, enumerated
-from grader.xml import catalogue as xml_catalogue
 from grader.xml.urdf_format import JOINT_TYPES, JointType
 
+
+def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
+    """Splitting a fixed joint adds a link and a fixed joint."""
+    is_counted = any(arguments.get(key) is not None for key in ("links", "joints", "fixed"))
+    return ("fixed joints split",) if is_counted else ()
+
+
 ABOUT = {
-    "urdf_loads": About(("joint", "link")),
     "held_by": About(("parent", "child", "joint", "joint@type")),
     "joints_named": About(("joint@name",)),
     "root_of_tree": About(),
+    "counts": About(("joint", "joint@type", "link"), breaks_under=_breaks_under),
 }
-
-_MAX_ASSUMED = 3  # that a message names
-_OF_XML = kinds_in(vars(xml_catalogue).values())
-
-
-def urdf_loads(urdf: Reading) -> Outcome:
-    """ROS 2 loads the URDF, and all links form one tree."""
-    problems = [problem for problem in urdf.problems if problem.kind.effect == "rejects" or problem.kind.detaches_links]
-    raw = next((problem for problem in urdf.problems if problem.kind is RAW_XACRO), None)
-    if raw is not None and urdf.verdict != "clean":
-        return _raw_xacro_failure(urdf, raw)
-    if not problems and urdf.verdict != "rejected":
-        return passed("ROS 2 loads the file, and all links form one tree")
-    undetermined = [problem for problem in urdf.problems if problem.kind.effect == "undetermined"]
-    if undetermined and not problems:
-        return pending(
-            f"{undetermined[0].message}; needs manual grading", undetermined[0].message, undetermined[0].location
-        )
-    problems.sort(key=lambda problem: (not problem.kind.is_before_ros, problem.kind not in _OF_XML))
-    causes = [problem for problem in problems if not problem.kind.is_consequence]
-    first = (causes or problems or list(urdf.problems))[0]
-    others = f" (and {counted(len(problems) - 1, 'more such problem')})" if len(problems) > 1 else ""
-    message = f"{first.message}{others}"
-    if assumed := _assumed(urdf):
-        what = "Not deducted elsewhere" if urdf.is_meant else "Assumed"
-        message += f"{'' if message.endswith('?') else '.'} {what}: {assumed}"
-    outcome = failed(message, first.location, problem=first.message)
-    return outcome._replace(mistake=f"{first.code}: {first.kind.title}")
-
-
-def _assumed(urdf: Reading) -> str:
-    """Return what is assumed about a file that ROS 2 rejects, each with its lines; empty if nothing is."""
-    lines: dict[str, list[str]] = {}
-    for problem in urdf.problems:
-        if problem.kind is xml_catalogue.RECOVERED and not problem.subject:
-            lines.setdefault(problem.message, []).append(str(problem.location.line))
-    found = [(message, [*dict.fromkeys(at)]) for message, at in lines.items()]
-    texts = [f"{it} (line{'s' * (len(at) > 1)} {enumerated(at, _MAX_ASSUMED)})" for it, at in found]
-    return enumerated(texts, _MAX_ASSUMED)
-
-
-def _raw_xacro_failure(urdf: Reading, raw: Problem) -> Outcome:
-    """Return the failure of xacro that is loaded without xacro, with what ROS 2 does about it."""
-    lost = (problem.message for problem in urdf.problems if problem.kind.effect in ("rejects", "drops"))
-    effect = next(lost, "ROS 2 ignores its tags, and the robot lacks what they stand for")
-    outcome = failed(f"{raw.message}: {effect}", raw.location, problem=raw.message)
-    return outcome._replace(mistake=f"{raw.code}: {raw.kind.title}")
 
 
 def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointType, free: bool = False) -> Outcome:
@@ -114,20 +72,6 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointTy
     return failed(message, place(moving[0].location, "type"), detail=f" (joint {moving[0].name!r})")
 
 
-def _driven_or_blocked(joint: Joint, link: str) -> Outcome | None:
-    """Return the failure of a joint that another one moves, or that has no velocity; None if it moves by itself."""
-    if joint.mimic is not None:
-        leader = "itself" if joint.mimic.joint == joint.name else "another joint"
-        message = f"the joint that moves {link!r} mimics {leader}; it should have no <mimic>"
-        detail = f" (joint {joint.name!r} mimics {joint.mimic.joint!r})"
-        return failed(message, place(joint.mimic.location, "joint"), detail=detail)
-    if joint.limit is not None and joint.limit.velocity <= 0.0:  # one that ROS 2 cannot read is NaN
-        message = f"the velocity limit of the joint that moves {link!r} is {number_text(joint.limit.velocity)}"
-        at = place(joint.limit.location, "velocity")
-        return failed(f"{message}; it should be more than 0", at, detail=named(joint))
-    return None
-
-
 def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]) -> Outcome:
     """The parent joints of the links have the given names (joint name: link name).
 
@@ -156,20 +100,6 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
     return failed(message, at)._replace(mistake="; ".join(mistake for mistake, _ in wrong))
 
 
-def _is_named(robot: Configuration, name: str, link: str, parent: str) -> bool:
-    named = [joint for joint in robot.known.joints if joint.name == name]
-    if any(joint.child == link for joint in named):
-        return True
-    if not robot.robot.has_link(link):
-        return False
-    own = robot.parent_joints.get(link)
-    if own is None:
-        return any(joint.parent == link for joint in named)
-    is_joined = robot.robot.has_link(parent) and robot.root_of(parent) == robot.root_of(link)
-    path = robot.between(parent, link) if is_joined else ()
-    return any(joint.known in named for joint in (*path, own))
-
-
 def root_of_tree(robot: Configuration, *, link: str, holds: str) -> Outcome:
     """A link is the root of the tree, and fixed joints lead from it to another link.
 
@@ -192,6 +122,80 @@ def root_of_tree(robot: Configuration, *, link: str, holds: str) -> Outcome:
     return passed(f"{link!r} is the root, and {holds!r} is fixed to it")
 
 
+def counts(
+    robot: Configuration,
+    *,
+    links: Count | None = None,
+    joints: Count | None = None,
+    moving: Count | None = None,
+    revolute: Count | None = None,
+    continuous: Count | None = None,
+    prismatic: Count | None = None,
+    fixed: Count | None = None,
+) -> Outcome:
+    """The tree has the given numbers of links and joints.
+
+    Links and joints that no chain of joints connects to the root are not counted; of several trees, the largest one is
+    counted.
+
+    Args:
+        links: The number of links.
+        joints: The number of joints of all types.
+        moving: The number of joints that are neither fixed nor mimic another joint.
+        revolute: The number of revolute joints.
+        continuous: The number of continuous joints.
+        prismatic: The number of prismatic joints.
+        fixed: The number of fixed joints.
+    """
+    wanted = {
+        "link": links,
+        "joint": joints,
+        "moving joint": moving,
+        "revolute joint": revolute,
+        "continuous joint": continuous,
+        "prismatic joint": prismatic,
+        "fixed joint": fixed,
+    }
+    expected = {noun: number for noun, number in wanted.items() if number is not None}
+    found = _count(robot, expected)
+    numbers = tuple(found[noun] for noun in expected), tuple(expected.values())
+    wrong = [noun for noun, number in expected.items() if found[noun] != number]
+    shown = {noun: counted(found[noun], noun) for noun in expected}
+    if not wrong:
+        return judged(True, f"the tree has {enumerated(list(shown.values())) or 'links'}", *numbers)
+    verbs = {noun: "is" if found[noun] == 1 else "are" for noun in wrong}
+    faults = (f"there {verbs[noun]} {shown[noun]}; there should be {expected[noun]}" for noun in wrong)
+    return judged(False, "; ".join(faults), *numbers)
+
+
+def _driven_or_blocked(joint: Joint, link: str) -> Outcome | None:
+    """Return the failure of a joint that another one moves, or that has no velocity; None if it moves by itself."""
+    if joint.mimic is not None:
+        leader = "itself" if joint.mimic.joint == joint.name else "another joint"
+        message = f"the joint that moves {link!r} mimics {leader}; it should have no <mimic>"
+        detail = f" (joint {joint.name!r} mimics {joint.mimic.joint!r})"
+        return failed(message, place(joint.mimic.location, "joint"), detail=detail)
+    if joint.limit is not None and joint.limit.velocity <= 0.0:  # one that ROS 2 cannot read is NaN
+        message = f"the velocity limit of the joint that moves {link!r} is {number_text(joint.limit.velocity)}"
+        at = place(joint.limit.location, "velocity")
+        return failed(f"{message}; it should be more than 0", at, detail=f" (joint {joint.name!r})")
+    return None
+
+
+def _is_named(robot: Configuration, name: str, link: str, parent: str) -> bool:
+    named = [joint for joint in robot.known.joints if joint.name == name]
+    if any(joint.child == link for joint in named):
+        return True
+    if not robot.robot.has_link(link):
+        return False
+    own = robot.parent_joints.get(link)
+    if own is None:
+        return any(joint.parent == link for joint in named)
+    is_joined = robot.robot.has_link(parent) and robot.root_of(parent) == robot.root_of(link)
+    path = robot.between(parent, link) if is_joined else ()
+    return any(joint.known in named for joint in (*path, own))
+
+
 def _not_below(robot: Configuration, link: str, parent: str) -> Outcome:
     robot.pose(link, relative_to=parent)  # raises where no joints connect the two
     joint = robot.parent_joints.get(link)
@@ -202,3 +206,14 @@ def _not_below(robot: Configuration, link: str, parent: str) -> Outcome:
         return failed(message, place(above[0].location), detail=f" (joint {above[0].name!r})")
     message = f"the parent of {link!r} is {joint.parent!r}; it should be {parent!r}"
     return failed(message, place(joint.location, "link", "parent"), detail=f" (joint {joint.name!r})")
+
+
+def _count(robot: Configuration, nouns: Collection[str]) -> Counter[str]:
+    """Return the numbers of links and joints by kind in the largest tree; raise NotDecided if xacro leaves one open."""
+    tree = robot.main_tree
+    found = Counter({"link": len(tree), "joint": max(0, len(tree) - 1)})
+    for joint in (robot.parent_joints[link] for link in tree[1:]) if set(nouns) - {"link", "joint"} else ():
+        is_moving = joint.type != "fixed" and joint.mimic is None
+        found[f"{joint.type} joint"] += 1
+        found["moving joint"] += is_moving
+    return found

@@ -1,4 +1,4 @@
-"""Checks of setup.py: whether a build of the package succeeds, and what it installs."""
+"""Checks of a package: its manifest, whether a build of it succeeds, and what that installs. Nothing is run."""
 
 import posixpath
 from collections.abc import Sequence
@@ -6,31 +6,72 @@ from fnmatch import fnmatch
 from typing import TYPE_CHECKING, Literal
 
 from grader.checks.check import About
-from grader.checks.outcome import Outcome, failed, passed
+from grader.checks.outcome import Outcome, failed, judged, passed
 from grader.errors import MissingElement, NotDecided
 from grader.names import closest
-from grader.package.package import MANIFEST, SETUP, Package
+from grader.package.package import MANIFEST, RESOURCE_INDEX, SETUP, Package
+from grader.submission.submission import Submission
 from grader.text import enumerated, first_lines
 
 if TYPE_CHECKING:
     from grader.package.file_search import EmptyGlob
+    from grader.package.manifest import Manifest
     from grader.package.setup_py import Setup
 
 
-FileKind = Literal["urdf", "launch", "rviz"]
-
-
+_FileKind = Literal["urdf", "launch", "rviz"]
 ABOUT = {
+    "package_found": About((MANIFEST, SETUP)),
+    "package_type": About((MANIFEST,)),
     "build_installs": About((SETUP, "file")),
     "setup_imports": About((SETUP,)),
     "installs_files": About((SETUP, "file")),
 }
+_ENDINGS: dict[_FileKind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
 
 
-_ENDINGS: dict[FileKind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
+def package_found(submission: Submission, *, name: str) -> Outcome:
+    """The submission has a ROS 2 package of this name.
+
+    Args:
+        name: The name that package.xml should give it.
+    """
+    package = submission.needed_package()
+    manifest = _readable_manifest(package)
+    if manifest.name is None:
+        problem = manifest.problems[0]
+        return failed(problem.message, problem.location)
+    fine = manifest.name == name
+    message = f"the package is named {manifest.name!r}{'' if fine else f'; it should be named {name!r}'}"
+    setup, registered = package.setup, package.registered
+    if fine and setup is not None and registered and name not in registered:
+        # ament_index finds a package by its marker. colcon adds one for the name in package.xml, but no file goes below
+        # that name.
+        others = enumerated([repr(other) for other in registered])
+        message = f"package.xml names the package {name!r}, but setup.py registers it as {others}"
+        at = next(copy.at for copy in setup.copies if copy.target.startswith(RESOURCE_INDEX))
+        return failed(message, setup.location(at))
+    return judged(fine, message, manifest.name, name, at=manifest.name_location)
 
 
-def build_installs(package: Package, *, kind: FileKind, name: str, despite_errors: bool = False) -> Outcome:
+def package_type(package: Package, *, build_type: str) -> Outcome:
+    """The package is of a build type, such as ament_python.
+
+    Args:
+        build_type: The build type, such as ament_python.
+    """
+    manifest = _readable_manifest(package)
+    actual = manifest.build_type
+    fine = actual == build_type
+    message = f"the build type is {actual!r}" if actual else "<build_type> in package.xml is empty"
+    if not fine:
+        # REP 149: a package.xml without build_type means catkin.
+        message += " (ROS 1; also the default without <build_type>)" if actual == "catkin" else ""
+        message += f"; it should be {build_type!r}"
+    return judged(fine, message, actual, build_type, at=manifest.type_location)
+
+
+def build_installs(package: Package, *, kind: _FileKind, name: str, despite_errors: bool = False) -> Outcome:
     """A build of the package installs its URDF, launch file or RViz file, below share/<package>.
 
     setup.py is evaluated statically; what cannot be determined needs manual grading.
@@ -40,7 +81,7 @@ def build_installs(package: Package, *, kind: FileKind, name: str, despite_error
         name: The file's name, which decides if the package has several files of the kind.
         despite_errors: Whether an error that stops the build is ignored, which `setup_imports` reports.
     """
-    files = files_of(package, kind, name)
+    files = _files_of(package, kind, name)
     if not files:
         raise package.missing(kind)
     return _require_installed(package, files, kind, despite_errors=despite_errors)
@@ -62,6 +103,22 @@ def installs_files(package: Package, *, files: list[str]) -> Outcome:
 def setup_imports(package: Package) -> Outcome:
     """A build of the package succeeds: Python runs `setup.py` to its end, and colcon accepts what it says."""
     return _build_error(package, _readable_setup(package)) or passed("setup.py builds")
+
+
+def _readable_manifest(package: Package) -> "Manifest":
+    manifest = package.manifest
+    if manifest is not None and manifest.unread:
+        raise NotDecided(manifest.unread, "package.xml cannot be read")
+    from grader.package.problem_kinds import BAD_MANIFEST
+
+    if manifest is None:
+        where = f"the folder {package.folder!r}" if package.folder else "the submission"
+        message = f"{where} has a setup.py, but no package.xml, so it is not a ROS 2 package"
+        raise MissingElement(MANIFEST, package.folder, message=message)
+    if any(problem.kind is BAD_MANIFEST for problem in manifest.problems):
+        problem = manifest.problems[0]
+        raise MissingElement(MANIFEST, package.folder, message=problem.message, location=problem.location)
+    return manifest
 
 
 def _build_error(package: Package, setup: "Setup") -> Outcome | None:
@@ -87,7 +144,7 @@ def _build_error(package: Package, setup: "Setup") -> Outcome | None:
     return None
 
 
-def files_of(package: Package, kind: FileKind, name: str) -> Sequence[str]:
+def _files_of(package: Package, kind: _FileKind, name: str) -> Sequence[str]:
     """Return the file of a package that has this name, else all of the kind that are no part of another one."""
     if kind == "launch":
         chosen = package.launch_file(name)
@@ -123,7 +180,7 @@ def _readable_setup(package: Package) -> "Setup":
 
 
 def _require_installed(
-    package: Package, files: Sequence[str], kind: FileKind | None, *, despite_errors: bool
+    package: Package, files: Sequence[str], kind: _FileKind | None, *, despite_errors: bool
 ) -> Outcome:
     setup = _readable_setup(package)
     error = _build_error(package, setup)
@@ -151,14 +208,16 @@ def _require_installed(
     raise _why_not_installed(package, setup, files, kind)
 
 
-def _stops_at(package: Package, setup: "Setup", files: Sequence[str], kind: FileKind | None) -> bool:
+def _stops_at(package: Package, setup: "Setup", files: Sequence[str], kind: _FileKind | None) -> bool:
     """Return whether a build stops at the entry for these files, so that it is there."""
     folders = {posixpath.dirname(path) for path in files}
     owners = ((_owner(stop.path, package), posixpath.dirname(stop.path)) for stop in setup.stops if stop.path)
     return any(owner == kind or folder in folders for owner, folder in owners)
 
 
-def _why_not_installed(package: Package, setup: "Setup", files: Sequence[str], kind: FileKind | None) -> MissingElement:
+def _why_not_installed(
+    package: Package, setup: "Setup", files: Sequence[str], kind: _FileKind | None
+) -> MissingElement:
     """Return why a build does not install files: no entry, or a pattern without a match."""
     what, message = f"installed {kind or files[0]}", f"a build does not install {files[0]}"
     empty = _pattern_for(setup.empty, files, kind)
@@ -174,7 +233,7 @@ def _why_not_installed(package: Package, setup: "Setup", files: Sequence[str], k
     return MissingElement(what, package.folder, message=message, detail=detail, location=at, problem=problem + detail)
 
 
-def _pattern_for(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: FileKind | None) -> "EmptyGlob | None":
+def _pattern_for(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: _FileKind | None) -> "EmptyGlob | None":
     """Return the pattern without a match that is meant for one of these files, by its folder, ending or kind."""
     folders = {posixpath.dirname(path) for path in files}
     endings = tuple({posixpath.splitext(path)[1] for path in files} - {""})
@@ -185,7 +244,7 @@ def _pattern_for(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: FileK
     return next((glob for glob in empty if kind is not None and kind in glob.pattern.lower()), None)
 
 
-def _owner(path: str, package: Package) -> FileKind | None:
+def _owner(path: str, package: Package) -> _FileKind | None:
     """Return the kind of file that an entry is about, by its ending or by the other files of its folder."""
     if ".launch." in path or path.endswith("_launch.py"):
         return "launch"
