@@ -204,7 +204,7 @@ EQUIVALENTS = (
 
 # Variants without edits change the whole text.
 BROKEN = (
-    Variant("tag-parent", 2, "", "urdf-loads lidar-fixed lidar-frame lidar-on-top", (Edit(_LIDAR, "<parent link=", "<parent="),)),
+    Variant("tag-parent", 2, "", "urdf-loads", (Edit(_LIDAR, "<parent link=", "<parent="),)),
     Variant("tag-origin", 2, "", "urdf-loads", (Edit(_FOOTPRINT, "<origin xyz=", "<origin="),)),
     Variant("comma-between-attributes", 2, "", "urdf-loads", (Edit("lidar", '"0.1" length', '"0.1", length'),)),
     Variant("comment-before-declaration", 2, "", "urdf-loads", ()),
