@@ -11,7 +11,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from math import degrees
 from typing import NamedTuple
 
-from grader.hints.package.python_file import PythonFile, keyword
+from grader.hints.python_file import PythonFile, argument
 from grader.markup import Attribute, attributes, element_end, head_end, name_end
 from grader.package.package import MANIFEST, SETUP, Package
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
@@ -269,7 +269,7 @@ def python_changes(file: PythonFile, label: str) -> Iterator[_MutantEdit]:
 
 def _entries(file: PythonFile) -> Iterator[ast.expr]:
     """Yield the entries of data_files, and the actions of a launch file."""
-    given = [keyword(call, "data_files") for call in file.calls("setup")]
+    given = [argument(call, "data_files") for call in file.calls("setup")]
     lists = [found.value for found in given if found is not None]
     lists += [call.args[0] for call in file.calls("LaunchDescription") if call.args]
     for found in lists:
@@ -279,7 +279,7 @@ def _entries(file: PythonFile) -> Iterator[ast.expr]:
 
 def _short(file: PythonFile, node: ast.expr) -> str:
     """Return what tells an item of a list from others: the executable of a node, else its text."""
-    executable = keyword(node, "executable") if isinstance(node, ast.Call) else None
+    executable = argument(node, "executable") if isinstance(node, ast.Call) else None
     text = " ".join(file.segment(executable.value if executable is not None else node).split())
     return text.strip("'\"") if len(text) <= _MAX_LABEL else text[:_MAX_LABEL]
 

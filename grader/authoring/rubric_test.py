@@ -25,8 +25,8 @@ from grader.grading.deciding import decide
 from grader.grading.grade import grade
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
-from grader.hints.editing import content, with_files, with_urdf
-from grader.hints.trials import is_worse
+from grader.hints.edits import content, with_files, with_urdf
+from grader.hints.search import is_worse
 from grader.package.package import MANIFEST
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission

@@ -1,13 +1,21 @@
 """Edits of the text of a file: made for its elements, and applied; `submission.editing` applies them to files."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from decimal import Decimal
 from math import isclose
 from os.path import commonprefix
 from typing import NamedTuple
 
 from grader import markup
-from grader.source import Edit, Edits, Source
+from grader.errors import InputError
+from grader.files.reading import URDF_LIMIT
+from grader.files.tree import overlaid
+from grader.python.budget import Budget
+from grader.source import Certainty, Edit, Edits, Source
+from grader.submission.submission import Submission
+from grader.submission.urdf import Read, read_as_ros
 
 _SAME = 1e-3  # relative: -1.57 is -pi/2
 _PIECE = re.compile(r"(\s*)(\S+)")
@@ -36,6 +44,26 @@ class Proposal(NamedTuple):
     def size(self) -> int:
         """How much text changes: the number of edits counts more than their length."""
         return sum(100 + _change_size(edit.old, edit.new) for edit in self.edits)
+
+
+class FoundHint(NamedTuple):
+    """A proven edit, and the points of the criteria that pass with it; without edits, `words` say what is missing.
+
+    `is_late` says that the gains are those after the edits of earlier hints. With an `alternative`, two edits cannot be
+    told apart: both are named, and neither is made.
+    """
+
+    proposal: Proposal
+    gains: Mapping[str, Decimal]
+    certainty: Certainty = "preferred"
+    is_late: bool = False
+    words: str = ""
+    alternative: Proposal | None = None
+
+    @property
+    def edits(self) -> Edits:
+        """The edits to make."""
+        return self.proposal.edits if self.alternative is None else ()
 
 
 def _change_size(old: str, new: str) -> int:
@@ -127,3 +155,55 @@ def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
 
 def _offsets(source: Source, edits: Iterable[Edit]) -> list[tuple[int, Edit]]:
     return sorted(((source.offset(edit.line, edit.column), edit) for edit in edits), key=lambda pair: pair[0])
+
+
+Files = Mapping[str, bytes | None]  # the new content of files by path; None for one that is no longer there
+
+
+def edited_files(submission: Submission, edits: Iterable[Edit]) -> Files | None:
+    """Return the files of a submission that edits change; None where the edits do not fit."""
+    by_path: dict[str, list[Edit]] = {}
+    for edit in edits:
+        by_path.setdefault(edit.path, []).append(edit)
+    files: dict[str, bytes | None] = {}
+    for path, of_file in by_path.items():
+        before = content(submission, path)
+        text = (before or b"").decode("utf-8", "surrogateescape")
+        renamed = next((edit.renamed for edit in of_file if edit.renamed), "")
+        after = edited(text, path, [edit for edit in of_file if not edit.renamed])
+        if after is None:
+            return None
+        if renamed:
+            files[path] = None
+        files[renamed or path] = after.encode("utf-8", "surrogateescape")
+    return files
+
+
+def content(submission: Submission, path: str) -> bytes | None:
+    """Return the bytes of a file of a submission; None where it has none that can be read."""
+    if isinstance(submission.urdf, Read) and path == submission.urdf.path:
+        return submission.urdf.data
+    file = submission.whole_tree.files.get(path)
+    try:
+        return file.read(URDF_LIMIT) if file is not None else None
+    except InputError:
+        return None
+
+
+def with_urdf(submission: Submission, files: Files) -> Submission:
+    """Return a submission with only the URDF read again: for edits of the URDF and of xacro that it includes."""
+    urdf = submission.urdf
+    assert isinstance(urdf, Read)
+    is_renamed = files.get(urdf.path, b"") is None
+    path = next((new for new, data in files.items() if data is not None and is_renamed), urdf.path)
+    whole_tree = overlaid(submission.whole_tree, files) if submission.whole_tree.files else submission.whole_tree
+    surroundings = submission.surroundings(Budget(), whole_tree)
+    read = read_as_ros(files.get(path) or urdf.data, path, surroundings)
+    return replace(submission, urdf=read, whole_tree=whole_tree, budget=surroundings.budget)
+
+
+def with_files(submission: Submission, files: Files) -> Submission:
+    """Return a submission that is read again from scratch with other files. Raises InputError."""
+    if submission.reopen is None:
+        return with_urdf(submission, files)
+    return submission.reopen(overlaid(submission.whole_tree, files))

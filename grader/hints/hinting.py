@@ -1,29 +1,29 @@
 """Reports with hints, and submissions with the edits of all hints."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader.errors import InputError
 from grader.grading.grade import grade
 from grader.grading.levels import HintLevel
 from grader.grading.report import Hint, Report, Result
 from grader.grading.rubric import ReferenceSolution
-from grader.hints.editing import edited_files, with_files
-from grader.hints.robot.draft import Draft
-from grader.hints.search import HintSearch
-from grader.hints.trials import FoundHint, Trials, costs_of
-from grader.hints.words import message
-from grader.source import Edits, Location
+from grader.hints.edits import FoundHint, content, edited_files, with_files
+from grader.hints.robot_draft import Draft
+from grader.hints.search import HintSearch, Trials, costs_of
+from grader.source import Edit, Edits, Location
 from grader.submission.submission import Submission
-from grader.text import enumerated
+from grader.submission.urdf import Read
+from grader.text import counted, enumerated
 
 if TYPE_CHECKING:
     from grader.package.package import Package
+    from grader.xacro.expanded_source import ExpandedSource
 
 
-_MAX_NAMED = 4
+_MAX_CRITERIA = 4
 
 
 class HintedReport(NamedTuple):
@@ -66,7 +66,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> HintedRe
             hints[name] = hint._replace(after=earlier)
     left = [name for name in costs if name not in hints and name in search.results and not search.results[name].is_lost]
     for name in left if level == "edit" else ():
-        others = enumerated(list(dict.fromkeys(entries.values())), _MAX_NAMED)
+        others = enumerated(list(dict.fromkeys(entries.values())), _MAX_CRITERIA)
         hints[name] = Hint(f"Make the edits for {others}.", results[name].outcome.location or Location("", 1, 1), {})
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
     report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete or submission.is_costly)
@@ -127,3 +127,128 @@ def _package(reference: ReferenceSolution | None) -> "Package | None":
     with suppress(InputError):
         return reference.submission.package if reference is not None else None
     return None
+
+
+_MAX_NAMED = 4  # criteria and edits that are named
+_MAX_LINES = 6
+_MAX_TEXT = 240  # characters of a changed text
+
+
+def message(found: FoundHint, level: HintLevel, submission: Submission, earlier: Sequence[str]) -> str:
+    """Return the hint in a sentence, which need not name the URDF. `earlier` are criteria whose hints come first."""
+    if found.words:
+        text = found.words if level == "edit" else found.proposal.cause if level == "cause" else "a part is missing"
+    elif found.alternative is not None:
+        each = [found._replace(proposal=it, alternative=None) for it in (found.proposal, found.alternative)]
+        one, other = (message(it, level, submission, ()).removesuffix(".") for it in each)
+        text = f"{one}, or {other[0].lower()}{other[1:]}: both work, so look which one is meant"
+    elif level == "edit":
+        edits = found.edits
+        changes = _moves(edits, submission) or [_change(edit, submission) for edit in edits[:_MAX_NAMED]]
+        changes += [counted(len(edits) - _MAX_NAMED, "more edit")] * (len(edits) > _MAX_NAMED)
+        source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
+        text = enumerated(changes, _MAX_NAMED + 1)
+        is_expanded = source is not None and source.is_expanded
+        text += _calls(edits, cast("ExpandedSource", source), submission.path) if is_expanded else ""
+    elif level == "cause":
+        text = f"check {_places(found.edits, submission)}: {found.proposal.cause}"
+    else:
+        text = f"check {_texts_to_check(found.edits, submission)}"
+    if earlier:
+        several = "s" * (len(earlier) > 1)
+        return f"After the edit{several} for {enumerated(earlier, _MAX_NAMED)}, {text}."
+    return f"{text[0].upper()}{text[1:]}."
+
+
+def _texts_to_check(edits: Sequence[Edit], submission: Submission) -> str:
+    """Return the texts to look at, each with its line."""
+    texts = [f"{_quote(edit.old)} ({_where(edit, submission)})" for edit in edits if edit.old]
+    return enumerated(texts, _MAX_NAMED) if texts else _places(edits, submission)
+
+
+def _places(edits: Sequence[Edit], submission: Submission) -> str:
+    """Return the lines to look at: lines 65 and 73; of another file with its name."""
+    files: dict[str, list[int]] = {}
+    for edit in edits:
+        files.setdefault(edit.path, []).append(edit.line)
+    texts = []
+    for path, lines in files.items():
+        numbers = sorted(set(lines))
+        named = f"line{'s' if len(numbers) > 1 else ''} {enumerated([str(line) for line in numbers], _MAX_LINES)}"
+        texts.append(named if path == submission.path else f"{path}, {named}")
+    return "; ".join(texts)
+
+
+def _calls(edits: Sequence[Edit], source: "ExpandedSource", main: str | None) -> str:
+    """Return where the macros of xacro that edits are in are called, if that is more than once."""
+    from grader.hints.xacro_edits import ExpandedEdits  # late: most robots are not xacro
+
+    every = ExpandedEdits(source)
+    macros = {name: calls for edit in edits for name, calls in every.calls(edit).items() if len(calls) > 1}
+    texts = (
+        f"the macro {name} is called in {enumerated([_at(call, main) for call in calls], _MAX_NAMED)}"
+        for name, calls in macros.items()
+    )
+    return f" ({'; '.join(texts)})" if macros else ""
+
+
+def _at(place: Location | Edit, main: str | None) -> str:
+    return f"line {place.line}" if place.path == main else f"line {place.line} of {place.path}"
+
+
+def _moves(edits: Sequence[Edit], submission: Submission) -> list[str]:
+    """Return two changes in words if they exchange texts, or if a text is removed at one place and added at another."""
+    if len(edits) != 2:
+        return []
+    first, second = edits
+    if first.old and (first.old, first.new) == (second.new, second.old):
+        places = (f"{_quote(edit.old)} ({_where(edit, submission)})" for edit in edits)
+        return [f"exchange {' and '.join(places)}"]
+    texts = {" ".join((edit.old + edit.new).split()) for edit in edits}
+    if len(texts) > 1 or {bool(edit.old) for edit in edits} != {True, False}:
+        return []
+    old, new = sorted(edits, key=lambda edit: not edit.old)
+    return [f"move {_quote(old.old)} ({_where(old, submission)}) to {_insertion(new, submission)}"]
+
+
+def _change(edit: Edit, submission: Submission) -> str:
+    old, new = _quote(edit.old), _quote(edit.new)
+    if edit.renamed:
+        return f"rename `{edit.path}` to `{edit.renamed}`"
+    if not edit.old:
+        return f"add {new} {_insertion(edit, submission)}"
+    where = _where(edit, submission)
+    added = edit.new.removeprefix(edit.old).strip()
+    if edit.old.startswith("<") and edit.new.startswith(edit.old) and "<" not in added:
+        return f"add {_quote(added)} to `{edit.old}>` ({where})"
+    return f"change {old} to {new} ({where})" if edit.new else f"remove {old} ({where})"
+
+
+def _insertion(edit: Edit, submission: Submission) -> str:
+    """Return the line before, after or in which a text is added, or at the end of which."""
+    line, at = _line(edit, submission), _at(edit, submission.path)
+    if edit.new.endswith("\n") or not line[: edit.column - 1].strip():
+        return f"before {at}"
+    end = "after" if "\n" in edit.new else "at the end of"
+    return f"{'in' if line[edit.column - 1 :].strip() else end} {at}"
+
+
+def _where(edit: Edit, submission: Submission) -> str:
+    """Return the line of an edit, and which of the texts in it is meant if it is there several times."""
+    line = _line(edit, submission)
+    number = line.count(edit.old) if edit.old else 0
+    nth = line.count(edit.old, 0, edit.column - 1) + 1
+    return f"{_at(edit, submission.path)}{f', number {nth} of {number}' if number > 1 else ''}"
+
+
+def _line(edit: Edit, submission: Submission) -> str:
+    lines = (content(submission, edit.path) or b"").decode("utf-8", "surrogateescape").split("\n")
+    return lines[edit.line - 1].removeprefix("\ufeff") if edit.line <= len(lines) else ""
+
+
+def _quote(text: str) -> str:
+    """Return a text of the file between backticks, in one line."""
+    line = " ".join(text.split()).replace("> <", "><")
+    if not line:
+        return "a space" if text else ""
+    return f"`{line}`" if len(line) <= _MAX_TEXT else f"`{line[: _MAX_TEXT - 3]}...`"

@@ -4,23 +4,147 @@ A `Piece` is what one mistake needs, with its words; a `Proposal` is one way to 
 proves becomes a `FoundHint`, and in a report a `Hint`. All of them together are the `Fix`.
 """
 
-from collections.abc import Callable, Collection, Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.grading.criterion import Criterion
-from grader.hints.edits import Proposal
-from grader.hints.families import Families
-from grader.hints.missing import missing_hints
-from grader.hints.robot.draft import Draft
-from grader.hints.robot.pieces import REFERENCE, STRUCTURE
-from grader.hints.targets import leaves_others
-from grader.hints.trials import FoundHint, NoTrialsLeft, Results, Trials, costs_of, gains_of
+from grader.errors import InputError
+from grader.grading.deciding import decide
+from grader.grading.report import Result
+from grader.grading.rubric import Rubric
+from grader.hints.edits import FoundHint, Proposal, edited_files, with_files, with_urdf
+from grader.hints.generators import STAGES, Situation, Stage, leaves_others, missing_hints
+from grader.hints.robot_difference import REFERENCE, STRUCTURE
+from grader.hints.robot_draft import Draft
 from grader.source import Edits
+from grader.submission.submission import Submission
+from grader.submission.urdf import Read
 
 if TYPE_CHECKING:
     from grader.package.package import Package
+
+
+Results = Mapping[str, Result]
+
+_MAX_GRADINGS = 170  # of one submission that is as short as most
+_HARMFUL = ("rejects", "drops", "undetermined")
+
+
+class NoTrialsLeft(Exception):
+    """The budget for one submission is spent."""
+
+
+class Trials:
+    """Grades edited submissions. The budget counts gradings, so that it is the same on every machine."""
+
+    def __init__(self, rubric: Rubric, submission: Submission, results: Results) -> None:
+        parts = {part.id for part in rubric.parts if part.needs != "files"}
+        self.rubric, self.submission = rubric, submission
+        self.results = {name: result for name, result in results.items() if result.criterion.part in parts}
+        self.left = 0 if submission.is_costly else _MAX_GRADINGS
+        self.faults: list[str] = []  # the types of exceptions
+        self.is_assumed = False  # whether the last one is read with words undone, and the submission is not
+
+    @contextmanager
+    def isolated(self) -> Iterator[None]:
+        """Record a fault of the grader in one family of edits or one step: it must not cost the hints of the others."""
+        try:
+            yield
+        except NoTrialsLeft:
+            raise
+        except Exception as error:  # noqa: BLE001
+            self.faults.append(type(error).__name__)
+
+    def graded(self, edits: Edits, wanted: Collection[str] | Results, *, whole: bool = False) -> Results:
+        """Return the results of criteria with edits, none where these do not fit, or ROS 2 would reject or drop more.
+
+        With the results that criteria had, there are none where one is worse now.
+        `whole` reads the submission from scratch. Raises NoTrialsLeft.
+        """
+        self.left -= 1 + self.submission.cost
+        if self.left < 0:
+            raise NoTrialsLeft
+        edited = self._edited(edits, whole=whole)
+        if edited is None or _has_new_problems(self.submission, edited):
+            return {}
+        self.is_assumed = _is_assumed(edited) and not _is_assumed(self.submission)
+        found: dict[str, Result] = {}
+        for result in decide(self.rubric, edited, wanted):
+            name = result.criterion.id
+            if isinstance(wanted, Mapping) and is_worse(wanted[name], result):
+                return {}  # at once: a shape in another one takes long to measure
+            found[name] = result
+        return found
+
+    def _edited(self, edits: Edits, *, whole: bool) -> Submission | None:
+        files = edited_files(self.submission, edits)
+        if files is None:
+            return None
+        is_robot = isinstance(self.submission.urdf, Read) and None not in files.values()
+        is_decoded = all(edit.old.isascii() for edit in edits)  # else a launch file that could not read it now may
+        if is_robot and is_decoded and not whole and all(_is_of_robot(path, self.submission) for path in files):
+            return with_urdf(self.submission, files)
+        try:
+            return with_files(self.submission, files)
+        except InputError:
+            return None
+
+
+def _has_new_problems(before: Submission, after: Submission) -> bool:
+    """Return whether ROS 2 loads the URDF, with a kind of problem that it had not before: no edit may make it worse."""
+    if (
+        not isinstance(before.urdf, Read)
+        or not isinstance(after.urdf, Read)
+        or before.urdf.loaded.verdict == "rejected"
+    ):
+        return False
+    known = {problem.kind for problem in before.urdf.loaded.problems if problem.kind.effect in _HARMFUL}
+    return any(it.kind not in known for it in after.urdf.loaded.problems if it.kind.effect in _HARMFUL)
+
+
+def _is_assumed(submission: Submission) -> bool:
+    """Return whether ROS 2 rejects the URDF, and it is read with words undone: criteria may pass by them."""
+    reading = submission.urdf.loaded if isinstance(submission.urdf, Read) else None
+    return reading is not None and reading.verdict == "rejected" and reading.is_meant
+
+
+def _is_of_robot(path: str, submission: Submission) -> bool:
+    """Return whether a file is the URDF or one that its xacro reads, and not one that the package's checks read."""
+    is_robot = path.lower().endswith((".urdf", ".xacro")) and path in submission.whole_tree.files
+    return is_robot or path == submission.path
+
+
+def is_worse(before: Result, after: Result) -> bool:
+    """Return whether a criterion no longer passes, has fewer points, or is undecided now; never an adjusted one."""
+    status = after.outcome.status
+    if after.is_adjusted:
+        return False
+    if before.outcome.status != status and (before.outcome.status == "passed" or status in ("pending", "errored")):
+        return True
+    return after.points < before.points
+
+
+def costs_of(results: Results) -> dict[str, Decimal]:
+    """Return what each failed criterion costs, with the criteria that are skipped because of it."""
+    lost: dict[str, Decimal] = {}
+    for name, result in results.items():
+        if result.is_lost:
+            cause = result.because if result.because in results else None
+            lost[cause or name] = lost.get(cause or name, Decimal(0)) + result.criterion.points
+    return {name: points for name, points in lost.items() if results[name].outcome.status == "failed"}
+
+
+def gains_of(before: Results, after: Results) -> dict[str, Decimal]:
+    """Return the criteria that pass now and did not before, with the points that this gives."""
+    return {
+        name: result.points - before[name].points
+        for name, result in after.items()
+        if result.outcome.status == "passed"
+        and before[name].outcome.status in ("failed", "skipped")
+        and not result.is_adjusted
+    }
+
 
 _RESERVE = 20  # gradings for proofs
 _AROUND = " ,\r\n"  # of a text that is added
@@ -47,13 +171,14 @@ class HintSearch:
 
         No edit is searched for the criteria that are `told`.
         """
-        self.trials, self._families = trials, Families(trials, reference, package)
+        self.trials = trials
+        self._situation = Situation(trials.submission, trials.rubric.links, reference, package)
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
         self.found: list[FoundHint] = []
         self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing, or two edits
         self._refused = set[Edits]()  # after all hints so far
         self._told = {*told}  # also criteria for which two edits are told that cannot be told apart
-        self._taken: dict[str, Edits] = {}  # the edits after which a family was tried last
+        self._tried_after: dict[Stage, Edits] = {}  # the edits after which a stage was tried last
         self.results: Results = trials.results  # with all edits
         self._after: Results = self.results
         self.is_complete = self._is_cut = False
@@ -67,10 +192,8 @@ class HintSearch:
         """Search until nothing more is found, or the budget is spent."""
         with suppress(NoTrialsLeft):
             if self.trials.left:
-                all_ = self._families
-                families = (all_.of_reference, all_.of_package, all_.of_own, all_.of_links)
-                for family in (*families, all_.of_reference, all_.of_package):
-                    self._take(family)
+                for stage in STAGES:
+                    self._take(stage)
                 self.is_complete = not self._is_cut or not self._lost
         self.trials.left = max(self.trials.left, 1 + self.trials.submission.cost)  # for the last one
         with self.trials.isolated():
@@ -78,8 +201,8 @@ class HintSearch:
         with self.trials.isolated():
             known = {name for found in self.found for name in found.gains} | self.missing.keys()
             lost = {name: points for name, points in costs_of(self.trials.results).items() if name not in known}
-            if self._families.is_whole:
-                self.missing |= missing_hints(self._families.difference, self._criteria, lost)
+            if self._situation.is_whole:
+                self.missing |= missing_hints(self._situation.difference, self._criteria, lost)
         return self
 
     def _verify(self) -> None:
@@ -91,28 +214,35 @@ class HintSearch:
     def _lost(self) -> list[str]:
         return [name for name, result in self.results.items() if result.is_lost and name not in self._told]
 
-    def _take(self, family: Callable[[list[Criterion]], Iterable[Proposal]]) -> None:
-        """Try the edits of a family, each once, and take those that are proven, those that gain most first."""
-        lost, before = self._lost, self.edits
-        if self._taken.get(family.__name__) == before:
+    def _take(self, stage: Stage) -> None:
+        """Take the proposals of a stage that are proven, those that gain most first."""
+        if not self._lost or self._tried_after.get(stage) == self.edits:
             return
-        self._taken[family.__name__] = before
+        self._tried_after[stage] = self.edits
         tried: list[_Tried] = []
-        seen: set[Edits] = set()
         with self.trials.isolated():
-            for proposal in family([self._criteria[name] for name in lost]) if lost else ():
-                if proposal.edits in seen:
-                    continue
-                seen.add(proposal.edits)
-                if self.trials.left < _RESERVE:
-                    self._is_cut = True
-                    break
-                results = self.trials.graded((*before, *proposal.edits), lost)
-                passes = frozenset(name for name, result in results.items() if result.outcome.status == "passed")
-                tried += [_Tried(proposal, passes, self.trials.is_assumed)] * bool(passes)
+            self._try(stage, tried)
         while best := self._best(tried):
             if not self._prove(best, tried):
                 self._refused.add(best.proposal.edits)
+
+    def _try(self, stage: Stage, tried: list[_Tried]) -> None:
+        """Grade the proposals of a stage, each once; add those with which a criterion passes."""
+        lost, before = self._lost, self.edits
+        seen: set[Edits] = set()
+        for proposals in stage(self._situation, [self._criteria[name] for name in lost]):
+            with self.trials.isolated():
+                for proposal in proposals:
+                    if proposal.edits in seen:
+                        continue
+                    seen.add(proposal.edits)
+                    if self.trials.left < _RESERVE:
+                        self._is_cut = True
+                        return
+                    results = self.trials.graded((*before, *proposal.edits), lost)
+                    passes = frozenset(name for name, result in results.items() if result.outcome.status == "passed")
+                    if passes:
+                        tried.append(_Tried(proposal, passes, self.trials.is_assumed))
 
     def _best(self, tried: Iterable[_Tried]) -> _Tried | None:
         lost = set(self._lost)
@@ -183,7 +313,7 @@ class HintSearch:
         if leaves_others(best.proposal.shared, [self._criteria[name] for name in best.passes], lost):
             return True
         is_own = best.proposal.rank not in (REFERENCE, STRUCTURE) and bool(best.proposal.link)
-        chains = (self._families.chain(it.arguments.get("link")) for it in lost if is_own)
+        chains = (self._situation.own_chain(it.arguments.get("link")) for it in lost if is_own)
         return any(best.proposal.link in chain for chain in chains)
 
     def _gains(self, before: Edits, edits: Edits, against: Results) -> dict[str, Decimal]:

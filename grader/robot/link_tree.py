@@ -243,6 +243,14 @@ def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
     return _only(robot, _links_of(places, parents, int(found[1]), most, name), name)
 
 
+def selected_or_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
+    """Return the link that a selector means; a name, or a selector that means no single link, as it is."""
+    try:
+        return selected_link(robot, parents, name)
+    except (MissingElement, NotDecided):
+        return name
+
+
 def _links_of(
     places: dict[str, _LinkPlace], parents: Mapping[str, Joint], number: int, most: int, name: str
 ) -> set[str]:

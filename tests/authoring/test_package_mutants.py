@@ -7,7 +7,7 @@ import pytest
 from grader.authoring.mutants import Mutant, package_mutants
 from grader.files.tree import overlaid
 from grader.grading.deciding import decide
-from grader.hints.editing import content
+from grader.hints.edits import content
 from grader.submission.submission import Submission
 from tests.authoring.robots import CHANGES
 from tests.samples import LAB6, reference

@@ -8,8 +8,6 @@ from typing import Any
 import pytest
 
 from grader.grading.levels import LEVELS
-from grader.hints.families import Families
-from grader.hints.search import HintSearch
 from tests.command_line import run
 from tests.samples import ROOT
 
@@ -162,7 +160,7 @@ def test_a_search_that_is_cut_off_is_reported(
     steps: int, reserve: int, written: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A note of every report, and the words of `--fix`, say that the budget ended the search."""
-    monkeypatch.setattr("grader.hints.trials._MAX_GRADINGS", steps)
+    monkeypatch.setattr("grader.hints.search._MAX_GRADINGS", steps)
     monkeypatch.setattr("grader.hints.search._RESERVE", reserve)
     note = "the search for hints ended at its limit: there may be more"
     assert note in graded(MISTAKES)["notes"]
@@ -180,21 +178,20 @@ def test_a_submission_that_is_too_large_has_its_own_sentence(tmp_path: Path) -> 
     assert done.stderr == b"grader: --fix: nothing was written: the submission is too large to search for edits\n"
 
 
+def _fail(*_: object, **__: object) -> None:
+    raise ZeroDivisionError
+
+
 @pytest.mark.parametrize(
-    ("where", "steps"),
-    [
-        (HintSearch, ["run"]),
-        (HintSearch, ["_take"]),
-        (Families, ["of_reference", "of_package", "of_own", "of_links"]),
-    ],
-    ids=["run", "take", "families"],
+    ("place", "failing"),
+    [("grader.hints.search.HintSearch.run", _fail), ("grader.hints.search.STAGES", (_fail,))],
+    ids=["run", "stages"],
 )
 def test_a_search_that_failed_has_its_own_sentence(
-    where: type, steps: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    place: str, failing: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """`--fix` does not say that there is nothing to fix."""
-    for step in steps:
-        monkeypatch.setattr(where, step, lambda self, *_: self.nothing)
+    monkeypatch.setattr(place, failing)
     done = run(("grade", MISTAKES, "--fix", tmp_path / "fixed.urdf"))
     assert done.stderr.decode().splitlines()[-1] == "grader: --fix: nothing was written: the search for edits failed"
 
@@ -240,28 +237,26 @@ def test_what_is_missing_costs_no_other_hint(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("place", "lost"),
+    ("place", "failing"),
     [
-        ("grader.hints.package.candidates.package_names", ()),
-        ("grader.hints.families.of_siblings", ("base-green",)),
-        ("grader.hints.search.missing_hints", ()),
+        ("grader.hints.package_edits.package_names", _fail),
+        ("grader.hints.generators.of_siblings", lambda *_: map(_fail, [1])),
+        ("grader.hints.search.missing_hints", _fail),
     ],
+    ids=["of the package", "of the robot", "missing parts"],
 )
-def test_a_fault_of_one_family_costs_no_other_hint(
-    place: str, lost: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+def test_a_fault_of_one_generator_costs_no_other_hint(
+    place: str, failing: object, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """The hints of the other families are shown, and standard error says that some are missing."""
+    """The hints of the others are shown, and standard error says that some are missing."""
     shutil.copytree(MISSPELT_FRAME, tmp_path / "sample")
     urdf = tmp_path / "sample/my_robot/urdf/my_robot.urdf"
     urdf.write_text(urdf.read_text().replace("0 0.6 0 1", "0 1 0 1"))
 
-    def fail(*_: object, **__: object) -> None:
-        raise ZeroDivisionError
-
-    monkeypatch.setattr(place, fail)
+    monkeypatch.setattr(place, failing)
     done = run(("grade", tmp_path / "sample", "--format", "json"))
     found = {result["id"] for result in json.loads(done.stdout)["results"] if result["hints"]}
-    assert found == {"base-green", "rviz-fixed-frame"} - {*lost}
+    assert found == {"base-green", "rviz-fixed-frame"}
     assert (
         done.stderr
         == b"grader: some hints are missing: the grader itself failed (ZeroDivisionError); please report it\n"

@@ -10,7 +10,7 @@ from lxml import etree
 
 from grader.errors import MissingElement, NotDecided
 from grader.hints.edits import edited
-from grader.hints.xacro.expanded_edits import ExpandedEdits
+from grader.hints.xacro_edits import ExpandedEdits
 from grader.python.budget import Budget, OutOfBudget
 from grader.python.expressions import evaluate
 from grader.python.values import EvaluationFails, Undetermined

@@ -11,7 +11,7 @@ from grader.files.tree import make_tree
 from grader.grading.grade import grade
 from grader.grading.report import Hint, Report, Result
 from grader.grading.rubric import Rubric
-from grader.hints.trials import gains_of
+from grader.hints.search import gains_of
 from grader.report.formats import Format, render
 from grader.source import Base, Edit
 from grader.submission.opening import read_submission, submission_of

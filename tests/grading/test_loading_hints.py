@@ -5,9 +5,8 @@ from random import Random
 
 import pytest
 
-from grader.hints.editing import edited_files
+from grader.hints.edits import FoundHint, edited_files
 from grader.hints.search import HintSearch
-from grader.hints.trials import FoundHint
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read

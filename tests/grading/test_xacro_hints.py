@@ -8,8 +8,7 @@ import pytest
 from grader.errors import InputError
 from grader.files.tree import Tree, overlaid
 from grader.hints.edits import edited
-from grader.hints.search import HintSearch
-from grader.hints.trials import Trials
+from grader.hints.search import HintSearch, Trials
 from grader.source import Edit
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission

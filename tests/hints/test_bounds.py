@@ -5,7 +5,7 @@ from itertools import count
 
 import pytest
 
-from grader.hints.trials import _MAX_GRADINGS
+from grader.hints.search import _MAX_GRADINGS
 from grader.submission.opening import read_submission
 from tests.examples import spread
 from tests.hints.trials import BASES, graded, search_for

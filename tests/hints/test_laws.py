@@ -11,7 +11,7 @@ from grader.authoring.mutants import mutants
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric
-from grader.hints.editing import content
+from grader.hints.edits import content
 from grader.hints.hinting import fixed, hinted
 from grader.source import Edit
 from grader.submission.submission import Submission

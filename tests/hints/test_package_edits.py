@@ -1,14 +1,12 @@
 """Edits of packages: for each mistake that students make, one of the first is the correction; none is made for hostile files."""
 
-from contextlib import nullcontext
 from itertools import product
 
 import pytest
 
 from grader.grading.grade import grade
-from grader.hints.editing import content, edited_files, with_files
-from grader.hints.edits import Proposal
-from grader.hints.package.candidates import package_proposals
+from grader.hints.edits import Proposal, content, edited_files, with_files
+from grader.hints.package_edits import package_proposals
 from grader.submission.submission import Submission
 from tests.examples import spread
 from tests.samples import LAB6, SAMPLES, reference
@@ -115,7 +113,9 @@ def _proposals(submission: Submission) -> list[Proposal]:
     passed = _passed(submission)
     lost = [criterion for criterion in LAB6.criteria if criterion.part == "task2" and criterion.id not in passed]
     wanted = [(criterion.check.about.looks_at, criterion.arguments) for criterion in lost]
-    return package_proposals(submission.package, _REFERENCE.package, wanted, nullcontext)
+    if submission.package is None:
+        return []
+    return [it for made in package_proposals(submission.package, _REFERENCE.package, wanted) for it in made]
 
 
 def _corrected(broken: Submission) -> Submission | None:

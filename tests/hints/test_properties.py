@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from grader.authoring.mutants import mutants
 from grader.grading.report import Result
-from grader.hints.editing import edited_files
+from grader.hints.edits import edited_files
 from grader.submission.opening import read_submission
 from tests.examples import examples
 from tests.hints.trials import BASES, applied, graded, search_for, with_edits

@@ -7,7 +7,7 @@ import pytest
 
 from grader.grading.grade import grade
 from grader.hints.hinting import hinted
-from grader.hints.trials import Trials
+from grader.hints.search import Trials
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from tests.hints.trials import BASES, Hints, hints_for

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from grader.hints.edits import edited
-from grader.hints.xacro.expanded_edits import ExpandedEdits
+from grader.hints.xacro_edits import ExpandedEdits
 from grader.source import Edit
 from tests.examples import examples
 from tests.xacro import grammar

@@ -9,10 +9,9 @@ from typing import NamedTuple
 from grader.grading.grade import grade
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric, load_rubric
-from grader.hints.editing import content, with_files
-from grader.hints.robot.draft import Draft
-from grader.hints.search import HintSearch
-from grader.hints.trials import FoundHint, Trials
+from grader.hints.edits import FoundHint, content, with_files
+from grader.hints.robot_draft import Draft
+from grader.hints.search import HintSearch, Trials
 from grader.source import Edit
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission

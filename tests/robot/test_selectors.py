@@ -7,9 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.errors import MissingElement, NotDecided
-from grader.hints.targets import selected as linked
-from grader.robot.kinematics import Configuration
-from grader.robot.link_tree import parent_joints, selected_link
+from grader.robot.link_tree import parent_joints, selected_link, selected_or_name
 from grader.robot.model import Joint, Link, Mimic, Robot
 
 # base -fixed- mount -m1- upper -fixed- flange -m2- hand -fixed- tool, and a camera on the base
@@ -51,7 +49,8 @@ def test_a_moving_joint_that_is_not_there_is_missing(name: str) -> None:
     with pytest.raises(MissingElement) as caught:
         selected(robot(*ARM), name)
     assert str(caught.value) == f"there is no {name}: the longest chain has 2 moving joints"
-    assert linked(Configuration(robot(*ARM)), name) == name  # of which no hint can be about a link
+    found = robot(*ARM)
+    assert selected_or_name(found, parent_joints(found), name) == name  # of which no hint can be about a link
 
 
 def test_a_mimic_joint_does_not_count() -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.hints.editing import content
+from grader.hints.edits import content
 from grader.submission.urdf import Read
 from tests.examples import spread
 from tests.samples import SAMPLES

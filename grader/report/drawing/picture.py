@@ -11,9 +11,8 @@ from grader.errors import InputError, MissingElement, NotDecided
 from grader.grading.criterion import Criterion
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric
-from grader.hints.targets import selected
 from grader.robot.kinematics import Configuration, placed_by
-from grader.robot.link_tree import texts_in
+from grader.robot.link_tree import selected_or_name, texts_in
 from grader.robot.model import Box, Cylinder, Link, Mesh, Sphere, Visual
 from grader.robot.shapes import Shape, UnknownShape, is_empty
 from grader.robot.transforms import Z_AXIS, Transform, Vector
@@ -225,10 +224,14 @@ def _reference(rubric: Rubric) -> Configuration | None:
     return None
 
 
+def _selected(robot: Configuration, name: str) -> str:
+    return selected_or_name(robot.robot, robot.parent_joints, name)
+
+
 def _frames(rubric: Rubric, robot: Configuration, solution: Configuration | None) -> tuple[str | None, str | None]:
     """Return the links in whose frames both robots are drawn: the rubric's base, else the roots."""
     trees = [one.main_tree if one is not None else () for one in (robot, solution)]
-    own, other = (selected(one, rubric.base) if one is not None else None for one in (robot, solution))
+    own, other = (_selected(one, rubric.base) if one is not None else None for one in (robot, solution))
     if own in trees[0] and (other is None or other in trees[1]):
         return own, other
     return next(iter(trees[0]), None), next(iter(trees[1]), None)
@@ -238,7 +241,7 @@ def _wheels(rubric: Rubric, robot: Configuration) -> Iterator[str]:
     """Yield the links that the rubric expects to roll."""
     for criterion in rubric.criteria:
         if criterion.check.about.picture == "wheel":
-            yield selected(robot, str(criterion.arguments["link"]))
+            yield _selected(robot, str(criterion.arguments["link"]))
 
 
 def _is_marked(result: Result) -> bool:
@@ -259,7 +262,7 @@ def _by_link(lost: Sequence[Result], robot: Configuration, solution: Configurati
 def _links(criterion: Criterion, robot: Configuration, solution: Configuration | None) -> Iterator[str]:
     """Yield the links that a criterion examines and that one of the robots has."""
     subject = next((criterion.arguments[key] for key in _SUBJECTS if key in criterion.arguments), None)
-    for link in dict.fromkeys(selected(robot, name) for name in texts_in(subject)):
+    for link in dict.fromkeys(_selected(robot, name) for name in texts_in(subject)):
         if robot.robot.has_link(link) or (solution is not None and solution.robot.has_link(link)):
             yield link
 

@@ -1,19 +1,183 @@
 """The difference between a robot and the reference's, cut into pieces: each is an edit that may undo a mistake."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import groupby
 from typing import NamedTuple
 
-from grader.hints.difference import Node, Step, steps
-from grader.hints.robot.draft import Draft, escaped
-from grader.hints.robot.elements import Set, child_of, end_of
-from grader.hints.robot.nodes import node_of, translation, wanted_value
-from grader.hints.robot.pieces import ENDS, SIBLING, STRUCTURE, Piece, PieceMaker, normal, unique
+from grader.hints.robot_draft import Draft, Set, child_of, end_of, escaped
+from grader.hints.robot_numbers import Values, mistake_in, values_of
+from grader.hints.tree_difference import Node, Step, paired, steps
 from grader.names import near
+from grader.source import Edits
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import CHILDREN, TAGS, TagFormat
+
+ENDS = ("parent", "child")
+
+# The ranks of pieces: values of a sibling of the student's own design; the reference's; the student's own, corrected;
+# several at once, or another structure.
+SIBLING, REFERENCE, OWN, STRUCTURE = range(4)
+
+
+class Piece(NamedTuple):
+    """An edit that may undo a mistake: values to set, edits of the text, or both; what is wrong, and the link.
+
+    The `rank` orders pieces that gain as much. `around` is the element that changes.
+    """
+
+    cause: str
+    link: str
+    sets: tuple[Set, ...] = ()
+    edits: Edits = ()
+    rank: int = REFERENCE
+    around: Element | None = None
+
+
+class PieceMaker:
+    """Makes pieces for a robot beside the reference's; only `known` names are shown, because the reference has them."""
+
+    def __init__(self, draft: Draft, reference: Draft) -> None:
+        self.draft, self.reference = draft, reference
+        links, materials = ([one.name for one in found] for found in (reference.robot.links, reference.robot.materials))
+        self.known = {*links, *materials}
+
+    def piece(
+        self,
+        element: Element,
+        cause: str,
+        edits: Edits = (),
+        *,
+        sets: tuple[Set, ...] = (),
+        rank: int = REFERENCE,
+        link: str = "",
+        tag: str = "",
+    ) -> Piece:
+        """Return a piece that changes an element, or its child with a tag; {} in the cause stands for its name."""
+        cause = cause.replace("{}", self.draft.describe(element, tag, self.known))
+        around = element if element.getparent() is self.draft.root else element.getparent()
+        return Piece(cause, link or self.draft.link_of(element), sets, edits, rank, around)
+
+    def of_sets(self, sets: Sequence[Set], rank: int = REFERENCE) -> Piece:
+        """Return the piece that sets values of one element, named by what is wrong with them."""
+        first = sets[0]
+        return self.piece(first.owner, _cause(sets), sets=tuple(sets), rank=rank, tag=first.tag)
+
+    def each(self, sets: Sequence[Set]) -> Iterator[Piece]:
+        """Yield the pieces that set each value alone, and all together."""
+        yield from (self.of_sets([one]) for one in sets)
+        if len(sets) > 1:
+            yield self.of_sets(sets)
+
+    def moved(self, element: Element, parent: Element) -> Piece:
+        """Return the piece that moves an element into another one."""
+        text = self.draft.text(element)
+        was = element.getparent()
+        cause = f"<{element.tag}> is inside <{was.tag if was is not None else ''}>; it belongs in <{parent.tag}>"
+        return self.piece(element, cause, (*self.draft.remove(element), *self.draft.insert(parent, text)))._replace(
+            around=parent
+        )
+
+
+def _cause(sets: Sequence[Set]) -> str:
+    """Return what is wrong with the values of one element."""
+    tag = sets[0].tag or str(sets[0].owner.tag)
+    names = " and ".join(one.attribute for one in sets)
+    what = "{}" if tag in ENDS else f"the {names} of {{}}"
+    if sets[0].element is None:
+        return "{} is missing"
+    if all(one.attribute not in one.element.attrib for one in sets if one.element is not None):
+        return f"{what} is missing"
+    parts: list[str] = []
+    old: Values = ()
+    new: Values = ()
+    for one in sets:
+        known = TAGS[tag].attributes.get(one.attribute) if tag in TAGS else None
+        text = one.element.get(one.attribute) if one.element is not None else None
+        if known is None or not known.parts:
+            return what
+        parts += [part or one.attribute for part in known.parts]
+        old, new = (*old, *values_of(known.default if text is None else text)), (*new, *values_of(one.value))
+    return mistake_in(parts, TAGS[tag].attributes[sets[-1].attribute].unit, old, new)
+
+
+def unique(pieces: Iterable[Piece]) -> list[Piece]:
+    """Return the pieces that change something, each once."""
+    found: dict[object, Piece] = {}
+    for piece in pieces:
+        found.setdefault((piece.sets, piece.edits), piece)
+    return [piece for piece in found.values() if piece.sets or piece.edits]
+
+
+def normal(tag: str, attribute: str, text: str | None) -> str:
+    """Return a value as it is compared: numbers without needless digits, the default where there is none."""
+    known = TAGS[tag].attributes.get(attribute) if tag in TAGS else None
+    if text is None:
+        text = known.default or "" if known is not None else ""
+    is_read = known is not None and known.parts and (len(known.parts) > 1 or text == text.rstrip())
+    values = values_of(text) if is_read else ()
+    return " ".join(f"{value + 0.0:.6g}" for value in values) if values else text
+
+
+_AXIS = ("1 0 0", "revolute", "continuous", "prismatic", "planar")
+# The attributes that name a joint or a material, which a student may call otherwise.
+_NAMES = {("mimic", "joint"): "joint", ("joint", "name"): "joint", ("material", "name"): "material"}
+
+
+def wanted_value(step: Step) -> str | None:
+    """Return the value that a step sets: that of the reference, else the default; None if there is none."""
+    if step.verb == "set" and step.like is not None:
+        return step.like.values[step.name]
+    known = TAGS[step.own.tag].attributes.get(step.name) if step.own.tag in TAGS else None
+    return known.default or None if known is not None else None
+
+
+def node_of(element: Element, names: Mapping[str, Mapping[str, str]] | None = None) -> Node:
+    """Return the node of an element, without values and elements that are the default."""
+    tag = str(element.tag)
+    values = {}
+    for name, value in element.attrib.items():
+        text = normal(tag, str(name), str(value))
+        if tag in TAGS and str(name) in TAGS[tag].attributes and text == normal(tag, str(name), None):
+            continue
+        values[str(name)] = (names or {}).get(_NAMES.get((tag, str(name)), ""), {}).get(text, text)
+    if tag not in TAGS and not len(element) and (element.text or "").strip():
+        values[""] = (element.text or "").strip()
+    children = [node_of(child, names) for child in element if isinstance(child.tag, str)]
+    is_moving = tag != "joint" or element.get("type") in _AXIS[1:]
+    children = [child for child in children if not _is_default(child, is_moving=is_moving)]
+    return Node(tag, _keys(element, values), values, children, element)
+
+
+def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
+    name = values.get("name", "") or values.get("reference", "")
+    if element.tag == "joint" and element.getparent() is not None and child_of(element, "child") is not None:
+        return end_of(element, "child"), name
+    return (name,) if name and element.tag not in ("visual", "collision") else ()
+
+
+def _is_default(node: Node, *, is_moving: bool) -> bool:
+    if node.tag == "axis":
+        return not is_moving or node.values.get("xyz", "1 0 0") == "1 0 0"
+    return node.tag == "origin" and not node.values
+
+
+def translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
+    """Return what the joints and materials of the reference are called in the robot."""
+    names: dict[str, dict[str, str]] = {"joint": {}, "material": {}}
+    known = {joint.name for joint in reference.robot.joints}
+    for joint in reference.joints():
+        own = draft.joint_of(end_of(joint, "child"))
+        is_there = any(it.get("name") == joint.get("name") for it in draft.joints())
+        if own is not None and own.get("name") and own.get("name") not in known and not is_there:
+            names["joint"][joint.get("name") or ""] = own.get("name") or ""
+    mine = [node_of(found) for found in draft.root.iterchildren("material")]
+    pairs = paired(mine, [node_of(found) for found in reference.root.iterchildren("material")])
+    called = {like.values.get("name", ""): own_node.values.get("name") for own_node, like in pairs.both}
+    names["material"] = {name: own_name for name, own_name in called.items() if own_name}
+    return names
+
 
 _TAG = TagFormat()
 _MAX_LINKS = 400  # of a robot: more are not compared

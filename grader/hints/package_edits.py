@@ -1,0 +1,380 @@
+"""The edits of a package that may make criteria pass, by the files that their checks look at."""
+
+import ast
+import builtins
+import posixpath
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from difflib import SequenceMatcher
+from itertools import islice, product
+from keyword import kwlist
+from typing import Any
+
+from grader.hints.edits import Proposal
+from grader.hints.package_task import WHAT, PackageTask, change, file_proposals, package_names
+from grader.hints.python_file import PythonFile, argument
+from grader.markup import indentation, indented
+from grader.names import closest
+from grader.package.launch.model import Launch, NamedFile
+from grader.package.launch.places import HOME, PREFIX, WORKING_FOLDER
+from grader.package.package import SETUP, Package
+from grader.python.library import USUAL_NAMES
+from grader.python.parse import SyntaxFault
+from grader.source import Edit, Source
+
+_WORD = re.compile(r"[^\W\d]\w*")
+_MAX_WORDS, _MAX_SUSPECTS = 8, 60
+_MAX_MEANT = 4  # names that an undefined one may stand for
+_MAX_MORE = 2  # letters that one word has more than the other
+_LIKENESS = 0.75
+_TOKEN = re.compile(r"\w+|[ \t]+|\r?\n|.", re.DOTALL)
+_MAX_DIFFERENCES, _MAX_TOKENS = 6, 3000
+_SETTING = re.compile(r"(?P<key>[^\W\d][\w -]*?)(?::[ ]+|=\")(?P<value>[^\s\"][^\n\"]*)")
+_MAX_VALUES = 4
+_SUBSTITUTIONS = ("find-pkg-share", "var", "env", "command", "dirname")
+_SUBSTITUTION = re.compile(rf"(?<=\$\()(?!(?:{'|'.join(_SUBSTITUTIONS)})\b)[\w-]+")
+_SINGLE, _TYPOGRAPHIC = "‘’‚", re.compile("[‘’‚“”„]")
+_PROGRAM = re.compile(r"(?:(?<=['\"]xacro)|(?<=['\"]cat))(?=['\"$])")
+
+
+def respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
+    """Yield edits that replace a misspelt word everywhere, rare ones first.
+
+    `known` are texts with words that are spelt as they should be; the file's other words may be the right ones, too.
+    """
+    places: dict[str, list[re.Match[str]]] = {}
+    for match in _WORD.finditer(source.text):
+        places.setdefault(match[0], []).append(match)
+    right = {word for text in (*known, *kwlist, *USUAL_NAMES) for word in _WORD.findall(text)}
+    suspects = sorted((word for word in places if word not in right and len(word) > 1), key=lambda it: len(places[it]))
+    guesses = ((word, slip(word, right) or slip(word, places)) for word in suspects[:_MAX_SUSPECTS])
+    for word, guess in islice(((word, guess) for word, guess in guesses if guess), _MAX_WORDS):
+        yield change([source.edit(*place.span(), guess) for place in places[word]], "the spelling of a word", what)
+    yield from _replace_words(source, _PROGRAM, [" "], what)
+    quotes = [source.edit(*it.span(), "'" if it[0] in _SINGLE else '"') for it in _TYPOGRAPHIC.finditer(source.text)]
+    yield change(quotes, "a syntax error", what)
+    yield from () if source.path.endswith(".py") else _replace_words(source, _SUBSTITUTION, _SUBSTITUTIONS, what)
+
+
+def _replace_words(source: Source, pattern: re.Pattern[str], words: Iterable[str], what: str) -> Iterator[Proposal]:
+    """Yield edits that write another word everywhere for what a pattern finds."""
+    places = [*pattern.finditer(source.text)]
+    for old, word in product(dict.fromkeys(it[0] for it in places), words):
+        yield change([source.edit(*it.span(), word) for it in places if it[0] == old], "a word", what)
+
+
+def slip(word: str, known: Iterable[str]) -> str | None:
+    """Return the known word that a slip of the hand makes this one: a letter or two more, less, other or swapped."""
+    guess = closest(word, (other for other in known if abs(len(other) - len(word)) <= _MAX_MORE))
+    same = SequenceMatcher(None, word.lower(), (guess or "").lower(), autojunk=False).ratio()
+    return guess if same >= _LIKENESS else None
+
+
+def reword(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
+    """Yield edits that undo one difference each between a file and the text that it should have, if there are few."""
+    start_of_text = int(source.text.startswith("\ufeff"))
+    own, right = _TOKEN.findall(source.text[start_of_text:]), _TOKEN.findall(wanted)
+    if len(own) + len(right) > _MAX_TOKENS:
+        return
+    changes = [it for it in SequenceMatcher(None, own, right, autojunk=False).get_opcodes() if it[0] != "equal"]
+    for _, first, last, start, end in changes if len(changes) <= _MAX_DIFFERENCES else ():
+        offset, old = start_of_text + len("".join(own[:first])), "".join(own[first:last])
+        yield change([source.edit(offset, offset + len(old), "".join(right[start:end]))], "a line", what)
+
+
+def other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
+    """Yield edits that give a key of YAML, or an attribute of XML, a value that the reference has for it."""
+    known: dict[str, list[str]] = {}
+    for found in _SETTING.finditer(wanted):
+        known.setdefault(found["key"], []).append(found["value"])
+    for found in _SETTING.finditer(source.text):
+        values = dict.fromkeys(known.get(found["key"], ()))
+        for value in [*values][:_MAX_VALUES] if found["value"] not in values else ():
+            yield change([source.edit(*found.span("value"), value)], f"the value of `{found['key']}`", what)
+
+
+def undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
+    """Yield edits that import or correct names that are undefined, or not as they are used; and missing commas."""
+    if isinstance(file.parsed, SyntaxFault):
+        start = file.source.offset(file.parsed.location.line, 1)
+        end = start + len(file.text[start:].partition("\n")[0].rstrip())
+        yield change([file.source.edit(end, end, ",")], "a syntax error", what)
+    names = [node for node in file.nodes if isinstance(node, ast.Name)]
+    used = {node.id for node in names if isinstance(node.ctx, ast.Load)}
+    yield change(file.with_imports(sorted(used)), "the imports", what)
+    for word in sorted(used - file.bound - {*dir(builtins)} - {*USUAL_NAMES})[:_MAX_WORDS]:
+        own = sorted(file.values, key=lambda it: -SequenceMatcher(None, it, word).ratio())[:_MAX_MEANT]
+        for other in own:
+            edits = [file.replaced(node, other) for node in names if node.id == word]
+            yield change(edits, f"the spelling of `{word}`", what)
+    for statement in file.imports:  # the function glob instead of the module, or the reverse
+        if [alias.name for alias in statement.names] == ["glob"]:
+            new = "from glob import glob" if isinstance(statement, ast.Import) else "import glob"
+            found = change([file.replaced(statement, new)], "an import", what)
+            yield found._replace(rank=-1)  # says better what changes than the difference of the lines
+    for node in file.nodes:
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Tuple):
+            end = file.span(node.func)[1]
+            yield change([file.source.edit(end, end, ",")], "a syntax error", what)
+
+
+_PIECE = re.compile(r"[^\s\"'<>=(){},\[\]$;|]+")
+# What is before the name of a package: get_package_share_directory(', FindPackageShare(", $(find-pkg-share and a space.
+_PACKAGE_ARGUMENT = re.compile(r"(?:package_share_\w+|package_prefix|FindPackage\w*|find-pkg-\w+)[\s(]*['\"]?$")
+_MAX_PIECES = 1000  # of one file
+_MAX_CALL = 80  # characters before an argument that are looked at
+_REST_OF_ARGUMENT = re.compile(r"\s*,\s*")
+_ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".launch.py", ".launch.xml", ".launch.yaml")}
+_ENDINGS["read"] = _ENDINGS["urdf"]
+_SHARE_FUNCTION = "get_package_share_directory"
+_MAX_PATHS = 8  # that are wrong in one file
+_MAX_EDITS = 3  # of one path
+_MAX_FILES = 200
+_LAUNCH = "the launch file"
+
+
+def setup_paths(task: PackageTask) -> Iterator[Proposal]:
+    """Yield edits of the paths and patterns in setup.py that name no file, or a folder."""
+    source, setup = task.source(SETUP), task.package.setup
+    if source is None or setup is None:
+        return
+    wrong = [(it.path.rstrip("/"), it.at.line) for it in setup.stops] + [(it.pattern, it.at.line) for it in setup.empty]
+    files = {path: posixpath.dirname(path) for path in islice(task.files, _MAX_FILES)}
+    patterns = [f"{folder}/*{end}" for path, folder in files.items() for end in ("", posixpath.splitext(path)[1])]
+    for path, line in wrong[:_MAX_PATHS]:
+        is_folder, above = path in task.package.tree.folders, posixpath.dirname(path)
+        known = [it for it in patterns if posixpath.dirname(it) in (above, path)] if is_folder else [*files, *patterns]
+        for actual in (path, f"{above}/*")[: 1 + is_folder]:
+            for wanted in _similar(actual, known)[:_MAX_EDITS]:
+                edits = moved(source, actual, wanted, line)[:2]
+                yield from (change([edit], "a path", SETUP) for edit in edits)
+
+
+def _similar(path: str, known: Iterable[str]) -> list[str]:
+    """Return known paths, the most similar first."""
+    return sorted(dict.fromkeys(known), key=lambda it: -SequenceMatcher(None, it, path, autojunk=False).ratio())
+
+
+def launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator[Proposal]:
+    """Yield edits with which a launch file finds its files: of all together, then of one path each."""
+    installed = task.package.installed
+    named = [it for it in launch.references[:_MAX_PATHS] if it.path is not None]
+    wrong = [it for it in named if posixpath.normpath(it.path or "").removeprefix(f"{PREFIX}/") not in installed]
+    ways = [way for way in (_edits_of_path(task, source, named)[:_MAX_EDITS] for named in wrong) if way]
+    if len(ways) > 1:
+        yield change([edit for way in ways for edit in way[0]], "the paths", _LAUNCH)
+    for way in ways:
+        yield from (change(edits, "a path", _LAUNCH) for edits in way)
+
+
+def _targets(task: PackageTask, purpose: str) -> list[str]:
+    """Return the paths in the package's share folder of the files that it installs for a purpose."""
+    share = f"share/{task.package.name}/"
+    own = (it.removeprefix(share) for it in task.package.installed if it.startswith(share))
+    return [it for it in own if it.lower().endswith(_ENDINGS[purpose])]
+
+
+def _edits_of_path(task: PackageTask, source: Source, named: NamedFile) -> list[list[Edit]]:
+    """Return the edits with which a path becomes the one that the file is installed at."""
+    actual, share = named.path or "", f"{PREFIX}/share/{task.package.name}/"
+    for below in _similar(actual.removeprefix(share), _targets(task, named.purpose))[:1]:
+        if actual.startswith(PREFIX):
+            return [[edit] for edit in moved(source, actual, share + below, named.location.line)]
+        if source.path.endswith(".py"):
+            return [*_of_one_machine(task.package.name, PythonFile(source), actual, below)]
+    return []
+
+
+def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> Iterator[list[Edit]]:
+    """Yield the edits that replace a path of one machine, or relative to the working folder, by the share folder.
+
+    The difference to the reference has no answer where the file is built in another way: launch-home-path,
+    sensors-launch-home-path.
+    """
+    share = f"{_SHARE_FUNCTION}({name!r})"
+    for literal in [it for it in file.nodes if isinstance(it, ast.Constant) and it.value and isinstance(it.value, str)]:
+        for path in (str(literal.value).rstrip("/").replace("~", HOME, 1), f"{WORKING_FOLDER}/{literal.value!s}"):
+            rest = actual.removeprefix(path).strip("/") if f"{actual}/".startswith(f"{path}/") else None
+            others = moved(file.source, rest, target)[:1] if rest and rest != target else []
+            if rest in ("", target) or others:
+                new = share if rest else f"os.path.join({share}, {target!r})"
+                imports = file.with_imports([_SHARE_FUNCTION, *([] if rest else ["os"])])
+                yield [*imports, file.replaced(literal, new), *others]
+
+
+def path_offsets(source: Source) -> Iterator[tuple[int, int]]:
+    """Yield the offsets of the texts in a file that a path may be put together from."""
+    if not source.path.endswith(".py"):
+        yield from (match.span() for match in _PIECE.finditer(source.text))
+        return
+    yield from ((it.start, it.end) for it in PythonFile(source).literals)
+
+
+def moved(source: Source, actual: str, wanted: str, line: int = 1) -> list[Edit]:
+    """Return the edits of one text each with which a path becomes the wanted one; those nearest to a line first."""
+    found: dict[Edit, int] = {}
+    for start, end in islice(path_offsets(source), _MAX_PIECES):
+        piece = source.text[start:end]
+        if piece.strip("./") and piece in actual:
+            is_package = _PACKAGE_ARGUMENT.search(source.text, max(start - _MAX_CALL, 0), start) is not None
+            for new in _replacements(piece, actual, wanted):
+                if is_package and ("/" in new or not new):
+                    continue  # the name of a package has no folders
+                edit = source.edit(start, end, new) if new else _without(source, start, end)
+                found.setdefault(edit, abs(edit.line - line))
+    return sorted(found, key=lambda edit: (found[edit], -edit.line))
+
+
+def _replacements(piece: str, actual: str, wanted: str) -> Iterator[str]:
+    for place in re.finditer(re.escape(piece), actual):
+        head, tail = actual[: place.start()], actual[place.end() :]
+        if wanted.startswith(head) and wanted.endswith(tail) and len(head) + len(tail) <= len(wanted):
+            new = wanted[len(head) : len(wanted) - len(tail)]
+            if new != piece:
+                yield new
+
+
+def _without(source: Source, start: int, end: int) -> Edit:
+    """Return the edit that removes a text, as an argument with its quotes and comma where it is one."""
+    text = source.text
+    after = _REST_OF_ARGUMENT.match(text, end + 1)
+    if text[start - 1 : start] in "'\"" and text[end : end + 1] == text[start - 1 : start] and after is not None:
+        return source.edit(start - 1, after.end(), "")
+    return source.edit(start, end + (text[end : end + 1] == "/"), "")
+
+
+_DESCRIPTION = "LaunchDescription"
+_MAX_ITEMS = 30
+
+
+def missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[Proposal]:
+    """Yield edits that add an entry of the reference's lists, or all that are missing."""
+    known = {own.plain(it) for it in _items(own)}
+    installed = {own.plain(it.elts[-1]) for it in _items(own) if isinstance(it, ast.Tuple) and it.elts}
+    others = (it for it in _items(like) if like.plain(it) not in known)
+    missing = [it for it in others if not (isinstance(it, ast.Tuple) and like.plain(it.elts[-1]) in installed)]
+    several: list[str] = []
+    spare = {
+        _executable(own, value) or "-": name for name, value in own.values.items() if own.plain(value) not in known
+    }
+    for item in missing:
+        code = spare.get(_executable(like, item) or "", "") or like.written(item, own.bound)
+        several.append(code)
+        yield from _adding(own, [code], what)
+    if len(several) > 1:
+        yield from _adding(own, several, what)
+
+
+def as_lists(own: PythonFile, what: str) -> Iterator[Proposal]:
+    """Yield edits that put the one file of an entry of data_files into a list."""
+    for item in _items(own):
+        files = item.elts[-1] if isinstance(item, ast.Tuple) and item.elts else None
+        if isinstance(files, ast.Constant) and isinstance(files.value, str):
+            yield change([own.replaced(files, f"[{own.segment(files)}]")], "a list of files", what)
+
+
+def _adding(own: PythonFile, codes: Sequence[str], what: str) -> Iterator[Proposal]:
+    edit = _add(own, codes)
+    if edit is not None:
+        needs = own.with_imports(sorted({name for code in codes for name in own.names_in(code)}))
+        yield change([*needs, edit], f"a missing part of {what}")
+
+
+def _executable(file: PythonFile, code: ast.expr) -> str | None:
+    """Return what a node starts."""
+    given = argument(code, "executable") if isinstance(code, ast.Call) else None
+    return file.plain(given.value) if given is not None else None
+
+
+def _list(file: PythonFile) -> ast.expr | None:
+    """Return the list of files to install, or of actions to start."""
+    for call in file.calls("setup"):
+        entries = argument(call, "data_files")
+        return file.meant(entries.value) if entries is not None else None
+    return next((file.meant(call.args[0]) for call in file.calls(_DESCRIPTION) if call.args), None)
+
+
+def _items(file: PythonFile) -> list[ast.expr]:
+    """Return the entries of the list, and those that are added to it."""
+    found = _list(file)
+    own = found.elts if isinstance(found, ast.List) else []
+    return [*map(file.meant, own), *(file.meant(it.args[0]) for it in file.calls("add_action") if it.args)][:_MAX_ITEMS]
+
+
+def _add(file: PythonFile, codes: Sequence[str]) -> Edit | None:
+    """Return the edit that adds code after the last entry, in lines of their own if that has one."""
+    found, actions = _list(file), file.calls("add_action")
+    if isinstance(found, ast.List) and not (actions and not found.elts):
+        nodes: Sequence[ast.expr] = found.elts
+        start, end = file.span(nodes[-1] if nodes else found)
+        if not nodes:
+            return file.source.edit(end - 1, end - 1, ", ".join(codes))
+        before = ","
+    elif actions:
+        start, end = file.span(actions[-1])
+        owner = file.segment(actions[-1].func)
+        codes, before = [f"{owner}({code})" for code in codes], ""
+    else:
+        return None
+    line = indentation(file.text, start)
+    space = f"{file.newline}{line}" if line else " "
+    return file.source.edit(end, end, "".join(f"{before}{space}{indented(it, line, file.newline)}" for it in codes))
+
+
+_MAX_MADE, _MAX_PROPOSALS = 100, 24  # for one kind of files
+
+
+def package_proposals(
+    package: Package, reference: Package | None, wanted: Iterable[tuple[tuple[str, ...], Mapping[str, Any]]]
+) -> Iterator[Iterator[Proposal]]:
+    """Yield edits of a package for checks, by the kinds of files: what each check looks at, with its arguments."""
+    kinds: dict[str, None] = {}
+    given: set[str] = set()
+    for looks_at, arguments in wanted:
+        kinds |= dict.fromkeys(looks_at)
+        for value in arguments.values():
+            values = value if isinstance(value, list) else [value]
+            given.update(it for it in values if isinstance(it, str))
+    task = PackageTask(package, reference, frozenset(given))
+    for kind in ("", *kinds):
+        yield _best_of_kind(task, kind)
+
+
+def _best_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
+    """Yield the best proposals for a kind of files, each edit once: a later one says better what changes."""
+    own = {it.edits: it for it in islice(_of_kind(task, kind), _MAX_MADE) if it.edits}
+    yield from sorted(own.values(), key=lambda it: (it.rank, it.size))[:_MAX_PROPOSALS]
+
+
+def _of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
+    """Yield edits of the file of a kind, and those that rename or create one; without a kind, of the package's name."""
+    if not kind:
+        yield from package_names(task, task.package.lab_name or task.package.share.split("/")[1])
+        return
+    yield from file_proposals(task, kind)
+    yield from file_proposals(task, "urdf") if kind in (SETUP, "launch") else ()
+    path, like = task.file(task.package, kind), task.file(task.reference, kind)
+    source = task.source(path)
+    if source is not None and path is not None:
+        yield from (it for it in _of_text(task, kind, source, path, like) if it.edits)
+
+
+def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str | None) -> Iterator[Proposal]:
+    """Yield the edits of a file: its difference to the reference, its syntax, its names, its paths and its words."""
+    what, wanted = WHAT.get(kind, kind), task.wanted(like) or ""
+    own = PythonFile(source)
+    ending, other = (posixpath.splitext(it or "")[1] for it in (path, like))
+    is_python = ending in (".py", "")
+    if wanted and (ending == other or is_python):
+        yield from reword(source, wanted, what)
+    if is_python:
+        yield from missing_entries(own, PythonFile(Source(source.path, wanted)), what)
+        yield from as_lists(own, what)
+        yield from undefined_names(own, what)
+    elif ending == other:
+        yield from other_values(source, wanted, what)
+    if kind == "launch":
+        yield from launch_paths(task, task.launch(path, source), source)
+    elif kind == SETUP:
+        yield from setup_paths(task)
+    yield from respellings(source, [wanted, *(task.files if kind == SETUP else task.package.installed)], what)

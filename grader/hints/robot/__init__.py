@@ -1,1 +1,0 @@
-"""Edits of a robot: small changes of its text, each a mistake that students make, undone."""

@@ -1,1 +1,0 @@
-"""Edits of xacro files: of the texts that expanded elements come from."""

@@ -1,0 +1,420 @@
+"""The edits of the texts that the elements of an expanded xacro file come from."""
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
+from itertools import islice
+from typing import NamedTuple
+
+from grader import markup
+from grader.hints.edits import Proposal, merged, with_attribute
+from grader.names import closest, near
+from grader.source import Edit, Edits, Location, Source
+from grader.xacro.expanded_source import ExpandedSource
+from grader.xacro.expander import Refusal
+from grader.xacro.nodes import XacroNode
+from grader.xacro.scopes import Definition, Key, ScopePlace, UnknownName, XacroScope
+from grader.xacro.texts import Texts
+
+_MAX_LENGTH = 2_000  # of a text that is edited in parts
+
+
+class Written(NamedTuple):
+    """A text at an offset of a file, the scope in which it is evaluated, the attribute that it is in, and its name."""
+
+    source: Source
+    start: int
+    text: str
+    scope: XacroScope
+    attribute: tuple[int, int]  # its offsets, with name and quotes
+    key: Key | None = None  # of what is defined with it
+
+    @property
+    def end(self) -> int:
+        """The offset after it."""
+        return self.start + len(self.text)
+
+    def part(self, start: int, end: int) -> "Written":
+        """Return a part of it."""
+        return self._replace(start=self.start + start, text=self.text[start:end])
+
+
+class Use(NamedTuple):
+    """A use of a text: the scope in which it is evaluated, what it is and should be, the call of the macro it is in."""
+
+    scope: XacroScope
+    old: str
+    new: str
+    call: ScopePlace | None = None
+
+
+class TextChange(NamedTuple):
+    """A text that becomes another one."""
+
+    written: Written
+    new: str
+
+
+def edits_of(changes: Iterable[TextChange]) -> Edits | None:
+    """Return the edits that make changes, one for each attribute; None where two of them overlap."""
+    attributes: dict[tuple[str, int], list[TextChange]] = {}
+    for change in dict.fromkeys(changes):
+        attributes.setdefault((change.written.source.path, change.written.attribute[0]), []).append(change)
+    edits: list[Edit] = []
+    for inside in attributes.values():
+        source, (start, end) = inside[0].written.source, inside[0].written.attribute
+        new, position = "", start
+        for written, text in sorted(inside, key=lambda change: change.written.start):
+            if written.start < position:
+                return None
+            new += source.text[position : written.start] + text
+            position = written.end
+        edits.append(source.edit(start, end, new + source.text[position:end]))
+    return tuple(edits)
+
+
+def find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> Written | None:
+    """Return the value of an attribute, or without a name the text of an element without children.
+
+    None where it is missing, too long, or has entities, so that it is not what is read.
+    """
+    source, at = place.source.element(place.tag)
+    if attribute:
+        found = markup.attribute(source.text, at, attribute)
+        start, end, span = (found.value_start, found.value_end, (found.start, found.end)) if found else (0, 0, None)
+    else:
+        start = markup.head_end(source.text, at)[0]
+        end = source.text.rfind("</", start, markup.element_end(source.text, at))
+        text = source.text[start:end]
+        start, end = start + len(text) - len(text.lstrip()), start + len(text.rstrip())
+        span = (start, end) if text.strip() else None
+    text = source.text[start:end]
+    is_read = span is not None and not re.search("[&<]", text) and len(text) <= _MAX_LENGTH
+    return Written(source, start, text, scope, span) if span is not None and is_read else None
+
+
+def definition_text(definition: Definition) -> Written | None:
+    """Return the text that a name is defined with: of a parameter's default the part of `params`."""
+    whole = find_text(definition.place, definition.attribute, definition.scope)
+    if whole is not None and definition.attribute == "params" and whole.text != definition.text:
+        found = re.search(rf"(?:^|\s){re.escape(definition.name)}\s*:?=\s*(?:\^\|?)?", whole.text)
+        if found is None or not whole.text.startswith(definition.text, found.end()):
+            return None
+        whole = whole.part(found.end(), found.end() + len(definition.text))
+    return whole._replace(key=definition.key) if whole is not None else None
+
+
+_TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
+_EXPRESSION = re.compile(r"\$\{([^}]*)\}")
+_NAME = re.compile(r"(?<![\w.'\"])[^\W\d]\w*(?![\w(])")
+_NUMBER = re.compile(r"\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*")
+# The one expression of a text that is a name, perhaps with a minus.
+_ALONE = re.compile(
+    r"""(?P<before>[^$]*)
+    (?: \$\{\s*(?P<sign>-?)\s*(?P<name>[^\W\d]\w*)\s*\}
+      | \$\(\s*arg\s+(?P<argument>[^\s()]+)\s*\) )
+    (?P<after>[^$]*)""",
+    re.VERBOSE,
+)
+_LOADED = re.compile(r"\$\{\s*(?:xacro\.)?load_yaml\(")
+_MAX_DEPTH = 4  # definitions that lead to one another
+_MAX_DEFINITIONS = 12
+
+
+class Rewriter:
+    """Makes the edits of one expanded document."""
+
+    def __init__(self, texts: Texts) -> None:
+        self._texts = texts
+
+    def ways(self, place: ScopePlace, attribute: str, uses: Sequence[Use]) -> list[Edits]:
+        """Return the ways to change an attribute (or, without a name, the text) for its uses, the best first."""
+        text = find_text(place, attribute, uses[0].scope)
+        changed = [use for use in uses if use.old != use.new]
+        if text is None or not changed:
+            return []
+        found: list[TextChange] = []
+        has_definition = False
+        for use in changed if "$" in text.text else ():
+            for part, old, new in _parts(text, use):
+                changes = self._definitions(part, use.scope, old, new)
+                if not changes and self._is_loaded(part):
+                    return []
+                has_definition |= bool(changes)
+                found += changes or [TextChange(part, new)]
+        by_place = {change.written[:3]: change for change in found}
+        is_one = all(by_place[change.written[:3]].new == change.new for change in found)
+        edits = edits_of(by_place.values()) if has_definition and is_one else None
+        return [*filter(None, [edits]), *self._literal(text, changed), *self._in_calls(text, changed)]
+
+    def _in_calls(self, text: Written, changed: Sequence[Use]) -> list[Edits]:
+        """Return the edits that give a parameter, of which a text is the default, in the calls of its macro."""
+        name = text.text[2:-1].strip() if text.text.startswith("${") else ""
+        definition = self._of_name(name, changed[0].scope)
+        if definition is None or definition.attribute != "params":
+            return []
+        calls = {use.call: use.new for use in changed if use.call is not None}
+        each = ((*call.source.element(call.tag), new) for call, new in calls.items())
+        return [tuple(with_attribute(source, start, name, new) for source, start, new in each)]
+
+    def _literal(self, text: Written, changed: Sequence[Use]) -> list[Edits]:
+        """Return the edit that writes a value where it is used; none where uses differ, or a YAML file gives it."""
+        around = {_around(text, use) for use in changed}
+        if len(around) == 1 and "" not in around:
+            edits = edits_of([TextChange(text, around.pop())])
+            return [edits] if edits else []
+        if len({use.new for use in changed}) != 1 or self._is_loaded(text):
+            return []
+        parts = _parts(text, changed[0])
+        if len(parts) == 2 and parts[0][1:] == parts[1][:0:-1]:  # two expressions are exchanged
+            edits = edits_of([TextChange(parts[0][0], parts[1][0].text), TextChange(parts[1][0], parts[0][0].text)])
+        else:
+            written, _, new = parts[0] if len(parts) == 1 else (text, "", changed[0].new)
+            edits = edits_of([TextChange(written, new if "$" in written.text else merged(written.text, new))])
+        return [edits] if edits else []
+
+    def _definitions(
+        self, text: Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
+    ) -> list[TextChange]:
+        """Return the changes of what defines the one name in a text, with which the text has another value."""
+        found = _ALONE.fullmatch(text.text)
+        before, after = (found["before"], found["after"]) if found else ("", "")
+        is_inside = new.startswith(before) and new.endswith(after) and len(new) > len(before) + len(after)
+        if found is None or not depth or not is_inside:
+            return []
+        inner, was = (it[len(before) : len(it) - len(after)] for it in (new, old))
+        if found["sign"]:
+            inner, was = (it[1:] if it.startswith("-") else f"-{it}" for it in (inner, was))
+        name = found["argument"]
+        definition = self._texts.defaults.get(name) if name else self._of_name(found["name"], scope)
+        own = definition_text(definition) if definition is not None else None
+        if definition is None or own is None:
+            return []
+        if self.definitions(own):
+            parts = _parts(own, Use(definition.scope, was, inner))
+            changes = [self._definitions(part, definition.scope, a, b, depth - 1) for part, a, b in parts]
+            return [change for several in changes for change in several] if all(changes) else []
+        is_quoted = own.text[:1] == "'" == own.text[-1:]
+        return [TextChange(own, f"'{inner}'" if is_quoted else merged(own.text, inner))]
+
+    def _is_loaded(self, text: Written) -> bool:
+        """Return whether a YAML file gives a text."""
+        return any(_LOADED.match(it.text) for it in self.definitions(text))
+
+    def _of_name(self, name: str, scope: XacroScope) -> Definition | None:
+        holder = scope.holder(name)
+        return holder.properties[name].definition if holder is not None else None
+
+    def definitions(self, text: Written) -> list[Written]:
+        """Return the texts with which the names in a text are defined, also by way of others."""
+        found: dict[object, Written] = {}
+        waiting = [text]
+        while waiting and len(found) < _MAX_DEFINITIONS:
+            one = waiting.pop(0)
+            for definition in self._named(one):
+                own = definition_text(definition)
+                if own is not None and definition.key not in found:
+                    found[definition.key] = own._replace(scope=definition.scope)
+                    waiting.append(found[definition.key])
+        return list(found.values())
+
+    def _named(self, text: Written) -> Iterator[Definition]:
+        for expression in _EXPRESSION.findall(text.text):
+            yield from filter(None, (self._of_name(name, text.scope) for name in _NAME.findall(expression)))
+        for argument in re.findall(r"\$\(\s*arg\s+([^\s()]+)\s*\)", text.text):
+            if argument in self._texts.defaults:
+                yield self._texts.defaults[argument]
+
+    def numbers(self, place: ScopePlace, attribute: str, scope: XacroScope) -> list[Written]:
+        """Return the texts that define numbers from which an attribute is computed."""
+        text = find_text(place, attribute, scope)
+        return [it for it in self.definitions(text) if _NUMBER.fullmatch(it.text)] if text is not None else []
+
+
+def _parts(text: Written, use: Use) -> list[tuple[Written, str, str]]:
+    """Return the parts of a text that should be others, each with what it is and should be: words, or the whole."""
+    tokens = [text.part(*found.span()) for found in _TOKEN.finditer(text.text)]
+    old, new = use.old.split(), use.new.split()
+    if len(tokens) != len(old) or len(old) != len(new) or len(tokens) < 2:
+        return [(text, use.old, use.new)]
+    return [part for part in zip(tokens, old, new, strict=True) if not is_equal(*part[1:])]
+
+
+def _around(text: Written, use: Use) -> str:
+    """Return a text with another one around its only expression, whose value stays: ${side}_joint; empty if it goes."""
+    found = _ALONE.fullmatch(text.text)
+    if found is None or not (found["before"] or found["after"]):
+        return ""
+    value = use.old[len(found["before"]) : len(use.old) - len(found["after"])]
+    expression = text.text[len(found["before"]) : len(text.text) - len(found["after"])]
+    return use.new.replace(value, expression) if value.isidentifier() and use.new.count(value) == 1 else ""
+
+
+def is_equal(one: str, other: str) -> bool:
+    """Return whether two texts are equal, or are the same number."""
+    try:
+        return one == other or abs(float(one) - float(other)) < 1e-9
+    except ValueError:
+        return False
+
+
+def conditions(source: Source, known: Sequence[str], near: Callable[[str, Sequence[str]], str | None]) -> list[Edits]:
+    """Return the edits that correct a text in quotes in the condition of an <xacro:if> or <xacro:unless>: 'rigth'."""
+    found: list[Edits] = []
+    for tag in re.finditer(r"<xacro:(?:if|unless)\b", source.text):
+        value = markup.attribute(source.text, tag.start(), "value")
+        text = source.text[value.value_start : value.value_end] if value is not None else ""
+        for word in re.findall(r"'(\w+)'|\"(\w+)\"", text):
+            meant = near(word[0] or word[1], known) if (word[0] or word[1]) not in known else None
+            if value is not None and meant is not None:
+                new = re.sub(rf"\b{word[0] or word[1]}\b", meant, text)
+                found.append((with_attribute(source, tag.start(), "value", new),))
+    return found
+
+
+class ExpandedEdits:
+    """Makes the edits of an expanded xacro file; elements are named by their indices in the expanded document."""
+
+    def __init__(self, source: ExpandedSource) -> None:
+        self._source = source
+
+    def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> list[Edits]:
+        """Return the ways to give an attribute (or, without a name, the text) of elements of one place other values."""
+        place = self._source.nodes[next(iter(wanted))].place
+        scope = place.scope or XacroScope()
+        uses = []
+        for tag in self.siblings(next(iter(wanted))):
+            node = self._source.nodes[tag]
+            text = node.attributes.get(attribute, "") if attribute else "".join(map(str, node.children)).strip()
+            call = node.place.calls[-1][1] if node.place.calls else None
+            uses.append(Use(node.place.scope or scope, *wanted.get(tag, (text, text)), call))
+        return self._rewriter.ways(place, attribute, uses)
+
+    def numbers(self, tag: int, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
+        """Return the numbers from which an attribute is computed, each with what makes the edit of its definition."""
+
+        def changing(written: Written) -> Callable[[str], Edits]:
+            return lambda new: edits_of([TextChange(written, new)]) or ()
+
+        place = self._source.nodes[tag].place
+        found = self._rewriter.numbers(place, attribute, place.scope or XacroScope())
+        return [(it.text.strip(), changing(it)) for it in found]
+
+    def siblings(self, tag: int) -> list[int]:
+        """Return the indices of the expanded elements that come from the same place of the source."""
+        place = self._source.nodes[tag].place
+        return self._by_place[place.source.path, place.tag]
+
+    @cached_property
+    def _by_place(self) -> dict[tuple[str, int], list[int]]:
+        found: dict[tuple[str, int], list[int]] = {}
+        for index, node in enumerate(self._source.nodes):
+            found.setdefault((node.place.source.path, node.place.tag), []).append(index)
+        return found
+
+    def corrections(self, names: Sequence[str]) -> list[Proposal]:
+        """Return edits that may correct undeclared and undefined names, calls of macros, and conditions.
+
+        `names` are those that the reference and the format have.
+        """
+        found = [
+            *corrections(Source(self._source.path, self._source.text), self._source.documents, self._source.refused)
+        ]
+        words = {word for name in names for word in name.split("_")}
+        given = sorted(words)
+        for document in self._source.documents.values():
+            edited = conditions(document.place.source, given, near)
+            found += [Proposal(edits, "a text in a condition") for edits in edited]
+        return list({correction.edits: correction for correction in reversed(found)}.values())[::-1]
+
+    def calls(self, edit: Edit) -> dict[str, list[Location]]:
+        """Return the calls of the macros that an edit is in, by their names."""
+        found: dict[str, dict[Location, None]] = {}
+        for node in self._source.nodes if edit.old else ():
+            place = node.place.at(next((it for it in node.attributes if it and edit.old.startswith(f"{it}=")), None))
+            if node.place.calls and place[:3] == edit[:3]:
+                name, call = node.place.calls[-1]
+                found.setdefault(name, {})[call.at()] = None
+        return {name: [*calls] for name, calls in found.items()}
+
+    @cached_property
+    def _rewriter(self) -> Rewriter:
+        return Rewriter(self._source.texts)
+
+
+_MAX_NAMES, _MAX_NODES = 8, 2000
+_PREFIXED = ("property", "arg", "macro", "include", "if", "unless")
+_NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
+
+
+def corrections(document: Source, files: Mapping[str, XacroNode], refusals: Sequence[Refusal]) -> Iterator[Proposal]:
+    """Yield the edits that may correct what xacro refuses in a document with the files that it includes."""
+    text = document.text
+    if "xmlns:xacro" not in text and "xacro:" in text:
+        _, start = document.element(0)
+        end = markup.name_end(text, start)
+        edit = document.edit(start, end, text[start:end] + _NAMESPACE)
+        yield Proposal((edit,), "the prefix xacro, which is not declared")
+    nodes = [node for file in files.values() for node in islice(_walk(file), _MAX_NODES)]
+    macros = {node.attributes.get("name", "") for node in nodes if node.tag == "xacro:macro"}
+    for node in nodes:
+        if node.tag in _PREFIXED or node.tag in macros:
+            edits = tuple(_tags(node.place, node.tag, f"xacro:{node.tag}"))
+            yield Proposal(edits, f"<{node.tag}> without xacro:")
+    for error, place, attribute in refusals[:_MAX_NAMES]:
+        for edits in _respell(place, attribute, error.unknown) if error.unknown is not None else ():
+            yield Proposal(edits, "a name that xacro does not know")
+        own = next((node for node in nodes if node.place[:2] == place[:2]), None)
+        others = [node.attributes for node in nodes if own is not None and node is not own and node.tag == own.tag]
+        for given in [it for it in others if set(error.lacking) <= it.keys()] if error.lacking else ():
+            for values in ({name: given[name] for name in error.lacking}, _negated(given, error.lacking)):
+                yield Proposal(_give(place, values), f"this call gives no value for {' and '.join(values)}")
+
+
+def _walk(node: XacroNode) -> Iterator[XacroNode]:
+    for child in node.elements:
+        yield child
+        yield from _walk(child)
+
+
+def _respell(place: ScopePlace, attribute: str | None, unknown: UnknownName) -> Iterator[Edits]:
+    """Yield the edits that correct an unknown name where it is used, or where a similar one is defined."""
+    near = closest(unknown.name, unknown.known)
+    if near is not None:
+        at, where = unknown.known[near] or (place, None)
+        ways = [_rename(place, attribute, unknown.name, near)]
+        ways += [_rename(at, where, near, unknown.name)] if where is not None else []
+        yield from filter(None, ways)
+
+
+def _negated(given: Mapping[str, str], names: Sequence[str]) -> Mapping[str, str]:
+    return {name: re.sub(r"^(-?)(?=\d)", lambda it: "" if it[1] else "-", given[name]) for name in names}
+
+
+def _give(place: ScopePlace, values: Mapping[str, str]) -> Edits:
+    source, start = place.source.element(place.tag)
+    ends = [markup.name_end(source.text, start), *(it.end for it in markup.attributes(source.text, start))]
+    return (source.edit(ends[-1], ends[-1], "".join(f' {name}="{text}"' for name, text in values.items())),)
+
+
+def _rename(place: ScopePlace, attribute: str | None, old: str, new: str) -> Edits:
+    """Return the edit of an attribute's value; without an attribute, of an attribute's name, the tag, or any value."""
+    source, start = place.source.element(place.tag)
+    tags = tuple(_tags(place, f"xacro:{old}", f"xacro:{new}")) if attribute is None else ()
+    for found in () if tags else markup.attributes(source.text, start):
+        whole = source.text[found.start : found.end]
+        changed = re.sub(rf"(?<![\w.]){re.escape(old)}(?!\w)", new, whole, count=0 if "$" in whole else 1)
+        if attribute in (None, found.name) and changed != whole:
+            return (source.edit(found.start, found.end, changed),)
+    return tags
+
+
+def _tags(place: ScopePlace, old: str, new: str) -> Iterator[Edit]:
+    """Yield the edits of a call's start tag, and of its end tag if it has one."""
+    source, start = place.source.element(place.tag)
+    if source.text[start : markup.name_end(source.text, start)] == f"<{old}":
+        yield source.edit(start, start + len(old) + 1, f"<{new}")
+        end = markup.element_end(source.text, start)
+        closing = re.search(rf"</{re.escape(old)}\s*>\Z", source.text[start:end])
+        if closing is not None:
+            yield source.edit(start + closing.start(), end, f"</{new}>")
