@@ -29,6 +29,19 @@ from grader.xml.parsing import Element
 from grader.xml.wanted_element import foreign_elements, name_of, readable, text_in, words_of_foreign
 
 _THE_FILE, _THE_ROBOT, THE_PACKAGE = "The file", "The robot", "The package"  # headings
+_WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")
+_COUNTED = ("revolute", "continuous", "prismatic")
+_SLIDING_TOLERANCE = 0.002  # m: the tolerance of other limits is in degrees
+_MASS_TOLERANCE = 0.001  # kg; of a small mass, a share of it
+_MASS_SHARE = 0.01
+_MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_TRUTH = {"true": True, "false": False}
+_NAMED_BY = ("reference", "name", "filename", "type")
+_OWN_KINDS = (".urdf", ".xacro", ".rviz", ".py", ".xml")
+_LOOSE_INERTIA = 5.0  # percent, for a solution with rounded numbers
+_MAX_TIPS = 20
+_Values = dict[str, Any]
 
 
 class Solution(NamedTuple):
@@ -67,20 +80,6 @@ class Omission(NamedTuple):
 
 
 _Facts = Iterator[Fact | Omission]
-
-
-_WITH_AXIS = ("continuous", "revolute", "prismatic", "planar")
-_COUNTED = ("revolute", "continuous", "prismatic")
-_SLIDING_TOLERANCE = 0.002  # m: the tolerance of other limits is in degrees
-_MASS_TOLERANCE = 0.001  # kg; of a small mass, a share of it
-_MASS_SHARE = 0.01
-_MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
-_TRUTH = {"true": True, "false": False}
-_NAMED_BY = ("reference", "name", "filename", "type")
-_OWN_KINDS = (".urdf", ".xacro", ".rviz", ".py", ".xml")
-_LOOSE_INERTIA = 5.0  # percent, for a solution with rounded numbers
-_MAX_TIPS = 20
 
 
 def robot_facts(solution: Solution) -> _Facts:
@@ -240,9 +239,6 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
         names = [repr(tip) for tip in tips[:_MAX_TIPS]]
         title = f"{enumerated(names)} {'moves' if len(names) == 1 else 'move'} as in the reference solution"
         yield _of_robot("kinematics_match_reference", links=tips[:_MAX_TIPS], match="order")._replace(title=title)
-
-
-_Values = dict[str, Any]
 
 
 def element_facts(solution: Solution) -> _Facts:

@@ -40,6 +40,7 @@ _MESHES = (".stl", ".dae", ".obj")
 
 _MAX_MUTANTS = 5000  # of larger robots a sample is graded
 _CONTEXT = 2  # lines around a change
+_Progress = Callable[[int, int], None]  # how many submissions of how many are graded
 
 
 class MutantOutcome(NamedTuple):
@@ -202,7 +203,6 @@ def _texts(value: Any) -> Iterator[str]:
 
 
 _GradeAll = Callable[[Sequence[Mutant]], Iterable[MutantOutcome]]  # in any order
-_Progress = Callable[[int, int], None]  # how many submissions of how many are graded
 
 
 class _Survivor(NamedTuple):

@@ -38,7 +38,7 @@ class Batch:
         show(self.progress)  # before the first result
         submissions.reverse()
         tasks = (self._task(submissions.pop(), force=force) for _ in range(len(submissions)))
-        queue = Queue(executor, workers, partial(grade_all, self._shared), _again, self._lost)
+        queue = Queue(executor, workers, partial(grade_all, self._shared), _without_documents, self._errored)
         for results in queue.results(tasks):
             self._writer.append(*map(self._line, results))
             for result in results:
@@ -53,7 +53,7 @@ class Batch:
         self._at_work[one.student.key] = one, current
         return Task(one.student.key, one.root, one.paths, one.names, current.digest if current is not None else "")
 
-    def _lost(self, task: Task, error: Exception) -> StoredResult:
+    def _errored(self, task: Task, error: Exception) -> StoredResult:
         reason = str(error) if isinstance(error, WorkerError) else f"{type(error).__name__}: {error}"
         return undecided(self._shared, StoredResult(task.key, 0, "errored", reason=reason))
 
@@ -74,6 +74,6 @@ class Batch:
         return new._replace(run=self._results.next_run).line if new != current else b""
 
 
-def _again(task: Task, error: WorkerError) -> Task | None:
+def _without_documents(task: Task, error: WorkerError) -> Task | None:
     """Return a lost task without its documents, which may be the cause."""
     return None if task.no_documents else task._replace(no_documents=str(error))

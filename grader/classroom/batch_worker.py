@@ -26,32 +26,25 @@ _MAX_CAUSE = 200  # characters
 
 
 class ClassContext(NamedTuple):
-    """What all tasks of a run share: the class folders or zips, the rubric's file, the limits and arguments.
+    """What all tasks of a run share."""
 
-    `max_size` are the bytes of a URDF, `parts` the ids of those to grade, all without any; `arguments` are those of
-    xacro.
-    """
-
-    roots: tuple[str, ...]
-    rubric: bytes
+    roots: tuple[str, ...]  # the class folders or zips
+    rubric: bytes  # the content of its file
     rubric_path: str
-    max_size: int = URDF_LIMIT
-    parts: tuple[str, ...] = ()
-    arguments: Mapping[str, str] = {}
+    max_size: int = URDF_LIMIT  # of a URDF, in bytes
+    parts: tuple[str, ...] = ()  # the ids of those to grade; without any all
+    arguments: Mapping[str, str] = {}  # of xacro
 
 
 class Task(NamedTuple):
-    """One submission: its student, where it is, and its digest if it has a result that is current.
+    """One submission to grade."""
 
-    `no_documents` says why its documents are not read: its grading was lost with them.
-    """
-
-    key: str
-    root: int
-    paths: tuple[str, ...]
-    names: tuple[str, ...] = ()
-    graded: str = ""
-    no_documents: str = ""
+    key: str  # of the student
+    root: int  # the index of the class folder
+    paths: tuple[str, ...]  # below it
+    names: tuple[str, ...] = ()  # the student's own of several files
+    graded: str = ""  # the digest, if it has a result that is current
+    no_documents: str = ""  # why its documents are not read: its grading was lost with them
 
 
 def grade_all(context: ClassContext, tasks: Sequence[Task]) -> list[StoredResult]:
@@ -108,9 +101,15 @@ def _answers_of(report: Report, digest: str) -> dict[str, str]:
 
     It is that of the words, or of the whole submission where more than words is to be looked at.
     """
-    open_ones = [one for one in report.results if one.outcome.status == "pending"]
-    contents = {one.criterion.id: content_of(one, report) or digest * (not is_empty(one, report)) for one in open_ones}
-    return {name: content and digest_of(content) for name, content in contents.items()}
+    found = dict[str, str]()
+    for one in report.results:
+        if one.outcome.status != "pending":
+            continue
+        content = content_of(one, report)
+        if not content and not is_empty(one, report):
+            content = digest
+        found[one.criterion.id] = digest_of(content) if content else ""
+    return found
 
 
 def undecided(context: ClassContext, result: StoredResult) -> StoredResult:

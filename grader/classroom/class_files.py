@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 
 ClassListing = ClassDirectory | ClassZip
+_DOCUMENTS = (*EVIDENCE, ".docx", ".doc", ".odt", ".pages", ".ipynb", ".md", ".txt", ".rst", ".rtf")
+_MAX_HASHED = 64 * 1024 * 1024  # bytes of a file that go into the digest; of a larger file its size does
 
 
 def listing_of(path: Path) -> ClassListing:
@@ -50,10 +52,6 @@ def listing_of(path: Path) -> ClassListing:
             " (`grader grade` grades a single one)"
         )
     return ClassZip(path)
-
-
-_DOCUMENTS = (*EVIDENCE, ".docx", ".doc", ".odt", ".pages", ".ipynb", ".md", ".txt", ".rst", ".rtf")
-_MAX_HASHED = 64 * 1024 * 1024  # bytes of a file that go into the digest; of a larger file its size does
 
 
 class _OpenedSubmission(NamedTuple):

@@ -30,6 +30,11 @@ from grader.text import format_points, printable_path
 
 _NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
 _MAX_SHARED = 10_000  # results
+# Columns before those of the criteria; the last one, `submission`, is the digest of what was graded.
+_HEADER = (
+    *("id", "name", "email", "section", "status", "score", "max_score", "pending"),
+    *("late_days", "late_points", "total", "not_final_because"),
+)
 
 
 class Gradebook:
@@ -173,13 +178,6 @@ class Gradebook:
 
 def _is_older(mark: Mark, stored: StoredResult) -> bool:
     return bool(mark.submission) and mark.submission != stored.digest
-
-
-# Columns before those of the criteria; the last one, `submission`, is the digest of what was graded.
-_HEADER = (
-    *("id", "name", "email", "section", "status", "score", "max_score", "pending"),
-    *("late_days", "late_points", "total", "not_final_because"),
-)
 
 
 def grade_table(

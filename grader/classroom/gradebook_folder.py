@@ -25,6 +25,9 @@ RUBRIC, MARKS, REPORTS = "rubric", "marks", "reports"
 CLASS_FILE = "class.toml"
 _LOCK = ".lock"
 _WINDOWS_LOCK_AT = 1 << 30  # beyond the end of the file: others cannot read what is locked
+_MAX_SIZE = 1024 * 1024  # bytes of the settings
+_HEAD = "# What `grader batch` needs to grade this class again. An option of the command replaces what is here.\n"
+_ARGUMENTS = "arguments"
 
 
 def is_gradebook(folder: Path) -> bool:
@@ -93,11 +96,6 @@ def batch_lock(folder: Path) -> Iterator[None]:
                 f"another `grader batch` writes to {printable_path(folder)}: wait until it has ended"
             ) from None
         yield
-
-
-_MAX_SIZE = 1024 * 1024  # bytes of the settings
-_HEAD = "# What `grader batch` needs to grade this class again. An option of the command replaces what is here.\n"
-_ARGUMENTS = "arguments"
 
 
 @dataclass(frozen=True, slots=True)

@@ -46,6 +46,9 @@ _PATTERNS = {
 # Canvas numbers the uploads of all courses in order: a number far below the others' is part of a student's name.
 _MAX_GROWTH = 1000
 _NAME_IN_CANVAS = re.compile(r"[^\x00-,./:-@[-^`{-\x7f\s]*")
+_MAX_NAMED = 10
+_MAX_TIME = 100  # bytes
+_LOCAL_TIME = len("2026-09-01T10:00:00")
 
 
 class NamedPath(NamedTuple):
@@ -187,11 +190,6 @@ def _prefix(names: Collection[str], folder: ClassFolder) -> str:
     before = Counter(name[:end].lower() for name, end in dashes if knows(name[end:]))
     prefix, count = max(before.items(), key=lambda item: (item[1], item[0]), default=("", 0))
     return prefix if count > max(1, known) else ""
-
-
-_MAX_NAMED = 10
-_MAX_TIME = 100  # bytes
-_LOCAL_TIME = len("2026-09-01T10:00:00")
 
 
 def nbgrader(course: ClassFolder) -> Iterator[NamedPath]:

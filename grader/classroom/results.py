@@ -24,6 +24,7 @@ Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
 # What is kept of a criterion: points, status, the mistake in words, the criterion that carries it.
 StoredCriterion = tuple[float | None, Status, str, str]
 _DIGITS = 16  # of a hash
+_RUN, _GRADED, _TEXTS = b'{"run":', b'{"student":', b'{"texts":'
 
 
 class StoredResult(NamedTuple):
@@ -96,9 +97,6 @@ def _values_in(line: bytes) -> dict[str, Any]:
 def digest_of(*parts: object) -> str:
     """Return the hash of some values: it begins with a letter, so that no spreadsheet takes it for a number."""
     return f"d{sha256_of(repr(parts).encode())[:_DIGITS]}"
-
-
-_RUN, _GRADED, _TEXTS = b'{"run":', b'{"student":', b'{"texts":'
 
 
 class Results:

@@ -67,6 +67,9 @@ _FORMS = {
 # the deadline that Moodle knows. Other parts with a number have a colon: overdue by, extension granted until.
 _UNITS = {"year": 365.0, "day": 1.0, "hour": 1 / 24, "min": 1 / 1440, "sec": 1 / 86400}
 _UNIT = rf"([0-9]{{1,6}}) ({'|'.join(_UNITS)})s?"
+# What identifies the student: an id of the LMS, another id as it is spelt, in another spelling or a name; a group.
+_LMS_ID, _EXACT, _WORD, GROUP, _UNCLEAR = range(5)
+_MAX_WORDS = 8
 
 
 class Student(NamedTuple):
@@ -200,7 +203,9 @@ def _duplicates(students: Mapping[int, Student]) -> Iterator[tuple[int, str]]:
         first: dict[str, int] = {}
         for line, student in students.items():
             word = getattr(student, field)
-            other = first.setdefault(word if field == "key" else word.casefold(), line) if word else line
+            if not word:
+                continue
+            other = first.setdefault(word if field == "key" else word.casefold(), line)
             if other != line and line not in wrong:
                 wrong.add(line)
                 yield line, f"repeats the {title} {word} of line {other}"
@@ -216,11 +221,6 @@ def iso_time(text: str) -> str:
     if ":" not in text:
         return time.date().isoformat() if len(text) == len("2026-09-01") else ""
     return time.isoformat(timespec="seconds").replace("+00:00", "Z")
-
-
-# What identifies the student: an id of the LMS, another id as it is spelt, in another spelling or a name; a group.
-_LMS_ID, _EXACT, _WORD, GROUP, _UNCLEAR = range(5)
-_MAX_WORDS = 8
 
 
 class _Match(NamedTuple):

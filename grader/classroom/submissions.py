@@ -34,6 +34,12 @@ from grader.submission.labs import MAX_WRAPPERS, LabFolders, is_part
 from grader.text import enumerated, first_lines, printable_path, shell_quoted
 
 _NUMBERED = re.compile(r"(.+?)-[1-9][0-9]?((?:\.[A-Za-z][A-Za-z0-9]*)*(?:\.[A-Za-z0-9]*)?)", re.DOTALL)
+_MAX_LINES, _MAX_NAMED = 200, 10
+_ANONYMOUS = (
+    "this is an anonymous download: its submissions (anon_...) match no student. "
+    "Canvas shows the names when the grades are posted: download again then"
+)
+_LAYOUTS = ("folders", "canvas", "moodle", "teams", "nbgrader")
 
 
 class ClassSubmission(NamedTuple):
@@ -118,13 +124,6 @@ def _files_below(listing: ClassListing, top: str) -> list[str]:
         found += [f"{here}/{name}" for name in children.files]
         folders += [f"{here}/{name}" for name in children.folders]
     return sorted(found)
-
-
-_MAX_LINES, _MAX_NAMED = 200, 10
-_ANONYMOUS = (
-    "this is an anonymous download: its submissions (anon_...) match no student. "
-    "Canvas shows the names when the grades are posted: download again then"
-)
 
 
 class Intake(NamedTuple):
@@ -284,9 +283,6 @@ def _cell(text: str) -> str:
 def _path_key(path: str) -> str:
     """Return the key of a submission whose name cannot be one: `./` begins no name that a student can give a folder."""
     return f"./{path}" if path.isprintable() else f"./{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"
-
-
-_LAYOUTS = ("folders", "canvas", "moodle", "teams", "nbgrader")
 
 
 def read_class(

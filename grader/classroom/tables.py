@@ -28,6 +28,17 @@ _AS_TEXT = re.compile(r'\A="(.*)"\Z', re.DOTALL)  # keeps a spreadsheet from rea
 _QUOTED = re.compile(r'"(?:[^"]++|"")*+"')
 _SPREADSHEETS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")  # the first bytes of .xlsx and .ods, and of .xls
 _BOMS = ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be"))
+_TRIGGERS = "=+\\-@\uff1d\uff0b\uff0d\uff20\ufe66\ufe62\ufe63\ufe6b"  # the last four are the small forms
+_FORMULA = re.compile(rf"(\A\s*+|[;\t\r\n]\s*+)('*+[{_TRIGGERS}])")
+_PROTECTED = re.compile(rf"(\A\s*+|[;\t\r\n]\s*+)'('*+[{_TRIGGERS}])")
+# Control characters but tab and line ends, C1 controls, bidirectional embeddings and isolates, surrogates, and the
+# noncharacters of Unicode, which HTML has no reference for.
+_NONCHARACTERS = "".join(chr(plane << 16 | last) for plane in range(17) for last in (0xFFFE, 0xFFFF))
+_ESCAPED = re.compile(
+    "[\\0-\\x08\\v\\f\\x0e-\\x1f\\x7f-\\x9f\\u202a-\\u202e\\u2066-\\u2069\\ud800-\\udfff\\ufdd0-\\ufdef"
+    f"{_NONCHARACTERS}]"
+)
+CellValue = str | int | Decimal | None
 
 
 class TableRow(NamedTuple):
@@ -144,21 +155,6 @@ def _rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
             line += 1 + sum(len(cell.splitlines()) - 1 for cell in cells if cell[:1] == '"')
             cells = []
     return tuple(rows)
-
-
-_TRIGGERS = "=+\\-@\uff1d\uff0b\uff0d\uff20\ufe66\ufe62\ufe63\ufe6b"  # the last four are the small forms
-_FORMULA = re.compile(rf"(\A\s*+|[;\t\r\n]\s*+)('*+[{_TRIGGERS}])")
-_PROTECTED = re.compile(rf"(\A\s*+|[;\t\r\n]\s*+)'('*+[{_TRIGGERS}])")
-
-# Control characters but tab and line ends, C1 controls, bidirectional embeddings and isolates, surrogates, and the
-# noncharacters of Unicode, which HTML has no reference for.
-_NONCHARACTERS = "".join(chr(plane << 16 | last) for plane in range(17) for last in (0xFFFE, 0xFFFF))
-_ESCAPED = re.compile(
-    "[\\0-\\x08\\v\\f\\x0e-\\x1f\\x7f-\\x9f\\u202a-\\u202e\\u2066-\\u2069\\ud800-\\udfff\\ufdd0-\\ufdef"
-    f"{_NONCHARACTERS}]"
-)
-
-CellValue = str | int | Decimal | None
 
 
 def write_table(header: Sequence[str], rows: Iterable[Sequence[CellValue]]) -> str:

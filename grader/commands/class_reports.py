@@ -49,16 +49,13 @@ _MOVED = (
 
 
 class ReportRun(NamedTuple):
-    """The reports to write of a gradebook into a folder; `answers` is the file of the model answers.
-
-    `time` is that of the newest run: workers read the gradebook once for it.
-    """
+    """The reports to write of a gradebook."""
 
     gradebook: Path
-    folder: Path
+    folder: Path  # to write into
     formats: tuple[Format, ...]
-    answers: Path | None = None
-    time: str = ""
+    answers: Path | None = None  # the model answers
+    time: str = ""  # of the newest run: workers read the gradebook once for it
 
 
 class _Task(NamedTuple):
@@ -76,7 +73,7 @@ def report_of(book: Gradebook, grade: StudentGrade, *, has_hints: bool = True) -
     notes, the report is the same as that of `grader grade`. A submission that has changed since has its points only.
     """
     if grade.stored is not None:
-        report, _ = book.with_marks(_again(book, grade.stored, has_hints=has_hints), grade.stored)
+        report, _ = book.with_marks(_graded_again(book, grade.stored, has_hints=has_hints), grade.stored)
     else:
         results = tuple(Result(criterion, _NOTHING) for criterion in book.criteria)
         nothing = Submission(grade.student.key, Absent(), is_single=False)
@@ -100,7 +97,7 @@ def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
     if people and not grade.has_final:
         is_automatic = any(not (row.manual_mark or row.is_open) for row in report.results)
         graders = by_name(enumerated(sorted(filter(None, people))))
-        yield f"Graded {'automatically, and ' * is_automatic}manually{graders}."
+        yield f"Graded {'automatically, and manually' if is_automatic else 'manually'}{graders}."
     if late.points and grade.total is not None:
         points, total = format_points(-late.points), format_points(grade.total)
         yield f"{late.reason}: the late penalty is {points} points, the grade is {total}"
@@ -108,11 +105,12 @@ def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
         yield late.reason
 
 
-def _again(book: Gradebook, graded: StoredResult, *, has_hints: bool) -> Report:
+def _graded_again(book: Gradebook, stored: StoredResult, *, has_hints: bool) -> Report:
     """Return the report on a submission as it was graded, with its details if it is still there."""
-    submission = book.reopened(graded) if graded.verdict != "errored" else None
+    submission = book.reopened(stored) if stored.verdict != "errored" else None
     if submission is None:
-        return book.report(graded)._replace(notes=(_MOVED,) * (graded.verdict == "graded"))
+        report = book.report(stored)
+        return report._replace(notes=(_MOVED,)) if stored.verdict == "graded" else report
     report = grade_submission(book.rubric, submission, book.settings.parts, is_one_of_class=True)
     if not has_hints or book.rubric.hints == "none" or not report.has_failures:
         return report
@@ -158,7 +156,7 @@ def render_reports(
     lost, workers, done = dict[str, str](), jobs or processors(), 0
     with Processes(workers, timeout) as executor, terminal.show_class("writing reports") as show:
         show(Progress(len(files)))
-        queue = Queue(executor, workers, partial(_write_some, run), _without_hints, _lost, _TASK_SIZE)
+        queue = Queue(executor, workers, partial(_write_some, run), _without_hints, _not_written, _TASK_SIZE)
         for results in queue.results(_Task(*item) for item in files.items()):
             lost |= {key: why for key, why in results if why}
             done += len(results)
@@ -171,7 +169,7 @@ def _without_hints(task: _Task, _: WorkerError) -> _Task | None:
     return task._replace(has_hints=False) if task.has_hints else None
 
 
-def _lost(task: _Task, error: Exception) -> tuple[str, str]:
+def _not_written(task: _Task, error: Exception) -> tuple[str, str]:
     """Return the student without a report, and why."""
     if isinstance(error, InputError | RubricError):
         raise error
@@ -181,7 +179,7 @@ def _lost(task: _Task, error: Exception) -> tuple[str, str]:
 
 def _write_some(run: ReportRun, tasks: Sequence[_Task]) -> list[tuple[str, str]]:
     """Write the reports of some students, in a worker; return the students."""
-    book = _class(run)
+    book = _opened_gradebook(run)
     for task in tasks:
         report = report_of(book, book.grade(task.key), has_hints=task.has_hints)
         for kind in run.formats:
@@ -190,7 +188,7 @@ def _write_some(run: ReportRun, tasks: Sequence[_Task]) -> list[tuple[str, str]]
 
 
 @lru_cache(maxsize=1)
-def _class(run: ReportRun) -> Gradebook:
+def _opened_gradebook(run: ReportRun) -> Gradebook:
     return Gradebook(
         run.gradebook.absolute(), answers=run.answers
     )  # no report names a rubric by its place in a gradebook

@@ -29,19 +29,19 @@ _TARGETS = {"--into": tuple(FORMS), "--feedback": ("moodle", "canvas"), "--excel
 
 @dataclass(frozen=True, slots=True)
 class ExportRequest:
-    """An export: its format, and for an LMS the file to fill in and how, and the zip of feedback to write."""
+    """The options of `grader export`."""
 
-    target: str
+    target: str  # csv, json, html or an LMS
     gradebook: Path
-    into: Path | None = None
-    output: Path | None = None
-    strict: bool = False
-    column: str = ""
-    pending_as_zero: bool = False
-    any_maximum: bool = False
-    only: bool = False
-    excel: bool = False
-    feedback: Path | None = None
+    into: Path | None = None  # the file of the LMS to fill in
+    output: Path | None = None  # the file or folder to write; default: standard output, or the gradebook
+    strict: bool = False  # whether nothing is written if something is unmatched or does not count
+    column: str = ""  # the title of the grade's column
+    pending_as_zero: bool = False  # whether points that need manual grading count as zero
+    any_maximum: bool = False  # whether the maximum of the LMS may be another one
+    only: bool = False  # whether the columns of other assignments are omitted
+    excel: bool = False  # whether Excel opens the CSV with a double click
+    feedback: Path | None = None  # the zip of reports to write
     feedback_format: str = "html"
 
 
@@ -58,7 +58,9 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
             class_reports.refuse_report_folder(folder, roots)
         class_reports.write_reports(class_reports.ReportRun(book.folder, folder, (Format.HTML,)), terminal)
         return b"", ExitCode.PASSED
-    for path in filter(None, (request.output, request.feedback)):
+    for path in (request.output, request.feedback):
+        if path is None:
+            continue
         refuse_symlinks(path, roots)
         if book.folder.resolve() in path.resolve().parents:
             raise InputError(f"cannot write {printable_path(path)}: the gradebook is written by its own commands")
@@ -79,7 +81,8 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
 def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Filled:
     """Return the exported file, empty if only feedback is asked for."""
     if request.target == "csv":
-        return Filled(_BOM * request.excel + write_table(*grade_table(book, book, is_exported=True)).encode())
+        data = write_table(*grade_table(book, book, is_exported=True)).encode()
+        return Filled(_BOM + data if request.excel else data)
     if request.target == "json":
         from grader.report.class_json import render_class_json
 

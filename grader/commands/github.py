@@ -54,7 +54,7 @@ def _add_to_summary(text: Callable[[int], str], warn: Warn) -> None:
             size = file.tell()
             added = text(_MAX_SUMMARY - size - 1).encode("utf-8", "backslashreplace")
             if added:
-                file.write(b"\n" * bool(size) + added)
+                file.write(b"\n" + added if size else added)
     except OSError as error:
         warn(f"cannot write the job summary: {error.strerror or error}")
     except InputError as error:

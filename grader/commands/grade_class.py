@@ -1,4 +1,7 @@
-"""Grade a class into its gradebook, and write its grades and reports."""
+"""Grade a class into its gradebook, and write its grades and reports.
+
+The inputs are the options of the command, else what the gradebook has of the last run; it gets copies of them.
+"""
 
 import gc
 import os
@@ -40,33 +43,37 @@ from grader.report.screen import draw
 from grader.submission.opening import open_submission
 from grader.text import counted, enumerated, first_lines, format_points, printable, printable_path
 
+_MAX_LINES, _MAX_NAMED = 10, 5
+_LEAST_SECONDS = 15.0  # in which hints are searched, and a few reports written
+_PRIVATE = 0o600
+
 
 @dataclass(frozen=True, slots=True)
 class ClassRequest:
-    """The options of `grader batch`. `timeout` is in seconds, `max_size` in bytes.
+    """The options of `grader batch`.
 
-    None stands for what the gradebook keeps of the last run; it keeps no options from `jobs` on.
+    Up to `max_size`, None stands for what the gradebook keeps of the last run; it does not keep the others.
     """
 
-    paths: Sequence[Path] | None
+    paths: Sequence[Path] | None  # the class folders or zips
     gradebook: Path | None
-    rubric: str | None
+    rubric: str | None  # an id or a file
     roster: Path | None
-    due: str | None
+    due: str | None  # the deadline
     layout: str | None
-    assignment: str | None
-    part: Sequence[str] | None
-    arg: Sequence[str] | None
-    ignore_file: Sequence[Path] | None
-    max_size: int | None
-    jobs: int | None
-    timeout: float
-    force: bool
-    cluster: str | None
-    reports: Path | None
+    assignment: str | None  # of nbgrader
+    part: Sequence[str] | None  # the ids of the parts to grade
+    arg: Sequence[str] | None  # NAME=VALUE, of xacro
+    ignore_file: Sequence[Path] | None  # starter files
+    max_size: int | None  # of a URDF, in bytes
+    jobs: int | None  # worker processes
+    timeout: float  # for a submission, in seconds
+    force: bool  # whether unchanged submissions are graded again
+    cluster: str | None  # the address of a Dask scheduler
+    reports: Path | None  # the folder to write reports into
     report_format: Sequence[Format] | None
-    answers: Path | None
-    verbose: bool
+    answers: Path | None  # the model answers
+    verbose: bool  # whether the table lists all students
     output_format: OutputFormat
 
 
@@ -124,7 +131,7 @@ def _updated(options: ClassRequest, settings: ClassSettings, folder: Path, rubri
     """Return the settings with the options of the command."""
     for name in options.part or ():
         rubric.part(name)
-    given: dict[str, Any] = {
+    given: dict[str, Any] = {  # None where the option is not given
         "due": read_time(options.due).isoformat() if options.due else None,
         "layout": options.layout,
         "assignment": options.assignment,
@@ -197,11 +204,6 @@ def _copy_rubric(folder: Path, rubric: Rubric) -> str:
     return (target / own.relative_to(base)).relative_to(folder).as_posix()
 
 
-_MAX_LINES, _MAX_NAMED = 10, 5
-_LEAST_SECONDS = 15.0  # in which hints are searched, and a few reports written
-_PRIVATE = 0o600
-
-
 def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     """Grade a class and return its table. Raises InputError and RubricError."""
     gc.freeze()  # loaded modules are not garbage
@@ -230,7 +232,10 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
         _check_same_class(folder, results, intake)
         inputs = _keep_inputs(inputs, request, warn)
         table, done = _grade(request, inputs, results, intake, terminal)
-    if formats := tuple(request.report_format or [Format.TERMINAL] * (request.reports is not None)):
+    formats = tuple(request.report_format or ())
+    if request.reports is not None and not formats:
+        formats = (Format.TERMINAL,)
+    if formats:
         run = ReportRun(folder, request.reports or folder / names.REPORTS, formats, request.answers)
         write_reports(run, terminal, request.jobs, max(request.timeout, _LEAST_SECONDS))
     if request.output_format is OutputFormat.JSON:

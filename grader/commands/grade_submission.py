@@ -28,24 +28,21 @@ _SHA256 = r"[0-9a-fA-F]{64}"
 
 
 class GradeRequest(NamedTuple):
-    """The options of `grader grade`: a submission to grade, its rubric, and the reports to make.
+    """The options of `grader grade`: a submission to grade, its rubric, and the reports to make."""
 
-    `hints` is the most that hints tell, None for what the rubric allows.
-    """
-
-    path: str
-    rubric: str
-    expect_rubric: str | None
-    part: Sequence[str] | None
-    output_format: Format
-    saves: Saves
-    fail_under: str | None
-    max_size: int
-    arg: Sequence[str] | None
-    answers: Path | None
-    verbose: bool
-    hints: HintLevel | None
-    fix: Path | None
+    path: str  # of the submission; - for a URDF on standard input
+    rubric: str  # an id or a file
+    expect_rubric: str | None  # the hash that the rubric must have
+    part: Sequence[str] | None  # the ids of the parts to grade; default: all that the submission can meet
+    output_format: Format  # of standard output
+    saves: Saves  # the files to write, with their formats
+    fail_under: str | None  # the score that must be reached, in points or percent
+    max_size: int  # of a URDF, in bytes
+    arg: Sequence[str] | None  # NAME=VALUE, of xacro
+    answers: Path | None  # the model answers
+    verbose: bool  # whether the terminal shows everything
+    hints: HintLevel | None  # the most that hints tell; None for what the rubric allows
+    fix: Path | None  # where to write the files with all proven edits
 
     @property
     def threshold(self) -> tuple[Decimal, bool] | None:
@@ -54,13 +51,13 @@ class GradeRequest(NamedTuple):
 
 
 class _GradeRun(NamedTuple):
-    """A report, its submission's place in a repository, the exit code, and the files read besides a single one."""
+    """A submission that was graded."""
 
     report: "Report"
-    base: Base
+    base: Base  # the place of the submission in a repository
     exit_code: ExitCode
-    fix: "Fix | None" = None
-    besides: tuple[Path, ...] = ()
+    fix: "Fix | None" = None  # the edits of all hints
+    besides: tuple[Path, ...] = ()  # the files that were read besides a single one
 
     @property
     def reason(self) -> str:

@@ -61,8 +61,8 @@ def files_to_fix(
     if is_folder and (target.is_file() or (target.suffix.lower() in _FILES and not target.exists())):
         raise InputError(f"--fix: {printable_path(target)} names a file: of a folder or an archive name a folder")
     if not is_folder and (len(files) > 1 or (files and besides and own not in files)):
-        names, only = ", ".join(map(printable, files)), "only " * (own in files)
-        raise InputError(f"--fix: the edits change {names}, not {only}{own}: name a folder that exists")
+        names, only = ", ".join(map(printable, files)), f"only {own}" if own in files else own
+        raise InputError(f"--fix: the edits change {names}, not {only}: name a folder that exists")
     written = {(target / path if is_folder else target): data for path, data in files.items()}
     for file in written:
         refuse_symlinks(file, (graded,))
@@ -84,7 +84,8 @@ def write_fix(target: Path, graded: str, report: Report, fix: Fix, written: Mapp
             make_folder(file.parent)
         save_bytes(file, data, (graded,))
     gone = [f"; {printable(path)} was renamed: delete the old file" for path, data in fix.files.items() if data is None]
-    gone += [f"; {INCOMPLETE_HINTS}"] * (not report.hints_complete)
+    if not report.hints_complete:
+        gone.append(f"; {INCOMPLETE_HINTS}")
     names = enumerated([printable(path) for path, data in fix.files.items() if data is not None], _MAX_NAMED)
     before, after = format_points(report.score), format_points(fix.report.score)
     score = f"{before} -> {after} of {format_points(report.max_score)} points"

@@ -1,4 +1,4 @@
-"""The exit codes of the commands, and how a report decides them."""
+"""How a command is called and answers: the values of --fail-under, --save and --arg, and its exit code."""
 
 import os
 import re
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 _THRESHOLD = r"[0-9]{1,9}(?:\.[0-9]{1,9})?%?"
 _MAX_PERCENT = 100
+Saves = tuple[tuple[Format, Path], ...]
 
 
 class ExitCode(IntEnum):
@@ -53,9 +54,6 @@ def exit_code(report: "Report", threshold: tuple[Decimal, bool] | None) -> ExitC
         short = [result for result in report.results if result.is_lost] + report.pending_automatic
         is_passed = all(result.criterion.bonus for result in short)
     return ExitCode.PASSED if is_passed else ExitCode.FAILED
-
-
-Saves = tuple[tuple[Format, Path], ...]
 
 
 def read_saves(texts: Sequence[str]) -> Saves:

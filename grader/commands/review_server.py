@@ -1,4 +1,9 @@
-"""Grade what needs manual grading on a page in the browser, item by item, which a server on this machine serves."""
+"""Grade what needs manual grading on a page in the browser, item by item, which a server on this machine serves.
+
+The server is for one person: bound to the loopback address, with a secret in the path of every address. Requests
+without the secret are refused. Requests of other websites are refused as well: the server accepts only its own host
+name, and only JSON from its own origin. It answers one request at a time, so that nothing is written concurrently.
+"""
 
 import hmac
 import json
@@ -40,6 +45,9 @@ _HEADERS = {
     "X-Frame-Options": "DENY",
 }
 _SANDBOX = "sandbox; default-src 'none'"  # for everything that is not a page
+_PAGE_POLICY = "frame-ancestors 'none'"  # the page itself contains the rest
+_PDF_POLICY = "default-src 'none'; frame-ancestors 'self'"
+_CHANGED = "Not saved: this item has changed since it was shown. Look at it again."
 
 
 class _Response(NamedTuple):
@@ -165,11 +173,6 @@ class _Handler(BaseHTTPRequestHandler):
         """Log nothing: addresses contain the secret."""
 
 
-_PAGE_POLICY = "frame-ancestors 'none'"  # the page itself contains the rest
-_PDF_POLICY = "default-src 'none'; frame-ancestors 'self'"
-_CHANGED = "Not saved: this item has changed since it was shown. Look at it again."
-
-
 class ReviewPage:
     """The application of the server: shows items of a session by number, and executes actions from the page."""
 
@@ -258,8 +261,10 @@ class ReviewPage:
     def _position(self, address: str) -> int:
         """Return the position of an item, beyond the last one for the end; -1 if there is none."""
         count = len(self.session.places)
+        if address == "end":
+            return count
         at = int(address) if re.fullmatch("[1-9][0-9]{0,7}", address) else 0
-        return count if address == "end" else at - 1 if at <= count else -1
+        return at - 1 if at <= count else -1
 
 
 def _html(page: str, status: HTTPStatus = HTTPStatus.OK) -> _Response:

@@ -1,4 +1,8 @@
-"""A review: one person goes through the items of a class. Each mark is saved immediately."""
+"""A review: one person goes through the items of a class. Each mark is saved immediately.
+
+An item is opened by reading its submission again: what was found for its criterion, and its pictures. Instead of the
+page, a person can fill in a sheet of the open items, a CSV file, which `grader mark --import` records.
+"""
 
 import os
 from functools import lru_cache
@@ -29,6 +33,9 @@ CONFIRMED = "!"  # ends what the page sends to replace marks that it was asked a
 _MAX_NAMED = 5
 _GONE = "this answer has changed, or its students have final marks: go to the next item"
 _READ = (names.RESULTS, CLASS_FILE, names.ROSTER, f"{names.RUBRIC}/**/*.toml", f"{names.MARKS}/*")
+_SHEET_COLUMNS = ("criterion", "answer", "points", "maximum", "comment", "text", "students")
+_PRIVATE = 0o600
+_MAX_TEXT = 30_000  # characters; a cell of Excel has at most 32,767
 
 
 class ReviewSession:
@@ -148,15 +155,12 @@ class ReviewSession:
         lost = [key for key, mark in self.own.items() if key not in newest or "" < newest[key].time < mark.time]
         found = [self.own.pop(key) for key in lost]
         if found:
-            rows = [f"{one.criterion} {one.value}" + f" of {one.student}" * (not self.is_anonymous) for one in found]
+            rows = [f"{one.criterion} {one.value}" for one in found]
+            if not self.is_anonymous:
+                rows = [f"{row} of {one.student}" for row, one in zip(rows, found, strict=True)]
             shown = printable_path(Path(names.MARKS, self.file.name))
             why = f"rows of this review are no longer in {shown}, which another program has replaced"
             raise InputError(f"Not saved: {why}: {enumerated(rows, _MAX_NAMED)}. Save again to go on without them.")
-
-
-_SHEET_COLUMNS = ("criterion", "answer", "points", "maximum", "comment", "text", "students")
-_PRIVATE = 0o600
-_MAX_TEXT = 30_000  # characters; a cell of Excel has at most 32,767
 
 
 @lru_cache(maxsize=1)  # a page asks for its pictures one by one

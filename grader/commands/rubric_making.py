@@ -33,6 +33,7 @@ from grader.text import enumerated, printable, printable_path, shell_quoted
 _URDF = "robot.urdf"
 _SCHEMA = "rubric.schema.json"  # beside the rubric, as the documentation calls it
 _MAX_NAMED = 4
+_GROUP, _SECONDS = 20, 60.0  # mutants that a worker grades at once, and how long they may take
 
 
 def write_rubric(file: Path, reference: str, warn: Warn, *, force: bool) -> str:
@@ -127,9 +128,6 @@ def _omission_lines(omissions: Iterable[Omission]) -> Iterator[str]:
     for omission in omissions:
         by_reason.setdefault(omission.why, []).append(omission.what)
     yield from (f"{enumerated(names, _MAX_NAMED)}: {why}" for why, names in by_reason.items())
-
-
-_GROUP, _SECONDS = 20, 60.0  # mutants that a worker grades at once, and how long they may take
 
 
 def test_rubric(

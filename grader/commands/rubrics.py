@@ -58,7 +58,8 @@ def files_of(name: str, answers: Path | None = None) -> list[Path]:
         file = find_rubric(name)
         found.append(file)
         rubric = load_rubric(name)
-        found += [file.parent / rubric.answers] * bool(rubric.answers)
+        if rubric.answers:
+            found.append(file.parent / rubric.answers)
         if rubric.reference:
             place = file.parent / rubric.reference
             found.append(place / rubric.urdf if place.resolve() in file.resolve().parents else place)

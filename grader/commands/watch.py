@@ -120,7 +120,8 @@ def comparison_lines(before: Report, after: Report) -> list[str]:
     for change in (*_CHANGES.values(), "changed"):
         known = [(one, old.get(one.criterion.id)) for one in kinds.get(change, ())]
         named = [printable(new.criterion.id) + _gain(new.points - (was.points if was else 0)) for new, was in known]
-        lines += [f"{change}: {enumerated(named, _MAX_NAMED)}"] if named else []
+        if named:
+            lines.append(f"{change}: {enumerated(named, _MAX_NAMED)}")
     return lines
 
 

@@ -1,6 +1,6 @@
-"""Write files and standard output: a file is replaced as a whole or not at all.
+"""Where commands write: the terminal, standard output, and files, which are replaced as a whole or not at all.
 
-None is written through a symlink of a submission, and none over the gradebook.
+No file is written through a symlink of a submission, and none over the gradebook.
 """
 
 import errno
@@ -24,22 +24,17 @@ if TYPE_CHECKING:
 Warn = Callable[[str], None]
 # Shows the progress of a pass over a class, whose work is named.
 _ShowClass = Callable[[str], AbstractContextManager[Callable[["Progress"], None]]]
+CHECKOUTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")  # the repository that GitHub Actions and GitLab CI checked out
+_MAX_SYMLINKS = 40  # in one path, as in Linux
 
 
 class Terminal(NamedTuple):
-    """The terminal of a command.
-
-    `screen` is called before each use, because a terminal can be resized.
-    """
+    """What a command prints with; the command line passes it."""
 
     print: Callable[[str], None]
     warn: Warn
-    screen: Callable[[], Screen]
+    screen: Callable[[], Screen]  # called before each use, because a terminal can be resized
     show_class: _ShowClass
-
-
-CHECKOUTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")  # the repository that GitHub Actions and GitLab CI checked out
-_MAX_SYMLINKS = 40  # in one path, as in Linux
 
 
 def write_stdout(text: str | bytes) -> None:

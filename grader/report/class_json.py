@@ -37,6 +37,20 @@ from grader.report.json_data import (
 _STATUSES = ("errored", "excused", "graded", "missing", "unreadable")
 _SUMMARY = Record({"students": TOTAL, **each(nullable(POINTS), "mean median")})
 _NO_GRADES = {**dict.fromkeys(_SUMMARY.keys), "students": 0}
+_MISTAKE = Record({**each(TEXT, "criterion message"), "students": array(TEXT)})
+_EQUAL = Record({"students": array(TEXT), "equal": TEXT})
+_CONCERN = Record({"id": (TEXT, itemgetter(0)), "detail": (TEXT, itemgetter(1))})
+_ATTENTION = Record({"reason": (TEXT, itemgetter(0)), "students": (Many(_CONCERN), itemgetter(1))})
+_RUN = Record(
+    {
+        "run": COUNT,
+        "time": TEXT,
+        "grader": (GRADER, lambda run: {"version": run.version}),
+        "rubric": (record({"sha256": HASH}), lambda run: {"sha256": run.rubric}),
+    }
+)
+_SPAN = each(nullable(POINTS), "before after")
+_STEP = Record({"id": TEXT, **_SPAN})
 
 
 def _count(name: str, row: CriterionFigures) -> int:
@@ -51,7 +65,6 @@ _CRITERION = Record(
         "share": nullable(POINTS),
     }
 )
-_MISTAKE = Record({**each(TEXT, "criterion message"), "students": array(TEXT)})
 _STATISTICS = Record(
     {
         "counts": (record(dict.fromkeys(_STATUSES, COUNT), optional=_STATUSES), "statuses"),
@@ -66,9 +79,6 @@ _STATISTICS = Record(
         ),
     }
 )
-_EQUAL = Record({"students": array(TEXT), "equal": TEXT})
-_CONCERN = Record({"id": (TEXT, itemgetter(0)), "detail": (TEXT, itemgetter(1))})
-_ATTENTION = Record({"reason": (TEXT, itemgetter(0)), "students": (Many(_CONCERN), itemgetter(1))})
 
 
 def _of_report(name: str) -> Key:
@@ -123,16 +133,6 @@ def render_class_json(book: Gradebook, done: Progress | None = None) -> str:
     return to_json(CLASS.data(report))
 
 
-_RUN = Record(
-    {
-        "run": COUNT,
-        "time": TEXT,
-        "grader": (GRADER, lambda run: {"version": run.version}),
-        "rubric": (record({"sha256": HASH}), lambda run: {"sha256": run.rubric}),
-    }
-)
-_SPAN = each(nullable(POINTS), "before after")
-_STEP = Record({"id": TEXT, **_SPAN})
 _CHANGE = Record({"id": (TEXT, "key"), "name": TEXT, **_SPAN, "reasons": (array(TEXT), "why"), "criteria": Many(_STEP)})
 DIFF = Record(  # of the two runs, and the changes
     {

@@ -27,6 +27,15 @@ from grader.text import counted_points, enumerated, first_lines, format_points, 
 from grader.xml.catalogue import RECOVERED
 
 _REMARKS = ("Marked manually", "Corrected after grading", "Comments")
+UNDECIDED = "xacro that cannot be determined statically"
+VERDICTS = {
+    "clean": "ROS 2 loads the file",
+    "degraded": "ROS 2 loads the file, but drops content of it",
+    "rejected": "ROS 2 rejects the file",
+}
+_MAX_LISTED = 12
+_STATUSES = ("passed", "failed", "skipped", "pending", "errored", "adjusted", "marked manually")
+_WORDS = {"pending": ("needs manual grading", "need manual grading"), "adjusted": ("corrected after grading",) * 2}
 
 
 class Document(NamedTuple):
@@ -140,17 +149,6 @@ def _reason(entry: Entry) -> str:
     outcome, has_own = entry.result.outcome, any(isinstance(block, Answer) for block in entry.blocks)
     is_ungraded = entry.status in ("pending", "errored") and not (has_own or entry.result.comment)
     return outcome.mistake or outcome.message if is_ungraded else entry.id
-
-
-UNDECIDED = "xacro that cannot be determined statically"
-VERDICTS = {
-    "clean": "ROS 2 loads the file",
-    "degraded": "ROS 2 loads the file, but drops content of it",
-    "rejected": "ROS 2 rejects the file",
-}
-_MAX_LISTED = 12
-_STATUSES = ("passed", "failed", "skipped", "pending", "errored", "adjusted", "marked manually")
-_WORDS = {"pending": ("needs manual grading", "need manual grading"), "adjusted": ("corrected after grading",) * 2}
 
 
 def score_text(report: Report) -> str:

@@ -18,6 +18,18 @@ from grader.text import by_name, capitalised, enumerated, format_points, printab
 
 _T = TypeVar("_T")
 _K = TypeVar("_K", bound=Hashable)
+# The symbol of each status, that for a terminal in another encoding, the style on a terminal, and the word.
+_STATUSES = (
+    ("passed", "\u2713", "+", "green", "Passed"),
+    ("failed", "\u2717", "X", "bold red", "Failed"),
+    ("skipped", "\u2212", "-", "yellow", "Skipped"),
+    ("pending", "?", "?", "cyan", "Needs manual grading"),
+    ("errored", "!", "!", "bold magenta", "Could not be graded"),
+    ("adjusted", "=", "=", "blue", "Corrected after grading"),
+    ("partial", "~", "~", "bold yellow", "Some points"),
+)
+SYMBOLS, ASCII_SYMBOLS, STYLES, STATUS_WORDS = ({row[0]: row[column] for row in _STATUSES} for column in range(1, 5))
+_MAX_FILES, _MAX_CRITERIA = 2, 3
 
 # Of a submission, of a criterion, and of the list of evidence, problems and files.
 Role = Literal[
@@ -195,20 +207,6 @@ def alike(items: Iterable[_T], key: Callable[[_T], _K]) -> list[tuple[_K, tuple[
     for item in items:
         found.setdefault(key(item), []).append(item)
     return [(value, tuple(some)) for value, some in found.items()]
-
-
-# The symbol of each status, that for a terminal in another encoding, the style on a terminal, and the word.
-_STATUSES = (
-    ("passed", "\u2713", "+", "green", "Passed"),
-    ("failed", "\u2717", "X", "bold red", "Failed"),
-    ("skipped", "\u2212", "-", "yellow", "Skipped"),
-    ("pending", "?", "?", "cyan", "Needs manual grading"),
-    ("errored", "!", "!", "bold magenta", "Could not be graded"),
-    ("adjusted", "=", "=", "blue", "Corrected after grading"),
-    ("partial", "~", "~", "bold yellow", "Some points"),
-)
-SYMBOLS, ASCII_SYMBOLS, STYLES, STATUS_WORDS = ({row[0]: row[column] for row in _STATUSES} for column in range(1, 5))
-_MAX_FILES, _MAX_CRITERIA = 2, 3
 
 
 def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iterator[Block]:

@@ -24,6 +24,38 @@ _WIDTH = WIDTH - 2.0 * _LEFT
 _MAX_TITLE, _MAX_TEXT, _MAX_LINES = 200, 1000, 6
 NO_PICTURE = "No picture: no robot can be read."
 _NO_SHAPES = "No visual can be drawn: only frames of links are shown."
+_FONT = "12px system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"
+_LOOKS = {
+    "paper": "fill:#fff",
+    "edge": "stroke:#4b5563",
+    "hidden": "stroke:#1c1f23;stroke-opacity:.35",
+    "ground": "stroke:#6b7280;stroke-width:1.5",
+    "halo": "stroke:#fff;stroke-width:5;stroke-opacity:.75",
+    "reference": "stroke:#a3157f;stroke-width:1.8;stroke-dasharray:6 3.5",
+    "dashed": "stroke-dasharray:6 3.5",
+    "axis-x": "stroke:#d01f2e;stroke-width:1.8",
+    "axis-y": "stroke:#00805c;stroke-width:1.8",
+    "axis-z": "stroke:#0a5fd0;stroke-width:1.8",
+    "arrow": "stroke:#1c1f23;stroke-width:2.6",
+    "leader": "stroke:#b3261e;stroke-width:1.2",
+    "badge": "fill:#b3261e",
+    "number": "fill:#fff;font-weight:700;text-anchor:middle",
+    "text": "fill:#1c1f23",
+    "title": "fill:#1c1f23;font-size:17px;font-weight:700",
+    "faint": "fill:#4b5563",
+    "letter": "fill:#1c1f23;stroke:#fff;stroke-width:2.5;paint-order:stroke;font-size:11px;text-anchor:middle",
+}
+STYLE = (
+    f".drawing{{font:{_FONT}}}.drawing path{{fill:none;stroke-linecap:round;stroke-linejoin:round}}"
+    f"{''.join(f'.drawing .{name}{{{rules}}}' for name, rules in _LOOKS.items())}"
+)
+_RADIUS = 9.0  # of a number, in pixels
+_AXIS, _LONG_AXIS, _ARROW = 20.0, 32.0, 30.0  # pixels
+_END_ON = 0.2  # of its length: an axis or arrow that appears shorter is not drawn as one
+_BADGE = 2.0 * _RADIUS + 2.0, 2.0 * _RADIUS + 2.0  # the room of one
+_RINGS = (22.0, 30.0, 40.0, 52.0, 66.0, 84.0, 106.0, 132.0)  # pixels from what a number labels
+_AROUND = [(ring * cos(tau * n / 16), -ring * sin(tau * n / 16)) for ring in _RINGS for n in range(2, 18)]
+_MAX_NAME, _ROW = 60, 18.0
 
 
 def drawing_element(picture: Picture, title: str = "", *, legend: bool = True, above: Sequence[str] = ()) -> str:
@@ -101,40 +133,6 @@ def _headline(title: str, above: Sequence[str]) -> list[str]:
 
 def _height(above: Sequence[str]) -> float:
     return 2.0 * _LEFT + _LINE * len(above) + 8.0
-
-
-_FONT = "12px system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', Arial, sans-serif"
-_LOOKS = {
-    "paper": "fill:#fff",
-    "edge": "stroke:#4b5563",
-    "hidden": "stroke:#1c1f23;stroke-opacity:.35",
-    "ground": "stroke:#6b7280;stroke-width:1.5",
-    "halo": "stroke:#fff;stroke-width:5;stroke-opacity:.75",
-    "reference": "stroke:#a3157f;stroke-width:1.8;stroke-dasharray:6 3.5",
-    "dashed": "stroke-dasharray:6 3.5",
-    "axis-x": "stroke:#d01f2e;stroke-width:1.8",
-    "axis-y": "stroke:#00805c;stroke-width:1.8",
-    "axis-z": "stroke:#0a5fd0;stroke-width:1.8",
-    "arrow": "stroke:#1c1f23;stroke-width:2.6",
-    "leader": "stroke:#b3261e;stroke-width:1.2",
-    "badge": "fill:#b3261e",
-    "number": "fill:#fff;font-weight:700;text-anchor:middle",
-    "text": "fill:#1c1f23",
-    "title": "fill:#1c1f23;font-size:17px;font-weight:700",
-    "faint": "fill:#4b5563",
-    "letter": "fill:#1c1f23;stroke:#fff;stroke-width:2.5;paint-order:stroke;font-size:11px;text-anchor:middle",
-}
-STYLE = (
-    f".drawing{{font:{_FONT}}}.drawing path{{fill:none;stroke-linecap:round;stroke-linejoin:round}}"
-    f"{''.join(f'.drawing .{name}{{{rules}}}' for name, rules in _LOOKS.items())}"
-)
-_RADIUS = 9.0  # of a number, in pixels
-_AXIS, _LONG_AXIS, _ARROW = 20.0, 32.0, 30.0  # pixels
-_END_ON = 0.2  # of its length: an axis or arrow that appears shorter is not drawn as one
-_BADGE = 2.0 * _RADIUS + 2.0, 2.0 * _RADIUS + 2.0  # the room of one
-_RINGS = (22.0, 30.0, 40.0, 52.0, 66.0, 84.0, 106.0, 132.0)  # pixels from what a number labels
-_AROUND = [(ring * cos(tau * n / 16), -ring * sin(tau * n / 16)) for ring in _RINGS for n in range(2, 18)]
-_MAX_NAME, _ROW = 60, 18.0
 
 
 def _view(panel: Panel, picture: Picture) -> Iterator[str]:

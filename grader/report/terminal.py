@@ -63,6 +63,9 @@ _MAX_FIRST = 3  # failures with their source line
 _MAX_ROWS, _MAX_REASON = 4, 2  # rows of a message, and of a reason; a hint has fewer than a message
 _MOST_ROWS = 10  # of a message in a report of more than 24 rows
 _LAST_WORD, _LAST_NUMBER = re.compile(r"\s+\S*$"), re.compile(r"\s+[-+.\d]+$")  # a number keeps its unit
+_ROWS = 24  # of a common terminal
+_TRIED = (False, False), (True, False), (True, True), (True, False)  # without blank rows? with shortened sentences?
+_MAX_NAMES, _MAX_PROBLEMS, _MAX_FILES = 3, 3, 2
 
 
 class Page(NamedTuple):
@@ -222,11 +225,6 @@ def excerpt_block(
 def _symbol(console: Console, fancy: str, plain: str) -> str:
     """Return a symbol, or its ASCII form if the terminal cannot show it."""
     return fancy if console.encoding.lower().startswith("utf") else plain
-
-
-_ROWS = 24  # of a common terminal
-_TRIED = (False, False), (True, False), (True, True), (True, False)  # without blank rows? with shortened sentences?
-_MAX_NAMES, _MAX_PROBLEMS, _MAX_FILES = 3, 3, 2
 
 
 def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:

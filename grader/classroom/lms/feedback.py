@@ -29,13 +29,18 @@ _MAX_LINE = 700  # characters: with all lines less than a cell of Excel has
 _OPENING = "Grade"
 _MARK = re.compile(r"<!-- grader ([0-9a-f]{12}) -->")
 _TAG = re.compile(r"<[^>]*+>")
+_Names = tuple[dict[str, str], dict[str, str]]  # by the student's key: the path in the zip, or why there is none
+_NOT_UTF8 = re.compile(r"[\ud800-\udfff]")  # no name that Canvas has given, and no zip can have it
+_ARCHIVES = (".zip", ".tar.gz", ".tgz")
 
 
 def lost_points(results: Iterable[Result]) -> Iterator[str]:
     """Yield a line for each criterion below its maximum, with a comment, or with points that no check decides."""
     for result in results:
         mark, criterion = result.manual_mark, result.criterion
-        comment = mark.comment if mark is not None else result.comment.text if result.comment is not None else ""
+        comment = result.comment.text if result.comment is not None else ""
+        if mark is not None:
+            comment = mark.comment
         if result.points < criterion.points or comment or result.why_given:
             is_hidden = mark is not None or result.is_adjusted or (comment and result.outcome.status == "passed")
             points = "–" if result.is_open else format_points(result.points)
@@ -75,11 +80,6 @@ def _hash(text: str) -> str:
 
 def _plain(text: str) -> str:
     return " ".join(html.unescape(_TAG.sub(" ", text)).split())
-
-
-_Names = tuple[dict[str, str], dict[str, str]]  # by the student's key: the path in the zip, or why there is none
-_NOT_UTF8 = re.compile(r"[\ud800-\udfff]")  # no name that Canvas has given, and no zip can have it
-_ARCHIVES = (".zip", ".tar.gz", ".tgz")
 
 
 def moodle_names(students: Collection[Student], report: str) -> _Names:

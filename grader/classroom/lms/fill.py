@@ -80,7 +80,8 @@ class _GradeFile(NamedTuple):
             return None, [(why[0], who, why[1])]
         notes, old, comment = list[_Note](), row.value(at), row.value(comment_at)
         if old.casefold() != new.casefold() and (number_in(old) is None or number_in(old) != number_in(new)):
-            notes += [("", who, f"was {old}, becomes {new}")] if old.casefold() not in _NOT_GRADED else []
+            if old.casefold() not in _NOT_GRADED:
+                notes.append(("", who, f"was {old}, becomes {new}"))
             row = self.table.changed(row, at, new)
         if comment_at is not None and grade.comment not in ("", comment):
             if not comment or is_own_comment(comment):

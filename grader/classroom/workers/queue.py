@@ -10,6 +10,13 @@ from typing import Generic, TypeVar
 
 from grader.classroom.workers.pool import WorkerError
 
+_GROUP_TIME = 0.05  # seconds of work that are worth one message to a worker
+_MAX_GROUP = 64
+_AHEAD = 3  # groups for each worker: one at work, the others ready
+_MAX_TRIES = 3
+_Task = TypeVar("_Task")
+_Result = TypeVar("_Result")
+
 
 @dataclass(frozen=True, slots=True)
 class Progress:
@@ -38,21 +45,12 @@ class Progress:
         )
 
 
-_GROUP_TIME = 0.05  # seconds of work that are worth one message to a worker
-_MAX_GROUP = 64
-_AHEAD = 3  # groups for each worker: one at work, the others ready
-_MAX_TRIES = 3
-
-_Task = TypeVar("_Task")
-_Result = TypeVar("_Result")
-
-
 class Queue(Generic[_Task, _Result]):
     """Submits tasks and collects results.
 
-    `work` returns the results of tasks in a worker. Where a task fails alone, `again` returns another one to be tried
-    in its place, else `lost` its result. `size` is the number of tasks in a group; default: as many as take
-    `_GROUP_TIME`.
+    `work` returns the results of tasks in a worker. Where a task fails alone, `retried` returns another one to be tried
+    in its place, or None, and `given_up` its result then. `size` is the number of tasks in a group; default: as many as
+    take `_GROUP_TIME`.
     """
 
     def __init__(
@@ -60,13 +58,13 @@ class Queue(Generic[_Task, _Result]):
         executor: Executor,
         workers: int,
         work: Callable[[Sequence[_Task]], list[_Result]],
-        again: Callable[[_Task, WorkerError], _Task | None],
-        lost: Callable[[_Task, Exception], _Result],
+        retried: Callable[[_Task, WorkerError], _Task | None],
+        given_up: Callable[[_Task, Exception], _Result],
         size: int = 0,
     ) -> None:
         self._executor, self._workers, self._size = executor, workers, size
-        self._work, self._again, self._lost = work, again, lost
-        self._alone: deque[tuple[_Task, int]] = deque()
+        self._work, self._retried, self._given_up = work, retried, given_up
+        self._waiting_alone: deque[tuple[_Task, int]] = deque()
         self._running: dict[Future[list[_Result]], tuple[Sequence[_Task], int]] = {}
         self._began = 0.0  # when the first results came: until then workers start
         self._done = 0  # since then
@@ -88,14 +86,14 @@ class Queue(Generic[_Task, _Result]):
 
     def _submit_ready(self, waiting: Iterator[_Task]) -> None:
         while len(self._running) < self._workers * _AHEAD:
-            if not self._alone:
+            if not self._waiting_alone:
                 if not (group := list(islice(waiting, self._group_size))):
                     return
                 self._submit(group, 1)
-            elif self._alone[0][1] > 1 and self._running:
+            elif self._waiting_alone[0][1] > 1 and self._running:
                 return
             else:
-                task, tries = self._alone.popleft()
+                task, tries = self._waiting_alone.popleft()
                 self._submit([task], tries)
                 if tries > 1:  # it was lost when all processes ended: it runs alone
                     return
@@ -117,11 +115,11 @@ class Queue(Generic[_Task, _Result]):
             return future.result()
         except Exception as error:  # noqa: BLE001  any failure affects one task at most
             if len(tasks) > 1:
-                self._alone += [(task, 1) for task in tasks]
+                self._waiting_alone += [(task, 1) for task in tasks]
             elif isinstance(error, WorkerError) and not error.is_own_fault and tries < _MAX_TRIES:
-                self._alone.append((tasks[0], tries + 1))
-            elif isinstance(error, WorkerError) and (other := self._again(tasks[0], error)) is not None:
-                self._alone.append((other, 1))
+                self._waiting_alone.append((tasks[0], tries + 1))
+            elif isinstance(error, WorkerError) and (other := self._retried(tasks[0], error)) is not None:
+                self._waiting_alone.append((other, 1))
             else:
-                return [self._lost(tasks[0], error)]
+                return [self._given_up(tasks[0], error)]
             return []

@@ -26,6 +26,7 @@ _MAX_NAMED = 4
 _WITHOUT_MATERIAL: _Rgba = (1.0, 0.0, 0.0, 1.0)  # RViz shows such a shape in red
 _MESHES, _UNKNOWN = "mesh files are not opened", "the size or place of a shape is zero, too large or not known"
 _NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
+_SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
 
 
 class Body(NamedTuple):
@@ -152,9 +153,6 @@ def _wheel(scene: Scene, link: str) -> Wheel | None:
         travel, _ = travel_of(scene.robot, link, joint, scene.frame, Z_AXIS)
         return Wheel(centre, travel) if centre is not None and travel is not None else None
     return None
-
-
-_SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
 
 
 class _Callout(NamedTuple):
