@@ -92,7 +92,7 @@ def requirements(extra: str) -> list[str]:
         raise InputError(
             f"cannot determine the requirements of the grader: {_DISTRIBUTION} is not installed; install it with pip"
         ) from None
-    return sorted(filter(None, (_without_extra(requirement, extra) for requirement in declared)))
+    return sorted(own for requirement in declared if (own := _without_extra(requirement, extra)))
 
 
 def _without_extra(requirement: str, extra: str) -> str:
@@ -101,4 +101,5 @@ def _without_extra(requirement: str, extra: str) -> str:
     condition = _EXTRA.search(marker)
     if condition is not None and condition[1] != extra:
         return ""
-    return " ; ".join(filter(None, (name.strip(), _EXTRA.sub("", marker).strip())))
+    rest = _EXTRA.sub("", marker).strip()
+    return f"{name.strip()} ; {rest}" if rest else name.strip()

@@ -24,17 +24,13 @@ _COMMANDS: dict[Severity, str] = {"error": "error", "warning": "warning", "note"
 
 
 class _Finding(NamedTuple):
-    """One thing to fix.
+    """One thing to fix."""
 
-    `rule` is the id of the criterion or the code of the problem, `text` is printable and has several lines, `lost`
-    includes the points of criteria that are skipped because of it. Without a `place` the whole submission is meant.
-    """
-
-    rule: str
+    rule: str  # the id of the criterion, or the code of the problem
     level: Severity
-    text: str
-    place: Mapping[str, str] = {}
-    lost: Decimal = Decimal(0)
+    text: str  # printable, of several lines
+    place: Mapping[str, str] = {}  # without any the whole submission is meant
+    lost: Decimal = Decimal(0)  # with the points of criteria that are skipped because of it
 
     @property
     def cost(self) -> str:
@@ -72,10 +68,16 @@ def _findings(report: Report, base: Base) -> Iterator[_Finding]:
 def _of_criterion(entry: Entry, source_of: SourceOf, base: Base) -> _Finding:
     skipped, is_bonus, where = entry.skipped, entry.result.criterion.bonus, entry.location
     lines = entry.texts("finding", "comment", "hint", "feedback", "expected", "alike")
-    lines += [f"Extra credit: {earned_text(entry.result)}."] if is_bonus else []
-    lines += [f"Skipped because of it: {len(skipped)} more, {points_of(skipped)}."] if skipped else []
-    level: Severity = "note" if entry.result.why_given or is_bonus else "error"
-    level, lost = (level, entry.lost) if is_failure(entry.result) else ("warning", Decimal(0))
+    if is_bonus:
+        lines.append(f"Extra credit: {earned_text(entry.result)}.")
+    if skipped:
+        lines.append(f"Skipped because of it: {len(skipped)} more, {points_of(skipped)}.")
+    level: Severity = "error"
+    if not is_failure(entry.result):
+        level = "warning"
+    elif entry.result.why_given or is_bonus:
+        level = "note"
+    lost = entry.lost if is_failure(entry.result) else Decimal(0)
     return _Finding(entry.id, level, _text(lines, where, base), _place(where, source_of, base), lost)
 
 
@@ -93,8 +95,9 @@ def _place(where: Location | None, source_of: SourceOf, base: Base) -> Mapping[s
 
 def _text(lines: list[str], where: Location | None, base: Base) -> str:
     """Return the lines, and the location where that is in a macro, or not in a file of the repository."""
-    is_hidden = where is not None and (base.archive or base.is_outside or archive_around(where.path) or where.calls)
-    return "\n".join((*lines, *([f"In {location_text(where)}."] if where is not None and is_hidden else [])))
+    if where is not None and (base.archive or base.is_outside or archive_around(where.path) or where.calls):
+        lines = [*lines, f"In {location_text(where)}."]
+    return "\n".join(lines)
 
 
 def _rest(found: Sequence[_Finding]) -> _Finding:
@@ -108,7 +111,8 @@ def _overview(report: Report) -> str:
     """Return the lines about the whole submission and the undecided criteria."""
     found, lines = document(report), [line.text for line in head(report)]  # first, because the rest may be cut off
     pending = ", ".join(result.criterion.id for result in report.results if result.is_open)
-    lines += [f"Needs manual grading: {pending}"] if pending else []
+    if pending:
+        lines.append(f"Needs manual grading: {pending}")
     lines += [text for entry in found.failures for text in entry.texts("skipped")]
     lines += [line.text for line in found.skipped]
     lines += [f"{result.criterion.id}: {result.why_given}" for result in report.results if result.carried]

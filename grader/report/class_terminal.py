@@ -146,7 +146,9 @@ def head_lines(found: ClassStatistics) -> Iterator[str]:
     words = {"graded": "graded", "unreadable": "could not be graded", "errored": "errored", "excused": "excused"}
     words["missing"] = "without a submission"
     counts = [f"{found.statuses[status]} {text}" for status, text in words.items() if status in found.statuses]
-    yield ", ".join([*counts, *([f"{found.late} late"] if found.late else [])]) or "no students"
+    if found.late:
+        counts.append(f"{found.late} late")
+    yield ", ".join(counts) or "no students"
     if found.all is not None:
         yield f"Grades of {format_points(found.maximum)}: {_means(found.all.mean, found.all.median)}"
     if found.open:
@@ -186,7 +188,7 @@ def _show_criteria(rows: Sequence[CriterionFigures], page: Page) -> None:
         title = "not deducted" if name == "carried" else name
         table.add_column(title, justify="right", no_wrap=name != "carried")
     for row in rows:
-        name = printable(f"{row.criterion.id}{' (bonus)' * row.criterion.bonus}")
+        name = printable(f"{row.criterion.id} (bonus)" if row.criterion.bonus else row.criterion.id)
         counts = (str(row.counts[column]) for column in columns)
         share = percent(row.share) if row.share is not None else ""
         table.add_row(name, format_points(row.criterion.points), *counts, share)

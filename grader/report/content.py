@@ -1,5 +1,9 @@
-"""The content of a report on the whole submission, for every format to lay out. All of it is printable text."""
+"""The content of a report, for every format to lay out: the order of its criteria, and what it says of the submission.
 
+People read a report from the top: what to fix comes first, what is fine last. All of it is printable text.
+"""
+
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from decimal import Decimal
 from itertools import groupby
@@ -7,7 +11,7 @@ from typing import NamedTuple
 
 from grader.checks.loading import urdf_loads
 from grader.grading.criterion import worth
-from grader.grading.report import EvidenceResult, Report
+from grader.grading.report import EvidenceResult, Report, Result
 from grader.problems import Problem
 from grader.report.criteria import (
     Answer,
@@ -35,7 +39,6 @@ VERDICTS = {
 }
 _MAX_LISTED = 12
 _STATUSES = ("passed", "failed", "skipped", "pending", "errored", "adjusted", "marked manually")
-_WORDS = {"pending": ("needs manual grading", "need manual grading"), "adjusted": ("corrected after grading",) * 2}
 
 
 class Document(NamedTuple):
@@ -180,8 +183,8 @@ def grade_line(report: Report) -> str:
 
 def summary(report: Report) -> str:
     """Return the URDF, whether ROS 2 loads it, and how many criteria passed, failed, and so on."""
-    path = report.submission.path
-    return f"{f'{printable(path)}: ' if path is not None else ''}{verdict_and_counts(report)}"
+    path, words = report.submission.path, verdict_and_counts(report)
+    return f"{printable(path)}: {words}" if path is not None else words
 
 
 def verdict_and_counts(report: Report) -> str:
@@ -190,13 +193,21 @@ def verdict_and_counts(report: Report) -> str:
     urdf = "the URDF could not be read" if submission.unread else "no URDF was submitted"
     if submission.path is not None and submission.has_urdf:
         urdf = VERDICTS[submission.verdict] if submission.verdict else UNDECIDED
-    statuses = [
-        "marked manually" if one.manual_mark else "adjusted" if one.is_adjusted else one.outcome.status
-        for one in report.results
-    ]
-    found = ((statuses.count(status), _WORDS.get(status, (status, status))) for status in _STATUSES)
-    counts = (f"{count} {words[count > 1]}" for count, words in found if count)
+    statuses = Counter(_counted_status(result) for result in report.results)
+    counts = (f"{count} {_status_words(status, count)}" for status in _STATUSES if (count := statuses[status]))
     return f"{urdf}; {', '.join(counts)}"
+
+
+def _counted_status(result: Result) -> str:
+    if result.manual_mark:
+        return "marked manually"
+    return "adjusted" if result.is_adjusted else result.outcome.status
+
+
+def _status_words(status: str, count: int) -> str:
+    if status == "pending":
+        return "needs manual grading" if count == 1 else "need manual grading"
+    return "corrected after grading" if status == "adjusted" else status
 
 
 def bonus_line(report: Report) -> str:
@@ -212,13 +223,15 @@ def package_line(report: Report) -> str:
     package = report.submission.package
     if package is None or not any(report.rubric.part(part).needs == "package" for part in report.parts):
         return ""
-    return printable(f"package {package.name}{f' in {package.folder}' if package.folder else ''}")
+    text = f"package {package.name}"
+    return printable(f"{text} in {package.folder}" if package.folder else text)
 
 
 def head(report: Report) -> Iterator[Line]:
     """Yield what a report says first: how the grade came about, the URDF, the criteria, the package, what is open."""
     for text in (grade_line(report), summary(report), bonus_line(report), package_line(report)):
-        yield from [Line("summary", text)] if text else []
+        if text:
+            yield Line("summary", text)
     if report.open_points:
         names = [printable(result.criterion.id) for result in report.pending_automatic]
         rest = f"; could not be decided: {enumerated(names, _MAX_LISTED)}" if names else ""

@@ -1,4 +1,4 @@
-"""Criteria in a report: their status and points, alone and in groups, and the blocks of what is said about each.
+"""Criteria in a report: their status and points, alone and in groups, and what is said about each, block by block.
 
 A writer decides how a block looks in its medium and which roles it leaves out, but neither words nor order.
 """
@@ -148,11 +148,12 @@ class Entry(NamedTuple):
             return earned_text(self.result)
         others = sum((other.criterion.maximum for other in self.skipped), Decimal(0))
         own = self.lost - others
-        lost = f"{signed_points(-own) if own else '0'} point{'' if own == 1 else 's'}"
-        lost = f"{lost}, and {format_points(others)} for what depends on it" if others else lost
+        lost = f"{signed_points(-own) if own else '0'} {'point' if own == 1 else 'points'}"
+        if others:
+            lost += f", and {format_points(others)} for what depends on it"
         if not self.result.criterion.bonus:
             return lost
-        return earned_text(self.result) + (f", {lost}" if self.lost else "")
+        return f"{earned_text(self.result)}, {lost}" if self.lost else earned_text(self.result)
 
     @property
     def location(self) -> Location | None:
@@ -226,7 +227,8 @@ def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iter
         yield from _answers(result)
     if result.hint is not None and is_mistake:
         yield Line("hint", sentence(hint_text(entry, result.hint.message)))
-        yield from [Diff(result.hint.edits)] if result.hint.edits and not entry.first else []
+        if result.hint.edits and not entry.first:
+            yield Diff(result.hint.edits)
     if criterion.feedback and is_mistake and has_subject and (everything or result.hint is None):
         yield Line("feedback", _one_line(criterion.feedback))
     if is_failure(result) and not is_asked:
@@ -250,7 +252,8 @@ def _findings(result: Result) -> Iterator[Line]:
         yield Line("finding", f"Skipped because {result.because} failed.")
     else:
         yield Line("finding", sentence(outcome.message))
-        yield from [Line("finding", result.why_given)] if result.why_given else []
+        if result.why_given:
+            yield Line("finding", result.why_given)
     if comment is not None:
         yield Line("comment", sentence(f"Comment{by_name(comment.by)}: {_one_line(comment.text)}"))
 
@@ -264,8 +267,10 @@ def _answers(result: Result) -> Iterator[Answer]:
     """Yield the student's answer to a question, and the model answer if the rubric was loaded with its answers."""
     found = tuple(printable(line) for line in answer_lines(result.outcome) if line.strip())
     model = tuple(printable(line) for line in model_lines(result.criterion) if line.strip())
-    yield from [Answer("Found", found)] if found else []
-    yield from [Answer("Model answer", model)] if model else []
+    if found:
+        yield Answer("Found", found)
+    if model:
+        yield Answer("Model answer", model)
 
 
 def _one_line(text: str) -> str:
@@ -303,9 +308,12 @@ def hint_text(entry: Entry, message: str) -> str:
     skipped = (result.criterion.id for one in (entry, *entry.also) for result in one.skipped)
     left = [name for name in skipped if name not in hint.gains]
     texts = [message.removesuffix(".")]
-    texts += ["Other edits are as good"] if hint.certainty == "one of several" and hint.gains else []
-    texts += [f"Also fixes {enumerated(also, _MAX_CRITERIA)}"] if also else []
-    texts += [f"Then look at {enumerated(left, _MAX_CRITERIA)}"] if left else []
+    if hint.certainty == "one of several" and hint.gains:
+        texts.append("Other edits are as good")
+    if also:
+        texts.append(f"Also fixes {enumerated(also, _MAX_CRITERIA)}")
+    if left:
+        texts.append(f"Then look at {enumerated(left, _MAX_CRITERIA)}")
     return f"{'. '.join(texts)}."
 
 

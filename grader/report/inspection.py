@@ -169,7 +169,7 @@ def _tree(robot: Configuration) -> Iterator[tuple[str, str, Joint | None]]:
     stack: list[tuple[str, str, Joint | None]] = [("", root, None) for root in reversed(robot.roots)]
     while stack:
         yield (link := stack.pop())
-        indent = link[0] + "  " * (len(link[0]) < _MAX_INDENT)
+        indent = f"{link[0]}  " if len(link[0]) < _MAX_INDENT else link[0]
         stack += [(indent, joint.child, joint) for joint in reversed(children.get(link[1], ()))]
 
 

@@ -13,7 +13,7 @@ _UNPRINTABLE = re.compile(r"[^\n -~]")  # or any other character that is not ASC
 
 
 def to_json(data: Mapping[str, Any]) -> str:
-    """Return data as JSON text: a line for each key, and for each entry of a list of objects.
+    """Return data as JSON text: a line for each key, and for the objects of a list.
 
     `indent` of the standard library takes three times as long, because it does not use the C encoder.
     """
@@ -29,16 +29,32 @@ def _harmless(text: str) -> str:
 
 
 def _lines(value: Any) -> str:
-    """Return a value as JSON; of a list of objects, those that begin with another key stay on the line before."""
-    if not isinstance(value, list) or not value or not isinstance(value[0], dict):
-        return _ENCODER.encode(value)
-    first = next(iter(value[0]))
+    return f"[\n  {_objects(value, next(iter(value[0])))}\n ]" if _is_of_objects(value) else _ENCODER.encode(value)
+
+
+def _is_of_objects(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and isinstance(value[0], dict)
+
+
+def _objects(values: Sequence[Mapping[str, Any]], first: str) -> str:
+    """Return objects between commas; each that begins with the key `first` starts a line, also in an inner list."""
     text = ""
-    for entry in value:
+    for value in values:
         if text:
-            text += ",\n  " if next(iter(entry)) == first else ", "
-        text += _ENCODER.encode(entry)
-    return f"[\n  {text}\n ]"
+            text += ",\n  " if next(iter(value)) == first else ", "
+        text += _object(value, first)
+    return text
+
+
+def _object(value: Mapping[str, Any], first: str) -> str:
+    inner = {key for key, item in value.items() if _is_of_objects(item) and next(iter(item[0])) == first}
+    if not inner:
+        return _ENCODER.encode(value)
+    members = []
+    for key, item in value.items():
+        text = f"[{_objects(item, first)}]" if key in inner else _ENCODER.encode(item)
+        members.append(f"{_ENCODER.encode(key)}: {text}")
+    return f"{{{', '.join(members)}}}"
 
 
 def exact(points: Decimal | None) -> int | float | None:

@@ -1,6 +1,6 @@
 """A report as Markdown (CommonMark, and HTML only to fold what passed): for job summaries, comments and LMS pages.
 
-Text of a submission is escape: it never becomes markup, HTML, a link or a mention.
+Text of a submission is escaped: it never becomes markup, HTML, a link or a mention.
 """
 
 import html
@@ -78,8 +78,9 @@ def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
     yield from _head(report)
     for section in document(report).sections:
         yield from _section(section, report, answers=answers)
-    passed = [*filter(None, map(_fold_passed, groups(report)))]
-    yield from ("## Passed", *passed) if passed else ()
+    passed = [folded for group in groups(report) if (folded := _fold_passed(group))]
+    if passed:
+        yield from ("## Passed", *passed)
     for section in content.closing(report):
         yield from _section(section, report, answers=answers)
     command = content.next_command(report)
@@ -101,7 +102,10 @@ def _section(section: Section, report: Report, *, answers: bool) -> Iterator[str
         yield "\n\n".join((f"- {SYMBOLS[entry.status]} {earned_text(result)} {name}", *details))
     for is_item, lines in groupby(section.lines, lambda line: line.role not in ("part", "skipped")):
         texts = [_LOOKS.get(line.role, "{}").format(escape(line.text)) for line in lines]
-        yield from ["\n".join(f"- {text}" for text in texts)] if is_item else texts
+        if is_item:
+            yield "\n".join(f"- {text}" for text in texts)
+        else:
+            yield from texts
 
 
 def _details(entry: Entry, report: Report, *, answers: bool) -> Iterator[str]:

@@ -51,7 +51,11 @@ def render_gradescope(report: Report) -> str:
 
 def _gradescope_test(entry: Entry, report: Report) -> dict[str, Any]:
     result, criterion, status = entry.result, entry.result.criterion, entry.result.outcome.status
-    kinds = [word for word, is_one in (("extra credit", criterion.bonus), ("manual grading", result.is_open)) if is_one]
+    kinds = []
+    if criterion.bonus:
+        kinds.append("extra credit")
+    if result.is_open:
+        kinds.append("manual grading")
     most = f" ({', '.join((f'up to {counted_points(criterion.points)}', *kinds))})" if kinds else ""
     return {
         **({} if result.is_open else _gradescope_points(result)),

@@ -37,13 +37,15 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
     results = test.reference.results
     lost = [f"  {it.criterion.id}: {it.outcome.message}" for it in results if it.criterion.id in test.lost]
     lines = [f"{test.reference.rubric.id}: {test.reference.rubric.title}", "", *_counts(test)]
-    lines += ["", "The reference does not get full marks:", *lost] if lost else []
+    if lost:
+        lines += ["", "The reference does not get full marks:", *lost]
     lines += _listed("These equivalents of the reference lose points:", test.losses)
     lines += _listed("These samples differ from their expected.toml:", test.samples.different if test.samples else ())
     lines += _listed("On these mutants a check is faulty:", test.faults)
     survivors = [Loss(it.mutant.id, {}, it.diff) for it in test.survivors]
     lines += _listed("These mutants of the reference get full marks:", survivors)
-    lines += ["", "To accept a mutant, add it to [[test.ignore]] with a reason."] if survivors else []
+    if survivors:
+        lines += ["", "To accept a mutant, add it to [[test.ignore]] with a reason."]
     if test.idle:
         mutant = "mutant" if test.tried == test.total else "graded mutant"
         lines += ["", f"Idle criteria, which no {mutant} fails: {enumerated(test.idle)}"]

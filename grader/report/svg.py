@@ -1,11 +1,11 @@
 """The drawing of a robot as SVG: three views at one scale, a key of the signs, and the failed criteria.
 
-It needs no script or other file. A page that contains it adds `STYLE` of `signs.py` to its own rules.
+It needs no script or other file. A page that contains it adds `STYLE` to its own rules. The signs are shapes, ground,
+frames, driving directions, outlines of the reference, and numbers. Every text is escaped here.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
-from itertools import compress
 from math import cos, hypot, sin, tau
 from textwrap import wrap
 
@@ -85,10 +85,13 @@ def _words(picture: Picture) -> list[str]:
     """Return what each callout of a picture is about, and what is not shown."""
     called = [
         f"{one.number}: {one.link or 'the robot'}: {points_of(one.results)} lost"
-        f"{' (not in the picture)' * (one.point is None)}, {enumerated([it.criterion.id for it in one.results])}."
+        f"{'' if one.point is not None else ' (not in the picture)'}, {enumerated(one.names)}."
         for one in picture.callouts
     ]
-    return [*map(printable, (*called, *picture.scene.missing, *([] if picture.scene.bodies else [_NO_SHAPES])))]
+    words = [*called, *picture.scene.missing]
+    if not picture.scene.bodies:
+        words.append(_NO_SHAPES)
+    return [*map(printable, words)]
 
 
 def _lines(words: str, width: float) -> list[str]:
@@ -100,7 +103,8 @@ def _lines(words: str, width: float) -> list[str]:
 def render_svg(report: Report) -> str:
     """Return the drawing of the graded robot as a file; without a robot, a sentence with the reason."""
     words = [grade_line(report), summary(report), bonus_line(report)]
-    words += notes(report)[: bool(report.another_robot)]
+    if report.another_robot:
+        words += notes(report)[:1]
     for result in report.results:
         words += [f"{printable(result.criterion.id)}: {remark}" for remark in remarks_on(result)]
     return _file(picture_of(report), f"{report.rubric.title}: {score_text(report)}", words, NO_PICTURE)
@@ -111,13 +115,14 @@ def inspection_svg(inspection: Inspection) -> str:
     robot = inspection.robot
     picture = plain_picture(robot, inspection.relative_to)
     name = robot.robot.name if robot is not None else inspection.path
-    positions = ", ".join(f"{joint} = {position}" for joint, position in robot.positions.items()) if robot else ""
-    words = f"{inspection.path}: {effect(inspection)}{f'; {positions}' if positions else ''}"
+    words = f"{inspection.path}: {effect(inspection)}"
+    if robot is not None and robot.positions:
+        words += f"; {', '.join(f'{joint} = {position}' for joint, position in robot.positions.items())}"
     return _file(picture, name or inspection.path, (words,), NO_PICTURE)
 
 
 def _file(picture: Picture | None, title: str, words: Iterable[str], reason: str) -> str:
-    above = [line for part in filter(None, words) for line in _lines(part, _WIDTH)]
+    above = [line for part in words if part for line in _lines(part, _WIDTH)]
     if picture is not None:
         drawn = drawing_element(picture, title, above=above)
     else:
@@ -210,26 +215,23 @@ def _numbers(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str
 
 def _key(picture: Picture, top: float) -> Iterator[str]:
     """Yield the meaning of each sign that a drawing has, beside the view from above."""
-    is_shown = (
-        any(callout.point is not None for callout in picture.callouts),
-        picture.outlines or picture.frames,
-        picture.scene.wheels,
-        True,
-        len(picture.scene.bodies) > 1,
-    )
-    for row, (sign, meaning) in enumerate(compress(_signs(), is_shown), 1):
+    for row, (sign, meaning) in enumerate(_signs(picture), 1):
         at = f"{PANEL + 26.0:g} {_number(top + row * _ROW)}"
         yield f'<g transform="translate({at})">{sign}{_text("faint", (34.0, 4.0), meaning)}</g>'
 
 
-def _signs() -> Iterator[tuple[str, str]]:
-    """Yield each sign with its meaning."""
+def _signs(picture: Picture) -> Iterator[tuple[str, str]]:
+    """Yield each sign that a drawing has, with its meaning."""
+    if any(callout.point is not None for callout in picture.callouts):
+        yield _badge((12.0, 0.0), 1), "points lost"
+    if picture.outlines or picture.frames:
+        yield _path("reference", "M0 0L26 0"), "reference solution"
+    if picture.scene.wheels:
+        yield _path("arrow", _arrow((-3.0, 0.0), 1.0, 0.0)), "driven so by a positive rotation"
     axes = (_path(f"axis-{name}", f"M{x} -5L{x} 5") for name, x in (("x", 5), ("y", 13), ("z", 21)))
-    yield _badge((12.0, 0.0), 1), "points lost"
-    yield _path("reference", "M0 0L26 0"), "reference solution"
-    yield _path("arrow", _arrow((-3.0, 0.0), 1.0, 0.0)), "driven so by a positive rotation"
     yield "".join(axes), "axes of a frame: x red, y green, z blue"
-    yield _path("hidden", "M0 0L26 0"), "hidden edge"
+    if len(picture.scene.bodies) > 1:
+        yield _path("hidden", "M0 0L26 0"), "hidden edge"
 
 
 def _escaped(words: str) -> str:

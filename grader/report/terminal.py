@@ -64,7 +64,6 @@ _MAX_ROWS, _MAX_REASON = 4, 2  # rows of a message, and of a reason; a hint has 
 _MOST_ROWS = 10  # of a message in a report of more than 24 rows
 _LAST_WORD, _LAST_NUMBER = re.compile(r"\s+\S*$"), re.compile(r"\s+[-+.\d]+$")  # a number keeps its unit
 _ROWS = 24  # of a common terminal
-_TRIED = (False, False), (True, False), (True, True), (True, False)  # without blank rows? with shortened sentences?
 _MAX_NAMES, _MAX_PROBLEMS, _MAX_FILES = 3, 3, 2
 
 
@@ -79,6 +78,11 @@ class Page(NamedTuple):
     is_whole: bool = True
     is_tight: bool = False
     is_cut: bool = False
+
+    @property
+    def height(self) -> int:
+        """The number of rows that a terminal shows."""
+        return sum(row.plain.count("\n") + 1 for row in self.rows)
 
     def leave_row(self) -> None:
         """Add an empty row if there is room for it."""
@@ -123,8 +127,7 @@ def _show_entry(entry: Entry, report: Report, page: Page, number: int = 0) -> No
     """Add a criterion; `number` counts failures, of which a short report has only the first with all blocks."""
     head, message, source_of = _head(entry, page), Text(" ".join(entry.texts("finding"))), report.submission.source
     if page.is_tight:
-        most = _MOST_ROWS if not page.is_cut else _MAX_ROWS if number < _MAX_FIRST else _MAX_REASON
-        page.inset(Text(": ").join((head, message)), head=Text(), most=most)
+        page.inset(Text(": ").join((head, message)), head=Text(), most=_most_rows(page, number))
     else:
         page.line(head)
         page.inset(message)
@@ -144,6 +147,13 @@ def _show_entry(entry: Entry, report: Report, page: Page, number: int = 0) -> No
             case Diff(edits):
                 for line in diff_lines(edits, source_of):
                     page.inset(line, _DIFF_STYLES.get(line[0], "dim"), 2 * INDENT)
+
+
+def _most_rows(page: Page, number: int) -> int:
+    """Return how many rows the message of a failure may have on a page without empty rows."""
+    if not page.is_cut:
+        return _MOST_ROWS
+    return _MAX_ROWS if number < _MAX_FIRST else _MAX_REASON
 
 
 def _head(entry: Entry, page: Page) -> Text:
@@ -230,13 +240,26 @@ def _symbol(console: Console, fancy: str, plain: str) -> str:
 def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
     """Print a report, with `verbose` everything in it, else in 24 rows as far as possible."""
     found = document(report, everything=verbose)
-    for is_tight, is_cut in [(False, False)] if verbose else _TRIED:
-        page = Page(console, [], verbose, is_tight, is_cut)
-        (_show_everything if verbose else _show_brief)(report, found, page)
+    if verbose:
+        page = Page(console, [], is_whole=True)
+        _show_everything(report, found, page)
         _show_end(report, page)
-        if sum(row.plain.count("\n") + 1 for row in page.rows) <= _ROWS:
-            break
+        page.print()
+        return
+    page = _brief_page(report, found, Page(console, [], is_whole=False))
+    if page.height > _ROWS:
+        page = _brief_page(report, found, Page(console, [], is_whole=False, is_tight=True))
+    if page.height > _ROWS:
+        cut = _brief_page(report, found, Page(console, [], is_whole=False, is_tight=True, is_cut=True))
+        page = cut if cut.height <= _ROWS else page  # if nothing makes it fit, sentences stay whole
     page.print()
+
+
+def _brief_page(report: Report, found: Document, page: Page) -> Page:
+    """Return a page with the short report."""
+    _show_brief(report, found, page)
+    _show_end(report, page)
+    return page
 
 
 def _show_brief(report: Report, found: Document, page: Page) -> None:
@@ -247,7 +270,9 @@ def _show_brief(report: Report, found: Document, page: Page) -> None:
         page.leave_row()
         _show_entry(entry, report, page, number)
     carried = [entry.result for entry in found.failures if entry.result.why_given]
-    lines = [*([carried_text(carried)] if carried else []), *(line.text for line in found.skipped)]
+    lines = [line.text for line in found.skipped]
+    if carried:
+        lines.insert(0, carried_text(carried))
     if lines:
         page.leave_row()
     for line in lines:
@@ -314,13 +339,15 @@ def _show_submission(report: Report, page: Page) -> None:
         named = f"; missing: {enumerated(missing, _MAX_FILES)}" if missing and found else ""
         page.line(f"Evidence: {found or 'none'} of {len(report.evidence)} found{named}", "dim")
     _show_problems(report, page)
-    for line in content.notes(report)[bool(report.another_robot) :]:
+    notes = content.notes(report)
+    for line in notes[1:] if report.another_robot else notes:  # the first one is shown above
         page.line(line, "cyan")
     others, ignored = [file.path for file in submission.unused_candidates], submission.ignored
-    lines = [f"Not graded: {enumerated(others, _MAX_FILES)} (--verbose says why)"] if others else []
-    more = f" (and {len(ignored) - 1} more: --verbose lists them)" if len(ignored) > 1 else ""
-    for line in (*lines, *(f"Ignored: {file}{more}" for file in ignored[:1])):
-        page.line(printable(line), "dim")
+    if others:
+        page.line(printable(f"Not graded: {enumerated(others, _MAX_FILES)} (--verbose says why)"), "dim")
+    if ignored:
+        more = f" (and {len(ignored) - 1} more: --verbose lists them)" if len(ignored) > 1 else ""
+        page.line(printable(f"Ignored: {ignored[0]}{more}"), "dim")
 
 
 def _show_problems(report: Report, page: Page) -> None:

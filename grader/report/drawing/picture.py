@@ -1,4 +1,7 @@
-"""The content of a picture of a graded robot: the scene, differences from the reference, failed criteria."""
+"""The content of a picture of a robot: its shapes and frames, differences from the reference, failed criteria.
+
+The scene is what is shown of any robot: shapes in their colours, frames, and driving directions of wheels.
+"""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -99,7 +102,8 @@ def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> 
     if len(bodies) > _MAX_BODIES:
         missing.append(f"Not shown: {counted(len(bodies) - _MAX_BODIES, 'more shape')}")
     scene = Scene(robot, frame, poses, (*bodies,)[:_MAX_BODIES], (), (*missing,))
-    return replace(scene, wheels=(*filter(None, (_wheel(scene, link) for link in wheels)),))
+    turning = (_wheel(scene, link) for link in wheels)
+    return replace(scene, wheels=tuple(wheel for wheel in turning if wheel is not None))
 
 
 def _pose(robot: Configuration, link: str, frame: str) -> Transform | str:
@@ -114,7 +118,8 @@ def _pose(robot: Configuration, link: str, frame: str) -> Transform | str:
 def _bodies(link: Link, pose: Transform | str) -> Iterator[Body | str]:
     """Yield the bodies of a link, and why the others are not drawn."""
     if isinstance(pose, str):
-        yield from [pose] if link.visuals else ()
+        if link.visuals:
+            yield pose
         return
     yield from (_body(link.name, visual, pose) for visual in link.visuals)
     if link.unresolved.keys() & {"visual", ""}:
@@ -166,18 +171,22 @@ class _Callout(NamedTuple):
     point: Vector | None
     results: tuple[Result, ...]
 
+    @property
+    def names(self) -> list[str]:
+        """The ids of the criteria."""
+        return [result.criterion.id for result in self.results]
+
 
 @dataclass(frozen=True, slots=True)
 class Picture:
     """What a picture of a graded robot shows.
 
-    `outlines` are the bodies of the reference where shapes or their places failed, and `frames` its poses of links
-    whose frames failed; also where the robot has none. Both are empty if the hint level does not show the reference.
+    Nothing of the reference is shown if the hint level does not allow it.
     """
 
     scene: Scene
-    outlines: tuple[Body, ...]
-    frames: tuple[Transform, ...]
+    outlines: tuple[Body, ...]  # bodies of the reference where shapes or their places failed, or the robot has none
+    frames: tuple[Transform, ...]  # poses of the reference's links whose frames failed, or that the robot has not
     callouts: tuple[_Callout, ...]
 
 

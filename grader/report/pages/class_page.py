@@ -83,7 +83,7 @@ def _row(grade: StudentGrade, links: Mapping[str, str]) -> _Row:
         student.name or student.key,
         links.get(student.key, ""),
         student.section,
-        grade.status + ", final mark" * (grade.final_points is not None),
+        f"{grade.status}, final mark" if grade.final_points is not None else grade.status,
         grade.total_text,
         format_points(grade.pending) if grade.pending else "",
         f"{counted(late.days, 'day')}{penalty}" if late.days and not grade.has_final else "",

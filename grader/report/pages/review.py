@@ -43,6 +43,9 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
     """
     criterion, first, members = item.criterion, item.members[0], [one.label for one in item.members]
     mark, is_alone = first.mark, len(members) == 1
+    marked = mark_text(mark) if mark else ""
+    if first.state == OLDER:
+        marked += ", before the submission changed"
     who = members[0] if is_alone else f"{len(members)} students"
     values = {
         **place,
@@ -58,7 +61,7 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
             for at, one in enumerate(opened.pictures, 1)
             if isinstance(one, EmbeddedPicture)
         ],
-        "marked": (mark_text(mark) if mark else "") + ", before the submission changed" * (first.state == OLDER),
+        "marked": marked,
         "buttons": _buttons(criterion),
         "choices": [f"{text} ({format_points(points)})" for text, points in criterion.choices.items()],
     }
@@ -103,7 +106,10 @@ def _buttons(criterion: Criterion) -> list[tuple[str, str]]:
 
 def mark_text(mark: Mark) -> str:
     """Return a mark or comment in one printable line: points, name, time, comment."""
-    points = counted_points(mark.points) if mark.points is not None else "withdrawn" if mark.value else "comment"
+    points = "withdrawn" if mark.value else "comment"
+    if mark.points is not None:
+        points = counted_points(mark.points)
     time = f"at {time_text(datetime.fromisoformat(mark.time))}" if mark.time else f"in {mark.place}"
     words = f"{points} by {mark.by or 'an unnamed person'} {time}"
-    return printable(": ".join(filter(None, [words, " ".join(mark.comment.split())])))
+    comment = " ".join(mark.comment.split())
+    return printable(f"{words}: {comment}" if comment else words)

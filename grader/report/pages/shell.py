@@ -40,7 +40,9 @@ def render_page(template: str, values: Mapping[str, object], data: Mapping[str, 
         data: The data of the script, as JSON: `JSON.parse(document.getElementById("data").textContent)`.
         assets: The styles and scripts.
     """
-    styles = [*map(_file, ("base.css", *assets.styles.split())), *filter(None, [assets.rules])]
+    styles = [*map(_file, ("base.css", *assets.styles.split()))]
+    if assets.rules:
+        styles.append(assets.rules)
     scripts = [*map(_file, assets.scripts.split())]
     policy = [
         f"default-src {_NOTHING}",
@@ -48,8 +50,9 @@ def render_page(template: str, values: Mapping[str, object], data: Mapping[str, 
         f"script-src {' '.join(map(_hash, scripts)) or _NOTHING}",
         f"base-uri {_NOTHING}",
         f"form-action {_NOTHING}",
-        *filter(None, [assets.sources]),
     ]
+    if assets.sources:
+        policy.append(assets.sources)
     shell = {
         "policy": "; ".join(policy),
         "styles": [*map(Markup, styles)],  # our own files
