@@ -15,7 +15,7 @@ def convert_here(_documents: object, command: list[str], data: bytes) -> tuple[i
     with (
         patch.object(sys, "argv", command[2:]),
         patch.multiple(sys, stdin=given, stdout=output, stderr=io.StringIO()),
-        patch.multiple(converter, end_with_parent=lambda *_: None, _limit=lambda _: None),
+        patch.multiple(converter, _end_with_parent=lambda *_: None, _limit=lambda _: None),
         warnings.catch_warnings(action="ignore"),
     ):
         code = converter.main()

@@ -18,7 +18,7 @@ from grader.authoring import rubric_test
 from grader.classroom.workers import pool
 from grader.cli import ending
 from grader.cli.app import COMMANDS, make_app
-from grader.documents import collection, converter, document, pictures
+from grader.documents import collection, converter, pictures
 from grader.files import limits
 from grader.grading.rubric import load_rubric, shipped_rubrics
 from grader.package import package
@@ -138,7 +138,7 @@ LIMITS: dict[str, dict[str, tuple[float, ...]]] = {
         "| {} GiB; the ratio above |": (limits.MAX_ARCHIVE_SIZE / MIB / 1024,),
         "| {} deep, {} in all, 64 MiB each |": (limits.MAX_NESTED, limits.MAX_ARCHIVES),
         "| `setup.py`, a launch file | {} KiB |": (budget.PYTHON_LIMIT / 1024,),
-        "| 1 MiB, and its first {:,} lines |": (document.MAX_LINES,),
+        "| 1 MiB, and its first {:,} lines |": (collection.MAX_LINES,),
         "| its first {} pages |": (converter.MAX_PAGES,),
         "| {} s; {} GiB of memory |": (collection.MAX_SECONDS, converter._MAX_MEMORY / MIB / 1024),
         "| `package.xml`; an RViz file | {} KiB; {} KiB |": (

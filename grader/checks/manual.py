@@ -7,7 +7,7 @@ from grader.submission.submission import Submission
 from grader.text import enumerated
 
 if TYPE_CHECKING:
-    from grader.documents.evidence_files import EvidenceFile
+    from grader.documents.evidence import EvidenceFile
 
 _DOCUMENTS = ("*.md", "*.txt", "*.docx", "*.pdf", "*.rst", "*.doc", "*.odt", "*.rtf", "*.pages", "*.ipynb")
 _MAY_HOLD_PICTURES = frozenset({".docx", ".doc", ".odt", ".pages", ".ipynb", ".pptx", ".odp", ".rtf", ".rar", ".7z"})

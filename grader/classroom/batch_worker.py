@@ -12,7 +12,7 @@ from grader.classroom.equal_work import forms_of, hashes_of
 from grader.classroom.results import StoredCriterion, StoredResult, Verdict, digest_of
 from grader.classroom.workers.pool import NO_MEMORY
 from grader.errors import InputError, MachineError
-from grader.files.names import ARCHIVES
+from grader.files.limits import ARCHIVES
 from grader.files.reading import URDF_LIMIT
 from grader.grading.grade import grade
 from grader.grading.pictures import content_of, is_empty

@@ -10,12 +10,11 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.documents.evidence_files import EVIDENCE
+from grader.documents.evidence import EVIDENCE
 from grader.errors import InputError
-from grader.files.class_folder import ClassDirectory
-from grader.files.class_zip import ClassZip
-from grader.files.members import ARCHIVE_ERRORS, error_text
-from grader.files.names import ROBOT_ENDINGS
+from grader.files.archive import ARCHIVE_ERRORS, error_text
+from grader.files.class_source import ClassDirectory, ClassZip
+from grader.files.limits import ROBOT_ENDINGS
 from grader.files.opening import archive_kind, with_inner, without_endings
 from grader.files.reading import URDF_LIMIT, not_there, read_start
 from grader.files.tree import Tree

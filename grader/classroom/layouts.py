@@ -16,8 +16,8 @@ from typing import NamedTuple
 from grader.classroom.class_files import ClassListing
 from grader.classroom.roster import People, Student, iso_time
 from grader.errors import InputError
-from grader.files.children import Children
-from grader.files.names import BUILD_FOLDERS, PACKAGE_FILES
+from grader.files.class_source import Children
+from grader.files.limits import BUILD_FOLDERS, PACKAGE_FILES
 from grader.names import folded
 from grader.submission.labs import LabFolders, is_part, lab_words
 from grader.text import enumerated, printable_path

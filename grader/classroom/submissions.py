@@ -27,8 +27,8 @@ from grader.classroom.layouts import (
 )
 from grader.classroom.roster import GROUP, People, Roster, Student, plain
 from grader.errors import InputError
-from grader.files.class_zip import ClassZip
-from grader.files.names import PACKAGE_FILES
+from grader.files.class_source import ClassZip
+from grader.files.limits import PACKAGE_FILES
 from grader.files.tree import parents
 from grader.submission.labs import MAX_WRAPPERS, LabFolders, is_part
 from grader.text import enumerated, first_lines, printable_path, shell_quoted

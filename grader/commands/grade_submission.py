@@ -12,7 +12,7 @@ from grader.commands.invocation import ExitCode, Saves, exit_code, read_argument
 from grader.commands.rubrics import files_of, load
 from grader.commands.writing import CHECKOUTS, Warn, refuse_inputs, refuse_symlinks, remove_previous, save
 from grader.errors import GraderError, InputError
-from grader.files.names import ROBOT_ENDINGS
+from grader.files.limits import ROBOT_ENDINGS
 from grader.grading.levels import HintLevel
 from grader.report.formats import Format, inputs_of, render
 from grader.source import Base

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError
-from grader.files.names import ROBOT_ENDINGS
+from grader.files.limits import ROBOT_ENDINGS
 from grader.report.screen import Screen
 from grader.text import printable, printable_path
 

@@ -1,24 +1,30 @@
-"""The documents of a submission as lines of text: each is read once, and Word and PDF files share one time limit."""
+"""The documents of a submission as lines of text, with their pages and marks for their pictures.
+
+Each is read once, and Word and PDF files share one time limit.
+"""
 
 import os
 import re
 import subprocess
 import sys
 import time
+from bisect import bisect_right
 from collections.abc import Collection, Mapping, Sequence
 from fnmatch import translate
 from functools import lru_cache
 from math import ceil
 from tempfile import TemporaryFile
 from types import MappingProxyType
+from typing import NamedTuple
 
 from grader.documents import converter
-from grader.documents.document import CONVERTED, Document, Unread, made_of
-from grader.documents.headings import Heading, Pattern, find_headings
-from grader.documents.labels import stem
+from grader.documents.headings import Heading, Pattern, find_headings, stem
 from grader.errors import InputError, MachineError
 from grader.files.tree import File, Tree
+from grader.source import Location
 
+MAX_LINES = 2000  # of one document
+CONVERTED = (".docx", ".pdf")  # whose text a separate process reads
 MAX_SECONDS = 20.0  # for all Word and PDF files of a submission
 _TEXT_LIMIT, _DOCUMENT_LIMIT = 1024 * 1024, 32 * 1024 * 1024  # bytes
 _MAX_FILES, _MAX_CONVERTED = 40, 8
@@ -33,10 +39,54 @@ _OTHER = re.compile(
 )
 
 
-@lru_cache(maxsize=256)
-def _names_like(patterns: tuple[str, ...]) -> re.Pattern[str]:
-    """Return what matches names in lower case: translated once a rubric, not once a submission."""
-    return re.compile("|".join(translate(pattern.lower()) for pattern in patterns))
+class Document(NamedTuple):
+    """The first lines of a document. `pages` are the indices of the first line of each page, or empty if not known.
+
+    `limit` says what was not read of a document that is too long.
+    """
+
+    file: File
+    lines: list[str]
+    pages: tuple[int, ...] = ()
+    limit: str = ""
+
+    def page(self, line: int) -> int | None:
+        """Return the page of a line, counted from 1, if it is known."""
+        return bisect_right(self.pages, line) or None
+
+    def has_picture(self, start: int = 0, end: int | None = None) -> bool:
+        """Return whether there is a picture between two lines; in a PDF, on the pages with these lines."""
+        if self.file.suffix == ".pdf" and end is not None:
+            first, last = self.page(start) or 1, self.page(max(start, end - 1)) or 1
+            start = self.pages[first - 1]
+            end = self.pages[last] if last < len(self.pages) else len(self.lines)
+        return converter.PICTURE in self.lines[start:end]
+
+
+class Passage(NamedTuple):
+    """The part of a document below a heading; `location` is its beginning, and `where` says it for a person.
+
+    `how` says why this is the passage, unless it is headed by the task and step. If that is not certain, it may belong
+    to another question. It is empty if it holds only the question.
+    """
+
+    text: str
+    location: Location
+    where: str
+    head: Heading
+    how: str = ""
+    is_certain: bool = True
+    is_empty: bool = False
+
+
+class _Unread(NamedTuple):
+    """A document that was not read completely, and why; the path is empty for several documents."""
+
+    path: str
+    reason: str
+
+    def __str__(self) -> str:
+        return self.reason
 
 
 class DocumentCollection:
@@ -50,8 +100,8 @@ class DocumentCollection:
         self.converted = dict(converted)
         self._seconds = MAX_SECONDS
         self._converted = 0
-        self._read_files: dict[str, Document | Unread | None] = {}
-        self._named: dict[tuple[str, ...], tuple[list[Document], list[Unread]]] = {}
+        self._read_files: dict[str, Document | _Unread | None] = {}
+        self._named: dict[tuple[str, ...], tuple[list[Document], list[_Unread]]] = {}
         self._headings: dict[tuple[str, frozenset[Pattern]], tuple[Heading, ...]] = {}
 
     def headings(self, document: Document, patterns: Collection[Pattern] = ()) -> tuple[Heading, ...]:
@@ -61,46 +111,46 @@ class DocumentCollection:
             self._headings[key] = find_headings(document.lines, stem(document.file.name), sorted(key[1]))
         return self._headings[key]
 
-    def named(self, patterns: Sequence[str]) -> tuple[list[Document], list[Unread]]:
+    def named(self, patterns: Sequence[str]) -> tuple[list[Document], list[_Unread]]:
         """Return the documents whose names match one of the patterns, and what of them was not read, and why."""
         key = tuple(patterns)
         if key not in self._named:
             self._named[key] = self._find(key)
         return self._named[key]
 
-    def _find(self, patterns: tuple[str, ...]) -> tuple[list[Document], list[Unread]]:
+    def _find(self, patterns: tuple[str, ...]) -> tuple[list[Document], list[_Unread]]:
         read: list[Document] = []
-        unread: list[Unread] = []
+        unread: list[_Unread] = []
         matching = _names_like(patterns)
         files = self.tree.files.values()
         chosen = [file for file in files if file.name not in _NO_ANSWERS and matching.match(file.name.lower())]
         for file in chosen[:_MAX_FILES]:
             document = self.document(file)
-            if isinstance(document, Unread):
+            if isinstance(document, _Unread):
                 unread.append(document)
             elif document is not None:
                 read.append(document)
                 if document.limit:
-                    unread.append(Unread(file.path, f"{file.path} after {document.limit}, the limit for a document"))
+                    unread.append(_Unread(file.path, f"{file.path} after {document.limit}, the limit for a document"))
         if len(chosen) > _MAX_FILES:
             rest = f"{len(chosen) - _MAX_FILES} documents after the first {_MAX_FILES}, the limit"
-            unread.append(Unread("", rest))
+            unread.append(_Unread("", rest))
         return read, unread
 
-    def document(self, file: File) -> Document | Unread | None:
+    def document(self, file: File) -> Document | _Unread | None:
         """Return a document, the reason why it was not read, or None for a file that contains no answers."""
         if file.path not in self._read_files:
-            self._read_files[file.path] = self._read(file)
+            self._read_files[file.path] = self._read_document(file)
         return self._read_files[file.path]
 
-    def _read(self, file: File) -> Document | Unread | None:
+    def _read_document(self, file: File) -> Document | _Unread | None:
         try:
             text = self._text(file)
         except InputError as error:
-            return Unread(file.path, str(error))
+            return _Unread(file.path, str(error))
         if _OTHER.match(text):
             return None
-        return made_of(file, text)
+        return _document_of(file, text)
 
     def _text(self, file: File) -> str:
         match file.suffix:
@@ -165,3 +215,25 @@ class DocumentCollection:
                 check=False,
             )
         return done.returncode, done.stdout
+
+
+def _document_of(file: File, text: str) -> Document:
+    """Return the document that a text makes."""
+    # Lines as git and editors count them: `splitlines` also breaks at form feeds and separators of Unicode.
+    text = text.replace("\r\n", "\n").replace("\r", "\n").removesuffix("\n")
+    lines = text.split("\n", MAX_LINES)
+    limit = f"line {MAX_LINES}" if len(lines) > MAX_LINES else ""
+    del lines[MAX_LINES:]
+    if file.suffix not in CONVERTED or not (file.suffix == ".pdf" or converter.PAGE_BREAK in text):
+        return Document(file, lines, (), limit)
+    # The converter begins every page but the first with a line that is a page break.
+    breaks = [index for index, line in enumerate(lines) if line == converter.PAGE_BREAK]
+    if len(breaks) >= converter.MAX_PAGES:
+        limit = f"page {converter.MAX_PAGES}"
+    return Document(file, ["" if line == converter.PAGE_BREAK else line for line in lines], (0, *breaks), limit)
+
+
+@lru_cache(maxsize=256)
+def _names_like(patterns: tuple[str, ...]) -> re.Pattern[str]:
+    """Return what matches names in lower case: translated once a rubric, not once a submission."""
+    return re.compile("|".join(translate(pattern.lower()) for pattern in patterns))

@@ -31,11 +31,11 @@ _PR_SET_PDEATHSIG = 1
 def main() -> int:
     """Convert one document. Arguments: `docx` or `pdf`, seconds of processor time, process id of the parent."""
     kind, seconds, parent = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
-    end_with_parent(parent, seconds)
+    _end_with_parent(parent, seconds)
     _limit(seconds)
     data = sys.stdin.buffer.read()
     try:
-        output = {"docx": _docx, "pdf": _pdf}[kind](data)
+        output = _docx(data) if kind == "docx" else _pdf(data)
     except ImportError:
         return MISSING
     except Exception:  # noqa: BLE001  a damaged file can raise anything
@@ -49,7 +49,7 @@ def is_out_of_time(code: int) -> bool:
     return code < 0 and code == -getattr(signal, "SIGXCPU", 0)
 
 
-def end_with_parent(parent: int, seconds: int) -> None:
+def _end_with_parent(parent: int, seconds: int) -> None:
     """End this process when its parent has ended: by the kernel on Linux, elsewhere after so many seconds."""
     if sys.platform == "linux":
         import ctypes

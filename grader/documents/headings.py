@@ -1,16 +1,27 @@
-"""The headings of a document: lines that name a task, a step or a question, and where the passage below each ends."""
+"""The headings of a document: lines that name a task, a step or a question, and where the passage below each ends.
+
+A label is the task and step that a heading or the name of a file names, in any spelling: Task1_Step8, task 1 step 8,
+T1S8, lab6_task1_q8.
+"""
 
 import re
 from bisect import bisect_right
 from collections.abc import Collection, Iterable
-from itertools import islice
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import islice, takewhile
 from typing import NamedTuple
 
-from grader.documents.labels import QUESTION_WORDS, STEPS, TASKS, WORDS, Label, matches, read_label
 from grader.text import cut
 
+WORDS = re.compile(r"[^\W\d_]+|\d+")
+_QUESTION_WORDS = frozenset({"question", "q", "que", "frage"})
+_NUMBER = re.compile(r"\d{1,4}")
+_TASKS = frozenset({"task", "tasks", "t", "tsk", "tast", "aufgabe", "teil"})
+_STEPS = {"step", "steps", "s", "st", "stp", "questions", "no", "nr", "schritt", "answer", "antwort"} | _QUESTION_WORDS
+KEYWORDS = _TASKS | _STEPS
+_MAX_LENGTH = 300
 Pattern = tuple[str, ...]  # the words of a heading, such as ("required", "question")
-
 _QUESTIONS: tuple[Pattern, ...] = (("required", "question"), ("optional", "question"), ("question",))
 _MAX_LINE = 1000  # characters of a line in which a label is searched
 _MAX_SHOWN = 40  # characters of a heading
@@ -28,13 +39,82 @@ _LEADING = frozenset({"to", "the", "my", "for", "lab"})  # before the words of a
 _ANSWERS = frozenset({"answer", "answers"})
 _TAG = re.compile(r"</?[a-zA-Z][^<>]{0,80}>")  # of HTML in Markdown
 # "Task 1", "t_1"; "Step 15", "Steps 3, 4 & 5", "Step 1-2".
-_TASK = rf"(?:{'|'.join(sorted(TASKS))})(?:[\W_]*\d{{1,4}}(?!\d))+"
-_STEP = rf"(?:{'|'.join(sorted(STEPS))})[\W_]*\d{{1,4}}(?!\d)(?:(?:\s*[,&+/]?\s*|[-_])\d{{1,4}}(?!\d))*"
+_TASK = rf"(?:{'|'.join(sorted(_TASKS))})(?:[\W_]*\d{{1,4}}(?!\d))+"
+_STEP = rf"(?:{'|'.join(sorted(_STEPS))})[\W_]*\d{{1,4}}(?!\d)(?:(?:\s*[,&+/]?\s*|[-_])\d{{1,4}}(?!\d))*"
 # What a line needs to begin a passage: a sign or number at its start, or a keyword with a number.
-_BEGINNING = rf"[\s>*\-_+|`]*(?:#|\(?\d)|.{{0,200}}?(?<![^\W\d_])(?:{'|'.join(sorted(TASKS | STEPS))})[\W_]*\d"
+_BEGINNING = rf"[\s>*\-_+|`]*(?:#|\(?\d)|.{{0,200}}?(?<![^\W\d_])(?:{'|'.join(sorted(_TASKS | _STEPS))})[\W_]*\d"
 _FILLERS = r"[\W_]*(?:(?:of|the|in|to|for|and|required|optional|question|answer)\b[\W_]*)*"
 # "Step 15: see task 2" names no task, and "Step 26: 0.6" no step 6.
 _LABEL = re.compile(rf"(?<![^\W\d_])(?:{_TASK}|{_STEP})(?:{_FILLERS}(?:{_TASK}|{_STEP}))*")
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """The task and steps that a text names, and all of its words; None and empty where it names none."""
+
+    task: int | None
+    steps: frozenset[int]
+    words: tuple[str, ...]
+
+    @property
+    def is_complete(self) -> bool:
+        """Return whether it names both a task and a step."""
+        return self.task is not None and bool(self.steps)
+
+
+@lru_cache(maxsize=1024)  # a rubric's names are read for each submission
+def read_label(text: str) -> Label:
+    """Return the label of a name or line. If it names several tasks, as a path may, the last one counts."""
+    text = text[-_MAX_LENGTH:].lower()
+    task: int | None = None
+    steps: set[int] = set()
+    for part in text.split("/"):
+        own_task, own_steps = _numbers(WORDS.findall(part))
+        if own_task is not None:
+            task, steps = own_task, own_steps
+        else:
+            steps |= own_steps
+    return Label(task, frozenset(steps), tuple(WORDS.findall(text)))
+
+
+def matches(wanted: Label, found: Label, task: int | None = None) -> bool:
+    """Return whether a label matches the wanted one; `task` is the task of the headings around it."""
+    if wanted.steps or wanted.task is not None:
+        own = found.task if found.task is not None else task
+        if wanted.task is not None and wanted.task != own:
+            return False
+        return wanted.steps <= found.steps if wanted.steps else own == wanted.task
+    return bool(wanted.words) and _in_order(wanted.words, found.words)
+
+
+def stem(path: str) -> str:
+    """Return a path without its suffix."""
+    folder, slash, name = path.rpartition("/")
+    return folder + slash + (name.rpartition(".")[0] or name)
+
+
+def _numbers(words: list[str]) -> tuple[int | None, set[int]]:
+    """Return the task and the steps that these words name."""
+    task: int | None = None
+    steps: set[int] = set()
+    for index, word in enumerate(words):
+        numbers = [int(number) for number in takewhile(_NUMBER.fullmatch, words[index + 1 :])]
+        if not numbers:
+            continue
+        if word in _TASKS:
+            task, steps = numbers[0], (steps if task is None else set()) | set(numbers[1:])
+        elif word in _STEPS:
+            steps |= set(numbers)
+    return task, steps
+
+
+def _in_order(wanted: tuple[str, ...], found: tuple[str, ...]) -> bool:
+    """Return whether the wanted words occur next to each other, each at least as a prefix: cam in camera."""
+    span = len(wanted)
+    return any(
+        all(word.startswith(part) for part, word in zip(wanted, found[start : start + span], strict=True))
+        for start in range(len(found) - span + 1)
+    )
 
 
 class Heading(NamedTuple):
@@ -73,7 +153,7 @@ def find_headings(lines: list[str], name: str, patterns: Collection[Pattern] = (
     """
     found: list[Heading] = []
     known = (*patterns, *_QUESTIONS)
-    words = "|".join(sorted({re.escape(word) for pattern in known for word in pattern} | QUESTION_WORDS))
+    words = "|".join(sorted({re.escape(word) for pattern in known for word in pattern} | _QUESTION_WORDS))
     candidate = re.compile(rf"{_BEGINNING}|.{{0,200}}?\b(?:{words})(?![^\W\d_])", re.IGNORECASE)
     task = section = read_label(name).task
     is_fenced = False
@@ -82,18 +162,21 @@ def find_headings(lines: list[str], name: str, patterns: Collection[Pattern] = (
         if not candidate.match(line, 0, _MAX_LINE):
             continue
         above = found[-1] if found else None
-        heading = _read(line[:_MAX_LINE], index, known, above, is_marked=not is_fenced)
+        heading = _heading_of(line[:_MAX_LINE], index, known, above, is_marked=not is_fenced)
         if heading is None:
             continue
         own = heading.label.task
         if own is not None and not heading.is_mention:
-            section = own if not heading.label.steps else section if own == section else None
+            if not heading.label.steps:
+                section = own
+            elif own != section:
+                section = None
             task = own
         found.append(heading._replace(task=own if own is not None else task, section=section))
     ending = [heading for heading in found if not heading.is_mention]
     starts = [heading.start for heading in ending]
     return tuple(
-        heading._replace(end=_end(heading, islice(ending, bisect_right(starts, heading.start), None), lines))
+        heading._replace(end=_end_of_passage(heading, islice(ending, bisect_right(starts, heading.start), None), lines))
         for heading in found
     )
 
@@ -111,7 +194,7 @@ def has_words(line: str) -> bool:
     return any(map(str.isalnum, line))
 
 
-def _read(
+def _heading_of(
     line: str, index: int, patterns: Collection[Pattern], above: Heading | None, *, is_marked: bool
 ) -> Heading | None:
     """Return what a line begins, if it begins anything; its end and its tasks are not known yet."""
@@ -119,13 +202,13 @@ def _read(
     plain = _MARKUP.sub("", _TAG.sub(" ", line) if "<" in line else line)
     text = plain.rstrip(" *_|`#\t")
     words = _first_words(plain)
-    label = _label(words)
+    label = _label_in(words)
     pattern, number = question_of(plain, patterns)
     is_bold = line.lstrip().startswith(("**", "__")) and line.rstrip(" :.").endswith(("**", "__"))
     level = len(marked[1]) if marked else 0
     heading = Heading(index, index, text, label, level, pattern=pattern, number=number, is_bold=is_bold)
     if label.steps or label.task is not None:
-        begins = _label(words[:2])
+        begins = _label_in(words[:2])
         is_short = len(words) <= _MAX_WORDS or begins.steps or begins.task is not None
         return heading._replace(is_mention=not (is_short or marked or pattern))
     if pattern or (marked and _SPACED.match(line) and has_words(line)):
@@ -147,7 +230,7 @@ def _first_words(plain: str) -> list[str]:
     return [word for word in plain.split(None, _MAX_SPLIT) if has_words(word)]
 
 
-def _label(words: list[str]) -> Label:
+def _label_in(words: list[str]) -> Label:
     """Return the first label in the first words of a line."""
     found = _LABEL.search(" ".join(words[:_MAX_WORDS]).lower())
     return read_label(found[0] if found else "")
@@ -174,20 +257,20 @@ def _question_words(text: str) -> list[str]:
         has_number = len(tokens) > 1 and tokens[1].isdecimal()
         if tokens[0] in _ANSWERS and has_number:
             tokens[0] = "question"
-        elif has_number and tokens[0] in (TASKS | STEPS) - QUESTION_WORDS:
+        elif has_number and tokens[0] in (_TASKS | _STEPS) - _QUESTION_WORDS:
             del tokens[:2]
         elif tokens[0] in _LEADING or tokens[0] in _ANSWERS or tokens[0].isdecimal():
             del tokens[0]
         else:
             break
-    return ["question" if token in QUESTION_WORDS else token for token in tokens]
+    return ["question" if token in _QUESTION_WORDS else token for token in tokens]
 
 
-def _end(heading: Heading, later: Iterable[Heading], lines: list[str]) -> int:
-    return next((other.start for other in later if _ends(heading, other, lines)), len(lines))
+def _end_of_passage(heading: Heading, later: Iterable[Heading], lines: list[str]) -> int:
+    return next((other.start for other in later if _ends_passage(heading, other, lines)), len(lines))
 
 
-def _ends(heading: Heading, other: Heading, lines: list[str]) -> bool:
+def _ends_passage(heading: Heading, other: Heading, lines: list[str]) -> bool:
     """Return whether a later heading ends the passage.
 
     Below a heading that is marked as one, only such a heading does, or a line that is bold or names task and step at

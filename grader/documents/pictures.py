@@ -15,7 +15,7 @@ _MAX_DOCUMENT = 32 * 1024 * 1024
 _DIB_SIZES = frozenset({12, 40, 52, 56, 64, 108, 124})
 
 
-class ImageType(NamedTuple):
+class _ImageType(NamedTuple):
     """A format that every browser shows: its name, its media type, and its file name extension."""
 
     name: str
@@ -24,12 +24,12 @@ class ImageType(NamedTuple):
 
 
 _PNG, _JPEG, _GIF, _WEBP, _BMP, PDF = (
-    ImageType("PNG", "image/png", "png"),
-    ImageType("JPEG", "image/jpeg", "jpg"),
-    ImageType("GIF", "image/gif", "gif"),
-    ImageType("WebP", "image/webp", "webp"),
-    ImageType("BMP", "image/bmp", "bmp"),
-    ImageType("PDF", "application/pdf", "pdf"),
+    _ImageType("PNG", "image/png", "png"),
+    _ImageType("JPEG", "image/jpeg", "jpg"),
+    _ImageType("GIF", "image/gif", "gif"),
+    _ImageType("WebP", "image/webp", "webp"),
+    _ImageType("BMP", "image/bmp", "bmp"),
+    _ImageType("PDF", "application/pdf", "pdf"),
 )
 _SIGNATURES = (
     (re.compile(rb"\x89PNG\r\n\x1a\n"), _PNG),
@@ -46,7 +46,7 @@ class EmbeddedPicture(NamedTuple):
     """A picture or PDF of a submission: where it is, its type, and its bytes; `page` of a PDF is shown first."""
 
     where: str
-    kind: ImageType
+    kind: _ImageType
     data: bytes
     page: int = 1
 
@@ -61,7 +61,7 @@ class NotShown(NamedTuple):
         return f"{self.where}: {self.reason}"
 
 
-def image_type(data: bytes) -> ImageType | None:
+def _image_type(data: bytes) -> _ImageType | None:
     """Return the format of a picture, by its signature; None for everything that is not shown."""
     kind = next((kind for signature, kind in _SIGNATURES if signature.match(data)), None)
     if kind is _BMP and int.from_bytes(data[14:18], "little") not in _DIB_SIZES:
@@ -77,17 +77,8 @@ def read_picture(file: File) -> EmbeddedPicture | NotShown:
         data = file.read(MAX_BYTES)
     except InputError as error:
         return NotShown(file.path, error.reason if isinstance(error, FileError) else str(error))
-    return verified(data, file.path)
-
-
-def verified(data: bytes, where: str) -> EmbeddedPicture | NotShown:
-    """Return a picture after its format is verified, or why it is not shown."""
-    kind = image_type(data)
-    if kind is None:
-        return NotShown(where, _OTHER)
-    if len(data) > MAX_BYTES:
-        return NotShown(where, _too_large(len(data)))
-    return EmbeddedPicture(where, kind, data)
+    kind = _image_type(data)
+    return EmbeddedPicture(file.path, kind, data) if kind is not None else NotShown(file.path, _OTHER)
 
 
 def pictures_in_word(file: File) -> Iterator[EmbeddedPicture | NotShown]:

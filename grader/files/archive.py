@@ -7,30 +7,48 @@ import bz2
 import gzip
 import io
 import lzma
+import stat
+import struct
 import tarfile
 import tempfile
 import weakref
-from collections.abc import Iterable, Iterator
-from contextlib import ExitStack
+import zipfile
+import zlib
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import AbstractContextManager, ExitStack
 from functools import partial
-from typing import IO, Any
+from typing import IO, Any, Literal, NamedTuple
 
-from grader.errors import FileError, InputError
+from grader.errors import FileError, InputError, MachineError
 from grader.files import limits
-from grader.files.members import (
-    ARCHIVE_ERRORS,
-    MAX_NAME_LENGTH,
-    NOT_REGULAR,
-    ArchiveMember,
-    error_text,
-    safe_path,
-    zip_members,
-)
-from grader.files.names import ignored_part, is_generated
+from grader.files.limits import ignored_part, is_generated
 from grader.files.reading import advice_for, capped
 from grader.files.tree import IS_LINK, File, IgnoredFile, Tree, keep_small, make_tree, parents
 from grader.text import printable_path
 
+_MAX_NAME_LENGTH = 4096  # characters
+NOT_REGULAR = "is not a regular file, and was not read"
+# What the standard library raises for archives that are damaged or hostile.
+ARCHIVE_ERRORS = (
+    zipfile.BadZipFile,
+    tarfile.TarError,
+    zlib.error,
+    lzma.LZMAError,
+    EOFError,
+    NotImplementedError,
+    RuntimeError,  # zipfile raises it for a missing password
+    ValueError,
+    OverflowError,
+    MemoryError,
+    OSError,
+    LookupError,
+    struct.error,
+)
+_MAX_DIRECTORY_SIZE = 16 * 1024 * 1024  # bytes of a zip's table of contents
+_ENCRYPTED = 0x1  # flag bits of a member
+_UTF8 = 0x800
+_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # the others unpack without a bound, or are not known at all
+_Opener = Callable[[], AbstractContextManager[IO[bytes]]]
 _IN_MEMORY = 16 * 1024 * 1024  # bytes
 _CHUNK = 1024 * 1024  # bytes
 _DECOMPRESSORS: dict[str, Any] = {"gz": gzip.open, "bz2": bz2.open, "xz": lzma.open}
@@ -74,26 +92,14 @@ def _decompress(source: IO[bytes], to: IO[bytes], name: str, limit: int, allowan
     to.seek(0)
 
 
-def _tar_members(file: IO[bytes]) -> Iterator[ArchiveMember]:
-    """Yield the members of a tar, which stays open for them."""
-    archive = tarfile.open(fileobj=file, mode="r:")  # noqa: SIM115  it is read from as long as its tree lives
-    offset = -1
-    while (info := archive.next()) is not None:
-        if archive.offset <= offset or info.size < 0:
-            raise tarfile.TarError("it refers to an earlier position")
-        offset = archive.offset
-        opened = partial(_open, archive, info)
-        if info.isfile():
-            yield ArchiveMember(info.name, "file", info.size, opened)
-        elif info.issym() or info.islnk():
-            yield ArchiveMember(info.name, "link", 0, opened)
-        else:
-            reason = "" if info.isdir() else NOT_REGULAR
-            yield ArchiveMember(info.name, "other" if reason else "folder", 0, opened, reason)
+class ArchiveMember(NamedTuple):
+    """One entry of an archive. `reason` says why one of kind other is not read; `open` gives the content of a file."""
 
-
-def _open(archive: tarfile.TarFile, info: tarfile.TarInfo) -> IO[bytes]:
-    return archive.extractfile(info) or io.BytesIO()
+    path: str
+    kind: Literal["file", "folder", "link", "other"]
+    size: int
+    open: _Opener
+    reason: str = ""
 
 
 def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX_UNPACKED_SIZE) -> Tree:
@@ -103,11 +109,12 @@ def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX
     generated: set[str] = set()
     unseen: set[str] = set()
     for member in _check_limits(members, name, min(limit, limits.MAX_UNPACKED_SIZE)):
-        path = _path(member)
+        path = _path_in_tree(member)
         if isinstance(path, IgnoredFile):
             ignored.append(path)
         elif part := ignored_part(path):
-            generated |= {path} if is_generated(path) and member.kind == "file" else set()
+            if is_generated(path) and member.kind == "file":
+                generated.add(path)
             unseen |= {part} - {path}
         elif path:
             found[path] = member
@@ -115,7 +122,7 @@ def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX
         found = {path: member for path, member in found.items() if environments.isdisjoint(parents(path))}
     folders = [path for path, member in found.items() if member.kind == "folder"]
     files = [
-        File(path, member.size, keep_small(partial(_read, member, path)))
+        File(path, member.size, keep_small(partial(_read_member, member, path)))
         for path, member in found.items()
         if member.kind == "file"
     ]
@@ -125,9 +132,9 @@ def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX
     return make_tree(name, files, folders, sorted(ignored), sorted(generated), [*unseen, *links])
 
 
-def _path(member: ArchiveMember) -> str | IgnoredFile:
+def _path_in_tree(member: ArchiveMember) -> str | IgnoredFile:
     """Return the path of a member in the tree, or why it is not read."""
-    if len(member.path) > MAX_NAME_LENGTH:
+    if len(member.path) > _MAX_NAME_LENGTH:
         shown = f"{printable_path(member.path[:40])}..."
         return IgnoredFile(shown, "has a name that is too long, and was not read")
     path = safe_path(member.path)
@@ -151,10 +158,95 @@ def _check_limits(members: Iterable[ArchiveMember], name: str, limit: int) -> li
     return listed
 
 
-def _read(member: ArchiveMember, path: str, limit: int, *, first: bool = False) -> bytes:
+def _read_member(member: ArchiveMember, path: str, limit: int, *, first: bool = False) -> bytes:
     try:
         with member.open() as file:
             data = file.read(limit if first else limit + 1)
     except ARCHIVE_ERRORS as error:
         raise InputError(f"cannot read {path}: {error_text(error, path)}") from None
     return capped(data, limit, path, advice_for(path))
+
+
+def zip_members(file: IO[bytes]) -> Iterator[ArchiveMember]:
+    """Yield the members of a zip, which stays open for them."""
+    bounded: Any = _BoundedReader(file)
+    archive = zipfile.ZipFile(bounded)
+    archive.fp = file  # the bound is for the table of contents only
+    for info in archive.infolist():
+        yield _zip_member(archive, info)
+
+
+def _zip_member(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> ArchiveMember:
+    name, mode = _zip_name(info), info.external_attr >> 16
+    opened = partial(archive.open, info)
+    if name.endswith(("/", "\\")):
+        return ArchiveMember(name, "folder", 0, opened)
+    reason = ""
+    if info.flag_bits & _ENCRYPTED:
+        reason = "is encrypted, and was not read"
+    elif info.compress_type not in _METHODS:
+        reason = "is compressed with a method other than deflate, and was not read"
+    elif stat.S_ISLNK(mode):
+        return ArchiveMember(name, "link", 0, opened)
+    elif stat.S_IFMT(mode) not in (0, stat.S_IFREG, stat.S_IFDIR):
+        reason = NOT_REGULAR
+    return ArchiveMember(name, "other" if reason else "file", info.file_size, opened, reason=reason)
+
+
+def _zip_name(info: zipfile.ZipInfo) -> str:
+    """Return a member's name: many programs write UTF-8 without declaring it."""
+    if info.flag_bits & _UTF8:
+        return info.filename
+    try:
+        return info.orig_filename.encode("cp437").decode("utf-8")
+    except (UnicodeEncodeError, UnicodeDecodeError):
+        return info.filename
+
+
+class _BoundedReader:
+    """A file that refuses to be read in pieces larger than a table of contents may be."""
+
+    def __init__(self, file: IO[bytes]) -> None:
+        self._read, self.seek, self.tell = file.read, file.seek, file.tell
+
+    def read(self, size: int = -1) -> bytes:
+        """Return the next bytes."""
+        if size > _MAX_DIRECTORY_SIZE:
+            raise zipfile.BadZipFile("its central directory is too long")
+        return self._read(size)
+
+
+def _tar_members(file: IO[bytes]) -> Iterator[ArchiveMember]:
+    """Yield the members of a tar, which stays open for them."""
+    archive = tarfile.open(fileobj=file, mode="r:")  # noqa: SIM115  it is read from as long as its tree lives
+    offset = -1
+    while (info := archive.next()) is not None:
+        if archive.offset <= offset or info.size < 0:
+            raise tarfile.TarError("it refers to an earlier position")
+        offset = archive.offset
+        opened = partial(_open_tar_member, archive, info)
+        if info.isfile():
+            yield ArchiveMember(info.name, "file", info.size, opened)
+        elif info.issym() or info.islnk():
+            yield ArchiveMember(info.name, "link", 0, opened)
+        else:
+            reason = "" if info.isdir() else NOT_REGULAR
+            yield ArchiveMember(info.name, "other" if reason else "folder", 0, opened, reason)
+
+
+def _open_tar_member(archive: tarfile.TarFile, info: tarfile.TarInfo) -> IO[bytes]:
+    return archive.extractfile(info) or io.BytesIO()
+
+
+def safe_path(name: str) -> str | None:
+    """Return a member's name as a printable path inside the archive; empty for its root; None where it leads out."""
+    plain = name.replace("\\", "/")
+    if plain.startswith("/") or plain[1:2] == ":" or ".." in plain.split("/"):
+        return None
+    return printable_path("/".join(part for part in plain.split("/") if part not in ("", ".")))
+
+
+def error_text(error: BaseException, shown: str) -> str:
+    """Return what an error of an archive says, fit for a message; raises MachineError if that is not the cause."""
+    MachineError.check(error, shown)
+    return printable_path(" ".join(str(error).split())[:200]) or type(error).__name__

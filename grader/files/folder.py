@@ -11,7 +11,7 @@ from pathlib import Path
 
 from grader.errors import FileError, MachineError
 from grader.files import limits
-from grader.files.names import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
+from grader.files.limits import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
 from grader.files.reading import advice_for, read_capped, read_error, read_start, shown_below
 from grader.files.tree import IS_LINK, File, IgnoredFile, Tree, keep_small, make_tree
 from grader.text import printable_path
@@ -85,7 +85,9 @@ class _Walk:
             return True
         elif entry.is_file():
             place = f"{self._top}/{path}"
-            self.files.append(File(shown, _size(entry, shown), keep_small(partial(_read, place, shown, self._trusted))))
+            self.files.append(
+                File(shown, _size(entry, shown), keep_small(partial(_read_file, place, shown, self._trusted)))
+            )
         else:
             self._ignore(shown, "is not a regular file, and was not read")
         return False
@@ -126,7 +128,7 @@ def file_at(path: Path, name: str, top: str) -> File:
         raise read_error(error, name) from None
     if stat.S_ISLNK(status.st_mode):
         raise FileError(name, IS_LINK)
-    return File(name, status.st_size, partial(_read, os.fspath(path), name, top))
+    return File(name, status.st_size, partial(_read_file, os.fspath(path), name, top))
 
 
 def _generated_files(folder: Path, path: str) -> list[str]:
@@ -144,7 +146,7 @@ def _generated_files(folder: Path, path: str) -> list[str]:
     return found
 
 
-def _read(path: str, shown: str, top: str, limit: int, *, first: bool = False) -> bytes:
+def _read_file(path: str, shown: str, top: str, limit: int, *, first: bool = False) -> bytes:
     """Return the bytes of a file; messages use its name in the submission, so they are the same on every machine."""
     if first:
         return read_start(path, limit, shown, top)

@@ -1,7 +1,19 @@
-"""What is not read of a submission: parts that no student wrote, and what exceeds the limits, with the messages."""
+"""What is read of a submission: what the names of files tell, parts that no student wrote, and limits.
+
+Robots, packages and archives are known by their names.
+"""
 
 from grader.errors import FileError, InputError
 
+ROBOT_ENDINGS = (".urdf", ".xacro")
+PACKAGE_FILES = frozenset({"package.xml", "setup.py"})
+ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar")
+BUILD_FOLDERS = frozenset({"build", "install", "log"})
+# And those with a pyvenv.cfg.
+IGNORED_FOLDERS = BUILD_FOLDERS | {"node_modules", "site-packages", "__pycache__", "__MACOSX"}
+# The ends of the names of files that a build copies, and that a submission may lack.
+_COPIED = (".urdf", ".xacro", ".rviz", "launch.py", "launch.xml", "launch.yaml", "launch.yml", "/package.xml")
+LITTER = frozenset({"Thumbs.db", "desktop.ini", "Icon\r"})  # of an operating system
 MAX_FILES = 50_000  # and as many folders, in a submission
 MAX_FILE_SIZE = 64 * 1024 * 1024  # bytes of one file of a submission: a larger one is ignored
 MAX_ARCHIVE_SIZE = 1024 * 1024 * 1024  # bytes of an archive, and of its decompressed data
@@ -10,6 +22,20 @@ MAX_ARCHIVES = 20  # in an archive or folder
 MAX_NESTED = 3  # archives inside each other
 MAX_RATIO = 200  # of the content of an archive to its own size
 HARMLESS_SIZE = 32 * 1024 * 1024  # bytes that an archive may contain regardless of the ratio
+
+
+def ignored_part(path: str) -> str | None:
+    """Return how far a path leads to something ignored: a folder of tools or of a build, or a hidden folder or file."""
+    *folders, name = path.split("/")
+    for index, folder in enumerate(folders):
+        if folder in IGNORED_FOLDERS or folder.startswith("."):
+            return "/".join(folders[: index + 1])
+    return path if name.startswith(".") or name in LITTER else None
+
+
+def is_generated(path: str) -> bool:
+    """Return whether a path is that of a file of a package which a build has copied."""
+    return path.lower().endswith(_COPIED) and not BUILD_FOLDERS.isdisjoint(path.split("/")[:-1])
 
 
 class Allowance:

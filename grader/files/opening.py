@@ -7,7 +7,7 @@ from pathlib import Path, PurePosixPath
 
 from grader.errors import FileError, InputError
 from grader.files import limits
-from grader.files.names import ARCHIVES, PACKAGE_FILES, ROBOT_ENDINGS
+from grader.files.limits import ARCHIVES, PACKAGE_FILES, ROBOT_ENDINGS
 from grader.files.reading import not_there, open_regular, read_error, read_start, shown_below
 from grader.files.tree import File, IgnoredFile, Tree, make_tree
 from grader.text import printable_path

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.errors import InputError, MachineError
-from grader.files.names import ROBOT_ENDINGS
+from grader.files.limits import ROBOT_ENDINGS
 from grader.text import printable_path
 
 URDF_LIMIT = 1024 * 1024  # bytes
@@ -48,7 +48,7 @@ def read_start(path: Path | str, count: int, shown: str = "", top: str = "") -> 
     """Return the first bytes of a regular file; the other arguments and errors are those of `read_capped`."""
     handle = open_regular(path, shown, top)
     try:
-        return _read(handle, count)
+        return _read_handle(handle, count)
     except OSError as error:
         raise read_error(error, shown or shown_below(path, top)) from None
     finally:
@@ -114,7 +114,7 @@ def _open_and_verify(top: str, path: str) -> int:
     raise OSError(errno.ELOOP, os.strerror(errno.ELOOP))
 
 
-def _read(handle: int, count: int) -> bytes:
+def _read_handle(handle: int, count: int) -> bytes:
     """Return at most `count` bytes of an open file. A small file needs no buffer."""
     start = os.read(handle, count)
     if len(start) < count and (more := os.read(handle, count - len(start))):

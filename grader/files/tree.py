@@ -7,20 +7,20 @@ from typing import NamedTuple, Protocol
 
 from grader.errors import FileError, InputError
 from grader.files import limits
-from grader.files.names import ignored_part
+from grader.files.limits import ignored_part
 
 IS_LINK = "is a symlink, and was not followed"
 _SMALL = 4096  # bytes
 
 
-class ContentReader(Protocol):
+class _ContentReader(Protocol):
     """Gives the bytes of a file: of at most `limit` bytes (InputError beyond), or only the first `limit` of them."""
 
     def __call__(self, limit: int, *, first: bool = False) -> bytes:
         """Return the bytes."""
 
 
-def keep_small(read: ContentReader) -> ContentReader:
+def keep_small(read: _ContentReader) -> _ContentReader:
     """Return a reader that keeps the bytes of a small file: a search looks into it before it is read."""
     whole = b""
 
@@ -51,7 +51,7 @@ class File(NamedTuple):
 
     path: str
     size: int
-    read: ContentReader
+    read: _ContentReader
 
     @property
     def name(self) -> str:
@@ -133,7 +133,7 @@ def make_tree(
     large = [_too_large(file) for file in by_path.values() if file.size > limits.MAX_FILE_SIZE]
     by_path |= {file.path: by_path[file.path]._replace(read=partial(_refuse, file)) for file in large}
     named = frozenset(folders)
-    everything = named | folders_above([*by_path, *named], name)
+    everything = named | _folders_above([*by_path, *named], name)
     ignored = tuple(dict.fromkeys([*ignored, *large]))
     return Tree(name, by_path, everything, ignored, tuple(generated), frozenset(unseen) - everything, kept)
 
@@ -148,7 +148,7 @@ def _refuse(file: IgnoredFile, limit: int, *, first: bool = False) -> bytes:
     raise FileError(file.path, file.reason)
 
 
-def folders_above(paths: Iterable[str], name: str) -> set[str]:
+def _folders_above(paths: Iterable[str], name: str) -> set[str]:
     """Return every folder that one of these paths is in; raises InputError for too many."""
     above: set[str] = set()
     for path in paths:

@@ -19,7 +19,7 @@ from grader.submission.urdf import Read
 from grader.text import counted_points, enumerated
 
 if TYPE_CHECKING:
-    from grader.documents.evidence_files import EvidenceFile
+    from grader.documents.evidence import EvidenceFile
     from grader.robot.conventions import Convention
 
 _EXPANDED = "the URDF is xacro: it was expanded, as xacro does before ROS 2 reads it"
@@ -105,8 +105,10 @@ def _evidence_of(
     manual = [row for row in rubric.criteria if row.part in chosen and row.check.function in MANUAL_CHECKS]
     if not (wanted or manual):
         return (), ()
-    from grader.documents.evidence import find_evidence  # a URDF on its own has none
-    from grader.documents.evidence_files import as_evidence
+    from grader.documents.evidence import (
+        as_evidence,
+        find_evidence,  # a URDF on its own has none
+    )
 
     names = [tuple(dict.fromkeys((*evidence.names, *_names_in_criteria(evidence, rubric)))) for evidence in wanted]
     known = {name for one in names for name in one}

@@ -3,10 +3,8 @@
 from collections.abc import Iterable, Iterator
 
 from grader.checks.manual import NO_ANSWER, answered, evidence_shown
-from grader.documents.collection import DocumentCollection
-from grader.documents.document import CONVERTED, Document
-from grader.documents.evidence import headed
-from grader.documents.evidence_files import EvidenceFile
+from grader.documents.collection import CONVERTED, Document, DocumentCollection
+from grader.documents.evidence import EvidenceFile, headed
 from grader.documents.pictures import EmbeddedPicture, NotShown, pictures_in_word, read_picture
 from grader.files.tree import File
 from grader.grading.report import Report, Result

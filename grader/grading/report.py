@@ -14,7 +14,7 @@ from grader.source import Certainty, Edits, Location
 from grader.submission.submission import Submission
 
 if TYPE_CHECKING:
-    from grader.documents.evidence_files import EvidenceFile
+    from grader.documents.evidence import EvidenceFile
 
 INCOMPLETE_HINTS = "the search for hints ended at its limit: there may be more"
 _NOTHING = Decimal(0)

@@ -13,7 +13,7 @@ from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from grader.errors import InputError
-from grader.files.names import ignored_part
+from grader.files.limits import ignored_part
 from grader.files.tree import IS_LINK, Tree
 from grader.python.budget import Budget
 from grader.python.evaluation import Evaluation

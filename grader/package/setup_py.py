@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
-from grader.files.names import ignored_part
+from grader.files.limits import ignored_part
 from grader.files.tree import Tree
 from grader.names import did_you_mean
 from grader.package.build_settings import argument_findings, file_findings

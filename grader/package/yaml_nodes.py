@@ -75,7 +75,7 @@ def read_yaml(data: bytes, path: str) -> YamlNode:
         location = _location(source, mark) if mark else Location(path, 1, 1)
         if error.problem == _TOO_DEEP:
             raise YamlFault(_DEEP, Location(path, 1, 1)) from None
-        message = " ".join(filter(None, (error.context, error.problem)))
+        message = f"{error.context or ''} {error.problem or ''}".strip()
         raise YamlFault(message or "this is not YAML", location) from None
     except yaml.YAMLError as error:  # such as characters that YAML forbids
         raise YamlFault(" ".join(str(error).split())[:200], Location(path, 1, 1)) from None

@@ -4,7 +4,7 @@ from collections.abc import Collection
 from pathlib import PurePosixPath
 
 from grader.python import values as py
-from grader.python.values import parts_of, too_large
+from grader.python.values import parts_of, refuse, too_large
 
 READING = 500_000  # parts that reading one submission may produce or look at: some 0.5 s
 PYTHON_LIMIT = 128 * 1024  # bytes of a file; a syntax tree takes several hundred times as much
@@ -98,6 +98,4 @@ class Budget:
             return 0
         if isinstance(part, py.Items | py.Namespace | py.PlainFunction):  # a plain function itself refuses these
             return 0
-        from grader.python.values import refuse  # late: most gradings evaluate no Python
-
         return refuse(part, f"values of the type {type(part).__name__} are not supported")

@@ -178,8 +178,10 @@ class Expressions:
             yield scope
             return
         loop, *nested = loops
-        items = self.evaluate(loop.iter, scope if depth else scope.outer or scope) if first is None else None
-        for item in first or iterate(self.budget.checked(items)):
+        if first is None:
+            outer = scope if depth else scope.outer or scope
+            first = iterate(self.budget.checked(self.evaluate(loop.iter, outer)))
+        for item in first:
             self.budget.charge(_OF_NODE + len(scope.names) + depth)
             self.bind(loop.target, item, scope)
             if all(self.test(self.evaluate(condition, scope), loop.ifs) for condition in loop.ifs):

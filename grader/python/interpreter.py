@@ -134,7 +134,9 @@ class Interpreter(Evaluation):
 
     def _annotation(self, node: ast.expr | None, scope: py.Scope) -> None:
         """Find the names of an annotation, and stop where it calls something."""
-        for part in ast.walk(node) if node is not None else ():
+        if node is None:
+            return
+        for part in ast.walk(node):
             if isinstance(part, ast.Name):
                 self._name(part, scope)
             elif not isinstance(part, _IN_ANNOTATIONS):
@@ -178,7 +180,9 @@ class Interpreter(Evaluation):
         pass
 
     def _import(self, node: ast.Import | ast.ImportFrom, scope: py.Scope) -> None:
-        module = "" if isinstance(node, ast.Import) else "." * node.level + (node.module or "")
+        module = ""
+        if isinstance(node, ast.ImportFrom):
+            module = "." * node.level + (node.module or "")
         for alias in node.names:
             if (module or alias.name).split(".")[0] in self.local_modules:
                 raise py.Undetermined(

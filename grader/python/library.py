@@ -123,7 +123,9 @@ def _missing_name(module: str, name: str) -> str | None:
     else:
         found = import_module(module)  # one of the few above, never a student's choice
         missing, guess = not hasattr(found, name), did_you_mean(name, dir(found))
-    return UNCERTAIN if name in _ADDED else f"{module} has no {name!r}{guess}" if missing else None
+    if name in _ADDED:
+        return UNCERTAIN
+    return f"{module} has no {name!r}{guess}" if missing else None
 
 
 def attribute_error(module: str, name: str) -> str | None:

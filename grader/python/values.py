@@ -234,8 +234,9 @@ def refuse(value: Value, message: str) -> NoReturn:
 def items_of(value: Value) -> list[Value]:
     """Return what a loop over a value yields, all of it known. Raises Undetermined."""
     items = list(iterate(value))
-    for item in items if isinstance(value, Items) else ():
-        known(item)
+    if isinstance(value, Items):
+        for item in items:
+            known(item)
     return items
 
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Collection, Iterable, Sequence
 from enum import IntEnum
 
-from grader.files.names import ARCHIVES, PACKAGE_FILES
+from grader.files.limits import ARCHIVES, PACKAGE_FILES
 from grader.files.tree import parents
 
 MAX_WRAPPERS = 3  # folders around a download
@@ -53,7 +53,9 @@ class LabFolders:
         self._known: dict[str, Belonging] = {}
         self._packages: set[str] = set()
         names_of_folders: set[str] = set()
-        for path in paths if self._own else ():
+        if not self._own:
+            paths = ()
+        for path in paths:
             folder, _, name = path.rpartition("/")
             names_of_folders.update(folder.split("/"))
             if name in PACKAGE_FILES:
@@ -62,7 +64,7 @@ class LabFolders:
 
     def is_lab(self, name: str) -> bool:
         """Return whether a folder has exactly the name of this lab."""
-        return _join_words(lab_words(without_archive(name))) in self._own
+        return _join_words(lab_words(_without_archive(name))) in self._own
 
     def is_project(self, path: str) -> bool:
         """Return whether a file is in the folder of a final project."""
@@ -90,7 +92,7 @@ class LabFolders:
         return self._known[folder]
 
     def _own_belonging(self, folder: str) -> Belonging:
-        words = lab_words(without_archive(folder.rpartition("/")[2]))
+        words = lab_words(_without_archive(folder.rpartition("/")[2]))
         name = _join_words(words)
         if name in self._own:
             return Belonging.THIS_LAB
@@ -122,7 +124,7 @@ def _join_words(words: Sequence[str]) -> str:
     return _NUMBER_BORDER.sub(".", " ".join(words)).replace(" ", "")
 
 
-def without_archive(name: str) -> str:
+def _without_archive(name: str) -> str:
     """Return a name without the ending of an archive."""
     stem, dot, ending = name.rpartition(".")
-    return without_archive(stem) if dot and f".{ending.lower()}" in ARCHIVES else name
+    return _without_archive(stem) if dot and f".{ending.lower()}" in ARCHIVES else name

@@ -1,6 +1,7 @@
 """Files that hold a robot: recognised by their content, whatever they are called. Nothing is parsed."""
 
 import re
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from grader.errors import InputError
@@ -68,10 +69,10 @@ def find_robots(tree: Tree, urdf_name: str = "", max_size: int = URDF_LIMIT) -> 
     """
     found: list[RobotFile] = []
     by_content = read = 0
-    files = tree.files.values()
-    for file in (
-        files if len(files) <= _MAX_READ else sorted(files, key=lambda file: not _LIKELY.search(file.name.lower()))
-    ):
+    files: Iterable[File] = tree.files.values()
+    if len(tree.files) > _MAX_READ:
+        files = sorted(files, key=lambda file: not _LIKELY.search(file.name.lower()))
+    for file in files:
         is_urdf = file.suffix == ".urdf" or file.name == urdf_name
         is_read = read < _MAX_READ and by_content < _MAX_ROBOTS
         if not is_urdf and (not is_read or file.suffix in _BINARY or not 0 < file.size <= max_size):

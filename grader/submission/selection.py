@@ -5,7 +5,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from grader.errors import InputError, NotDecided
-from grader.files.names import PACKAGE_FILES
+from grader.files.limits import PACKAGE_FILES
 from grader.files.tree import Tree
 from grader.names import folded
 from grader.package.launch.places import SHARE

@@ -6,8 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError, MissingElement, NotDecided
-from grader.files.limits import MAX_FILE_SIZE
-from grader.files.names import ROBOT_ENDINGS
+from grader.files.limits import MAX_FILE_SIZE, ROBOT_ENDINGS
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.files.tree import File, Tree, make_tree
 from grader.package.package import NO_PACKAGE, Package
@@ -20,7 +19,7 @@ from grader.text import was_not_committed
 
 if TYPE_CHECKING:
     from grader.documents.collection import DocumentCollection
-    from grader.documents.evidence_files import LabelledFile
+    from grader.documents.evidence import LabelledFile
 
 _WORK_OF_READING = 1_500  # parts of a package's evaluation that take as long as reading a short URDF
 _FILES_OF_READING = 200
@@ -95,7 +94,7 @@ class Submission:
     @cached_property
     def labelled_files(self) -> "tuple[LabelledFile, ...]":
         """The pictures, films and PDF files in it."""
-        from grader.documents.evidence_files import read_labelled_files
+        from grader.documents.evidence import read_labelled_files
 
         return read_labelled_files(self.tree)
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from grader.errors import InputError
 from grader.files.archive import read_archive
-from grader.files.class_zip import ClassZip
+from grader.files.class_source import ClassZip
 from grader.files.tree import Tree
 from tests.classroom.class_runs import Item, bomb, tarred
 

@@ -7,11 +7,9 @@ from pathlib import Path
 
 from grader.classroom.submissions import read_class
 from grader.documents.answers import find_answer
-from grader.documents.collection import DocumentCollection
-from grader.documents.document import Document, made_of
-from grader.documents.evidence import DOCUMENTS, find_evidence
-from grader.documents.evidence_files import read_labelled_files
-from grader.documents.pictures import EmbeddedPicture, verified
+from grader.documents.collection import Document, DocumentCollection
+from grader.documents.evidence import DOCUMENTS, find_evidence, read_labelled_files
+from grader.documents.pictures import EmbeddedPicture, read_picture
 from grader.errors import InputError
 from grader.files.archive import read_archive
 from grader.files.opening import archive_kind, with_inner
@@ -97,9 +95,8 @@ def answers(data: bytes) -> None:
     """Answers are passages of their documents; the first byte says how the file's name ends."""
     path = f"answers{_ENDINGS[data[0] % len(_ENDINGS)] if data else '.md'}"
     file = file_of(path, data[1:])
-    documents = DocumentCollection(make_tree("s", [file], ()))
-    if not path.endswith(".md"):  # the text that a converter has written
-        documents._read_files[path] = made_of(file, data[1:].decode("utf-8", "replace"))
+    converted = data[1:].decode("utf-8", "replace")  # the text that a converter has written
+    documents = DocumentCollection(make_tree("s", [file], ()), {path: converted})
     document = documents.document(file)
     lines = document.lines if isinstance(document, Document) else []
     for question, places in _QUESTIONS:
@@ -153,7 +150,7 @@ def file_names() -> Iterator[bytes]:
 
 def picture(data: bytes) -> None:
     """A picture has a format and a size, or the reason why it is not shown."""
-    found = verified(data, "a.png")
+    found = read_picture(file_of("a.png", data))
     if isinstance(found, EmbeddedPicture):
         assert found.kind.media_type
     else:

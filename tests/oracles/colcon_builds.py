@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.files.names import ignored_part
+from grader.files.limits import ignored_part
 from tests.command_line import HANG_TIMEOUT
 
 # The Python that has colcon, which is Jazzy's version; by default the one that runs the tests.

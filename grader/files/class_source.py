@@ -1,33 +1,142 @@
-"""A zip with the submissions of a whole class, as an LMS exports it: each is read in place."""
+"""The submissions of a class in a folder, or in a zip as an LMS exports it: each is read in place.
 
+No symlink is followed: whose a file is depends on where it really is.
+"""
+
+import os
 import tempfile
 import weakref
 from bisect import bisect_left
 from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import cached_property
+from io import BytesIO
 from itertools import islice
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, NamedTuple
 
-from grader.errors import FileError, InputError
+from grader.errors import FileError, InputError, MachineError
 from grader.files import limits
-from grader.files.archive import read_archive, tree_of
-from grader.files.children import Children, is_litter
-from grader.files.members import ARCHIVE_ERRORS, NOT_REGULAR, ArchiveMember, error_text, safe_path, zip_members
-from grader.files.names import ARCHIVES
-from grader.files.opening import NOT_AN_ARCHIVE, archive_kind
-from grader.files.tree import IS_LINK, Tree
+from grader.files.archive import (
+    ARCHIVE_ERRORS,
+    NOT_REGULAR,
+    ArchiveMember,
+    error_text,
+    read_archive,
+    safe_path,
+    tree_of,
+    zip_members,
+)
+from grader.files.folder import file_at, read_folder
+from grader.files.limits import ARCHIVES, BUILD_FOLDERS, IGNORED_FOLDERS, LITTER, ignored_part, is_generated
+from grader.files.opening import NOT_AN_ARCHIVE, archive_kind, outer_tree
+from grader.files.reading import open_regular, read_capped, read_error
+from grader.files.tree import IS_LINK, Tree, make_tree
 from grader.text import printable_path
 
 if TYPE_CHECKING:
     import hashlib
 
+_NOT_REPORTED = LITTER | (IGNORED_FOLDERS - BUILD_FOLDERS)
+_CHUNK = 1024 * 1024
 MAX_FOLDERS = 200_000
 _MAX_MEMBERS = 200_000
 _MAX_DEPTH = 20  # folders: names below do not tell whose a file is
 _IN_MEMORY = 16 * 1024 * 1024
-_CHUNK = 1024 * 1024
+
+
+class Children(NamedTuple):
+    """The names in one folder, unsorted. `refused` are names that are not read, each with its reason."""
+
+    folders: list[str]
+    files: list[str]
+    refused: list[tuple[str, str]]
+
+
+def _is_litter(name: str) -> bool:
+    """Return whether a file is not worth reporting: hidden, or left by an operating system or a tool."""
+    return name.startswith(".") or name in _NOT_REPORTED
+
+
+class ClassDirectory:
+    """A folder of many submissions, which is the empty path. Raises InputError.
+
+    Names that are not UTF-8 keep their bytes (os.fsdecode).
+    """
+
+    def __init__(self, root: Path) -> None:
+        self._root, self._top = root, os.fspath(root)
+
+    def children(self, folder: str, limit: int | None = None) -> Children:
+        """Return the names in a folder, at most `limit`; none if it cannot be opened, but InputError for the top."""
+        found = Children([], [], [])
+        try:
+            with os.scandir(f"{self._top}/{folder}" if folder else self._top) as entries:
+                for entry in islice(entries, limit):
+                    if not _is_litter(entry.name):
+                        _add_entry(entry, found)
+        except OSError as error:
+            refused = read_error(error, printable_path(folder or self._top))
+            if not folder:
+                raise refused from None
+        return found
+
+    def has(self, path: str) -> bool:
+        """Return whether there is a file or folder."""
+        return os.path.lexists(f"{self._top}/{path}")
+
+    def is_folder(self, path: str) -> bool:
+        """Return whether a path is that of a folder."""
+        return Path(self._root, path).is_dir()
+
+    def folder(self, path: str) -> Tree:
+        """Return the files below a folder."""
+        return read_folder(Path(self._root, path), str(self._root))
+
+    def files(self, named: dict[str, str], name: str) -> Tree:
+        """Return some files as one tree with the same ignored files as a folder or archive."""
+        paths = {printable_path(inner): path for path, inner in named.items()}
+        ignored = {inner: part for inner in paths if (part := ignored_part(inner))}
+        files = [
+            file_at(Path(self._root, paths[inner]), inner, str(self._root)) for inner in paths if inner not in ignored
+        ]
+        generated = sorted(inner for inner in ignored if is_generated(inner))
+        return make_tree(name, files, (), generated=generated, unseen=ignored.values() - ignored.keys())
+
+    def read(self, path: str, limit: int) -> bytes:
+        """Return the bytes of one file of at most `limit` bytes."""
+        shown = printable_path(path.rpartition("/")[2])
+        return read_capped(Path(self._root, path), limit, shown=shown, top=str(self._root))
+
+    def raw(self, path: str) -> IO[bytes]:
+        """Open one file, whatever it is."""
+        return os.fdopen(open_regular(Path(self._root, path), top=str(self._root)), "rb")
+
+    def archive(self, path: str, digest: "hashlib._Hash") -> Tree | None:
+        """Return the files of an archive, whose bytes update the digest; None for a file of another kind."""
+        tree = outer_tree(Path(self._root, path), str(self._root))
+        try:
+            with self.raw(path) if tree is not None else BytesIO() as file:
+                while chunk := file.read(_CHUNK):
+                    digest.update(chunk)
+        except OSError as error:
+            raise read_error(error, printable_path(path)) from None
+        return tree
+
+
+def _add_entry(entry: "os.DirEntry[str]", found: Children) -> None:
+    try:
+        if entry.is_symlink():
+            found.refused.append((entry.name, IS_LINK))
+        elif entry.is_dir():
+            found.folders.append(entry.name)
+        elif entry.is_file():
+            found.files.append(entry.name)
+        else:
+            found.refused.append((entry.name, "is not a regular file"))
+    except OSError as error:
+        MachineError.check(error, printable_path(entry.name))
+        found.refused.append((entry.name, f"cannot be read: {error.strerror}"))
 
 
 class ClassZip:
@@ -58,8 +167,10 @@ class ClassZip:
         """Return the names in a folder, at most `limit`."""
         found = Children([], [], [])
         for name, kind in islice(self._folders.get(folder, {}).items(), limit):
-            if kind in ("folder", "file"):
-                (found.folders if kind == "folder" else found.files).append(name)
+            if kind == "folder":
+                found.folders.append(name)
+            elif kind == "file":
+                found.files.append(name)
             else:
                 found.refused.append((name, kind))
         return found
@@ -74,7 +185,7 @@ class ClassZip:
         outside = "has a path that leads out of the archive, and was not read"
         folders: dict[str, dict[str, str]] = {"": dict.fromkeys(self.outside, outside)}
         for path, member in self.members.items():
-            _add(path.split("/"), member.kind, folders)
+            _add_member(path.split("/"), member.kind, folders)
             if len(folders) > MAX_FOLDERS:
                 raise InputError(f"{self._shown} contains more than {MAX_FOLDERS} folders, the limit")
         return folders
@@ -155,11 +266,11 @@ def _copy_archive(member: ArchiveMember, to: IO[bytes], digest: "hashlib._Hash")
     return kind
 
 
-def _add(names: list[str], kind: str, folders: dict[str, dict[str, str]]) -> None:
+def _add_member(names: list[str], kind: str, folders: dict[str, dict[str, str]]) -> None:
     """Add a member to the folders around it."""
     folder = ""
     for index, name in enumerate(names[:_MAX_DEPTH]):
-        if is_litter(name):
+        if _is_litter(name):
             return
         child = f"{folder}/{name}" if folder else name
         if index + 1 < len(names) or kind == "folder":
