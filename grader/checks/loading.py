@@ -6,12 +6,12 @@ from grader.problems import Problem, kinds_in
 from grader.robot.reader import Reading
 from grader.robot.urdf_problems import RAW_XACRO
 from grader.text import counted, enumerated
-from grader.xml import catalogue as xml_catalogue
+from grader.xml import xml_problems
 
 ABOUT = {"urdf_loads": About(("joint", "link"))}
 
 _MAX_ASSUMED = 3  # that a message names
-_OF_XML = kinds_in(vars(xml_catalogue).values())
+_OF_XML = kinds_in(vars(xml_problems).values())
 
 
 def urdf_loads(urdf: Reading) -> Outcome:
@@ -43,7 +43,7 @@ def _assumed(urdf: Reading) -> str:
     """Return what is assumed about a file that ROS 2 rejects, each with its lines; empty if nothing is."""
     lines: dict[str, list[str]] = {}
     for problem in urdf.problems:
-        if problem.kind is xml_catalogue.RECOVERED and not problem.subject:
+        if problem.kind is xml_problems.RECOVERED and not problem.subject:
             lines.setdefault(problem.message, []).append(str(problem.location.line))
     found = [(message, [*dict.fromkeys(at)]) for message, at in lines.items()]
     texts = [f"{it} (line{'s' * (len(at) > 1)} {enumerated(at, _MAX_ASSUMED)})" for it, at in found]

@@ -13,7 +13,7 @@ from grader.robot.urdf_problems import CATALOGUE, UNLISTED
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import counted, enumerated
-from grader.xacro.catalogue import XACRO_CATALOGUE
+from grader.xacro.xacro_problems import XACRO_CATALOGUE
 
 # Another text for the same robot may have problems of its own.
 ABOUT = {"without_problems": About(breaks_under=everything)}

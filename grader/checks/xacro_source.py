@@ -18,7 +18,7 @@ from grader.submission.urdf import Read
 from grader.text import counted, enumerated, quoted
 
 if TYPE_CHECKING:
-    from grader.xacro.expanded_source import ExpandedSource
+    from grader.xacro.expansion import ExpandedSource
     from grader.xacro.inventory import Definitions, Inventory
 
 ABOUT = {"xacro_uses": About(("xacro:property", "xacro:macro", "xacro:include"), breaks_under=everything)}
@@ -99,7 +99,7 @@ def _refuse_unknown(source: "ExpandedSource", found: "Inventory") -> None:
 
 def _source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
     """Return the xacro that is examined, or the failure of a robot that is not written in xacro."""
-    from grader.xacro.expanded_source import ExpandedSource
+    from grader.xacro.expansion import ExpandedSource
 
     reading, urdf = submission.needed_urdf(), submission.urdf
     assert isinstance(urdf, Read)  # else there is none that is needed
@@ -125,7 +125,7 @@ def _source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
 
 def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome":
     """Return the xacro in a file of the submission that the graded URDF does not include."""
-    from grader.xacro.expanded_source import ExpandedSource
+    from grader.xacro.expansion import ExpandedSource
 
     found = [path for path in submission.tree.files if _ends(path, file)]
     if len(found) > 1:
@@ -145,8 +145,7 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
 
 def _expand(submission: Submission, path: str, data: bytes) -> "ExpandedSource | Source":
     """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at all."""
-    from grader.xacro.expanded_source import ExpandedSource
-    from grader.xacro.expansion import expand
+    from grader.xacro.expansion import ExpandedSource, expand
 
     expansion = expand(data, path, submission.surroundings(submission.budget), submission.opening.arguments)
     if isinstance(expansion.source, ExpandedSource):

@@ -20,7 +20,7 @@ from grader.text import counted, enumerated
 
 if TYPE_CHECKING:
     from grader.package.package import Package
-    from grader.xacro.expanded_source import ExpandedSource
+    from grader.xacro.expansion import ExpandedSource
 
 
 _MAX_CRITERIA = 4

@@ -25,7 +25,7 @@ from grader.xml.urdf_format import PARTS
 
 if TYPE_CHECKING:
     from grader.hints.xacro_edits import ExpandedEdits
-    from grader.xacro.expanded_source import ExpandedSource
+    from grader.xacro.expansion import ExpandedSource
 
 
 _COMMENT = re.compile(r"[ \t]*<!--.*?-->", re.DOTALL)

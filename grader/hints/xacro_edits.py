@@ -10,8 +10,8 @@ from grader import markup
 from grader.hints.edits import Proposal, merged, with_attribute
 from grader.names import closest, near
 from grader.source import Edit, Edits, Location, Source
-from grader.xacro.expanded_source import ExpandedSource
 from grader.xacro.expander import Refusal
+from grader.xacro.expansion import ExpandedSource
 from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import Definition, Key, ScopePlace, UnknownName, XacroScope
 from grader.xacro.texts import Texts

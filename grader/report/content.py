@@ -28,7 +28,7 @@ from grader.report.criteria import (
 )
 from grader.report.locations import location_text
 from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted
-from grader.xml.catalogue import RECOVERED
+from grader.xml.xml_problems import RECOVERED
 
 _REMARKS = ("Marked manually", "Corrected after grading", "Comments")
 UNDECIDED = "xacro that cannot be determined statically"

@@ -19,7 +19,7 @@ from grader.problems import Kind
 from grader.report.criteria import model_lines, sentence
 from grader.robot.urdf_problems import CATALOGUE
 from grader.text import enumerated, format_points, printable
-from grader.xacro.catalogue import XACRO_CATALOGUE
+from grader.xacro.xacro_problems import XACRO_CATALOGUE
 
 _WIDTH = 80
 _CHECKS = "checks"

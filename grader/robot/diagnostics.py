@@ -13,9 +13,9 @@ from grader.robot.numbers import NumberError, number, vector
 from grader.robot.transforms import Vector
 from grader.source import LazyLocation
 from grader.text import cut, quoted
-from grader.xml.catalogue import RECOVERED
 from grader.xml.parsing import Element, XmlDocument
 from grader.xml.urdf_format import TAGS
+from grader.xml.xml_problems import RECOVERED
 
 _FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")  # %n, %1$n, %hhn
 _MAX_PROBLEMS = 1000

@@ -1,7 +1,7 @@
 """The kinds of problems that a URDF can have. docs/examples/urdf.toml explains each one."""
 
 from grader.problems import drops, kinds_in, notes, rejects, warns
-from grader.xml import catalogue as xml_catalogue
+from grader.xml import xml_problems
 
 NO_ROBOT = rejects("URDF013", "No <robot> at the top level")
 RAW_XACRO = warns("URDF014", "xacro that is not expanded")
@@ -56,4 +56,4 @@ ROOT_INERTIA = notes("URDF093", "A root link with an inertia")
 COMMENT_TRAP = notes("URDF094", "A comment that can break a launch file")
 UNLISTED = notes("URDF099", "More problems than are listed")
 
-CATALOGUE = kinds_in([*vars(xml_catalogue).values(), *globals().values()])
+CATALOGUE = kinds_in([*vars(xml_problems).values(), *globals().values()])

@@ -17,7 +17,7 @@ from grader.robot.model import Robot
 from grader.robot.reader import Reading, find_xacro, read_robot, read_urdf
 from grader.robot.urdf_problems import RAW_XACRO
 from grader.source import Source
-from grader.xml.catalogue import DOCTYPE, NOT_WELL_FORMED
+from grader.xml.xml_problems import DOCTYPE, NOT_WELL_FORMED
 
 if TYPE_CHECKING:
     from grader.package.launch.model import NamedFile

@@ -1,20 +1,59 @@
 """Walks the elements of a xacro file and writes the expanded ones, in the order of xacro."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
 from grader.problems import Kind, Problem
 from grader.python.budget import CHARACTERS, Budget, OutOfBudget
 from grader.python.values import EvaluationFails, Undetermined, Value
 from grader.source import Location
-from grader.xacro import catalogue
+from grader.text import quoted
+from grader.xacro import xacro_problems
 from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions, read_yaml_values
 from grader.xacro.macros import MacroError
 from grader.xacro.nodes import XacroNode
-from grader.xacro.respelling import Misspelt, Respelling
-from grader.xacro.scopes import Reported, ScopePlace, XacroFails, XacroScope
+from grader.xacro.scopes import Reported, ScopePlace, UnknownName, XacroFails, XacroScope
 from grader.xacro.texts import Texts
+
+
+class Misspelt(NamedTuple):
+    """A name that xacro refuses and that surely stands for another one, and where it is."""
+
+    unknown: UnknownName
+    place: ScopePlace
+    location: Location
+
+    @property
+    def sentence(self) -> str:
+        """What it is read as."""
+        return f"the {self.unknown.kind} {quoted(self.unknown.name)} is read as {quoted(self.unknown.meant or '')}"
+
+
+class Respelling:
+    """Names that are read as others: in expressions, and those of elements, by the file and the index of the tag."""
+
+    def __init__(self, misspelt: Iterable[Misspelt] = ()) -> None:
+        self.names: dict[str, str] = {}
+        self._elements: dict[tuple[str, int], dict[str, str]] = {}
+        for (name, _, kind, meant), place, _ in misspelt:
+            own = self._elements.setdefault((place.source.path, place.tag), {})
+            (self.names if kind == "property" else own)[name] = meant or name
+
+    def element(self, node: XacroNode) -> XacroNode:
+        """Return an element with the names that it is read with: of a macro, of attributes, of the block it inserts."""
+        names = self._elements.get((node.place.source.path, node.place.tag))
+        if not names:
+            return node
+        name = node.tag.removeprefix("xacro:")
+        has_block = name == "insert_block"
+        other = XacroNode(f"xacro:{names.get(name, name)}", node.place)
+        other.attributes = {
+            names.get(key, key): names.get(text, text) if has_block else text for key, text in node.attributes.items()
+        }
+        other.children, other.unresolved = node.children, node.unresolved
+        return other
+
 
 _MAX_DOCUMENT = 1024 * 1024  # characters of the values and texts in the expanded document
 _OF_ELEMENT, _OF_ATTRIBUTE = 10, 2  # what expanding one is charged
@@ -47,10 +86,10 @@ Refusal = tuple[XacroFails, ScopePlace, str | None]
 # Expands one xacro tag: its element, the expanded element that the result goes into, and the scopes.
 Handler = Callable[["Expander", XacroNode, XacroNode, Scopes], None]
 _KINDS: Mapping[type[EvaluationFails], Kind] = {
-    MacroError: catalogue.XACRO_MACRO,
-    FileFails: catalogue.XACRO_FILE,
-    XmlFails: catalogue.XACRO_NOT_XML,
-    TagFails: catalogue.XACRO_TAG,
+    MacroError: xacro_problems.XACRO_MACRO,
+    FileFails: xacro_problems.XACRO_FILE,
+    XmlFails: xacro_problems.XACRO_NOT_XML,
+    TagFails: xacro_problems.XACRO_TAG,
 }
 
 
@@ -162,7 +201,7 @@ class Expander:
             self.undetermined.append(Open(message, location))
             return message
         joint = " " if message.endswith("?") else "; "
-        kind = _KINDS.get(type(error), catalogue.XACRO_EXPRESSION)
+        kind = _KINDS.get(type(error), xacro_problems.XACRO_EXPRESSION)
         self.problems.append(Problem(kind, f"{message}{joint}{STOPS}", location))
         if isinstance(error, XacroFails) and (error.unknown is not None or error.lacking):
             self.refused.append((error, place, attribute))

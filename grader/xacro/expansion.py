@@ -5,7 +5,7 @@ the same, so that one defect does not hide another.
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from itertools import groupby
@@ -14,16 +14,78 @@ from typing import NamedTuple
 from grader.problems import Problem
 from grader.python.budget import Budget, OutOfBudget
 from grader.python.values import EvaluationFails, Undetermined
-from grader.source import Source
-from grader.xacro import catalogue
-from grader.xacro.expanded_source import ExpandedSource
-from grader.xacro.expander import STOPS, Expander, Open
+from grader.source import Location, Source
+from grader.xacro import xacro_problems
+from grader.xacro.expander import STOPS, Expander, Misspelt, Open, Refusal, Respelling
 from grader.xacro.files import Files, Workspace
 from grader.xacro.nodes import XacroNode, read_nodes, recovered_nodes
-from grader.xacro.respelling import Misspelt, Respelling
 from grader.xacro.tags import CALL, HANDLERS
-from grader.xml.catalogue import MISPLACED_DECLARATION, RECOVERED
+from grader.xacro.texts import Texts
 from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, error_location, make_element
+from grader.xml.xml_problems import MISPLACED_DECLARATION, RECOVERED
+
+_READING_OF_SHORT = 1_500  # parts
+
+
+class ExpandedSource(Source):
+    """The text of a xacro file; its start tags are the expanded elements."""
+
+    is_expanded = True
+
+    def __init__(self, source: Source, nodes: list[XacroNode], expander: Expander, work: int) -> None:
+        super().__init__(source.path, source.text)
+        self.nodes: Sequence[XacroNode] = nodes
+        self._expander, self._work = expander, work
+
+    def tag(self, index: int, attribute: str | None = None) -> Location:
+        """Return the location in the source of an expanded element, or of an attribute if it has it."""
+        return self.nodes[index].place.at(attribute)
+
+    def next_tag(self, index: int, name: str) -> int:
+        """Return the index of the first expanded element of this name after another one; that one if there is none."""
+        others = range(index + 1, len(self.nodes))
+        return next((other for other in others if self.nodes[other].tag == name), index)
+
+    @property
+    def documents(self) -> Mapping[str, XacroNode]:
+        """The files that it was expanded from, as they are written, by their paths: this one first."""
+        return self._expander.files.documents
+
+    @property
+    def includes(self) -> Mapping[tuple[str, int], list[str]]:
+        """The files that were included, by the path of the file and the index of the tag that include them."""
+        return self._expander.files.followed
+
+    @property
+    def texts(self) -> Texts:
+        """What the names in its texts stand for."""
+        return self._expander.texts
+
+    @property
+    def refused(self) -> Sequence[Refusal]:
+        """What xacro refuses, without which it was expanded, and where."""
+        return self._expander.refused
+
+    @property
+    def is_refused(self) -> bool:
+        """Whether xacro refuses something, without which it was expanded."""
+        return bool(self._expander.problems)
+
+    @property
+    def open_reason(self) -> str:
+        """Why something could not be expanded; empty if everything was."""
+        return next((found.reason for found in self._expander.undetermined), "")
+
+    @property
+    def cost(self) -> int:
+        """How much longer this takes to expand and to read than a short file."""
+        return super().cost + self._work // _READING_OF_SHORT
+
+    def element(self, tag: int) -> tuple[Source, int]:
+        """Return the text, perhaps of an included file, with an expanded element, and the offset of its start tag."""
+        place = self.nodes[tag].place
+        return place.source.element(place.tag)
+
 
 _INSTRUCTION = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?(?!xml\s)(?P<target>[\w:.-]+)", re.DOTALL)
 _MAX_ASSUMED = 20
@@ -53,7 +115,7 @@ class Expansion(NamedTuple):
     def document(self) -> XmlDocument:
         """The expanded file as the reader of robots takes it; what cannot be determined is a problem in it."""
         undetermined = [
-            Problem(catalogue.XACRO_UNDETERMINED, found.reason, found.location) for found in self.undetermined
+            Problem(xacro_problems.XACRO_UNDETERMINED, found.reason, found.location) for found in self.undetermined
         ]
         problems = [*self.problems, *undetermined]
         found = XmlDocument(self.root, self.source, problems, 0, self.unresolved, is_expanded=True)
@@ -85,7 +147,7 @@ def _expand(
     try:
         source, refused, is_recovered = _read(data, plain, budget)
     except EvaluationFails as error:
-        problem = Problem(catalogue.XACRO_NOT_XML, f"{error}; {STOPS}", plain.at(0))
+        problem = Problem(xacro_problems.XACRO_NOT_XML, f"{error}; {STOPS}", plain.at(0))
         return Expansion(None, plain, (problem,), (), {}), None
     except (Undetermined, OutOfBudget) as error:
         return Expansion(None, plain, (), (Open(str(error), plain.at(0)),), {}), None
@@ -118,7 +180,7 @@ def _read(data: bytes, text: Source, budget: Budget) -> tuple[XacroNode | None, 
         return read_nodes(data, path, budget), (), False
     except XMLSyntaxError as error:
         message = f"xacro needs well-formed XML: {error.msg}; {STOPS}"
-        refused = (Problem(catalogue.XACRO_NOT_XML, message, error_location(error, text)),)
+        refused = (Problem(xacro_problems.XACRO_NOT_XML, message, error_location(error, text)),)
     with suppress(XMLSyntaxError):
         return read_nodes(data, path, budget, is_repaired=True), refused, False
     recovered, assumed = recovered_nodes(data, path, budget)

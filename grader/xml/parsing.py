@@ -8,7 +8,7 @@ from lxml import etree
 
 from grader.problems import Problem
 from grader.source import Location, Source
-from grader.xml.catalogue import NOT_UTF8
+from grader.xml.xml_problems import NOT_UTF8
 
 if TYPE_CHECKING:
     from grader.xml.tinyxml2 import Difference, Scan

@@ -11,7 +11,7 @@ from typing import Literal, NamedTuple
 from grader.markup import indentation
 from grader.names import near
 from grader.text import enumerated
-from grader.xml import catalogue
+from grader.xml import xml_problems
 from grader.xml.tinyxml2 import Difference, MalformedTagError, Tag, decode, escape, read_tag, scan, short
 from grader.xml.urdf_format import CHILDREN, PARTS, REQUIRED, TAGS, numbers_in
 
@@ -211,7 +211,7 @@ class _Repairer:
             self._close_last(offset)
 
     def _assume(self, message: str, offset: int, subject: str = "") -> None:
-        self._assumed.append(Difference(catalogue.RECOVERED, message, offset, subject))
+        self._assumed.append(Difference(xml_problems.RECOVERED, message, offset, subject))
 
     def _close_last(self, offset: int) -> None:
         """Close the innermost open tag before an offset, in a line of its own if it has one."""

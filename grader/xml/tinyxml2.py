@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple
 
 from grader.problems import Kind
 from grader.text import cut
-from grader.xml import catalogue
+from grader.xml import xml_problems
 from grader.xml.urdf_format import TAGS
 
 # --- Attribute values
@@ -352,27 +352,27 @@ class _Scanner:
             position = self._node(position)
         first_tag = self._top_level[0].offset if self._top_level else 0
         if self._errors:
-            errors = [found for found in self._differences if found.kind is not catalogue.NOT_WELL_FORMED]
+            errors = [found for found in self._differences if found.kind is not xml_problems.NOT_WELL_FORMED]
             return Scan(b"", [], first_tag, errors, is_refused=True)
         robot = next((tag for tag in self._top_level if tag.name == "robot"), None)
         other = next((tag for tag in self._top_level if tag is not robot), None)
         if robot and other:
             message = f"ROS 2 reads the first <robot> at the top level and ignores <{short(other.name)}> beside it"
-            self._add(catalogue.SEVERAL_ROOTS, message, other.offset)
+            self._add(xml_problems.SEVERAL_ROOTS, message, other.offset)
         return Scan("".join(self._xml).encode(), self._offsets, first_tag, self._differences)
 
     def _start(self) -> int | None:
         text = self._text
         if text.startswith(("\udcff\udcfe", "\udcfe\udcff")) or "\0" in text[:4]:
-            return self._refuse(catalogue.NOT_UTF8, "the file is not UTF-8 text; ROS 2 cannot read it", 0)
+            return self._refuse(xml_problems.NOT_UTF8, "the file is not UTF-8 text; ROS 2 cannot read it", 0)
         end = text.find("\0")
         if end >= 0:
-            self._add(catalogue.IGNORED_REST, "ROS 2 ignores everything after this NUL byte", end)
+            self._add(xml_problems.IGNORED_REST, "ROS 2 ignores everything after this NUL byte", end)
             text = self._text = text[:end]
         position = _skip_blank(text, 0)
         position += text.startswith("\ufeff", position)
         if position == len(text):
-            return self._refuse(catalogue.EMPTY_DOCUMENT, "the file is empty; ROS 2 rejects it", 0)
+            return self._refuse(xml_problems.EMPTY_DOCUMENT, "the file is empty; ROS 2 rejects it", 0)
         illegal = _ILLEGAL.search(text)
         if illegal:
             what = "invalid UTF-8" if illegal[0] >= "\ud800" else "a control character"
@@ -395,7 +395,7 @@ class _Scanner:
         try:
             tag, end = read_tag(text, position, self._differ)
         except MalformedTagError as error:
-            self._refuse(catalogue.MALFORMED_TAG, f"{error}; ROS 2 rejects the file", error.offset)
+            self._refuse(xml_problems.MALFORMED_TAG, f"{error}; ROS 2 rejects the file", error.offset)
             return error.resume
         return self._close(tag, end) if tag.form == "close" else self._open(tag, end)
 
@@ -417,7 +417,7 @@ class _Scanner:
                 entities = {"text", "reference"} if "[" in text[position:end] else set()  # XML may define them there
                 self._noted |= {"doctype", *entities}
                 message = "ROS 2 skips a DOCTYPE and does not expand the entities that it defines"
-                self._add(catalogue.DOCTYPE, message, position)
+                self._add(xml_problems.DOCTYPE, message, position)
         return end
 
     def _end(self) -> int | None:
@@ -425,7 +425,7 @@ class _Scanner:
             return None
         tag = self._open_tags[-1][0]
         message = f"<{short(tag.name)}> is not closed before the end of the file; ROS 2 rejects it"
-        return self._refuse(catalogue.MISMATCHED_TAG, message, tag.offset)
+        return self._refuse(xml_problems.MISMATCHED_TAG, message, tag.offset)
 
     def _text_node(self, position: int) -> int | None:
         end = self._text.find("<", position)
@@ -435,7 +435,7 @@ class _Scanner:
             message = "there is text after the robot; ROS 2 rejects the file"
             if not self._top_level:
                 message = f"this is not XML: it begins with {short(self._text.strip()[:20])!r}; ROS 2 rejects the file"
-            return self._refuse(catalogue.STRAY_TEXT, message, position)
+            return self._refuse(xml_problems.STRAY_TEXT, message, position)
         if not self._open_tags:
             self._only_declarations = False
             self._differ("text", "text outside the robot", position)
@@ -455,7 +455,7 @@ class _Scanner:
             return None
         if self._open_tags or not self._only_declarations:
             message = "an XML declaration must be at the very top of the file; ROS 2 rejects the file"
-            self._add(catalogue.MISPLACED_DECLARATION, message, position)  # the elements around it can be read
+            self._add(xml_problems.MISPLACED_DECLARATION, message, position)  # the elements around it can be read
         elif position > 0 and not self._text.startswith("\ufeff<"):
             self._differ("declaration", "something before the XML declaration", position)
         elif not _DECLARATION.fullmatch(self._text, position + 2, end - 2):
@@ -466,7 +466,7 @@ class _Scanner:
         end = self._text.find(closing, position + len(opening))
         if end < 0:
             message = f"this {what} is not closed with {closing}; ROS 2 rejects the file"
-            return self._refuse(catalogue.UNTERMINATED, message, position)
+            return self._refuse(xml_problems.UNTERMINATED, message, position)
         return end + len(closing)
 
     def _open(self, tag: Tag, end: int) -> int | None:
@@ -485,7 +485,9 @@ class _Scanner:
         if tag.form == "open":
             self._open_tags.append((tag, is_written))
             if depth + 2 >= _MAX_DEPTH and not self._errors:
-                return self._refuse(catalogue.TOO_DEEP, "tags are nested too deep; ROS 2 rejects the file", tag.offset)
+                return self._refuse(
+                    xml_problems.TOO_DEEP, "tags are nested too deep; ROS 2 rejects the file", tag.offset
+                )
         return end
 
     def _close(self, tag: Tag, end: int) -> int | None:
@@ -495,7 +497,7 @@ class _Scanner:
             self._differ("stray", f"the closing tag </{short(tag.name)}>, which closes nothing", tag.offset)
             if _skip_blank(self._text, end) < len(self._text):
                 message = "ROS 2 stops reading at this closing tag, which closes nothing"
-                self._add(catalogue.IGNORED_REST, message, tag.offset)
+                self._add(xml_problems.IGNORED_REST, message, tag.offset)
             return None
         opened, is_written = self._open_tags.pop()
         if is_written:
@@ -503,7 +505,7 @@ class _Scanner:
         if opened.name != tag.name and not self._errors:
             line = self._text.count("\n", 0, opened.offset) + 1
             message = f"</{short(tag.name)}> does not match <{short(opened.name)}> in line {line}"
-            self._refuse(catalogue.MISMATCHED_TAG, f"{message}; ROS 2 rejects the file", tag.offset)
+            self._refuse(xml_problems.MISMATCHED_TAG, f"{message}; ROS 2 rejects the file", tag.offset)
         return end
 
     @cached_property
@@ -522,4 +524,6 @@ class _Scanner:
     def _differ(self, key: str, what: str, offset: int) -> None:
         if key not in self._noted:
             self._noted.add(key)
-            self._add(catalogue.NOT_WELL_FORMED, f"ROS 2 accepts this, but it is not well-formed XML: {what}", offset)
+            self._add(
+                xml_problems.NOT_WELL_FORMED, f"ROS 2 accepts this, but it is not well-formed XML: {what}", offset
+            )

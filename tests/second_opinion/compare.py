@@ -17,7 +17,7 @@ from grader.grading.rubric import Rubric as GraderRubric
 from grader.grading.rubric import load_rubric
 from grader.robot.reader import read_urdf
 from grader.submission.opening import read_submission
-from grader.xml.catalogue import RECOVERED
+from grader.xml.xml_problems import RECOVERED
 from tests.second_opinion.elements import Unclear
 from tests.second_opinion.opinion import Opinion, Rubric
 from tests.second_opinion.robot import Robot

@@ -10,7 +10,7 @@ from lxml import etree
 from grader.errors import InputError
 from grader.python.budget import READING, Budget
 from grader.robot.reader import read_urdf
-from grader.xml.catalogue import MISPLACED_DECLARATION
+from grader.xml.xml_problems import MISPLACED_DECLARATION
 from tests.xacro import oracle
 from tests.xacro.documents.document import PACKAGES, Document
 

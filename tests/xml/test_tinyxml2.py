@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from grader.robot.reader import read_urdf
-from grader.xml.catalogue import MISPLACED_DECLARATION
 from grader.xml.parsing import is_plain
 from grader.xml.tinyxml2 import MAX_NAME_LENGTH, Scan, scan
+from grader.xml.xml_problems import MISPLACED_DECLARATION
 from tests.examples import examples, spread
 from tests.robot.random_text import data
 from tests.work import limited_work
