@@ -10,7 +10,7 @@ from typing import NamedTuple
 _HEAD = re.compile(r"""<\s*([^\s=/>"'<]*)((?:"[^"]*"|'[^']*'|[^>"'<])*)(/?)>""")
 _TAG_NAME = re.compile(r"<\s*[^\s=/>]*")
 _ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
-TOKEN = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<!|</[^>]*>|<", re.DOTALL)
+_TOKEN = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<!|</[^>]*>|<", re.DOTALL)
 _STEP = "   "  # of indentation, where the file shows none
 
 
@@ -64,7 +64,7 @@ def element_end(text: str, start: int) -> int:
     position, is_empty = head_end(text, start)
     depth = 0 if is_empty else 1
     while depth:
-        token = TOKEN.search(text, position)
+        token = _TOKEN.search(text, position)
         if token is None:
             return len(text)
         position = token.end()
@@ -93,7 +93,7 @@ def child_indentation(text: str, start: int) -> str:
     """Return the indentation of the children of the element at an offset: its first child's, else one step more."""
     own = indentation(text, start)
     end, is_empty = head_end(text, start)
-    token = None if is_empty else TOKEN.search(text, end)
+    token = None if is_empty else _TOKEN.search(text, end)
     if token is not None and not token[0].startswith("</"):
         found = indentation(text, token.start())
         if len(found) > len(own):

@@ -157,10 +157,10 @@ def _offsets(source: Source, edits: Iterable[Edit]) -> list[tuple[int, Edit]]:
     return sorted(((source.offset(edit.line, edit.column), edit) for edit in edits), key=lambda pair: pair[0])
 
 
-Files = Mapping[str, bytes | None]  # the new content of files by path; None for one that is no longer there
+_Files = Mapping[str, bytes | None]  # the new content of files by path; None for one that is no longer there
 
 
-def edited_files(submission: Submission, edits: Iterable[Edit]) -> Files | None:
+def edited_files(submission: Submission, edits: Iterable[Edit]) -> _Files | None:
     """Return the files of a submission that edits change; None where the edits do not fit."""
     by_path: dict[str, list[Edit]] = {}
     for edit in edits:
@@ -190,7 +190,7 @@ def content(submission: Submission, path: str) -> bytes | None:
         return None
 
 
-def with_urdf(submission: Submission, files: Files) -> Submission:
+def with_urdf(submission: Submission, files: _Files) -> Submission:
     """Return a submission with only the URDF read again: for edits of the URDF and of xacro that it includes."""
     urdf = submission.urdf
     assert isinstance(urdf, Read)
@@ -202,7 +202,7 @@ def with_urdf(submission: Submission, files: Files) -> Submission:
     return replace(submission, urdf=read, whole_tree=whole_tree, budget=surroundings.budget)
 
 
-def with_files(submission: Submission, files: Files) -> Submission:
+def with_files(submission: Submission, files: _Files) -> Submission:
     """Return a submission that is read again from scratch with other files. Raises InputError."""
     if submission.reopen is None:
         return with_urdf(submission, files)

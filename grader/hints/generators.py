@@ -75,11 +75,11 @@ class Situation:
             link = above if above and not self.is_known(above) else None
 
 
-Lost = Sequence[Criterion]
-Stage = Callable[[Situation, Lost], Iterator[Iterable[Proposal]]]
+_Lost = Sequence[Criterion]
+Stage = Callable[[Situation, _Lost], Iterator[Iterable[Proposal]]]
 
 
-def _of_reference(situation: Situation, lost: Lost) -> Iterator[Iterable[Proposal]]:
+def _of_reference(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
     """What undoes a slip, then what differs from the other side of the robot, and from the reference."""
     draft, difference = situation.draft, situation.difference
     subjects = {criterion.check.subject for criterion in lost}
@@ -94,7 +94,7 @@ def _of_reference(situation: Situation, lost: Lost) -> Iterator[Iterable[Proposa
         yield _proposals(situation, difference.pieces, links)
 
 
-def _of_package(situation: Situation, lost: Lost) -> Iterator[Iterable[Proposal]]:
+def _of_package(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
     """The edits of the files of a package, by the kinds of files that checks look at."""
     own = [criterion for criterion in lost if criterion.check.subject not in ("urdf", "robot")]
     if own and situation.submission.package is not None:
@@ -104,14 +104,14 @@ def _of_package(situation: Situation, lost: Lost) -> Iterator[Iterable[Proposal]
         yield from package_proposals(situation.submission.package, situation.reference_package(), wanted)
 
 
-def _of_own_numbers(situation: Situation, lost: Lost) -> Iterator[Iterable[Proposal]]:
+def _of_own_numbers(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
     """The student's own numbers with another sign, order or unit."""
     if situation.difference is not None:
         links = _links_of([it for it in lost if it.check.subject == "robot"], situation.difference)
         yield _proposals(situation, of_own(situation.difference, links or ()))
 
 
-def _of_links(situation: Situation, lost: Lost) -> Iterator[Iterable[Proposal]]:
+def _of_links(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
     """All values of the reference of a link and its joint, or of one element."""
     if situation.difference is not None and any(criterion.check.subject == "robot" for criterion in lost):
         links = _links_of(lost, situation.difference)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _MAX_CRITERIA = 4
 
 
-class HintedReport(NamedTuple):
+class _HintedReport(NamedTuple):
     """A report with hints, the edits of all that fit together, and the types of exceptions that cost other hints."""
 
     report: Report
@@ -45,7 +45,7 @@ class Fix(NamedTuple):
     why_nothing: str = ""
 
 
-def hinted(report: Report, submission: Submission, level: HintLevel) -> HintedReport:
+def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedReport:
     """Return a report with proven hints for criteria that failed."""
     results = {result.criterion.id: result for result in report.results}
     solution = report.rubric.solution
@@ -70,10 +70,10 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> HintedRe
         hints[name] = Hint(f"Make the edits for {others}.", results[name].outcome.location or Location("", 1, 1), {})
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
     report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete or submission.is_costly)
-    return HintedReport(report, search.edits, trials.faults)
+    return _HintedReport(report, search.edits, trials.faults)
 
 
-def fixed(found: HintedReport, submission: Submission) -> Fix:
+def fixed(found: _HintedReport, submission: Submission) -> Fix:
     """Return the files with all proven edits that fit together, graded again."""
     report, why_nothing = found.report, "no edit that was tried gains points"
     if not report.hints_complete:

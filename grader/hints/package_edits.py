@@ -37,7 +37,7 @@ _SINGLE, _TYPOGRAPHIC = "‘’‚", re.compile("[‘’‚“”„]")
 _PROGRAM = re.compile(r"(?:(?<=['\"]xacro)|(?<=['\"]cat))(?=['\"$])")
 
 
-def respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
+def _respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
     """Yield edits that replace a misspelt word everywhere, rare ones first.
 
     `known` are texts with words that are spelt as they should be; the file's other words may be the right ones, too.
@@ -47,7 +47,7 @@ def respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Pro
         places.setdefault(match[0], []).append(match)
     right = {word for text in (*known, *kwlist, *USUAL_NAMES) for word in _WORD.findall(text)}
     suspects = sorted((word for word in places if word not in right and len(word) > 1), key=lambda it: len(places[it]))
-    guesses = ((word, slip(word, right) or slip(word, places)) for word in suspects[:_MAX_SUSPECTS])
+    guesses = ((word, _slip(word, right) or _slip(word, places)) for word in suspects[:_MAX_SUSPECTS])
     for word, guess in islice(((word, guess) for word, guess in guesses if guess), _MAX_WORDS):
         yield change([source.edit(*place.span(), guess) for place in places[word]], "the spelling of a word", what)
     yield from _replace_words(source, _PROGRAM, [" "], what)
@@ -63,14 +63,14 @@ def _replace_words(source: Source, pattern: re.Pattern[str], words: Iterable[str
         yield change([source.edit(*it.span(), word) for it in places if it[0] == old], "a word", what)
 
 
-def slip(word: str, known: Iterable[str]) -> str | None:
+def _slip(word: str, known: Iterable[str]) -> str | None:
     """Return the known word that a slip of the hand makes this one: a letter or two more, less, other or swapped."""
     guess = closest(word, (other for other in known if abs(len(other) - len(word)) <= _MAX_MORE))
     same = SequenceMatcher(None, word.lower(), (guess or "").lower(), autojunk=False).ratio()
     return guess if same >= _LIKENESS else None
 
 
-def reword(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
+def _reword(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
     """Yield edits that undo one difference each between a file and the text that it should have, if there are few."""
     start_of_text = int(source.text.startswith("\ufeff"))
     own, right = _TOKEN.findall(source.text[start_of_text:]), _TOKEN.findall(wanted)
@@ -82,7 +82,7 @@ def reword(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
         yield change([source.edit(offset, offset + len(old), "".join(right[start:end]))], "a line", what)
 
 
-def other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
+def _other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
     """Yield edits that give a key of YAML, or an attribute of XML, a value that the reference has for it."""
     known: dict[str, list[str]] = {}
     for found in _SETTING.finditer(wanted):
@@ -93,7 +93,7 @@ def other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
             yield change([source.edit(*found.span("value"), value)], f"the value of `{found['key']}`", what)
 
 
-def undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
+def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits that import or correct names that are undefined, or not as they are used; and missing commas."""
     if isinstance(file.parsed, SyntaxFault):
         start = file.source.offset(file.parsed.location.line, 1)
@@ -133,7 +133,7 @@ _MAX_FILES = 200
 _LAUNCH = "the launch file"
 
 
-def setup_paths(task: PackageTask) -> Iterator[Proposal]:
+def _setup_paths(task: PackageTask) -> Iterator[Proposal]:
     """Yield edits of the paths and patterns in setup.py that name no file, or a folder."""
     source, setup = task.source(SETUP), task.package.setup
     if source is None or setup is None:
@@ -146,7 +146,7 @@ def setup_paths(task: PackageTask) -> Iterator[Proposal]:
         known = [it for it in patterns if posixpath.dirname(it) in (above, path)] if is_folder else [*files, *patterns]
         for actual in (path, f"{above}/*")[: 1 + is_folder]:
             for wanted in _similar(actual, known)[:_MAX_EDITS]:
-                edits = moved(source, actual, wanted, line)[:2]
+                edits = _moved(source, actual, wanted, line)[:2]
                 yield from (change([edit], "a path", SETUP) for edit in edits)
 
 
@@ -155,7 +155,7 @@ def _similar(path: str, known: Iterable[str]) -> list[str]:
     return sorted(dict.fromkeys(known), key=lambda it: -SequenceMatcher(None, it, path, autojunk=False).ratio())
 
 
-def launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator[Proposal]:
+def _launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator[Proposal]:
     """Yield edits with which a launch file finds its files: of all together, then of one path each."""
     installed = task.package.installed
     named = [it for it in launch.references[:_MAX_PATHS] if it.path is not None]
@@ -179,7 +179,7 @@ def _edits_of_path(task: PackageTask, source: Source, named: NamedFile) -> list[
     actual, share = named.path or "", f"{PREFIX}/share/{task.package.name}/"
     for below in _similar(actual.removeprefix(share), _targets(task, named.purpose))[:1]:
         if actual.startswith(PREFIX):
-            return [[edit] for edit in moved(source, actual, share + below, named.location.line)]
+            return [[edit] for edit in _moved(source, actual, share + below, named.location.line)]
         if source.path.endswith(".py"):
             return [*_of_one_machine(task.package.name, PythonFile(source), actual, below)]
     return []
@@ -195,14 +195,14 @@ def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> It
     for literal in [it for it in file.nodes if isinstance(it, ast.Constant) and it.value and isinstance(it.value, str)]:
         for path in (str(literal.value).rstrip("/").replace("~", HOME, 1), f"{WORKING_FOLDER}/{literal.value!s}"):
             rest = actual.removeprefix(path).strip("/") if f"{actual}/".startswith(f"{path}/") else None
-            others = moved(file.source, rest, target)[:1] if rest and rest != target else []
+            others = _moved(file.source, rest, target)[:1] if rest and rest != target else []
             if rest in ("", target) or others:
                 new = share if rest else f"os.path.join({share}, {target!r})"
                 imports = file.with_imports([_SHARE_FUNCTION, *([] if rest else ["os"])])
                 yield [*imports, file.replaced(literal, new), *others]
 
 
-def path_offsets(source: Source) -> Iterator[tuple[int, int]]:
+def _path_offsets(source: Source) -> Iterator[tuple[int, int]]:
     """Yield the offsets of the texts in a file that a path may be put together from."""
     if not source.path.endswith(".py"):
         yield from (match.span() for match in _PIECE.finditer(source.text))
@@ -210,10 +210,10 @@ def path_offsets(source: Source) -> Iterator[tuple[int, int]]:
     yield from ((it.start, it.end) for it in PythonFile(source).literals)
 
 
-def moved(source: Source, actual: str, wanted: str, line: int = 1) -> list[Edit]:
+def _moved(source: Source, actual: str, wanted: str, line: int = 1) -> list[Edit]:
     """Return the edits of one text each with which a path becomes the wanted one; those nearest to a line first."""
     found: dict[Edit, int] = {}
-    for start, end in islice(path_offsets(source), _MAX_PIECES):
+    for start, end in islice(_path_offsets(source), _MAX_PIECES):
         piece = source.text[start:end]
         if piece.strip("./") and piece in actual:
             is_package = _PACKAGE_ARGUMENT.search(source.text, max(start - _MAX_CALL, 0), start) is not None
@@ -247,7 +247,7 @@ _DESCRIPTION = "LaunchDescription"
 _MAX_ITEMS = 30
 
 
-def missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[Proposal]:
+def _missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits that add an entry of the reference's lists, or all that are missing."""
     known = {own.plain(it) for it in _items(own)}
     installed = {own.plain(it.elts[-1]) for it in _items(own) if isinstance(it, ast.Tuple) and it.elts}
@@ -265,7 +265,7 @@ def missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[Pr
         yield from _adding(own, several, what)
 
 
-def as_lists(own: PythonFile, what: str) -> Iterator[Proposal]:
+def _as_lists(own: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits that put the one file of an entry of data_files into a list."""
     for item in _items(own):
         files = item.elts[-1] if isinstance(item, ast.Tuple) and item.elts else None
@@ -366,15 +366,15 @@ def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str 
     ending, other = (posixpath.splitext(it or "")[1] for it in (path, like))
     is_python = ending in (".py", "")
     if wanted and (ending == other or is_python):
-        yield from reword(source, wanted, what)
+        yield from _reword(source, wanted, what)
     if is_python:
-        yield from missing_entries(own, PythonFile(Source(source.path, wanted)), what)
-        yield from as_lists(own, what)
-        yield from undefined_names(own, what)
+        yield from _missing_entries(own, PythonFile(Source(source.path, wanted)), what)
+        yield from _as_lists(own, what)
+        yield from _undefined_names(own, what)
     elif ending == other:
-        yield from other_values(source, wanted, what)
+        yield from _other_values(source, wanted, what)
     if kind == "launch":
-        yield from launch_paths(task, task.launch(path, source), source)
+        yield from _launch_paths(task, task.launch(path, source), source)
     elif kind == SETUP:
-        yield from setup_paths(task)
-    yield from respellings(source, [wanted, *(task.files if kind == SETUP else task.package.installed)], what)
+        yield from _setup_paths(task)
+    yield from _respellings(source, [wanted, *(task.files if kind == SETUP else task.package.installed)], what)

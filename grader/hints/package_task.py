@@ -37,7 +37,7 @@ class PackageTask:
         """Return the path of the file of a kind in a package: the one that a check names, else another one."""
         if package is None or kind not in ("launch", "rviz"):
             return kind
-        name = min((name for name in self.given if kind_of(name) == kind), default="")
+        name = min((name for name in self.given if _kind_of(name) == kind), default="")
         launch = next((package.launch(path) for path in package.launch_files[:1]), None)
         return package.launch_file(name) if kind == "launch" else package.rviz_file(name, launch)
 
@@ -66,7 +66,7 @@ class PackageTask:
         return self.package.tree.files
 
 
-def kind_of(path: str) -> str:
+def _kind_of(path: str) -> str:
     """Return the kind of a file: launch, rviz, urdf, setup.py with the files that it needs, or another file itself."""
     if path.endswith((".rviz", ".urdf", ".xacro")):
         return "rviz" if path.endswith(".rviz") else "urdf"
@@ -93,12 +93,12 @@ def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
     """Yield edits that give a file the name that it has in the reference."""
     likes = {task.named(path): path for path in (task.reference.tree.files if task.reference is not None else ())}
     names = {posixpath.basename(path) for path in likes} | task.given
-    wanted = {path: like for path, like in likes.items() if kind_of(path) == kind}
+    wanted = {path: like for path, like in likes.items() if _kind_of(path) == kind}
     for path in wanted:
         folder, name = posixpath.split(path)
         if any(_is_named(it, name, kind) for it in task.files):
             continue
-        own = [it for it in task.files if kind in (kind_of(it), posixpath.dirname(it)) or it.startswith(f"{folder}/")]
+        own = [it for it in task.files if kind in (_kind_of(it), posixpath.dirname(it)) or it.startswith(f"{folder}/")]
         yield from _rename(task, kind, name, [it for it in own if posixpath.basename(it) not in names])
 
 

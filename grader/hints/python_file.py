@@ -28,7 +28,7 @@ _USE = re.compile(r"\bglob\.glob\b")
 _CAT = re.compile(r"\bcat(?=\s)")
 
 
-class Literal(NamedTuple):
+class _Literal(NamedTuple):
     """The text between the quotes of a string, and its offsets."""
 
     text: str
@@ -56,12 +56,12 @@ class PythonFile:
         return list(ast.walk(self.parsed.tree)) if isinstance(self.parsed, Code) else []
 
     @cached_property
-    def literals(self) -> list[Literal]:
+    def literals(self) -> list[_Literal]:
         """The texts in its strings."""
         found = ((it.start("string"), it["string"]) for it in _STRING.finditer(self.text) if it["string"])
         quoted = ((start, text, _QUOTES.match(text)) for start, text in found)
         spans = [(at + it.end(), at + len(text) - len(it[1])) for at, text, it in quoted if it is not None]
-        return [Literal(self.text[start:end], start, end) for start, end in spans]
+        return [_Literal(self.text[start:end], start, end) for start, end in spans]
 
     def offset(self, line: int, byte: int) -> int:
         """Return the offset of a place that Python gives: it counts the bytes of a line from 0."""
@@ -149,7 +149,7 @@ class PythonFile:
 
     def calls(self, name: str) -> list[ast.Call]:
         """Return the calls of a function or class of this name, in order."""
-        found = (node for node in self.nodes if isinstance(node, ast.Call) and called(node) == name)
+        found = (node for node in self.nodes if isinstance(node, ast.Call) and _called(node) == name)
         return sorted(found, key=lambda node: (node.lineno, node.col_offset))
 
     def with_imports(self, names: Iterable[str]) -> list[Edit]:
@@ -174,7 +174,7 @@ def _expression(code: str) -> ast.Expression | None:
         return None
 
 
-def called(call: ast.Call) -> str:
+def _called(call: ast.Call) -> str:
     """Return the last part of the name of the function that is called."""
     return call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
 
@@ -192,8 +192,8 @@ def with_xacro(source: Source) -> Iterator[Edits]:
     for call in [*file.calls("read"), *file.calls("read_text")] if source.path.endswith(".py") else ():
         owner = file.meant(call.func.value) if isinstance(call.func, ast.Attribute) else call
         owner = file.values.get(owner.id, owner) if isinstance(owner, ast.Name) else owner
-        is_open = isinstance(owner, ast.Call) and called(owner) == "open" and owner.args
-        if is_open or called(call) == "read_text":
+        is_open = isinstance(owner, ast.Call) and _called(owner) == "open" and owner.args
+        if is_open or _called(call) == "read_text":
             path = owner.args[0] if isinstance(owner, ast.Call) and is_open else owner
             new = f"xacro.process_file({file.segment(path)}).toxml()"
             yield (*file.with_imports(["xacro"]), file.replaced(call, new))

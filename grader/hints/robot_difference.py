@@ -14,7 +14,7 @@ from grader.source import Edits
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import CHILDREN, TAGS, TagFormat
 
-ENDS = ("parent", "child")
+_ENDS = ("parent", "child")
 
 # The ranks of pieces: values of a sibling of the student's own design; the reference's; the student's own, corrected;
 # several at once, or another structure.
@@ -35,7 +35,7 @@ class Piece(NamedTuple):
     around: Element | None = None
 
 
-class PieceMaker:
+class _PieceMaker:
     """Makes pieces for a robot beside the reference's; only `known` names are shown, because the reference has them."""
 
     def __init__(self, draft: Draft, reference: Draft) -> None:
@@ -84,7 +84,7 @@ def _cause(sets: Sequence[Set]) -> str:
     """Return what is wrong with the values of one element."""
     tag = sets[0].tag or str(sets[0].owner.tag)
     names = " and ".join(one.attribute for one in sets)
-    what = "{}" if tag in ENDS else f"the {names} of {{}}"
+    what = "{}" if tag in _ENDS else f"the {names} of {{}}"
     if sets[0].element is None:
         return "{} is missing"
     if all(one.attribute not in one.element.attrib for one in sets if one.element is not None):
@@ -102,7 +102,7 @@ def _cause(sets: Sequence[Set]) -> str:
     return mistake_in(parts, TAGS[tag].attributes[sets[-1].attribute].unit, old, new)
 
 
-def unique(pieces: Iterable[Piece]) -> list[Piece]:
+def _unique(pieces: Iterable[Piece]) -> list[Piece]:
     """Return the pieces that change something, each once."""
     found: dict[object, Piece] = {}
     for piece in pieces:
@@ -125,7 +125,7 @@ _AXIS = ("1 0 0", "revolute", "continuous", "prismatic", "planar")
 _NAMES = {("mimic", "joint"): "joint", ("joint", "name"): "joint", ("material", "name"): "material"}
 
 
-def wanted_value(step: Step) -> str | None:
+def _wanted_value(step: Step) -> str | None:
     """Return the value that a step sets: that of the reference, else the default; None if there is none."""
     if step.verb == "set" and step.like is not None:
         return step.like.values[step.name]
@@ -133,7 +133,7 @@ def wanted_value(step: Step) -> str | None:
     return known.default or None if known is not None else None
 
 
-def node_of(element: Element, names: Mapping[str, Mapping[str, str]] | None = None) -> Node:
+def _node_of(element: Element, names: Mapping[str, Mapping[str, str]] | None = None) -> Node:
     """Return the node of an element, without values and elements that are the default."""
     tag = str(element.tag)
     values = {}
@@ -144,7 +144,7 @@ def node_of(element: Element, names: Mapping[str, Mapping[str, str]] | None = No
         values[str(name)] = (names or {}).get(_NAMES.get((tag, str(name)), ""), {}).get(text, text)
     if tag not in TAGS and not len(element) and (element.text or "").strip():
         values[""] = (element.text or "").strip()
-    children = [node_of(child, names) for child in element if isinstance(child.tag, str)]
+    children = [_node_of(child, names) for child in element if isinstance(child.tag, str)]
     is_moving = tag != "joint" or element.get("type") in _AXIS[1:]
     children = [child for child in children if not _is_default(child, is_moving=is_moving)]
     return Node(tag, _keys(element, values), values, children, element)
@@ -163,7 +163,7 @@ def _is_default(node: Node, *, is_moving: bool) -> bool:
     return node.tag == "origin" and not node.values
 
 
-def translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
+def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
     """Return what the joints and materials of the reference are called in the robot."""
     names: dict[str, dict[str, str]] = {"joint": {}, "material": {}}
     known = {joint.name for joint in reference.robot.joints}
@@ -172,8 +172,8 @@ def translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
         is_there = any(it.get("name") == joint.get("name") for it in draft.joints())
         if own is not None and own.get("name") and own.get("name") not in known and not is_there:
             names["joint"][joint.get("name") or ""] = own.get("name") or ""
-    mine = [node_of(found) for found in draft.root.iterchildren("material")]
-    pairs = paired(mine, [node_of(found) for found in reference.root.iterchildren("material")])
+    mine = [_node_of(found) for found in draft.root.iterchildren("material")]
+    pairs = paired(mine, [_node_of(found) for found in reference.root.iterchildren("material")])
     called = {like.values.get("name", ""): own_node.values.get("name") for own_node, like in pairs.both}
     names["material"] = {name: own_name for name, own_name in called.items() if own_name}
     return names
@@ -192,12 +192,12 @@ class MissingPart(NamedTuple):
     parent: str = ""
 
 
-class RobotDifference(PieceMaker):
+class RobotDifference(_PieceMaker):
     """A robot and the reference's, paired; `known` are names that may be told, because the reference has them."""
 
     def __init__(self, draft: Draft, reference: Draft) -> None:
         super().__init__(draft, reference)
-        self._names = translation(draft, reference)
+        self._names = _translation(draft, reference)
         self.missing: list[MissingPart] = []
 
     @property
@@ -210,7 +210,7 @@ class RobotDifference(PieceMaker):
         """The pieces, each once: values first, then what moves, is added and is removed."""
         found_steps = steps(self._tree(self.draft, {}), self._tree(self.reference, self._names))
         found = [*self._pieces(found_steps)]
-        return unique([*found, *self._materials(), *self._joint_names()])
+        return _unique([*found, *self._materials(), *self._joint_names()])
 
     def _materials(self) -> Iterator[Piece]:
         """Name a material as links use it, or give what a link shows the reference's colour if no material has it."""
@@ -249,7 +249,7 @@ class RobotDifference(PieceMaker):
 
     def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
         children = [child for child in draft.root if isinstance(child.tag, str)]
-        nodes = [node_of(child, names) for child in children[: 3 * _MAX_LINKS]]
+        nodes = [_node_of(child, names) for child in children[: 3 * _MAX_LINKS]]
         is_nameless = draft is self.reference and self.draft.root.get("name") is None
         values = {"name": draft.root.get("name") or ""} if is_nameless else {}
         version = draft.root.get("version")
@@ -290,7 +290,7 @@ class RobotDifference(PieceMaker):
     def _of_values(self, found: Sequence[Step]) -> Iterator[Piece]:
         """Yield the values of one element: each alone, and all together."""
         element: Element = found[0].own.of
-        wanted = {step.name: wanted_value(step) for step in found}
+        wanted = {step.name: _wanted_value(step) for step in found}
         values = {name: value for name, value in wanted.items() if value is not None}
         if element.tag in ("link", "joint", "material", "visual", "collision") and "name" in values:
             yield from self._rename(element, values.pop("name"))
@@ -313,7 +313,7 @@ class RobotDifference(PieceMaker):
         if tag == "link" and not is_begun and old and near(old, [name], "link") is None:
             return  # nothing shows that it is this one
         own = (Set(element, "", "name", name),)
-        everywhere = rename_link(self.draft, old, name) if tag == "link" else own
+        everywhere = _rename_link(self.draft, old, name) if tag == "link" else own
         for sets in filter(None, dict.fromkeys((everywhere, own))):
             yield self.piece(element, f"the name of a {tag}", sets=sets, link=name if tag == "link" else "")
 
@@ -368,9 +368,9 @@ class RobotDifference(PieceMaker):
         return text
 
 
-def rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
+def _rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
     """Return what gives a link another name, also where joints name it; nothing where several have the old one."""
     own = [link for link in draft.links() if link.get("name") == old]
-    ends = [(joint, role) for joint in draft.joints() for role in ENDS if end_of(joint, role) == old]
+    ends = [(joint, role) for joint in draft.joints() for role in _ENDS if end_of(joint, role) == old]
     sets = (*(Set(link, "", "name", new) for link in own), *(Set(joint, role, "link", new) for joint, role in ends))
     return sets if len(own) == 1 else sets[:0]

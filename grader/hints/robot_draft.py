@@ -45,7 +45,7 @@ class Set(NamedTuple):
         return child_of(self.owner, self.tag) if self.tag else self.owner
 
 
-class RobotElements:
+class _RobotElements:
     """The elements of a robot, and what ROS 2 reads from them."""
 
     def __init__(self, root: Element, robot: Robot, source: Source) -> None:
@@ -149,7 +149,7 @@ _ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
 _MAX_WAYS = 3
 
 
-class Draft(RobotElements):
+class Draft(_RobotElements):
     """A robot that is being edited."""
 
     @cached_property
@@ -211,7 +211,7 @@ class Draft(RobotElements):
             else:
                 attributes.setdefault(element, {})[one.attribute] = one.value
         added = [self.add_attributes(element, values) for element, values in attributes.items()]
-        added += [self.insert(owner, empty_element(tag, values)) for (owner, tag), values in children.items()]
+        added += [self.insert(owner, _empty_element(tag, values)) for (owner, tag), values in children.items()]
         rest = tuple(edit for edits in added for edit in edits)
         return [
             tuple(edit for edit in dict.fromkeys((*edits, *rest)) if edit.old != edit.new)
@@ -286,7 +286,7 @@ class Draft(RobotElements):
         broken = self._broken_tag(source.text, start)
         if broken:
             given = {str(name): str(value) for name, value in element.attrib.items()}
-            new = empty_element(str(element.tag), {**given, **values})
+            new = _empty_element(str(element.tag), {**given, **values})
             new = new if broken.endswith("/>") else f"{new[:-2]}>"
             return (source.edit(start, start + len(broken), new),) if broken.endswith(">") else ()
         added = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
@@ -314,7 +314,7 @@ class Draft(RobotElements):
         return (with_element(source, start, xml),)
 
 
-def empty_element(tag: str, values: Mapping[str, str]) -> str:
+def _empty_element(tag: str, values: Mapping[str, str]) -> str:
     """Return the text of an element without content."""
     attributes = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
     return f"<{tag}{attributes}/>"

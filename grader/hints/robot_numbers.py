@@ -14,7 +14,7 @@ LARGE = 3.0  # metres: no part of a robot for a desk is as large
 _SAME = 1e-6
 
 
-class Mistake(NamedTuple):
+class _Mistake(NamedTuple):
     """What a person does to numbers: the units, the size from which it is likely, how to undo it, and the cause."""
 
     units: tuple[str, ...]
@@ -25,13 +25,13 @@ class Mistake(NamedTuple):
 
 _LENGTHS, _ANGLES, _ANY = ("m",), ("rad", "rad or m"), ()
 _MISTAKES = (
-    Mistake(_ANY, 0.0, lambda value: -value, "the sign of {}"),
-    Mistake(_ANGLES, 6.3, radians, "the unit of {}: degrees, not radians"),
-    Mistake(_LENGTHS, LARGE, lambda value: value / 1000, "the unit of {}: millimetres, not metres"),
-    Mistake(_LENGTHS, LARGE, lambda value: value / 100, "the unit of {}: centimetres, not metres"),
-    Mistake(("1",), 1.1, lambda value: value / 255, "the range of {}: 0..255, not 0..1"),
-    Mistake(_LENGTHS, 0.0, lambda value: value / 2, "{}: twice the correct value"),
-    Mistake(_LENGTHS, 0.0, lambda value: value * 2, "{}: half of the correct value"),
+    _Mistake(_ANY, 0.0, lambda value: -value, "the sign of {}"),
+    _Mistake(_ANGLES, 6.3, radians, "the unit of {}: degrees, not radians"),
+    _Mistake(_LENGTHS, LARGE, lambda value: value / 1000, "the unit of {}: millimetres, not metres"),
+    _Mistake(_LENGTHS, LARGE, lambda value: value / 100, "the unit of {}: centimetres, not metres"),
+    _Mistake(("1",), 1.1, lambda value: value / 255, "the range of {}: 0..255, not 0..1"),
+    _Mistake(_LENGTHS, 0.0, lambda value: value / 2, "{}: twice the correct value"),
+    _Mistake(_LENGTHS, 0.0, lambda value: value * 2, "{}: half of the correct value"),
 )
 
 

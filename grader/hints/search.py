@@ -25,20 +25,20 @@ if TYPE_CHECKING:
     from grader.package.package import Package
 
 
-Results = Mapping[str, Result]
+_Results = Mapping[str, Result]
 
 _MAX_GRADINGS = 170  # of one submission that is as short as most
 _HARMFUL = ("rejects", "drops", "undetermined")
 
 
-class NoTrialsLeft(Exception):
+class _NoTrialsLeft(Exception):
     """The budget for one submission is spent."""
 
 
 class Trials:
     """Grades edited submissions. The budget counts gradings, so that it is the same on every machine."""
 
-    def __init__(self, rubric: Rubric, submission: Submission, results: Results) -> None:
+    def __init__(self, rubric: Rubric, submission: Submission, results: _Results) -> None:
         parts = {part.id for part in rubric.parts if part.needs != "files"}
         self.rubric, self.submission = rubric, submission
         self.results = {name: result for name, result in results.items() if result.criterion.part in parts}
@@ -51,12 +51,12 @@ class Trials:
         """Record a fault of the grader in one family of edits or one step: it must not cost the hints of the others."""
         try:
             yield
-        except NoTrialsLeft:
+        except _NoTrialsLeft:
             raise
         except Exception as error:  # noqa: BLE001
             self.faults.append(type(error).__name__)
 
-    def graded(self, edits: Edits, wanted: Collection[str] | Results, *, whole: bool = False) -> Results:
+    def graded(self, edits: Edits, wanted: Collection[str] | _Results, *, whole: bool = False) -> _Results:
         """Return the results of criteria with edits, none where these do not fit, or ROS 2 would reject or drop more.
 
         With the results that criteria had, there are none where one is worse now.
@@ -64,7 +64,7 @@ class Trials:
         """
         self.left -= 1 + self.submission.cost
         if self.left < 0:
-            raise NoTrialsLeft
+            raise _NoTrialsLeft
         edited = self._edited(edits, whole=whole)
         if edited is None or _has_new_problems(self.submission, edited):
             return {}
@@ -125,7 +125,7 @@ def is_worse(before: Result, after: Result) -> bool:
     return after.points < before.points
 
 
-def costs_of(results: Results) -> dict[str, Decimal]:
+def costs_of(results: _Results) -> dict[str, Decimal]:
     """Return what each failed criterion costs, with the criteria that are skipped because of it."""
     lost: dict[str, Decimal] = {}
     for name, result in results.items():
@@ -135,7 +135,7 @@ def costs_of(results: Results) -> dict[str, Decimal]:
     return {name: points for name, points in lost.items() if results[name].outcome.status == "failed"}
 
 
-def gains_of(before: Results, after: Results) -> dict[str, Decimal]:
+def gains_of(before: _Results, after: _Results) -> dict[str, Decimal]:
     """Return the criteria that pass now and did not before, with the points that this gives."""
     return {
         name: result.points - before[name].points
@@ -179,8 +179,8 @@ class HintSearch:
         self._refused = set[Edits]()  # after all hints so far
         self._told = {*told}  # also criteria for which two edits are told that cannot be told apart
         self._tried_after: dict[Stage, Edits] = {}  # the edits after which a stage was tried last
-        self.results: Results = trials.results  # with all edits
-        self._after: Results = self.results
+        self.results: _Results = trials.results  # with all edits
+        self._after: _Results = self.results
         self.is_complete = self._is_cut = False
 
     @property
@@ -190,7 +190,7 @@ class HintSearch:
 
     def run(self) -> "HintSearch":
         """Search until nothing more is found, or the budget is spent."""
-        with suppress(NoTrialsLeft):
+        with suppress(_NoTrialsLeft):
             if self.trials.left:
                 for stage in STAGES:
                     self._take(stage)
@@ -307,7 +307,7 @@ class HintSearch:
         proven = (it for it in apart if gains.keys() <= self._gains(self.edits, it.proposal.edits, self.results).keys())
         return next(proven, None)
 
-    def _is_half(self, best: _Tried, after: Results) -> bool:
+    def _is_half(self, best: _Tried, after: _Results) -> bool:
         """Return whether an edit leaves what it should correct as well: in another call of a macro, or of its link."""
         lost = [self._criteria[name] for name, result in after.items() if result.is_lost]
         if leaves_others(best.proposal.shared, [self._criteria[name] for name in best.passes], lost):
@@ -316,7 +316,7 @@ class HintSearch:
         chains = (self._situation.own_chain(it.arguments.get("link")) for it in lost if is_own)
         return any(best.proposal.link in chain for chain in chains)
 
-    def _gains(self, before: Edits, edits: Edits, against: Results) -> dict[str, Decimal]:
+    def _gains(self, before: Edits, edits: Edits, against: _Results) -> dict[str, Decimal]:
         """Return what edits gain; nothing where a criterion is worse with them."""
         after = self.trials.graded((*before, *edits), against)
         self._after = after or self._after

@@ -45,7 +45,7 @@ class Step(NamedTuple):
     parent: Node | None = None
 
 
-class Pairs(NamedTuple):
+class _Pairs(NamedTuple):
     """Two lists of nodes: those that belong together, those of the first alone, and those of the second alone."""
 
     both: list[tuple[Node, Node]]
@@ -61,7 +61,7 @@ def steps(own: Node, like: Node) -> list[Step]:
     left: list[Step] = []
     for step in found:
         alike = (
-            [node for node in spare if step.like is not None and is_alike(node, step.like)]
+            [node for node in spare if step.like is not None and _is_alike(node, step.like)]
             if step.verb == "add"
             else []
         )
@@ -101,7 +101,7 @@ def _values(own: Node, like: Node) -> Iterator[Step]:
     yield from (Step("set", own, like, name) for name in missing)
 
 
-def paired(own: Sequence[Node], like: Sequence[Node]) -> Pairs:
+def paired(own: Sequence[Node], like: Sequence[Node]) -> _Pairs:
     """Pair nodes: by tag and all keys, then by each key, then by tag and likeness, then by similar tags."""
     extra, missing = [*own], [*like]
     both: list[tuple[Node, Node]] = []
@@ -115,14 +115,14 @@ def paired(own: Sequence[Node], like: Sequence[Node]) -> Pairs:
     for other in [*missing]:
         alike = [node for node in extra if node.tag == other.tag]
         if alike:
-            _pair(max(alike, key=lambda node: likeness(node, other)), other, extra, missing, both)
+            _pair(max(alike, key=lambda node: _likeness(node, other)), other, extra, missing, both)
     for other in [*missing]:
         near = closest(other.tag, [node.tag for node in extra])
         found = next((node for node in extra if node.tag == near), None)
         if found is not None:
             _pair(found, other, extra, missing, both)
     both.sort(key=lambda pair: [*map(id, own)].index(id(pair[0])))
-    return Pairs(both, extra, missing)
+    return _Pairs(both, extra, missing)
 
 
 def _pair(node: Node, other: Node, extra: list[Node], missing: list[Node], both: list[tuple[Node, Node]]) -> None:
@@ -131,15 +131,15 @@ def _pair(node: Node, other: Node, extra: list[Node], missing: list[Node], both:
     both.append((node, other))
 
 
-def likeness(one: Node, other: Node) -> float:
+def _likeness(one: Node, other: Node) -> float:
     """Return how alike two nodes are: the share of their values and of the tags in them that both have."""
     mine, its = _content(one), _content(other)
     return len(mine & its) / max(len(mine | its), 1)
 
 
-def is_alike(one: Node, other: Node) -> bool:
+def _is_alike(one: Node, other: Node) -> bool:
     """Return whether a node is another one in another place."""
-    return one.tag == other.tag and (likeness(one, other) > 0.5 or bool(set(one.keys) & set(other.keys) - {""}))
+    return one.tag == other.tag and (_likeness(one, other) > 0.5 or bool(set(one.keys) & set(other.keys) - {""}))
 
 
 def _content(node: Node) -> set[tuple[str, ...]]:

@@ -19,7 +19,7 @@ from grader.xacro.texts import Texts
 _MAX_LENGTH = 2_000  # of a text that is edited in parts
 
 
-class Written(NamedTuple):
+class _Written(NamedTuple):
     """A text at an offset of a file, the scope in which it is evaluated, the attribute that it is in, and its name."""
 
     source: Source
@@ -34,12 +34,12 @@ class Written(NamedTuple):
         """The offset after it."""
         return self.start + len(self.text)
 
-    def part(self, start: int, end: int) -> "Written":
+    def part(self, start: int, end: int) -> "_Written":
         """Return a part of it."""
         return self._replace(start=self.start + start, text=self.text[start:end])
 
 
-class Use(NamedTuple):
+class _Use(NamedTuple):
     """A use of a text: the scope in which it is evaluated, what it is and should be, the call of the macro it is in."""
 
     scope: XacroScope
@@ -48,16 +48,16 @@ class Use(NamedTuple):
     call: ScopePlace | None = None
 
 
-class TextChange(NamedTuple):
+class _TextChange(NamedTuple):
     """A text that becomes another one."""
 
-    written: Written
+    written: _Written
     new: str
 
 
-def edits_of(changes: Iterable[TextChange]) -> Edits | None:
+def _edits_of(changes: Iterable[_TextChange]) -> Edits | None:
     """Return the edits that make changes, one for each attribute; None where two of them overlap."""
-    attributes: dict[tuple[str, int], list[TextChange]] = {}
+    attributes: dict[tuple[str, int], list[_TextChange]] = {}
     for change in dict.fromkeys(changes):
         attributes.setdefault((change.written.source.path, change.written.attribute[0]), []).append(change)
     edits: list[Edit] = []
@@ -73,7 +73,7 @@ def edits_of(changes: Iterable[TextChange]) -> Edits | None:
     return tuple(edits)
 
 
-def find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> Written | None:
+def _find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> _Written | None:
     """Return the value of an attribute, or without a name the text of an element without children.
 
     None where it is missing, too long, or has entities, so that it is not what is read.
@@ -90,12 +90,12 @@ def find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> Written |
         span = (start, end) if text.strip() else None
     text = source.text[start:end]
     is_read = span is not None and not re.search("[&<]", text) and len(text) <= _MAX_LENGTH
-    return Written(source, start, text, scope, span) if span is not None and is_read else None
+    return _Written(source, start, text, scope, span) if span is not None and is_read else None
 
 
-def definition_text(definition: Definition) -> Written | None:
+def _definition_text(definition: Definition) -> _Written | None:
     """Return the text that a name is defined with: of a parameter's default the part of `params`."""
-    whole = find_text(definition.place, definition.attribute, definition.scope)
+    whole = _find_text(definition.place, definition.attribute, definition.scope)
     if whole is not None and definition.attribute == "params" and whole.text != definition.text:
         found = re.search(rf"(?:^|\s){re.escape(definition.name)}\s*:?=\s*(?:\^\|?)?", whole.text)
         if found is None or not whole.text.startswith(definition.text, found.end()):
@@ -121,19 +121,19 @@ _MAX_DEPTH = 4  # definitions that lead to one another
 _MAX_DEFINITIONS = 12
 
 
-class Rewriter:
+class _Rewriter:
     """Makes the edits of one expanded document."""
 
     def __init__(self, texts: Texts) -> None:
         self._texts = texts
 
-    def ways(self, place: ScopePlace, attribute: str, uses: Sequence[Use]) -> list[Edits]:
+    def ways(self, place: ScopePlace, attribute: str, uses: Sequence[_Use]) -> list[Edits]:
         """Return the ways to change an attribute (or, without a name, the text) for its uses, the best first."""
-        text = find_text(place, attribute, uses[0].scope)
+        text = _find_text(place, attribute, uses[0].scope)
         changed = [use for use in uses if use.old != use.new]
         if text is None or not changed:
             return []
-        found: list[TextChange] = []
+        found: list[_TextChange] = []
         has_definition = False
         for use in changed if "$" in text.text else ():
             for part, old, new in _parts(text, use):
@@ -141,13 +141,13 @@ class Rewriter:
                 if not changes and self._is_loaded(part):
                     return []
                 has_definition |= bool(changes)
-                found += changes or [TextChange(part, new)]
+                found += changes or [_TextChange(part, new)]
         by_place = {change.written[:3]: change for change in found}
         is_one = all(by_place[change.written[:3]].new == change.new for change in found)
-        edits = edits_of(by_place.values()) if has_definition and is_one else None
+        edits = _edits_of(by_place.values()) if has_definition and is_one else None
         return [*filter(None, [edits]), *self._literal(text, changed), *self._in_calls(text, changed)]
 
-    def _in_calls(self, text: Written, changed: Sequence[Use]) -> list[Edits]:
+    def _in_calls(self, text: _Written, changed: Sequence[_Use]) -> list[Edits]:
         """Return the edits that give a parameter, of which a text is the default, in the calls of its macro."""
         name = text.text[2:-1].strip() if text.text.startswith("${") else ""
         definition = self._of_name(name, changed[0].scope)
@@ -157,25 +157,25 @@ class Rewriter:
         each = ((*call.source.element(call.tag), new) for call, new in calls.items())
         return [tuple(with_attribute(source, start, name, new) for source, start, new in each)]
 
-    def _literal(self, text: Written, changed: Sequence[Use]) -> list[Edits]:
+    def _literal(self, text: _Written, changed: Sequence[_Use]) -> list[Edits]:
         """Return the edit that writes a value where it is used; none where uses differ, or a YAML file gives it."""
         around = {_around(text, use) for use in changed}
         if len(around) == 1 and "" not in around:
-            edits = edits_of([TextChange(text, around.pop())])
+            edits = _edits_of([_TextChange(text, around.pop())])
             return [edits] if edits else []
         if len({use.new for use in changed}) != 1 or self._is_loaded(text):
             return []
         parts = _parts(text, changed[0])
         if len(parts) == 2 and parts[0][1:] == parts[1][:0:-1]:  # two expressions are exchanged
-            edits = edits_of([TextChange(parts[0][0], parts[1][0].text), TextChange(parts[1][0], parts[0][0].text)])
+            edits = _edits_of([_TextChange(parts[0][0], parts[1][0].text), _TextChange(parts[1][0], parts[0][0].text)])
         else:
             written, _, new = parts[0] if len(parts) == 1 else (text, "", changed[0].new)
-            edits = edits_of([TextChange(written, new if "$" in written.text else merged(written.text, new))])
+            edits = _edits_of([_TextChange(written, new if "$" in written.text else merged(written.text, new))])
         return [edits] if edits else []
 
     def _definitions(
-        self, text: Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
-    ) -> list[TextChange]:
+        self, text: _Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
+    ) -> list[_TextChange]:
         """Return the changes of what defines the one name in a text, with which the text has another value."""
         found = _ALONE.fullmatch(text.text)
         before, after = (found["before"], found["after"]) if found else ("", "")
@@ -187,17 +187,17 @@ class Rewriter:
             inner, was = (it[1:] if it.startswith("-") else f"-{it}" for it in (inner, was))
         name = found["argument"]
         definition = self._texts.defaults.get(name) if name else self._of_name(found["name"], scope)
-        own = definition_text(definition) if definition is not None else None
+        own = _definition_text(definition) if definition is not None else None
         if definition is None or own is None:
             return []
         if self.definitions(own):
-            parts = _parts(own, Use(definition.scope, was, inner))
+            parts = _parts(own, _Use(definition.scope, was, inner))
             changes = [self._definitions(part, definition.scope, a, b, depth - 1) for part, a, b in parts]
             return [change for several in changes for change in several] if all(changes) else []
         is_quoted = own.text[:1] == "'" == own.text[-1:]
-        return [TextChange(own, f"'{inner}'" if is_quoted else merged(own.text, inner))]
+        return [_TextChange(own, f"'{inner}'" if is_quoted else merged(own.text, inner))]
 
-    def _is_loaded(self, text: Written) -> bool:
+    def _is_loaded(self, text: _Written) -> bool:
         """Return whether a YAML file gives a text."""
         return any(_LOADED.match(it.text) for it in self.definitions(text))
 
@@ -205,42 +205,42 @@ class Rewriter:
         holder = scope.holder(name)
         return holder.properties[name].definition if holder is not None else None
 
-    def definitions(self, text: Written) -> list[Written]:
+    def definitions(self, text: _Written) -> list[_Written]:
         """Return the texts with which the names in a text are defined, also by way of others."""
-        found: dict[object, Written] = {}
+        found: dict[object, _Written] = {}
         waiting = [text]
         while waiting and len(found) < _MAX_DEFINITIONS:
             one = waiting.pop(0)
             for definition in self._named(one):
-                own = definition_text(definition)
+                own = _definition_text(definition)
                 if own is not None and definition.key not in found:
                     found[definition.key] = own._replace(scope=definition.scope)
                     waiting.append(found[definition.key])
         return list(found.values())
 
-    def _named(self, text: Written) -> Iterator[Definition]:
+    def _named(self, text: _Written) -> Iterator[Definition]:
         for expression in _EXPRESSION.findall(text.text):
             yield from filter(None, (self._of_name(name, text.scope) for name in _NAME.findall(expression)))
         for argument in re.findall(r"\$\(\s*arg\s+([^\s()]+)\s*\)", text.text):
             if argument in self._texts.defaults:
                 yield self._texts.defaults[argument]
 
-    def numbers(self, place: ScopePlace, attribute: str, scope: XacroScope) -> list[Written]:
+    def numbers(self, place: ScopePlace, attribute: str, scope: XacroScope) -> list[_Written]:
         """Return the texts that define numbers from which an attribute is computed."""
-        text = find_text(place, attribute, scope)
+        text = _find_text(place, attribute, scope)
         return [it for it in self.definitions(text) if _NUMBER.fullmatch(it.text)] if text is not None else []
 
 
-def _parts(text: Written, use: Use) -> list[tuple[Written, str, str]]:
+def _parts(text: _Written, use: _Use) -> list[tuple[_Written, str, str]]:
     """Return the parts of a text that should be others, each with what it is and should be: words, or the whole."""
     tokens = [text.part(*found.span()) for found in _TOKEN.finditer(text.text)]
     old, new = use.old.split(), use.new.split()
     if len(tokens) != len(old) or len(old) != len(new) or len(tokens) < 2:
         return [(text, use.old, use.new)]
-    return [part for part in zip(tokens, old, new, strict=True) if not is_equal(*part[1:])]
+    return [part for part in zip(tokens, old, new, strict=True) if not _is_equal(*part[1:])]
 
 
-def _around(text: Written, use: Use) -> str:
+def _around(text: _Written, use: _Use) -> str:
     """Return a text with another one around its only expression, whose value stays: ${side}_joint; empty if it goes."""
     found = _ALONE.fullmatch(text.text)
     if found is None or not (found["before"] or found["after"]):
@@ -250,7 +250,7 @@ def _around(text: Written, use: Use) -> str:
     return use.new.replace(value, expression) if value.isidentifier() and use.new.count(value) == 1 else ""
 
 
-def is_equal(one: str, other: str) -> bool:
+def _is_equal(one: str, other: str) -> bool:
     """Return whether two texts are equal, or are the same number."""
     try:
         return one == other or abs(float(one) - float(other)) < 1e-9
@@ -258,7 +258,7 @@ def is_equal(one: str, other: str) -> bool:
         return False
 
 
-def conditions(source: Source, known: Sequence[str], near: Callable[[str, Sequence[str]], str | None]) -> list[Edits]:
+def _conditions(source: Source, known: Sequence[str], near: Callable[[str, Sequence[str]], str | None]) -> list[Edits]:
     """Return the edits that correct a text in quotes in the condition of an <xacro:if> or <xacro:unless>: 'rigth'."""
     found: list[Edits] = []
     for tag in re.finditer(r"<xacro:(?:if|unless)\b", source.text):
@@ -287,14 +287,14 @@ class ExpandedEdits:
             node = self._source.nodes[tag]
             text = node.attributes.get(attribute, "") if attribute else "".join(map(str, node.children)).strip()
             call = node.place.calls[-1][1] if node.place.calls else None
-            uses.append(Use(node.place.scope or scope, *wanted.get(tag, (text, text)), call))
+            uses.append(_Use(node.place.scope or scope, *wanted.get(tag, (text, text)), call))
         return self._rewriter.ways(place, attribute, uses)
 
     def numbers(self, tag: int, attribute: str) -> list[tuple[str, Callable[[str], Edits]]]:
         """Return the numbers from which an attribute is computed, each with what makes the edit of its definition."""
 
-        def changing(written: Written) -> Callable[[str], Edits]:
-            return lambda new: edits_of([TextChange(written, new)]) or ()
+        def changing(written: _Written) -> Callable[[str], Edits]:
+            return lambda new: _edits_of([_TextChange(written, new)]) or ()
 
         place = self._source.nodes[tag].place
         found = self._rewriter.numbers(place, attribute, place.scope or XacroScope())
@@ -318,12 +318,12 @@ class ExpandedEdits:
         `names` are those that the reference and the format have.
         """
         found = [
-            *corrections(Source(self._source.path, self._source.text), self._source.documents, self._source.refused)
+            *_corrections(Source(self._source.path, self._source.text), self._source.documents, self._source.refused)
         ]
         words = {word for name in names for word in name.split("_")}
         given = sorted(words)
         for document in self._source.documents.values():
-            edited = conditions(document.place.source, given, near)
+            edited = _conditions(document.place.source, given, near)
             found += [Proposal(edits, "a text in a condition") for edits in edited]
         return list({correction.edits: correction for correction in reversed(found)}.values())[::-1]
 
@@ -338,8 +338,8 @@ class ExpandedEdits:
         return {name: [*calls] for name, calls in found.items()}
 
     @cached_property
-    def _rewriter(self) -> Rewriter:
-        return Rewriter(self._source.texts)
+    def _rewriter(self) -> _Rewriter:
+        return _Rewriter(self._source.texts)
 
 
 _MAX_NAMES, _MAX_NODES = 8, 2000
@@ -347,7 +347,7 @@ _PREFIXED = ("property", "arg", "macro", "include", "if", "unless")
 _NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
-def corrections(document: Source, files: Mapping[str, XacroNode], refusals: Sequence[Refusal]) -> Iterator[Proposal]:
+def _corrections(document: Source, files: Mapping[str, XacroNode], refusals: Sequence[Refusal]) -> Iterator[Proposal]:
     """Yield the edits that may correct what xacro refuses in a document with the files that it includes."""
     text = document.text
     if "xmlns:xacro" not in text and "xacro:" in text:

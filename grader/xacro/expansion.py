@@ -90,10 +90,8 @@ class ExpandedSource(Source):
 _INSTRUCTION = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?(?!xml\s)(?P<target>[\w:.-]+)", re.DOTALL)
 _MAX_ASSUMED = 20
 
-__all__ = ("Expansion", "Open", "expand")
 
-
-class Expansion(NamedTuple):
+class _Expansion(NamedTuple):
     """An expanded file.
 
     If it cannot be expanded at all, `root` is None, and `recovered` is what can be read despite broken tags. `is_meant`
@@ -109,7 +107,7 @@ class Expansion(NamedTuple):
     recovered: Element | None = None
     is_meant: bool = False
     assumed: tuple[Problem, ...] = ()
-    meant: "Expansion | None" = None
+    meant: "_Expansion | None" = None
 
     @property
     def document(self) -> XmlDocument:
@@ -122,7 +120,7 @@ class Expansion(NamedTuple):
         return found._replace(recovered=self.recovered, is_meant=self.is_meant)
 
 
-def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str, str | None]) -> Expansion:
+def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str, str | None]) -> _Expansion:
     """Return a xacro file as xacro expands it with these arguments; never raises. `path` is that in the submission."""
     read = partial(_expand, data, path, workspace, arguments)
     expansion, first = read(Respelling())
@@ -140,7 +138,7 @@ def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str,
 
 def _expand(
     data: bytes, path: str, workspace: Workspace, arguments: Mapping[str, str | None], respelling: Respelling
-) -> tuple[Expansion, Expander | None]:
+) -> tuple[_Expansion, Expander | None]:
     """Return an expansion, and its expander unless there was nothing to expand."""
     plain, budget = Source(path, data.decode("utf-8", "surrogateescape")), workspace.budget
     before = budget.used
@@ -148,11 +146,11 @@ def _expand(
         source, refused, is_recovered = _read(data, plain, budget)
     except EvaluationFails as error:
         problem = Problem(xacro_problems.XACRO_NOT_XML, f"{error}; {STOPS}", plain.at(0))
-        return Expansion(None, plain, (problem,), (), {}), None
+        return _Expansion(None, plain, (problem,), (), {}), None
     except (Undetermined, OutOfBudget) as error:
-        return Expansion(None, plain, (), (Open(str(error), plain.at(0)),), {}), None
+        return _Expansion(None, plain, (), (Open(str(error), plain.at(0)),), {}), None
     if source is None:
-        return Expansion(None, plain, refused, (), {}), None
+        return _Expansion(None, plain, refused, (), {}), None
     files = Files(workspace, path)
     files.documents[path] = source
     refused = (*refused, *_instructions(plain))
@@ -161,7 +159,7 @@ def _expand(
     nodes: list[XacroNode] = []
     unresolved: dict[Element, Unresolved] = {}
     element = _element(root, nodes, unresolved)
-    expansion = Expansion(
+    expansion = _Expansion(
         None if is_recovered else element,
         ExpandedSource(plain, nodes, expander, budget.used - before),
         (*refused, *expander.problems),

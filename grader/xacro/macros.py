@@ -32,7 +32,7 @@ class MacroError(XacroFails):
     """A macro that is not defined, or a call that does not fit its parameters."""
 
 
-class MacroParameter(NamedTuple):
+class _MacroParameter(NamedTuple):
     """A parameter: `default` is its text, `is_forwarded` whether the caller's property of this name comes before it."""
 
     name: str
@@ -50,15 +50,15 @@ class Macro(NamedTuple):
 
     name: str
     body: XacroNode
-    parameters: tuple[MacroParameter, ...]
+    parameters: tuple[_MacroParameter, ...]
 
 
-def read_parameters(text: str, budget: Budget) -> tuple[MacroParameter, ...]:
+def read_parameters(text: str, budget: Budget) -> tuple[_MacroParameter, ...]:
     """Return the parameters in the attribute params of a macro. Raises Undetermined."""
     if re.search("['\"]", _QUOTED.sub("", text)):
         raise Undetermined("a quote in the parameters of a macro is not closed")
-    parameters: list[MacroParameter] = []
-    defaults: dict[str, MacroParameter] = {}  # the last of several counts
+    parameters: list[_MacroParameter] = []
+    defaults: dict[str, _MacroParameter] = {}  # the last of several counts
     while text:
         budget.charge(1, len(text))
         found = _WITH_DEFAULT.match(text)
@@ -66,11 +66,11 @@ def read_parameters(text: str, budget: Budget) -> tuple[MacroParameter, ...]:
             words = text.lstrip().split(None, 1)
             if not words:
                 raise MacroError("the parameters of this macro end with a space")
-            parameters.append(MacroParameter(words[0]))
+            parameters.append(_MacroParameter(words[0]))
             text = words[1] if len(words) > 1 else ""
         else:
             name, forward, default, text = found.groups()
-            defaults[name] = MacroParameter(name, default or None, is_forwarded=bool(forward))
+            defaults[name] = _MacroParameter(name, default or None, is_forwarded=bool(forward))
             parameters.append(defaults[name])
     return tuple(defaults.get(parameter.name, parameter) for parameter in parameters)
 
@@ -84,7 +84,7 @@ def find_macro(name: str, macros: XacroScope) -> Macro | None:
 
 def bind_values(
     macro: Macro, call: XacroNode, caller: XacroScope, inner: XacroScope, texts: Texts
-) -> list[MacroParameter]:
+) -> list[_MacroParameter]:
     """Bind the parameters that a call gives values in attributes; return the others."""
     left = dict(enumerate(macro.parameters))
     first = {parameter.name: index for index, parameter in reversed(left.items())}
@@ -99,7 +99,7 @@ def bind_values(
     return list(left.values())
 
 
-def bind_blocks(macro: Macro, blocks: list[XacroNode], left: list[MacroParameter], inner: XacroScope) -> None:
+def bind_blocks(macro: Macro, blocks: list[XacroNode], left: list[_MacroParameter], inner: XacroScope) -> None:
     """Bind the parameters that are elements to the children of a call."""
     waiting = list(blocks)
     for parameter in left:
@@ -116,7 +116,7 @@ def bind_blocks(macro: Macro, blocks: list[XacroNode], left: list[MacroParameter
 
 
 def bind_defaults(
-    macro: Macro, left: list[MacroParameter], caller: XacroScope, inner: XacroScope, texts: Texts
+    macro: Macro, left: list[_MacroParameter], caller: XacroScope, inner: XacroScope, texts: Texts
 ) -> None:
     """Bind the parameters that the call does not give."""
     missing: list[str] = []

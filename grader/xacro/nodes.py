@@ -11,7 +11,7 @@ from grader.xacro.scopes import ScopePlace
 from grader.xml.parsing import Element, parse_xml
 from grader.xml.repair import repair
 
-Children = list["XacroNode | str"]
+_Children = list["XacroNode | str"]
 _OF_TAG, _OF_ATTRIBUTE = 4, 2  # what reading one is charged
 _COMPARED = 256  # names of attributes that lxml compares for one part: each with all of its element
 
@@ -24,7 +24,7 @@ _DECLARATION = re.compile(
     """,
     re.VERBOSE,
 )
-MISPLACED = re.compile(r"<\?xml\s[^<>]*\?>")
+_MISPLACED = re.compile(r"<\?xml\s[^<>]*\?>")
 _UNDECLARED = re.compile(r"(</?\s*)xacro:")
 _STAND_IN = "\u02d0"  # for the colon of an undeclared prefix: a letter that looks like one, so that columns stay
 _UNDECLARED_TAG = f"xacro{_STAND_IN}"
@@ -40,7 +40,7 @@ class XacroNode:
         self.tag = tag
         self.place = place
         self.attributes: dict[str, str] = attributes if attributes is not None else {}
-        self.children: Children = []
+        self.children: _Children = []
         self.unresolved: dict[str, str] = {}  # attribute -> why it cannot be determined; empty where xacro refuses it
         self.open: str | None = None  # why it may have more children or attributes; empty where xacro refuses them
 
@@ -67,7 +67,7 @@ def _read(data: bytes, path: str, is_repaired: bool) -> tuple[XacroNode, int]:
     text = data.decode()
     xml = _DECLARATION.sub(lambda found: " " * len(found[0]), text, count=1)
     if is_repaired:
-        xml = MISPLACED.sub(lambda found: " " * len(found[0]), xml)
+        xml = _MISPLACED.sub(lambda found: " " * len(found[0]), xml)
         xml = xml if "xmlns:xacro" in xml else _UNDECLARED.sub(r"\1xacro" + _STAND_IN, xml)
     root = parse_xml(xml.encode())
     definitions = root.getroottree().docinfo.internalDTD
@@ -113,7 +113,7 @@ def _decode(data: bytes, budget: Budget) -> str:
         raise EvaluationFails("the file is not UTF-8 text") from None
 
 
-def _add_text(children: Children, text: str | None) -> None:
+def _add_text(children: _Children, text: str | None) -> None:
     if text and not text.isspace():
         children.append(text)
 

@@ -8,7 +8,7 @@ from grader.python.values import EvaluationFails, Undetermined, Value
 from grader.source import Location, Source
 
 # What a scope needs to evaluate a text in it, and to report that xacro refuses one, or that it cannot be determined.
-Evaluate = Callable[[str, "XacroScope"], Value]
+_Evaluate = Callable[[str, "XacroScope"], Value]
 ReportFailure = Callable[[EvaluationFails | Undetermined, "ScopePlace", str], object]
 
 
@@ -80,13 +80,13 @@ class Reported(EvaluationFails):
     """Something that xacro refuses, which is already listed as a problem."""
 
 
-class Property:
+class _Property:
     """A value, or the text whose value is determined at the first use; `failure` is why it has none."""
 
     __slots__ = ("definition", "failure", "is_lazy", "is_open", "value")
 
     def __init__(self, value: Value, *, is_lazy: bool, definition: Definition | None) -> None:
-        value = literal(value)
+        value = _literal(value)
         self.value = value
         self.is_lazy = is_lazy and isinstance(value, str)
         self.definition = definition
@@ -99,7 +99,7 @@ class XacroScope:
 
     def __init__(self, parent: "XacroScope | None" = None) -> None:
         self.parent = parent
-        self.properties: dict[str, Property] = {}
+        self.properties: dict[str, _Property] = {}
 
     @property
     def top(self) -> "XacroScope":
@@ -132,7 +132,7 @@ class XacroScope:
 
     def bind(self, name: str, value: Value, *, is_lazy: bool = False, definition: Definition | None = None) -> None:
         """Give a name a value, or a text that is evaluated lazily."""
-        self.properties[name] = Property(value, is_lazy=is_lazy, definition=definition)
+        self.properties[name] = _Property(value, is_lazy=is_lazy, definition=definition)
 
     def remove(self, name: str) -> None:
         """Remove a name from this scope and those around it."""
@@ -141,7 +141,7 @@ class XacroScope:
             scope.properties.pop(name, None)
             scope = scope.parent
 
-    def value(self, name: str, evaluate: Evaluate, report: ReportFailure) -> Value:
+    def value(self, name: str, evaluate: _Evaluate, report: ReportFailure) -> Value:
         """Return the value of a name that this scope binds itself."""
         found = self.properties[name]
         if found.failure is not None:
@@ -152,7 +152,7 @@ class XacroScope:
             raise EvaluationFails(f"the property {name} is defined by itself")
         found.is_open = True
         try:
-            found.value, found.is_lazy = literal(evaluate(found.value, self)), False
+            found.value, found.is_lazy = _literal(evaluate(found.value, self)), False
         except EvaluationFails as error:
             if found.definition is not None and not isinstance(error, Reported):
                 report(error, found.definition.place, "value")
@@ -171,7 +171,7 @@ def _is_compared(name: str) -> bool:
     return len(name) <= MAX_LENGTH and name.isidentifier()
 
 
-def literal(value: Value) -> Value:
+def _literal(value: Value) -> Value:
     """Return the number or boolean that a text is for xacro, else the text, without single quotes around it."""
     if not isinstance(value, str):
         return value

@@ -23,7 +23,7 @@ from grader.xacro.scopes import BOOLEANS, Definition, Reported, UnknownName, Xac
 _MAX_CALLS = 100  # macros that call each other
 
 
-def needed(node: XacroNode, name: str) -> str:
+def _needed(node: XacroNode, name: str) -> str:
     """Return an attribute that xacro requires."""
     if name not in node.attributes:
         given = [other for other in node.attributes if near(other, [name])]
@@ -32,31 +32,31 @@ def needed(node: XacroNode, name: str) -> str:
     return node.attributes[name]
 
 
-def renamed(node: XacroNode, tag: str, without: str) -> XacroNode:
+def _renamed(node: XacroNode, tag: str, without: str) -> XacroNode:
     """Return an element with another tag and without an attribute."""
     other = XacroNode(tag, node.place, {name: text for name, text in node.attributes.items() if name != without})
     other.children, other.unresolved = node.children, node.unresolved
     return other
 
 
-def define_macro(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes) -> None:
+def _define_macro(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes) -> None:
     """Bind a macro to its name; <xacro:macro> itself writes nothing."""
-    name = needed(node, "name").removeprefix("xacro:")
+    name = _needed(node, "name").removeprefix("xacro:")
     if name == "call" or "." in name:
         raise TagFails(f"a macro cannot have the name {name}")
     macro = Macro(name, node, read_parameters(node.attributes.get("params", ""), expander.budget))
     scopes.macros.bind(name, macro, definition=Definition(name, "", node.place, "name", scopes.symbols))
 
 
-def call_macro(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
+def _call_macro(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     """Expand a call of a macro by its name: <xacro:wheel prefix="left"/>."""
     _call_by_name(expander, node.tag.removeprefix("xacro:"), node, out, scopes)
 
 
-def call_dynamically(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
+def _call_dynamically(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     """Expand a call of a macro whose name is a value: <xacro:call macro="${name}"/>."""
-    name = expander.texts.text(needed(node, "macro"), scopes.symbols)
-    call = renamed(node, f"xacro:{name}", "macro")
+    name = expander.texts.text(_needed(node, "macro"), scopes.symbols)
+    call = _renamed(node, f"xacro:{name}", "macro")
     _call_by_name(expander, name, call, out, scopes)
 
 
@@ -87,9 +87,9 @@ def _call_by_name(expander: Expander, name: str, node: XacroNode, out: XacroNode
         expander.calls = before
 
 
-def insert_block(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
+def _insert_block(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     """Insert an element that a macro call gives, or the children of a property."""
-    name = needed(node, "name")
+    name = _needed(node, "name")
     for key in (f"**{name}", f"*{name}"):
         holder = scopes.symbols.holder(key)
         if holder is not None:
@@ -132,7 +132,7 @@ def _flag(node: XacroNode, name: str, default: str, expander: Expander, scopes: 
 
 def _property(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes) -> None:
     symbols, texts, given = scopes.symbols, expander.texts, node.attributes
-    name = _property_name(texts.text(needed(node, "name"), symbols))
+    name = _property_name(texts.text(_needed(node, "name"), symbols))
     is_removed = _flag(node, "remove", "false", expander, scopes)
     if ("value" in given) + ("default" in given) + is_removed > 1:
         raise TagFails(f"the property {name} has more than one of value, default and remove")
@@ -175,24 +175,24 @@ def _target(scope: str | None, name: str, symbols: XacroScope) -> XacroScope:
 
 
 def _if(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
-    text = needed(node, "value")
+    text = _needed(node, "value")
     keep = _boolean(expander.texts.evaluate(text, scopes.symbols), text)
     if keep == (node.tag == "xacro:if"):
         expander.insert(node, out, scopes)
 
 
 def _arg(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes) -> None:
-    name, default = needed(node, "name"), needed(node, "default")
+    name, default = _needed(node, "name"), _needed(node, "default")
     if name not in expander.texts.arguments:
         expander.texts.arguments[name] = expander.texts.text(default, scopes.symbols)
         expander.texts.defaults[name] = Definition(name, default, node.place, "default", scopes.symbols)
 
 
 def _element(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
-    name = expander.texts.evaluate(needed(node, "xacro:name"), scopes.symbols)
+    name = expander.texts.evaluate(_needed(node, "xacro:name"), scopes.symbols)
     _check_name(name, node, expander)
     holder = XacroNode("", node.place)
-    holder.children.append(renamed(node, name, "xacro:name"))
+    holder.children.append(_renamed(node, name, "xacro:name"))
     expander.content(holder, out, scopes)
 
 
@@ -213,7 +213,7 @@ def _include(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes
     optional = node.attributes.get("optional")
     is_optional = optional is not None and _boolean(optional, optional)
     try:
-        path = expander.files.path(texts.text(needed(node, "filename"), scopes.symbols))
+        path = expander.files.path(texts.text(_needed(node, "filename"), scopes.symbols))
         _insert_file(expander, path, out, scopes)
         expander.files.followed.setdefault((node.place.source.path, node.place.tag), []).append(path)
     except FileFails as error:
@@ -241,9 +241,9 @@ def _insert_file(expander: Expander, path: str, out: XacroNode, scopes: Scopes) 
 
 HANDLERS: Mapping[str, Handler] = {
     "xacro:property": _property,
-    "xacro:macro": define_macro,
-    "xacro:call": call_dynamically,
-    "xacro:insert_block": insert_block,
+    "xacro:macro": _define_macro,
+    "xacro:call": _call_dynamically,
+    "xacro:insert_block": _insert_block,
     "xacro:if": _if,
     "xacro:unless": _if,
     "xacro:arg": _arg,
@@ -251,4 +251,4 @@ HANDLERS: Mapping[str, Handler] = {
     "xacro:attribute": _attribute,
     "xacro:include": _include,
 }
-CALL: Handler = call_macro
+CALL: Handler = _call_macro

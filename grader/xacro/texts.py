@@ -74,7 +74,7 @@ class Texts:
                 raise EvaluationFails(f"invalid expression: {text[position : position + 60]}")
             values.append(self._piece(piece, scope))
             position = piece.end()
-        return self._charge(values[0] if len(values) == 1 else joined(map(self.written, values)))
+        return self._charge(values[0] if len(values) == 1 else _joined(map(self.written, values)))
 
     def _charge(self, value: Value) -> Value:
         """Return a value once its text is charged: it is searched, and read as a number."""
@@ -89,7 +89,7 @@ class Texts:
         """Return the value of a text as it is written into the expanded file."""
         if "$" not in text:
             return text
-        return for_xml(self.written(self.evaluate(text, scope)))
+        return _for_xml(self.written(self.evaluate(text, scope)))
 
     def find(self, name: str, scope: XacroScope) -> Value:
         """Return the value of a name: a property, else one of xacro's own."""
@@ -186,14 +186,14 @@ class Texts:
         return value
 
 
-def for_xml(value: str) -> str:
+def _for_xml(value: str) -> str:
     """Return a text that is written into XML; raise EvaluationFails for characters that XML cannot hold."""
     if not value.isprintable() and _NO_XML.search(value):
         raise EvaluationFails("the value has a character that XML cannot hold")
     return value
 
 
-def joined(pieces: Iterable[str]) -> str:
+def _joined(pieces: Iterable[str]) -> str:
     """Return one text of pieces; raise Undetermined as soon as it is too long."""
     kept: list[str] = []
     length = 0

@@ -4,13 +4,13 @@ from functools import partial
 
 from grader.problems import Kind, kinds_in, rejects
 
-stops = partial(rejects, is_before_ros=True)
+_stops = partial(rejects, is_before_ros=True)
 
-XACRO_NOT_XML = stops("XACRO001", "A xacro file that is not well-formed XML")
-XACRO_EXPRESSION = stops("XACRO002", "An expression that xacro cannot evaluate")
-XACRO_MACRO = stops("XACRO003", "A macro call that xacro refuses")
-XACRO_FILE = stops("XACRO004", "An included file that does not exist")
-XACRO_TAG = stops("XACRO005", "A xacro tag that xacro refuses")
+XACRO_NOT_XML = _stops("XACRO001", "A xacro file that is not well-formed XML")
+XACRO_EXPRESSION = _stops("XACRO002", "An expression that xacro cannot evaluate")
+XACRO_MACRO = _stops("XACRO003", "A macro call that xacro refuses")
+XACRO_FILE = _stops("XACRO004", "An included file that does not exist")
+XACRO_TAG = _stops("XACRO005", "A xacro tag that xacro refuses")
 XACRO_UNDETERMINED = Kind(
     "XACRO006", "xacro that cannot be determined statically", severity="warning", effect="undetermined"
 )

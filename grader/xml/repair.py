@@ -41,7 +41,7 @@ _MAX_DEPTH = 32  # where reading stops; urdfdom never looks deeper than robot/li
 _MAX_ASSUMED = 20
 
 
-class Change(NamedTuple):
+class _Change(NamedTuple):
     """A change of a text: what is between two offsets becomes `new`."""
 
     start: int
@@ -54,7 +54,7 @@ class Change(NamedTuple):
         return self.end > self.start
 
 
-class Repair(NamedTuple):
+class _Repair(NamedTuple):
     """The changes that repair a text, in order; none overlaps another one. `assumed` says what they assume.
 
     `xml` is the robot that is read after them, with the offset of each of its start tags in the text as it is; both are
@@ -63,12 +63,12 @@ class Repair(NamedTuple):
 
     xml: bytes
     offsets: list[int]
-    changes: list[Change]
+    changes: list[_Change]
     assumed: list[Difference]
     is_lossy: bool
 
 
-def repair(text: str) -> Repair:
+def repair(text: str) -> _Repair:
     """Return the changes that repair a text, and the robot that is read after them."""
     return _Repairer(text).run()
 
@@ -85,7 +85,7 @@ class _Repairer:
         self._open: list[Tag] = []
         self._robot: int | None = None  # the offset of the first robot
 
-    def run(self) -> Repair:
+    def run(self) -> _Repair:
         """Find the changes, and read the robot after them."""
         end = self._read()
         if self._open:
@@ -97,8 +97,8 @@ class _Repairer:
         noted = self._noted()
         xml, offsets = self._robot_after(noted, end)
         if b"<link" not in xml:
-            return Repair(b"", [], _joined(noted), [], self._is_lossy)
-        return Repair(xml, offsets, _joined(noted), self._assumed, self._is_lossy)
+            return _Repair(b"", [], _joined(noted), [], self._is_lossy)
+        return _Repair(xml, offsets, _joined(noted), self._assumed, self._is_lossy)
 
     def _read(self) -> int:
         """Read the tags of the first robot; return the offset at which reading stops."""
@@ -240,13 +240,13 @@ class _Repairer:
         else:
             self._replace(start, self._text.index(opened.name, start) + len(opened.name), f"<{name}")
 
-    def _noted(self) -> list[Change]:
+    def _noted(self) -> list[_Change]:
         """Return all changes in order: of two at one place, the end tags that are inserted come first."""
-        replaced = [Change(start, end, new) for start, (end, new) in self._replaced.items()]
-        inserted = [Change(at, at, new) for at, new in self._inserted.items()]
+        replaced = [_Change(start, end, new) for start, (end, new) in self._replaced.items()]
+        inserted = [_Change(at, at, new) for at, new in self._inserted.items()]
         return sorted(replaced + inserted)
 
-    def _robot_after(self, changes: list[Change], end: int) -> tuple[bytes, list[int]]:
+    def _robot_after(self, changes: list[_Change], end: int) -> tuple[bytes, list[int]]:
         """Return the robot that is read after changes of the text before an offset, and where its tags are now."""
         if self._robot is None:
             return b"", []
@@ -282,13 +282,13 @@ def _is_value_of(attribute: str, value: str) -> bool:
     return bool(attribute) and (not parts or len(numbers_in(value)) == len(parts))
 
 
-def _joined(changes: list[Change]) -> list[Change]:
+def _joined(changes: list[_Change]) -> list[_Change]:
     """Return the changes with inserted end tags as a part of the change that they touch."""
-    found: list[Change] = []
+    found: list[_Change] = []
     for change in changes:
         last = found[-1] if found else None
         if last is not None and last.end == change.start and not (last.is_replacement and change.is_replacement):
-            found[-1] = Change(last.start, change.end, last.new + change.new)
+            found[-1] = _Change(last.start, change.end, last.new + change.new)
         else:
             found.append(change)
     return found

@@ -8,13 +8,13 @@ from grader.pairing import most_pairs
 from grader.xml.parsing import Element, Unresolved
 from grader.xml.urdf_format import numbers_in
 
-Scalar = str | float | bool
+_Scalar = str | float | bool
 
 _MADE_UP = re.compile(r"ns\d+")  # a prefix that lxml gives an element that is made, not read
 _SLACK = 1e-12  # a tolerance includes its end
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 FOREIGN = ("gazebo", "ros2_control", "transmission", "sensor")  # below <robot>; ROS 2 itself ignores them
-AttributeValue = Scalar | list[Scalar]
+_AttributeValue = _Scalar | list[_Scalar]
 
 _IDENTIFYING = ("@name", "@reference", "@filename", "@type")  # the first that a rubric gives
 _INSTALLED = re.compile(r"/install/([^/\s]+)/share/\1(?=[/\s]|\Z)")  # what the expansion makes of $(find package)
@@ -76,7 +76,7 @@ def text_in(element: Element) -> str:
     return "".join([element.text or "", *(child.tail or "" for child in element)]).strip()
 
 
-def matches_value(text: str, expected: Scalar, tolerance: float) -> bool:
+def _matches_value(text: str, expected: _Scalar, tolerance: float) -> bool:
     """Return whether a text is an expected value: numbers and lists are compared as numbers, true and 1 are equal."""
     wanted = xml_text(expected)
     one, other = text.strip().lower(), wanted.strip().lower()
@@ -89,16 +89,16 @@ def matches_value(text: str, expected: Scalar, tolerance: float) -> bool:
     return text.split() == wanted.split()
 
 
-def xml_text(value: Scalar) -> str:
+def xml_text(value: _Scalar) -> str:
     """Return a value as XML writes it."""
     if isinstance(value, bool):
         return str(value).lower()
     return value if isinstance(value, str) else f"{value:.12g}"
 
 
-def are_there(texts: Sequence[str], expected: Sequence[Scalar], tolerance: float) -> bool:
+def _are_there(texts: Sequence[str], expected: Sequence[_Scalar], tolerance: float) -> bool:
     """Return whether each expected value is a different one of the texts, in any order."""
-    fitting = [[i for i, text in enumerate(texts) if matches_value(text, value, tolerance)] for value in expected]
+    fitting = [[i for i, text in enumerate(texts) if _matches_value(text, value, tolerance)] for value in expected]
     return len(most_pairs(fitting)) == len(expected)
 
 
@@ -106,9 +106,9 @@ class WantedElement(NamedTuple):
     """What a rubric looks for."""
 
     tag: str
-    attributes: Mapping[str, Scalar]
+    attributes: Mapping[str, _Scalar]
     path: str
-    values: Mapping[str, AttributeValue]
+    values: Mapping[str, _AttributeValue]
     tolerance: float
 
     @property
@@ -126,7 +126,7 @@ class WantedElement(NamedTuple):
     def fits(self, element: Element) -> bool:
         """Return whether an element has the attributes."""
         given = ((attribute_of(element, key), value) for key, value in self.attributes.items())
-        return all(text is not None and matches_value(text, value, self.tolerance) for text, value in given)
+        return all(text is not None and _matches_value(text, value, self.tolerance) for text, value in given)
 
     def may_fit(self, element: Element, unresolved: Unresolved | None) -> bool:
         """Return whether an element, of which not all may be known, can have the attributes."""
@@ -153,11 +153,11 @@ class WantedElement(NamedTuple):
         """Return whether a text is the value at a path, or one of several."""
         value = self.values[key]
         wanted = value if isinstance(value, list) else [value]
-        return any(matches_value(readable(found.text), one, self.tolerance) for one in wanted)
+        return any(_matches_value(readable(found.text), one, self.tolerance) for one in wanted)
 
-    def _has(self, element: Element, key: str, value: AttributeValue) -> bool:
+    def _has(self, element: Element, key: str, value: _AttributeValue) -> bool:
         texts = [readable(found.text) for found in texts_at(element, key)]
-        return are_there(texts, value if isinstance(value, list) else [value], self.tolerance)
+        return _are_there(texts, value if isinstance(value, list) else [value], self.tolerance)
 
 
 def readable(text: str) -> str:
