@@ -3,7 +3,6 @@
 The JSON Schema, for editors, also has the arguments of every installed check.
 """
 
-import json
 from collections.abc import Mapping
 from datetime import datetime
 from decimal import Decimal
@@ -277,6 +276,8 @@ def rubric_schema() -> _Schema:
 
 def _argument(check: Check, name: str) -> TomlType:
     """Return the type of an argument with its meaning, and its default if a rubric can give that."""
+    import json  # late: only the schema needs it
+
     parameter, meaning = check.parameters[name], check.documentation.arguments.get(name, "")
     try:
         json.dumps(parameter.default, allow_nan=False)
