@@ -1,5 +1,5 @@
 """A report in each of its formats. Renderers lay it out; they never grade.
 
-It imports `grading`, `classroom`, `drawing` and below. Begin with `formats.py`. A report is described in `document.py`,
-of entries and blocks in `criteria.py`; the sentences are in `content.py` and `details.py`.
+It imports `grading`, `classroom` and below. Begin with `formats.py`. What a report says is in `content.py`, and of each
+criterion in `criteria.py`.
 """

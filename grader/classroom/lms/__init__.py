@@ -1,1 +1,1 @@
-"""Files of learning management systems: a Canvas gradebook or a Moodle grading worksheet, filled with the totals."""
+"""Files of learning management systems: a gradebook filled with the grades, and feedback for the students."""

@@ -1,4 +1,4 @@
 """A robot as a picture: what is shown of it, and where in three views.
 
-It imports `grading` and below, and knows no format. Begin with `scene.py`, then `picture.py` and `views.py`.
+It imports `grading` and below, and knows no format. Begin with `picture.py`.
 """
