@@ -11,30 +11,28 @@ Effect = Literal["rejects", "undetermined", "drops", "loads", "other"]
 
 
 class Kind(NamedTuple):
-    """One kind of problem: a code that never changes, and its title. docs/examples/ says how to fix the file.
+    """One kind of problem. docs/examples/ says how to fix the file.
 
     The effect of a URDF's problems decides the verdict: ROS 2 rejects the file, drops content of it, or loads all of
-    it. The effect of a problem of another file is `other`. `is_consequence`: another problem of the same file usually
-    causes it. `detaches_links`: ROS 2 loads the file without links that are apart from the tree. `is_before_ros`: xacro
-    stops at it, before ROS 2 gets the file.
+    it. The effect of a problem of another file is `other`.
     """
 
-    code: str
+    code: str  # which never changes
     title: str
     severity: Severity
     effect: Effect
-    is_consequence: bool = False
-    detaches_links: bool = False
-    is_before_ros: bool = False
+    is_consequence: bool = False  # another problem of the same file usually causes it
+    detaches_links: bool = False  # ROS 2 loads the file without links that are apart from the tree
+    is_before_ros: bool = False  # xacro stops at it, before ROS 2 gets the file
 
 
 class Problem(NamedTuple):
-    """One problem of one file, in a sentence; `subject` names the link that loses content with it, if one does."""
+    """One problem of one file."""
 
     kind: Kind
-    message: str
+    message: str  # a sentence
     location: Location
-    subject: str = ""
+    subject: str = ""  # the link that loses content with it, if one does
 
     @property
     def code(self) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from grader.documents.collection import Document, DocumentCollection, Passage
+from grader.documents.collection import DocumentCollection, Passage, TextDocument
 from grader.documents.converter import PICTURE
 from grader.documents.headings import (
     KEYWORDS,
@@ -145,7 +145,7 @@ class _AnswerSearch:
     """The search for one answer in some documents."""
 
     def __init__(
-        self, documents: DocumentCollection, read: list[Document], wanted: list[Label | _Ordinal], question: str
+        self, documents: DocumentCollection, read: list[TextDocument], wanted: list[Label | _Ordinal], question: str
     ) -> None:
         self._documents, self._read, self._wanted = documents, read, wanted
         self._copied = _COPIED | set(WORDS.findall(question.lower()))
@@ -159,7 +159,7 @@ class _AnswerSearch:
         for wanted in self._wanted:
             yield self._in_order(wanted) if isinstance(wanted, _Ordinal) else self._passage_below(wanted)
 
-    def _headings(self, document: Document) -> tuple[Heading, ...]:
+    def _headings(self, document: TextDocument) -> tuple[Heading, ...]:
         return self._documents.headings(document, self._patterns)
 
     def _passage_below(self, wanted: Label) -> Passage | None:
@@ -181,7 +181,7 @@ class _AnswerSearch:
                     best, rank = self._explain(passage, document, head, wanted), found
         return best
 
-    def _explain(self, passage: Passage, document: Document, head: Heading, wanted: Label) -> Passage:
+    def _explain(self, passage: Passage, document: TextDocument, head: Heading, wanted: Label) -> Passage:
         """Return a passage with what makes its heading less than certain."""
         if head.is_item:
             items = [item for item in self._headings(document) if item.is_item and item.section == head.section]
@@ -208,7 +208,7 @@ class _AnswerSearch:
         found.sort(key=lambda passage: (passage.is_empty, not passage.is_certain))
         return found[0] if found else None
 
-    def _cut(self, document: Document, head: Heading) -> Passage | None:
+    def _cut(self, document: TextDocument, head: Heading) -> Passage | None:
         lines, start, end = document.lines, head.start, head.end
         while start < end and not has_words(lines[start]):
             start += 1
@@ -239,7 +239,7 @@ def _own_words(text: str) -> list[str]:
     return [word for word, after in pairs if not word.isdecimal() and not (word in KEYWORDS and after.isdecimal())]
 
 
-def _heading_of_file(document: Document, pattern: Pattern) -> Heading:
+def _heading_of_file(document: TextDocument, pattern: Pattern) -> Heading:
     """Return a heading for a whole document: its name may be that of a question."""
     name = stem(document.file.name)
     task = read_label(stem(document.file.path)).task
@@ -259,7 +259,7 @@ def _joined_passage(match: _AnswerMatch, passages: list[Passage]) -> Passage:
     )
 
 
-def _place_of(document: Document, head: Heading, at: Location) -> str:
+def _place_of(document: TextDocument, head: Heading, at: Location) -> str:
     """Return where a passage is: its page, or its heading, or its line where editors count lines."""
     page = document.page(head.start)
     if page is not None:

@@ -39,16 +39,13 @@ _OTHER = re.compile(
 )
 
 
-class Document(NamedTuple):
-    """The first lines of a document. `pages` are the indices of the first line of each page, or empty if not known.
-
-    `limit` says what was not read of a document that is too long.
-    """
+class TextDocument(NamedTuple):
+    """The first lines of a document."""
 
     file: File
     lines: list[str]
-    pages: tuple[int, ...] = ()
-    limit: str = ""
+    pages: tuple[int, ...] = ()  # the indices of the first line of each page; empty if not known
+    limit: str = ""  # what was not read of a document that is too long
 
     def page(self, line: int) -> int | None:
         """Return the page of a line, counted from 1, if it is known."""
@@ -64,19 +61,15 @@ class Document(NamedTuple):
 
 
 class Passage(NamedTuple):
-    """The part of a document below a heading; `location` is its beginning, and `where` says it for a person.
-
-    `how` says why this is the passage, unless it is headed by the task and step. If that is not certain, it may belong
-    to another question. It is empty if it holds only the question.
-    """
+    """The part of a document below a heading."""
 
     text: str
-    location: Location
-    where: str
+    location: Location  # of its beginning
+    where: str  # the location for a person
     head: Heading
-    how: str = ""
-    is_certain: bool = True
-    is_empty: bool = False
+    how: str = ""  # why this is the passage, unless it is headed by the task and step
+    is_certain: bool = True  # False where it may belong to another question
+    is_empty: bool = False  # whether it holds only the question
 
 
 class _Unread(NamedTuple):
@@ -100,26 +93,26 @@ class DocumentCollection:
         self.converted = dict(converted)
         self._seconds = MAX_SECONDS
         self._converted = 0
-        self._read_files: dict[str, Document | _Unread | None] = {}
-        self._named: dict[tuple[str, ...], tuple[list[Document], list[_Unread]]] = {}
+        self._read_files: dict[str, TextDocument | _Unread | None] = {}
+        self._named: dict[tuple[str, ...], tuple[list[TextDocument], list[_Unread]]] = {}
         self._headings: dict[tuple[str, frozenset[Pattern]], tuple[Heading, ...]] = {}
 
-    def headings(self, document: Document, patterns: Collection[Pattern] = ()) -> tuple[Heading, ...]:
+    def headings(self, document: TextDocument, patterns: Collection[Pattern] = ()) -> tuple[Heading, ...]:
         """Return the headings of a document; `patterns` are the words of headings besides the usual ones."""
         key = (document.file.path, frozenset(patterns))
         if key not in self._headings:
             self._headings[key] = find_headings(document.lines, stem(document.file.name), sorted(key[1]))
         return self._headings[key]
 
-    def named(self, patterns: Sequence[str]) -> tuple[list[Document], list[_Unread]]:
+    def named(self, patterns: Sequence[str]) -> tuple[list[TextDocument], list[_Unread]]:
         """Return the documents whose names match one of the patterns, and what of them was not read, and why."""
         key = tuple(patterns)
         if key not in self._named:
             self._named[key] = self._find(key)
         return self._named[key]
 
-    def _find(self, patterns: tuple[str, ...]) -> tuple[list[Document], list[_Unread]]:
-        read: list[Document] = []
+    def _find(self, patterns: tuple[str, ...]) -> tuple[list[TextDocument], list[_Unread]]:
+        read: list[TextDocument] = []
         unread: list[_Unread] = []
         matching = _names_like(patterns)
         files = self.tree.files.values()
@@ -137,13 +130,13 @@ class DocumentCollection:
             unread.append(_Unread("", rest))
         return read, unread
 
-    def document(self, file: File) -> Document | _Unread | None:
+    def document(self, file: File) -> TextDocument | _Unread | None:
         """Return a document, the reason why it was not read, or None for a file that contains no answers."""
         if file.path not in self._read_files:
             self._read_files[file.path] = self._read_document(file)
         return self._read_files[file.path]
 
-    def _read_document(self, file: File) -> Document | _Unread | None:
+    def _read_document(self, file: File) -> TextDocument | _Unread | None:
         try:
             text = self._text(file)
         except InputError as error:
@@ -217,7 +210,7 @@ class DocumentCollection:
         return done.returncode, done.stdout
 
 
-def _document_of(file: File, text: str) -> Document:
+def _document_of(file: File, text: str) -> TextDocument:
     """Return the document that a text makes."""
     # Lines as git and editors count them: `splitlines` also breaks at form feeds and separators of Unicode.
     text = text.replace("\r\n", "\n").replace("\r", "\n").removesuffix("\n")
@@ -225,12 +218,12 @@ def _document_of(file: File, text: str) -> Document:
     limit = f"line {MAX_LINES}" if len(lines) > MAX_LINES else ""
     del lines[MAX_LINES:]
     if file.suffix not in CONVERTED or not (file.suffix == ".pdf" or converter.PAGE_BREAK in text):
-        return Document(file, lines, (), limit)
+        return TextDocument(file, lines, (), limit)
     # The converter begins every page but the first with a line that is a page break.
     breaks = [index for index, line in enumerate(lines) if line == converter.PAGE_BREAK]
     if len(breaks) >= converter.MAX_PAGES:
         limit = f"page {converter.MAX_PAGES}"
-    return Document(file, ["" if line == converter.PAGE_BREAK else line for line in lines], (0, *breaks), limit)
+    return TextDocument(file, ["" if line == converter.PAGE_BREAK else line for line in lines], (0, *breaks), limit)
 
 
 @lru_cache(maxsize=256)

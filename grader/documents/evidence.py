@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from grader.documents.collection import Document, DocumentCollection
+from grader.documents.collection import DocumentCollection, TextDocument
 from grader.documents.headings import Heading, Label, is_about, matches, read_label, stem
 from grader.files.tree import File, Tree
 from grader.text import cut
@@ -91,12 +91,14 @@ def _unlisted(documents: DocumentCollection | None, listed: Sequence[LabelledFil
     return (EvidenceFile(it.path, it.size) for it in _whole_documents(documents) if it.path not in paths)
 
 
-def headed(documents: DocumentCollection, names: Sequence[str]) -> list[tuple[Document, Heading]]:
+def headed(documents: DocumentCollection, names: Sequence[str]) -> list[tuple[TextDocument, Heading]]:
     """Return the headings of documents with the first of these labels that occurs."""
     return [(document, head) for document, head, _ in _headings_about(documents, [read_label(name) for name in names])]
 
 
-def _headings_about(documents: DocumentCollection, wanted: Sequence[Label]) -> list[tuple[Document, Heading, Label]]:
+def _headings_about(
+    documents: DocumentCollection, wanted: Sequence[Label]
+) -> list[tuple[TextDocument, Heading, Label]]:
     read, _ = documents.named(DOCUMENTS)
     heads = [(document, head) for document in read for head in _step_headings(documents, document)]
     found = ([(document, head, label) for document, head in heads if is_about(label, head)] for label in wanted)
@@ -116,23 +118,23 @@ def _whole_documents(documents: DocumentCollection | None) -> list[File]:
     return [file for file in found if not _PRELAB.search(file.path)]
 
 
-def _names_steps(documents: DocumentCollection, document: Document) -> bool:
+def _names_steps(documents: DocumentCollection, document: TextDocument) -> bool:
     is_named = read_label(stem(document.file.path)).is_complete
     return is_named or any(head.label.steps for head in _step_headings(documents, document))
 
 
-def _step_headings(documents: DocumentCollection, document: Document) -> list[Heading]:
+def _step_headings(documents: DocumentCollection, document: TextDocument) -> list[Heading]:
     return [head for head in documents.headings(document) if not (head.is_mention or head.is_item or head.pattern)]
 
 
-def _is_certain(wanted: Label, document: Document, head: Heading) -> bool:
+def _is_certain(wanted: Label, document: TextDocument, head: Heading) -> bool:
     """Return whether a picture is below a heading that names a step in words: "18." may be a line of the handout."""
     names = read_label(head.text[:_MAX_SHOWN])
     is_named = bool(names.steps) or names.task is not None or not (wanted.steps or wanted.task is not None)
     return is_named and document.has_picture(head.start, head.end)
 
 
-def _below(document: Document, head: Heading) -> EvidenceFile:
+def _below(document: TextDocument, head: Heading) -> EvidenceFile:
     text = " ".join(head.text.split())
     shown = cut(text, _MAX_SHOWN)
     file = document.file

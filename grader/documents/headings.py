@@ -118,26 +118,20 @@ def _in_order(wanted: tuple[str, ...], found: tuple[str, ...]) -> bool:
 
 
 class Heading(NamedTuple):
-    """A line that begins a passage, and the index of the line that ends it.
-
-    `level` is the number of `#` before it. `task` is that of the label, or of the headings above; `section` the task of
-    the heading without a step above. `pattern` are the words of a question and `number` its number, if it has one. An
-    item is one of a numbered list right below the heading of a task; a mention is a sentence that begins a passage, but
-    ends none.
-    """
+    """A line that begins a passage, and the index of the line that ends it."""
 
     start: int
     end: int
     text: str
     label: Label
-    level: int = 0
-    task: int | None = None
-    section: int | None = None
-    pattern: Pattern = ()
-    number: int | None = None
+    level: int = 0  # the number of # before it
+    task: int | None = None  # of the label, or of the headings above
+    section: int | None = None  # the task of the heading without a step above
+    pattern: Pattern = ()  # the words of a question
+    number: int | None = None  # of the question
     is_bold: bool = False
-    is_item: bool = False
-    is_mention: bool = False
+    is_item: bool = False  # one of a numbered list right below the heading of a task
+    is_mention: bool = False  # a sentence that begins a passage, but ends none
 
     @property
     def shown(self) -> str:

@@ -68,19 +68,15 @@ class File(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)  # no slots: finalizers of archives need weak references to it
 class Tree:
-    """The files of a submission by path, in alphabetical order, and its folders, empty ones included.
-
-    `generated` names files of packages that a build has copied. `unseen` are folders and links that were not looked
-    into. `kept` are the archives that have to stay open.
-    """
+    """The files of a submission, and its folders."""
 
     name: str
-    files: Mapping[str, File]
-    folders: frozenset[str]
+    files: Mapping[str, File]  # by path, in alphabetical order
+    folders: frozenset[str]  # empty ones included
     ignored: tuple[IgnoredFile, ...] = ()
-    generated: tuple[str, ...] = ()
-    unseen: frozenset[str] = frozenset()
-    kept: tuple[object, ...] = ()
+    generated: tuple[str, ...] = ()  # the paths of files of packages that a build has copied
+    unseen: frozenset[str] = frozenset()  # folders and links that were not looked into
+    kept: tuple[object, ...] = ()  # the archives that have to stay open
 
     @property
     def unopened(self) -> tuple[IgnoredFile, ...]:

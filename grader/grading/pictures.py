@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 
 from grader.checks.manual import NO_ANSWER, answered, evidence_shown
-from grader.documents.collection import CONVERTED, Document, DocumentCollection
+from grader.documents.collection import CONVERTED, DocumentCollection, TextDocument
 from grader.documents.evidence import EvidenceFile, headed
 from grader.documents.pictures import EmbeddedPicture, NotShown, pictures_in_word, read_picture
 from grader.files.tree import File
@@ -110,7 +110,7 @@ def _at(path: str, result: Result, submission: Submission) -> Iterator[EmbeddedP
 def _page(file: File, result: Result, documents: DocumentCollection | None) -> int:
     """Return the page of a PDF with the answer, or with the heading that names the evidence; the first without one."""
     document = documents.document(file) if documents is not None else None
-    if documents is None or not isinstance(document, Document):
+    if documents is None or not isinstance(document, TextDocument):
         return 1
     outcome, start = result.outcome, 0
     if isinstance(outcome.measured, str) and outcome.location is not None:

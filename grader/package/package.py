@@ -32,10 +32,25 @@ _KINDS = {"urdf": ("URDF", (".urdf", ".xacro")), "rviz": ("RViz file", (".rviz",
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Package:
-    """One package; `folder` is its path in the submission, and `tree` has its files by their paths in the package."""
+    """One ROS 2 package of a submission, whose files are read and never run.
 
-    folder: str
-    tree: Tree
+    `submission/packages.py` finds the packages of a submission, and says which one is graded. Checks ask it what a
+    build installs, what its launch files start, and what RViz shows; launch files and xacro ask it for the files around
+    them. Each file is evaluated when it is first needed, and once.
+
+    >>> from grader.files.tree import make_tree, overlaid
+    >>> from grader.submission.packages import read_packages
+    >>> from grader.submission.submission import Lab
+    >>> manifest = b"<package format='3'><name>arm</name></package>"
+    >>> setup = b"from setuptools import setup; setup(data_files=[('share/arm', ['package.xml'])])"
+    >>> files = {"src/arm/package.xml": manifest, "src/arm/setup.py": setup}
+    >>> [package] = read_packages(overlaid(make_tree("ash", (), ()), files), Lab("urdf/arm.urdf"))
+    >>> package.name, package.folder, package.installed
+    ('arm', 'src/arm', {'share/arm/package.xml': 'package.xml'})
+    """
+
+    folder: str  # its path in the submission
+    tree: Tree  # its files, by their paths in the package
     manifest: "Manifest | None"
     packages: dict[str, "Package"]  # all of the submission, by their names
     generated: tuple[str, ...] = ()  # paths in the submission that a build has copied

@@ -29,25 +29,21 @@ _NO_ARGUMENTS: Mapping[str, str] = {}
 
 
 class Lab(NamedTuple):
-    """What a rubric asks for: the URDF's path in its package, the package's name, names of the lab's folder, links."""
+    """What a rubric asks for."""
 
-    urdf: str
-    package: str = ""
-    folders: tuple[str, ...] = ()
-    links: frozenset[str] = frozenset()
+    urdf: str  # its path in the package
+    package: str = ""  # the name of the package
+    folders: tuple[str, ...] = ()  # names of the lab's folder
+    links: frozenset[str] = frozenset()  # the names of the robot's links
 
 
 class Opening(NamedTuple):
-    """How a submission is opened: the largest size of a URDF in bytes, and the arguments of xacro.
+    """How a submission is opened."""
 
-    `no_documents` says why no document is read, where grading ran out of memory with them. `converted` are the
-    texts of Word and PDF files that were read before, by path.
-    """
-
-    max_size: int = URDF_LIMIT
-    arguments: Mapping[str, str] = _NO_ARGUMENTS
-    no_documents: str = ""
-    converted: Mapping[str, str] = _NO_ARGUMENTS
+    max_size: int = URDF_LIMIT  # of a URDF, in bytes
+    arguments: Mapping[str, str] = _NO_ARGUMENTS  # of xacro
+    no_documents: str = ""  # why no document is read, where grading ran out of memory with them
+    converted: Mapping[str, str] = _NO_ARGUMENTS  # the texts of Word and PDF files that were read before, by path
 
 
 DEFAULTS = Opening()
@@ -55,28 +51,39 @@ DEFAULTS = Opening()
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Submission:
-    """The work that a student submitted. `package` is the graded one; `no_package` says why none is, and which exist.
+    """The work that a student submitted, with what of it is graded: a URDF, a package, documents.
 
-    `tree` has the files of the lab, and `whole_tree` those around it as well. `notes` say how it was read; `several` is
-    the one that says that several robots fit.
+    `opening.py` makes it of a path or of bytes: `selection.py` says which URDF and package it is, and why. Checks read
+    it, hints make others of it with edited files, and a report quotes its files. A part that is missing or broken never
+    keeps the rest from being graded: `urdf` is one of three states, and `needed_urdf` and `needed_package` raise what a
+    check reports. Documents are read when they are needed.
+
+    >>> from grader.submission.opening import read_submission
+    >>> robot = b'<robot name="arm"><link name="base"/></robot>'
+    >>> submission = read_submission(robot, identity="ash", path="arm.urdf")
+    >>> submission.path, submission.verdict, submission.is_single
+    ('arm.urdf', 'clean', True)
+    >>> submission.needed_package()
+    Traceback (most recent call last):
+    grader.errors.MissingElement: the submission has no ROS 2 package: there is no package.xml
     """
 
-    id: str
+    id: str  # of the student, or the name of the file
     urdf: Urdf
-    other_candidates: tuple[OtherCandidate, ...] = ()
-    tree: Tree = _NO_FILES
-    packages: tuple[Package, ...] = ()
-    package: Package | None = None
-    no_package: tuple[str, str] = (NO_PACKAGE, "")
-    whole_tree: Tree = _NO_FILES
-    several: str = ""
-    notes: tuple[str, ...] = ()
+    other_candidates: tuple[OtherCandidate, ...] = ()  # robots and packages that are not graded
+    tree: Tree = _NO_FILES  # the files of the lab
+    packages: tuple[Package, ...] = ()  # the one that matches best first
+    package: Package | None = None  # the graded one
+    no_package: tuple[str, str] = (NO_PACKAGE, "")  # why none is graded, and which there are
+    whole_tree: Tree = _NO_FILES  # the files of the lab and those around it
+    several: str = ""  # the note that says that several robots fit
+    notes: tuple[str, ...] = ()  # on how it was read
     is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
     other_lab: str = ""  # the folder of another lab, where it is graded
     opening: Opening = DEFAULTS
     budget: Budget = field(default_factory=Budget)  # of the work to read it
     neighbours: tuple[Package, ...] = ()  # those around a URDF on its own
-    besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes, and what finding them took
+    besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
     reopen: "Callable[[Tree], Submission] | None" = None  # opens other files in the same way
 
     @cached_property

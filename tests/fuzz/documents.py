@@ -7,7 +7,7 @@ from pathlib import Path
 
 from grader.classroom.submissions import read_class
 from grader.documents.answers import find_answer
-from grader.documents.collection import Document, DocumentCollection
+from grader.documents.collection import DocumentCollection, TextDocument
 from grader.documents.evidence import DOCUMENTS, find_evidence, read_labelled_files
 from grader.documents.pictures import EmbeddedPicture, read_picture
 from grader.errors import InputError
@@ -98,14 +98,14 @@ def answers(data: bytes) -> None:
     converted = data[1:].decode("utf-8", "replace")  # the text that a converter has written
     documents = DocumentCollection(make_tree("s", [file], ()), {path: converted})
     document = documents.document(file)
-    lines = document.lines if isinstance(document, Document) else []
+    lines = document.lines if isinstance(document, TextDocument) else []
     for question, places in _QUESTIONS:
         found = find_answer(documents, ("*.md", "*.txt", "*.docx", "*.pdf"), places, question).passage
         if found is not None:
             check_message(found.where)
             check_location(found.location, {path: "\n".join(lines)})
             assert len(found.text) <= 40_000
-    for heading in documents.headings(document) if isinstance(document, Document) else ():
+    for heading in documents.headings(document) if isinstance(document, TextDocument) else ():
         assert 0 <= heading.start <= heading.end <= len(lines)
     for one in (find_evidence((), names, documents) for names in _EVIDENCE):
         assert {it.path for it in (*one.files, *one.possible)} <= {path}

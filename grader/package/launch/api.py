@@ -14,11 +14,11 @@ SOURCE = "launch.launch_description_source.LaunchDescriptionSource"
 DESCRIPTION = "launch.launch_description.LaunchDescription"
 
 
-class _Parameter(NamedTuple):
-    """A parameter of a constructor. `check` names what its value has to be; empty where it takes anything."""
+class _ConstructorParameter(NamedTuple):
+    """A parameter of a constructor."""
 
     name: str
-    check: str
+    check: str  # names what its value has to be; empty where it takes anything
     is_required: bool
     is_positional: bool
 
@@ -28,7 +28,7 @@ class LaunchClass(NamedTuple):
 
     name: str
     base: str
-    parameters: Mapping[str, _Parameter]
+    parameters: Mapping[str, _ConstructorParameter]
     methods: frozenset[str]
 
     @property
@@ -56,7 +56,7 @@ def class_named(name: str) -> LaunchClass | None:
             is_positional = False
         else:
             named = own.removesuffix("!")
-            parameters[named] = _Parameter(named, check, own.endswith("!"), is_positional)
+            parameters[named] = _ConstructorParameter(named, check, own.endswith("!"), is_positional)
     inherited = class_named(base)
     return LaunchClass(name, base, parameters, frozenset(methods.split()) | (inherited.methods if inherited else set()))
 
