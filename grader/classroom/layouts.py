@@ -131,7 +131,7 @@ def _entry(found: re.Match[str]) -> NamedPath:
     text = {"name": found.string[: found.start()], **dict.fromkeys(("canvas", "moodle", "login"), "")}
     text |= found.groupdict(default="")
     name, canvas, moodle = text["name"], text["canvas"], text["moodle"]
-    key = text["login"] or "_".join(filter(None, (name, canvas, moodle)))
+    key = text["login"] or "_".join(word for word in (name, canvas, moodle) if word)
     student = Student(key, name, canvas=canvas, moodle=moodle)
     if "plugin" in text:
         return NamedPath(found.string, student, plugin=text["plugin"], file=text["file"])

@@ -58,7 +58,7 @@ class ReportRun(NamedTuple):
     time: str = ""  # of the newest run: workers read the gradebook once for it
 
 
-class _Task(NamedTuple):
+class _ReportTask(NamedTuple):
     """A report to write: the student and the name of the file; without hints if their search was lost."""
 
     key: str
@@ -157,19 +157,19 @@ def render_reports(
     with Processes(workers, timeout) as executor, terminal.show_class("writing reports") as show:
         show(Progress(len(files)))
         queue = Queue(executor, workers, partial(_write_some, run), _without_hints, _not_written, _TASK_SIZE)
-        for results in queue.results(_Task(*item) for item in files.items()):
+        for results in queue.results(_ReportTask(*item) for item in files.items()):
             lost |= {key: why for key, why in results if why}
             done += len(results)
             show(Progress(len(files), graded=done))
     return {key: lost[key] for key in files if key in lost}
 
 
-def _without_hints(task: _Task, _: WorkerError) -> _Task | None:
+def _without_hints(task: _ReportTask, _: WorkerError) -> _ReportTask | None:
     """Return a lost task without the search for hints, which may be the cause."""
     return task._replace(has_hints=False) if task.has_hints else None
 
 
-def _not_written(task: _Task, error: Exception) -> tuple[str, str]:
+def _not_written(task: _ReportTask, error: Exception) -> tuple[str, str]:
     """Return the student without a report, and why."""
     if isinstance(error, InputError | RubricError):
         raise error
@@ -177,7 +177,7 @@ def _not_written(task: _Task, error: Exception) -> tuple[str, str]:
     return task.key, str(error) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
 
 
-def _write_some(run: ReportRun, tasks: Sequence[_Task]) -> list[tuple[str, str]]:
+def _write_some(run: ReportRun, tasks: Sequence[_ReportTask]) -> list[tuple[str, str]]:
     """Write the reports of some students, in a worker; return the students."""
     book = _opened_gradebook(run)
     for task in tasks:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from grader.grading.report import Report
 from grader.problems import Severity
-from grader.report.content import closing_lines, document, head, other_problems, score_text
+from grader.report.content import closing_lines, head, other_problems, report_sections, score_text
 from grader.report.criteria import Entry, earned_text, is_failure, is_manual, points_of, remarks_on
 from grader.report.locations import SourceOf, archive_around, location_text, width_of
 from grader.source import Base, Location
@@ -52,7 +52,7 @@ def render_github(report: Report, base: Base) -> str:
 
 def _findings(report: Report, base: Base) -> Iterator[_Finding]:
     """Yield what to fix or grade manually, and remarks; `base` is where the submission is in its repository."""
-    found, source_of = document(report), cache(report.submission.source)  # reads each file once
+    found, source_of = report_sections(report), cache(report.submission.source)  # reads each file once
     for entry in (*found.failures, *(one for one in found.pending if not is_manual(one.result))):
         yield _of_criterion(entry, source_of, base)
     for result in report.results:
@@ -109,7 +109,8 @@ def _rest(found: Sequence[_Finding]) -> _Finding:
 
 def _overview(report: Report) -> str:
     """Return the lines about the whole submission and the undecided criteria."""
-    found, lines = document(report), [line.text for line in head(report)]  # first, because the rest may be cut off
+    found = report_sections(report)
+    lines = [line.text for line in head(report)]  # first, because the rest may be cut off
     pending = ", ".join(result.criterion.id for result in report.results if result.is_open)
     if pending:
         lines.append(f"Needs manual grading: {pending}")

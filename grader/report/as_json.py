@@ -1,4 +1,4 @@
-"""A report as JSON, schema grader/report/v1: its records, from which `grader schema report` follows."""
+"""A report as JSON, schema grader/report/v1: its objects, from which `grader schema report` follows."""
 
 from typing import Any, get_args
 
@@ -17,10 +17,10 @@ from grader.report.json_data import (
     TEXT,
     TOTAL,
     VALUE,
+    JsonObject,
     KeyType,
     Many,
     Maybe,
-    Record,
     array,
     each,
     inner,
@@ -32,9 +32,9 @@ from grader.report.json_data import (
 )
 from grader.source import Certainty
 
-_CALL = Record({"macro": (TEXT, lambda call: call[0]), "location": (Record(PLACE), lambda call: call[1])})
-_LOCATION = Record({**PLACE, "calls": Many(_CALL)}, ("calls",))
-PROBLEM = Record(
+_CALL = JsonObject({"macro": (TEXT, lambda call: call[0]), "location": (JsonObject(PLACE), lambda call: call[1])})
+_LOCATION = JsonObject({**PLACE, "calls": Many(_CALL)}, ("calls",))
+PROBLEM = JsonObject(
     {
         "code": {"type": "string", "pattern": "^[A-Z]+[0-9]{3}$"},
         "severity": {"enum": ["error", "warning", "note"]},
@@ -43,7 +43,7 @@ PROBLEM = Record(
     }
 )
 _CERTAINTY = {"enum": list(get_args(Certainty))}
-_HINT = Record(
+_HINT = JsonObject(
     {
         "message": TEXT,
         "edits": Many(EDIT),
@@ -55,11 +55,11 @@ _HINT = Record(
     ("after",),
 )
 _KINDS: dict[str, KeyType] = {"bonus": {"const": True}, "adjustment": ADJUSTMENT}  # absent of most criteria
-ADDITIONS = Record(  # the keys that few criteria have: those of the rubric, a manual mark, a comment without points
+ADDITIONS = JsonObject(  # the keys that few criteria have: those of the rubric, a manual mark, a comment without points
     {
         **inner("criterion", _KINDS),
-        "mark": (Record({"points": POINTS, **each(TEXT, "by comment")}), "manual_mark"),
-        "comment": Record(each(TEXT, "text by")),
+        "mark": (JsonObject({"points": POINTS, **each(TEXT, "by comment")}), "manual_mark"),
+        "comment": JsonObject(each(TEXT, "text by")),
     },
     (*_KINDS, "mark", "comment"),
 )
@@ -78,7 +78,7 @@ def _hints(result: Result) -> list[Hint]:
     return [result.hint] if result.hint is not None else []
 
 
-_RESULT = Record(
+_RESULT = JsonObject(
     {
         **inner("criterion", each(TEXT, "id part title")),
         "status": ({"enum": ["passed", "failed", "skipped", "pending", "errored"]}, "outcome.status"),
@@ -96,7 +96,7 @@ _RESULT = Record(
     },
     ADDITIONS.optional,
 )
-_EXHIBIT = Record({"path": TEXT, "size": TOTAL, "heading": TEXT, "page": nullable(COUNT)})
+_EXHIBIT = JsonObject({"path": TEXT, "size": TOTAL, "heading": TEXT, "page": nullable(COUNT)})
 
 
 def _package(submission: Any) -> str | None:
@@ -104,21 +104,22 @@ def _package(submission: Any) -> str | None:
     return package and (package.folder or ".")  # "." is the submission itself
 
 
-_SUBMISSION = Record(
+_SUBMISSION = JsonObject(
     {
         "id": TEXT,
         "path": nullable(TEXT),
         "sha256": nullable(HASH),
         "package": (nullable(TEXT), _package),
-        "other_candidates": (Many(Record(each(TEXT, "path reason"))), "unused_candidates"),
+        "other_candidates": (Many(JsonObject(each(TEXT, "path reason"))), "unused_candidates"),
         "ignored": array(TEXT),
     }
 )
 SCORE = each(POINTS, "score max_score pending")
-_GRADE = Record({"points": nullable(POINTS), "late": NUMBER, "final": (FLAG, "is_final")})
-_OF_CLASS = Record({"grade": _GRADE}, ("grade",))  # of a student in a class, if a person or lateness changes the score
-_EVIDENCE = Record({**inner("evidence", each(TEXT, "id part title")), **each(Many(_EXHIBIT), "files possible")})
-REPORT = Record(
+_GRADE = JsonObject({"points": nullable(POINTS), "late": NUMBER, "final": (FLAG, "is_final")})
+# Of a student in a class, if a person or lateness changes the score.
+_OF_CLASS = JsonObject({"grade": _GRADE}, ("grade",))
+_EVIDENCE = JsonObject({**inner("evidence", each(TEXT, "id part title")), **each(Many(_EXHIBIT), "files possible")})
+REPORT = JsonObject(
     {
         **schema_key("grader/report/v1"),
         "grader": (GRADER, lambda report: {"version": report.version}),

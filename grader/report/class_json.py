@@ -20,44 +20,44 @@ from grader.report.json_data import (
     RUBRIC,
     TEXT,
     TOTAL,
+    JsonObject,
     Key,
     Many,
-    Record,
     array,
     each,
     exact,
     inner,
     mapping,
     nullable,
-    record,
+    object_schema,
     schema_key,
     to_json,
 )
 
 _STATUSES = ("errored", "excused", "graded", "missing", "unreadable")
-_SUMMARY = Record({"students": TOTAL, **each(nullable(POINTS), "mean median")})
+_SUMMARY = JsonObject({"students": TOTAL, **each(nullable(POINTS), "mean median")})
 _NO_GRADES = {**dict.fromkeys(_SUMMARY.keys), "students": 0}
-_MISTAKE = Record({**each(TEXT, "criterion message"), "students": array(TEXT)})
-_EQUAL = Record({"students": array(TEXT), "equal": TEXT})
-_CONCERN = Record({"id": (TEXT, itemgetter(0)), "detail": (TEXT, itemgetter(1))})
-_ATTENTION = Record({"reason": (TEXT, itemgetter(0)), "students": (Many(_CONCERN), itemgetter(1))})
-_RUN = Record(
+_MISTAKE = JsonObject({**each(TEXT, "criterion message"), "students": array(TEXT)})
+_EQUAL = JsonObject({"students": array(TEXT), "equal": TEXT})
+_CONCERN = JsonObject({"id": (TEXT, itemgetter(0)), "detail": (TEXT, itemgetter(1))})
+_ATTENTION = JsonObject({"reason": (TEXT, itemgetter(0)), "students": (Many(_CONCERN), itemgetter(1))})
+_RUN = JsonObject(
     {
         "run": COUNT,
         "time": TEXT,
         "grader": (GRADER, lambda run: {"version": run.version}),
-        "rubric": (record({"sha256": HASH}), lambda run: {"sha256": run.rubric}),
+        "rubric": (object_schema({"sha256": HASH}), lambda run: {"sha256": run.rubric}),
     }
 )
 _SPAN = each(nullable(POINTS), "before after")
-_STEP = Record({"id": TEXT, **_SPAN})
+_STEP = JsonObject({"id": TEXT, **_SPAN})
 
 
 def _count(name: str, row: CriterionFigures) -> int:
     return row.counts[name]
 
 
-_CRITERION = Record(
+_CRITERION = JsonObject(
     {
         "id": (TEXT, "criterion.id"),
         "max_points": (POINTS, "criterion.points"),
@@ -65,9 +65,9 @@ _CRITERION = Record(
         "share": nullable(POINTS),
     }
 )
-_STATISTICS = Record(
+_STATISTICS = JsonObject(
     {
-        "counts": (record(dict.fromkeys(_STATUSES, COUNT), optional=_STATUSES), "statuses"),
+        "counts": (object_schema(dict.fromkeys(_STATUSES, COUNT), optional=_STATUSES), "statuses"),
         "grades": (_SUMMARY.schema, lambda found: _SUMMARY.data(found.all) if found.all else _NO_GRADES),
         **each(TOTAL, "open late"),
         "tenths": (array(TOTAL), lambda found: [len(keys) for keys in found.tenths]),
@@ -86,7 +86,7 @@ def _of_report(name: str) -> Key:
     return nullable(POINTS), lambda one: exact(getattr(one.report, name)) if one.stored is not None else None
 
 
-_STUDENT = Record(
+_STUDENT = JsonObject(
     {
         "id": (TEXT, "student.key"),
         **inner("student", each(TEXT, "name email section")),
@@ -95,7 +95,7 @@ _STUDENT = Record(
         "score": _of_report("score"),
         "max_score": _of_report("max_score"),
         "pending": (POINTS, "pending"),
-        "late": Record({"days": TOTAL, "points": {"type": "number", "maximum": 0}, "reason": TEXT}),
+        "late": JsonObject({"days": TOTAL, "points": {"type": "number", "maximum": 0}, "reason": TEXT}),
         "total": nullable(POINTS),
         "final_mark": (nullable(POINTS), "final_points"),
         "is_excused": FLAG,
@@ -109,12 +109,12 @@ _STUDENT = Record(
 )
 
 
-CLASS = Record(
+CLASS = JsonObject(
     {
         **schema_key("grader/class/v1"),
         "grader": (GRADER, lambda _: {"version": __version__}),
         "rubric": (RUBRIC, "statistics.rubric"),
-        "run": Record(each(TOTAL, "total graded unchanged errored")),
+        "run": JsonObject(each(TOTAL, "total graded unchanged errored")),
         "max_score": (POINTS, "statistics.maximum"),
         "statistics": _STATISTICS,
         "equal": (Many(_EQUAL), "statistics.equal"),
@@ -133,8 +133,10 @@ def render_class_json(book: Gradebook, done: Progress | None = None) -> str:
     return to_json(CLASS.data(report))
 
 
-_CHANGE = Record({"id": (TEXT, "key"), "name": TEXT, **_SPAN, "reasons": (array(TEXT), "why"), "criteria": Many(_STEP)})
-DIFF = Record(  # of the two runs, and the changes
+_CHANGE = JsonObject(
+    {"id": (TEXT, "key"), "name": TEXT, **_SPAN, "reasons": (array(TEXT), "why"), "criteria": Many(_STEP)}
+)
+DIFF = JsonObject(  # of the two runs, and the changes
     {
         **schema_key("grader/diff/v1"),
         "from": (_RUN, itemgetter(0)),

@@ -41,7 +41,7 @@ _MAX_LISTED = 12
 _STATUSES = ("passed", "failed", "skipped", "pending", "errored", "adjusted", "marked manually")
 
 
-class Document(NamedTuple):
+class ReportSections(NamedTuple):
     """The criteria of a report, except those that passed and have no remark.
 
     `skipped` says what is skipped although nothing failed: a mark or an adjustment overrides its cause, or nothing was
@@ -63,7 +63,7 @@ class Document(NamedTuple):
         yield from self.remarks
 
 
-def document(report: Report, *, everything: bool = False) -> Document:
+def report_sections(report: Report, *, everything: bool = False) -> ReportSections:
     """Return the description of a report; with `everything` the rubric's feedback where there is a hint, too."""
     known = entries(report, everything=everything)
     others = [entry for entry in known.values() if not is_failure(entry.result)]
@@ -73,7 +73,7 @@ def document(report: Report, *, everything: bool = False) -> Document:
     marked = [one for one in others if one.result.manual_mark]
     remarks = zip(_REMARKS, (marked, by_status.get("adjusted", ()), commented), strict=True)
     failed = [known[failure.id] for failure in failures(report)]
-    return Document(
+    return ReportSections(
         tuple(_joined(_without_repeats(failed))),
         tuple(
             Line("skipped", skipped_text(cause, some))

@@ -99,7 +99,7 @@ def explanation(name: str, rubric: Rubric) -> str:
 
 
 def _paragraphs(texts: Iterable[str]) -> str:
-    return "\n\n".join(filter(None, texts)) + "\n"
+    return "\n\n".join(text for text in texts if text) + "\n"
 
 
 def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
@@ -120,9 +120,11 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
 
 def _check_text(title: str, check: Check, arguments: Mapping[str, object], *more: str) -> str:
     given = ", ".join(assignment(key, value) for key, value in arguments.items() if value is not None)
-    texts = (f"{title}: {check.name}. {check.documentation.fact}", f"With {given}." if given else "", *more)
-    texts += (f"`grader explain {check.name}` explains the check.",)
-    return "\n".join(map(_fill, filter(None, texts)))
+    texts = [f"{title}: {check.name}. {check.documentation.fact}"]
+    if given:
+        texts.append(f"With {given}.")
+    texts += [*more, f"`grader explain {check.name}` explains the check."]
+    return "\n".join(_fill(text) for text in texts if text)
 
 
 def _arguments(check: Check) -> str:

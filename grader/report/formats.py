@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _Need = Literal["", "console", "base", "identity"]
 
 
-class _Row(StrEnum):
+class _FormatRow(StrEnum):
     """A format: its name, `module:function` in this package, what that function needs, and the ending of its files.
 
     The function takes the report and returns text. With the need `console` it prints on a rich console instead; `base`
@@ -36,7 +36,7 @@ class _Row(StrEnum):
         return member
 
 
-class Format(_Row):
+class Format(_FormatRow):
     """The formats of a report. Their endings differ, so that one folder can contain a report in all of them."""
 
     TERMINAL = "terminal", "terminal:render_terminal", "console", "txt"
@@ -50,7 +50,7 @@ class Format(_Row):
     SVG = "svg", "svg:render_svg"
 
 
-class InspectFormat(_Row):
+class InspectFormat(_FormatRow):
     """The formats of an inspection."""
 
     TERMINAL = "terminal", "inspection:inspection_terminal", "console"
@@ -66,7 +66,7 @@ class OutputFormat(StrEnum):
     JSON = "json"
 
 
-# The record or the schema of each JSON document: its title, and where it is.
+# The object or the schema of each JSON document: its title, and where it is.
 _SCHEMAS = {
     "report": ("report", "as_json:REPORT"),
     "inspect": ("inspection", "inspection:INSPECTION"),

@@ -15,9 +15,9 @@ from grader.report.criteria import alike
 from grader.report.json_data import (
     NUMBER,
     TEXT,
+    JsonObject,
     Many,
     Maybe,
-    Record,
     Schema,
     array,
     each,
@@ -84,8 +84,8 @@ def _vector(items: Schema, length: int) -> Schema:
     return {**array(items), "minItems": length, "maxItems": length}
 
 
-_JOINT = Record({**each(TEXT, "name type parent child"), "axis": nullable(_vector(NUMBER, 3))})
-_ROBOT = Record(
+_JOINT = JsonObject({**each(TEXT, "name type parent child"), "axis": nullable(_vector(NUMBER, 3))})
+_ROBOT = JsonObject(
     {
         "name": (TEXT, "robot.name"),
         "root": (nullable(TEXT), main_root),
@@ -93,7 +93,7 @@ _ROBOT = Record(
         "joints": (Many(_JOINT), "robot.joints"),
     }
 )
-INSPECTION = Record(
+INSPECTION = JsonObject(
     {
         **schema_key("grader/inspect/v1"),
         "path": TEXT,

@@ -1,10 +1,11 @@
-"""JSON text that is the same bytes everywhere, and records of its keys, from which data and schemas follow."""
+"""JSON text that is the same bytes everywhere, and descriptions of its objects, from which data and schemas follow."""
 
 import json
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from functools import cached_property
 from operator import attrgetter
 from typing import Any, TypeVar
 
@@ -89,7 +90,7 @@ HASH: Schema = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
 VALUE: Schema = {"type": ["null", "boolean", "number", "string", "array", "object"]}
 
 
-def record(properties: Mapping[str, Schema], optional: Sequence[str] = ()) -> Schema:
+def object_schema(properties: Mapping[str, Schema], optional: Sequence[str] = ()) -> Schema:
     """Return the schema of an object with exactly these properties."""
     required = [name for name in properties if name not in optional]
     return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
@@ -115,24 +116,30 @@ def each(kind: _K, names: str) -> dict[str, _K]:
     return dict.fromkeys(names.split(), kind)
 
 
-class Record:
-    """A JSON object: for each key its type, and the attribute of the described value or the function of it.
+@dataclass(frozen=True)
+class JsonObject:
+    """A JSON object that describes a value.
 
-    Without either it has the attribute of its name. Attributes become plain data; a function returns plain data, or
-    what a record describes. Keys in `optional` are absent where they would be empty.
+    Each key has its type, and the attribute of the value or the function of it; without either it has the attribute of
+    its name. Attributes become plain data; a function returns plain data, or what an object describes. mypy does not
+    check the names of attributes. Every document has all keys, so any test of it finds a wrong one.
     """
 
-    # mypy does not check the names of attributes. Every document has all keys, so any test of it finds a wrong one.
-    def __init__(self, keys: Mapping[str, "KeyType | Key"], optional: tuple[str, ...] = ()) -> None:
-        self.keys, self.optional = keys, optional
-        pairs = {name: key if isinstance(key, tuple) else (key, name) for name, key in keys.items()}
-        self._kinds = {name: kind for name, (kind, _) in pairs.items()}
-        self._readers = {name: _reader(*pair) for name, pair in pairs.items()}
+    keys: Mapping[str, "KeyType | Key"]
+    optional: tuple[str, ...] = ()  # keys that are absent where they would be empty
+
+    @cached_property
+    def _pairs(self) -> dict[str, "Key"]:
+        return {name: key if isinstance(key, tuple) else (key, name) for name, key in self.keys.items()}
+
+    @cached_property
+    def _readers(self) -> dict[str, Callable[[Any], Any]]:
+        return {name: _reader(*pair) for name, pair in self._pairs.items()}
 
     @property
     def schema(self) -> Schema:
         """The schema of the object."""
-        return record({name: _schema(kind) for name, kind in self._kinds.items()}, self.optional)
+        return object_schema({name: _schema(kind) for name, (kind, _) in self._pairs.items()}, self.optional)
 
     def data(self, value: Any) -> dict[str, Any]:
         """Return the object that describes a value."""
@@ -145,26 +152,26 @@ class Record:
 
 @dataclass(frozen=True, slots=True)
 class Many:
-    """An array of records."""
+    """An array of objects."""
 
-    of: Record
+    of: JsonObject
 
 
 @dataclass(frozen=True, slots=True)
 class Maybe:
-    """A record or null."""
+    """An object or null."""
 
-    of: Record
+    of: JsonObject
 
 
-KeyType = Schema | Record | Many | Maybe
+KeyType = Schema | JsonObject | Many | Maybe
 _Origin = str | Callable[[Any], Any]
 Key = tuple[KeyType, _Origin]
 
 
 def _schema(kind: KeyType) -> Schema:
     match kind:
-        case Record():
+        case JsonObject():
             return kind.schema
         case Many():
             return array(kind.of.schema)
@@ -174,20 +181,20 @@ def _schema(kind: KeyType) -> Schema:
 
 
 def _reader(kind: KeyType, origin: _Origin) -> Callable[[Any], Any]:
-    """Return the function from a value to what a key of its record has."""
+    """Return the function from a value to what a key of its object has."""
     get = attrgetter(origin) if isinstance(origin, str) else origin
     match kind:
         case Many():
             return lambda value: list(map(kind.of.data, get(value)))
         case Maybe():
             return lambda value: _optional(kind.of, get(value))
-        case Record():
+        case JsonObject():
             return lambda value: _optional(kind, get(value))
     is_plain = callable(origin) or kind.get("type") in ("string", "integer", "boolean")
     return get if is_plain else lambda value: rounded(get(value))
 
 
-def _optional(of: Record, found: Any) -> dict[str, Any] | None:
+def _optional(of: JsonObject, found: Any) -> dict[str, Any] | None:
     return of.data(found) if found is not None else None
 
 
@@ -201,8 +208,8 @@ def schema_key(schema: str) -> dict[str, Key]:
     return {"schema": ({"const": schema}, lambda _: schema)}
 
 
-GRADER = record({"version": TEXT})
-RUBRIC = Record({**each(TEXT, "id title"), "sha256": HASH})
+GRADER = object_schema({"version": TEXT})
+RUBRIC = JsonObject({**each(TEXT, "id title"), "sha256": HASH})
 PLACE = {"path": TEXT, **each(COUNT, "line column")}
-EDIT = Record({**PLACE, **each(TEXT, "old new renamed")}, ("renamed",))
-ADJUSTMENT = Record({"action": {"enum": ["drop", "full"]}, "reason": TEXT})
+EDIT = JsonObject({**PLACE, **each(TEXT, "old new renamed")}, ("renamed",))
+ADJUSTMENT = JsonObject({"action": {"enum": ["drop", "full"]}, "reason": TEXT})

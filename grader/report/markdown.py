@@ -11,7 +11,7 @@ from textwrap import indent
 
 from grader.grading.report import Report
 from grader.report import content
-from grader.report.content import document
+from grader.report.content import report_sections
 from grader.report.criteria import (
     SYMBOLS,
     Answer,
@@ -76,7 +76,7 @@ def criterion_markdown(entry: Entry, report: Report) -> str:
 def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
     """Yield the report block by block, each of which can be the last one."""
     yield from _head(report)
-    for section in document(report).sections:
+    for section in report_sections(report).sections:
         yield from _section(section, report, answers=answers)
     passed = [folded for group in groups(report) if (folded := _fold_passed(group))]
     if passed:

@@ -14,9 +14,9 @@ from grader.report.json_data import (
     RUBRIC,
     TEXT,
     TOTAL,
+    JsonObject,
     Many,
     Maybe,
-    Record,
     array,
     each,
     inner,
@@ -100,15 +100,15 @@ def _listed(title: str, losses: Sequence[Loss]) -> Iterator[str]:
         yield from ("", f"  ... and {len(losses) - _MAX_LISTED} more, which --format json lists")
 
 
-_LOSSES = Many(Record({"name": TEXT, "criteria": mapping(TEXT), "diff": TEXT}))
-_SURVIVOR = Record(
+_LOSSES = Many(JsonObject({"name": TEXT, "criteria": mapping(TEXT), "diff": TEXT}))
+_SURVIVOR = JsonObject(
     {
         **inner("mutant", {**each(TEXT, "id family path"), "line": COUNT}),
         "diff": TEXT,
         "reason": (nullable(TEXT), lambda survivor: survivor.reason or None),
     }
 )
-_MUTANTS = Record(
+_MUTANTS = JsonObject(
     {
         **each(TOTAL, "total tried caught"),
         "same_robot": (TOTAL, "same"),
@@ -116,16 +116,16 @@ _MUTANTS = Record(
         "survived": (TOTAL, lambda test: len(test.survivors)),
     }
 )
-_EQUIVALENTS = Record({"tried": (array(TEXT), "equivalents"), "lost": (_LOSSES, "losses")})
-RUBRIC_TEST = Record(
+_EQUIVALENTS = JsonObject({"tried": (array(TEXT), "equivalents"), "lost": (_LOSSES, "losses")})
+RUBRIC_TEST = JsonObject(
     {
         **schema_key("grader/rubric-test/v1"),
         "grader": (GRADER, lambda _: {"version": __version__}),
         "rubric": (RUBRIC, "reference.rubric"),
         "score": ({"type": "number", "minimum": 0, "maximum": 100}, lambda test: rounded(float(test.score))),
-        "reference": (Record({**inner("reference", SCORE), "lost": array(TEXT)}), lambda test: test),
+        "reference": (JsonObject({**inner("reference", SCORE), "lost": array(TEXT)}), lambda test: test),
         "equivalents": (_EQUIVALENTS, lambda test: test),
-        "samples": Maybe(Record({**each(TOTAL, "tried skipped"), "different": _LOSSES})),
+        "samples": Maybe(JsonObject({**each(TOTAL, "tried skipped"), "different": _LOSSES})),
         "mutants": (_MUTANTS, lambda test: test),
         **each(Many(_SURVIVOR), "survivors ignored"),
         "faults": _LOSSES,

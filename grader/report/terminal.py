@@ -16,7 +16,7 @@ from rich.text import Text
 from grader.grading.criterion import worth
 from grader.grading.report import Report, Result
 from grader.report import content
-from grader.report.content import Document, document
+from grader.report.content import ReportSections, report_sections
 from grader.report.criteria import (
     ASCII_SYMBOLS,
     STYLES,
@@ -239,7 +239,7 @@ def _symbol(console: Console, fancy: str, plain: str) -> str:
 
 def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
     """Print a report, with `verbose` everything in it, else in 24 rows as far as possible."""
-    found = document(report, everything=verbose)
+    found = report_sections(report, everything=verbose)
     if verbose:
         page = Page(console, [], is_whole=True)
         _show_everything(report, found, page)
@@ -255,14 +255,14 @@ def render_terminal(report: Report, console: Console, *, verbose: bool = False) 
     page.print()
 
 
-def _brief_page(report: Report, found: Document, page: Page) -> Page:
+def _brief_page(report: Report, found: ReportSections, page: Page) -> Page:
     """Return a page with the short report."""
     _show_brief(report, found, page)
     _show_end(report, page)
     return page
 
 
-def _show_brief(report: Report, found: Document, page: Page) -> None:
+def _show_brief(report: Report, found: ReportSections, page: Page) -> None:
     """Add the short report, without its last lines."""
     _show_start(report, page)
     listed = (entry for entry in found.failures if not (entry.result.why_given or entry.first))
@@ -383,7 +383,7 @@ def _show_end(report: Report, page: Page) -> None:
     page.inset(Text.assemble(*parts), indent=0)
 
 
-def _show_everything(report: Report, found: Document, page: Page) -> None:
+def _show_everything(report: Report, found: ReportSections, page: Page) -> None:
     """Add a report, without its last lines."""
     for line in content.head(report):
         page.line(line.text, LOOKS[line.role])

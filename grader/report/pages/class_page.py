@@ -2,7 +2,7 @@
 
 import unicodedata
 from collections import defaultdict
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from grader import __version__
@@ -18,7 +18,7 @@ _MAX_LOST = 2  # criteria in a row
 _LETTERS = str.maketrans({"ł": "l", "ø": "o", "đ": "d", "æ": "ae", "œ": "oe", "ı": "i"})  # have no accents
 
 
-class _Row(NamedTuple):
+class _StudentRow(NamedTuple):
     """A student in the table: the cells as text, which may be empty; `link` is the address of the student's page."""
 
     key: str
@@ -75,10 +75,10 @@ def render_class_page(
     return render_page("class.html", values, {"groups": shown}, Assets("class.css", "class.js"))
 
 
-def _row(grade: StudentGrade, links: Mapping[str, str]) -> _Row:
+def _row(grade: StudentGrade, links: Mapping[str, str]) -> _StudentRow:
     student, late, lost = grade.student, grade.late, [name for _, name in grade.losses]
     penalty = f", {format_points(late.points)}" if late.points else ""
-    return _Row(
+    return _StudentRow(
         student.key,
         student.name or student.key,
         links.get(student.key, ""),
@@ -91,7 +91,7 @@ def _row(grade: StudentGrade, links: Mapping[str, str]) -> _Row:
     )
 
 
-def _by_family_name(row: _Row) -> tuple[str, str, str]:
+def _by_family_name(row: _StudentRow) -> tuple[str, str, str]:
     """Return the family name, which is before a comma or the last word, then the name and the key."""
     family = row.name.partition(",")[0] if "," in row.name else (row.name.split() or [""])[-1]
     return _letters(family), _letters(row.name), row.key
@@ -103,7 +103,7 @@ def _letters(name: str) -> str:
     return "".join(letter for letter in apart if not unicodedata.combining(letter))
 
 
-def _columns(rows: Sequence[_Row], found: ClassStatistics) -> list[tuple[str, str, str]]:
+def _columns(rows: Sequence[_StudentRow], found: ClassStatistics) -> list[tuple[str, str, str]]:
     """Return the columns that are not empty: the field of a row, the heading, the class of its cells."""
     columns = (
         ("key", "id" if any(row.name != row.key for row in rows) else "", ""),
@@ -117,20 +117,27 @@ def _columns(rows: Sequence[_Row], found: ClassStatistics) -> list[tuple[str, st
     return [column for column in columns if column[1] and any(getattr(row, column[0]) for row in rows)]
 
 
+def _filters_of(grade: StudentGrade, *, has_sections: bool) -> Iterator[tuple[int, str]]:
+    """Yield the filters that show a student: the place of each among the others, and its label."""
+    yield 0, grade.status
+    if has_sections:
+        yield 1, f"section {grade.student.section or '(none)'}"
+    if grade.concerns:
+        yield 2, "need attention"
+    if grade.pending:
+        yield 3, "need manual grading"
+    if grade.late.days and not grade.has_final:
+        yield 4, "late"
+    if grade.final_points is not None:
+        yield 5, "a final mark"
+
+
 def _groups(grades: Sequence[StudentGrade], found: ClassStatistics) -> dict[str, _Group]:
     """Return the groups of students on the page by the id that its buttons use; those at the top are filters."""
     keys, lost = defaultdict[tuple[int, str], list[str]](list), defaultdict[str, list[str]](list)
     has_sections = len({one.student.section for one in grades}) > 1
     for one in grades:
-        labels = (
-            (one.status, True),
-            (f"section {one.student.section or '(none)'}", has_sections),
-            ("need attention", one.concerns),
-            ("need manual grading", one.pending),
-            ("late", one.late.days and not one.has_final),
-            ("a final mark", one.final_points is not None),
-        )
-        for place in ((at, label) for at, (label, is_in) in enumerate(labels) if is_in):
+        for place in _filters_of(one, has_sections=has_sections):
             keys[place].append(one.student.key)
         for _, name in one.losses:
             lost[name].append(one.student.key)

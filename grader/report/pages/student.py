@@ -8,7 +8,7 @@ from markupsafe import Markup
 from grader import __version__
 from grader.grading.report import Report
 from grader.report import content
-from grader.report.content import document
+from grader.report.content import report_sections
 from grader.report.criteria import STATUS_WORDS, SYMBOLS, CriteriaGroup, Entry, earned_text, groups, status_of
 from grader.report.drawing.picture import Picture, picture_of, plain_picture
 from grader.report.inspection import MAX_LISTED, Inspection, effect, lists
@@ -25,7 +25,7 @@ def render_html(report: Report) -> str:
     picture = picture_of(report)
     callouts = [callout for callout in picture.callouts if callout.point is not None] if picture is not None else []
     called = {result.criterion.id: callout.number for callout in callouts for result in callout.results}
-    sections = [part._replace(entries=tuple(_nested(part.entries))) for part in document(report).sections]
+    sections = [part._replace(entries=tuple(_nested(part.entries))) for part in report_sections(report).sections]
     by_part = groupby(groups(report), key=lambda group: group.part)
     values = {
         "version": report.version,
