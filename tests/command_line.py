@@ -131,7 +131,7 @@ def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[
     with (
         patch.dict(os.environ, variables, clear=True),
         patch.object(sys, "argv", ["grader", *words]),
-        patch("grader.grading.rubric._validated", validated_once),
+        patch("grader.grading.rubric._validate", validated_once),
         patch("grader.documents.collection.DocumentCollection._run", convert_here),
         patch("grader.classroom.workers.pool.ProcessPool", _Pool),
         patch("grader.classroom.workers.forks.start_server", bool),

@@ -7,7 +7,7 @@ from pathlib import Path
 from grader.grading import rubric, validation
 
 _LONG = range(5_000, 100_000)  # bytes: what takes long, and is the same in many tests
-_read: Callable[[bytes, Path], validation.Validation] = vars(rubric)["_validated"].__wrapped__
+_read: Callable[[bytes, Path], validation.Validation] = vars(rubric)["_validate"].__wrapped__
 _VALIDATED: dict[tuple[object, ...], validation.Validation] = {}
 
 

@@ -38,8 +38,8 @@ def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNega
         size: The lengths of the edges along the link's x, y and z axes, in metres.
         tolerance: How far each length may be off, in metres.
     """
-    edges = [(_edges(visual, box), visual) for visual, box in _visuals_of_kind(robot, link, Box)]
-    actual, visual = min(edges, key=lambda pair: _difference(pair[0], size))
+    edges = [(_edges_along_link(visual, box), visual) for visual, box in _visuals_of_kind(robot, link, Box)]
+    actual, visual = min(edges, key=lambda pair: _largest_difference(pair[0], size))
     is_turned = actual is None or all_within(sorted(actual), sorted(size), tolerance)
     is_turned = is_turned and any(visual.origin.rpy)
     at = place(visual.origin.location, "rpy") if is_turned else place(visual.geometry.location, "size")
@@ -65,7 +65,7 @@ def shows_cylinder(
     """
     expected = (radius, length)
     sizes = [((shape.radius, shape.length), shape) for _, shape in _visuals_of_kind(robot, link, Cylinder)]
-    actual, best = min(sizes, key=lambda pair: _difference(pair[0], expected))
+    actual, best = min(sizes, key=lambda pair: _largest_difference(pair[0], expected))
     fine = min(actual) >= 0.0 and all_within(actual, expected, tolerance)
     message = f"{link!r} shows a cylinder of radius {point(actual[:1])} m and length {point(actual[1:])} m"
     if not fine:
@@ -104,14 +104,14 @@ def shows_colour(
     """
     visual = main_visual(robot, link, shape)
     if visual.material is None or _has_only_texture(visual.material):
-        return _colourless(link, visual)
+        return _judge_colourless(link, visual)
     actual = visual.material.rgba[: len(colour)]
     fine = all_within(actual, colour, tolerance)
     message = f"{link!r} is shown in {'rgba' if len(colour) == 4 else 'rgb'} {point(actual)}"
     if not fine:
         message += f"; it should be {point(colour)}"
     is_wanted = len(colour) == 4 and colour[3] < VISIBLE
-    invisible = "" if is_wanted else _invisible(visual.material)
+    invisible = "" if is_wanted else _why_invisible(visual.material)
     return judged(
         fine and not invisible,
         message + invisible,
@@ -134,7 +134,7 @@ def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: N
     """
     visual = main_visual(robot, link)
     if visual.material is None or _has_only_texture(visual.material):
-        return _colourless(link, visual)
+        return _judge_colourless(link, visual)
     actual = visual.material.rgba[:3]
     message = f"{link!r} is shown in rgb {point(actual)}"
     is_grey = within(max(actual), min(actual), tolerance)
@@ -143,7 +143,7 @@ def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: N
         message += ", which is not grey; red, green and blue should be equal"
     elif not is_light:
         message += f"; each should be at least {at_least:g}"
-    invisible, at = _invisible(visual.material), place(visual.material.location, "rgba")
+    invisible, at = _why_invisible(visual.material), place(visual.material.location, "rgba")
     return judged(is_grey and is_light and not invisible, message + invisible, actual, at_least, tolerance, at=at)
 
 
@@ -177,7 +177,7 @@ def _visuals_of_kind(robot: Configuration, link: str, kind: type[_Shown]) -> lis
     return found
 
 
-def _edges(visual: Visual, box: Box) -> Vector | None:
+def _edges_along_link(visual: Visual, box: Box) -> Vector | None:
     """Return the edge lengths of a box along its link's axes, in metres; None where they are not along them."""
     size = box.size
     rotation = rotation_from_rpy(visual.origin.rpy)
@@ -189,11 +189,11 @@ def _edges(visual: Visual, box: Box) -> Vector | None:
     return None
 
 
-def _difference(actual: Sequence[float] | None, expected: Sequence[float]) -> float:
+def _largest_difference(actual: Sequence[float] | None, expected: Sequence[float]) -> float:
     return float("inf") if actual is None else max(abs(a - b) for a, b in zip(actual, expected, strict=True))
 
 
-def _invisible(material: Material) -> str:
+def _why_invisible(material: Material) -> str:
     """Return the end of a message on a colour that nobody sees; empty for one that shows."""
     alpha = material.rgba[3]
     return (
@@ -206,7 +206,7 @@ def _has_only_texture(material: Material) -> bool:
     return material.rgba == Material("").rgba and material.texture != ""
 
 
-def _colourless(link: str, visual: Visual) -> Outcome:
+def _judge_colourless(link: str, visual: Visual) -> Outcome:
     if visual.material is not None:
         raise NotDecided(f"{link!r} is shown with a texture, which the grader does not open", "textures are not opened")
     if visual.has_unreadable_colour:

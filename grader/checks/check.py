@@ -27,7 +27,7 @@ _SECTION = r"(?m)^(Args|Arguments|Examples?|Notes?|Raises|Returns):\s*$"
 _ARGUMENT = r"^\*{0,2}(\w+)(?:\s*\([^)]*\))?:\s+"
 
 
-def _nothing(arguments: Mapping[str, Any]) -> Collection[str]:
+def _breaks_under_none(arguments: Mapping[str, Any]) -> Collection[str]:
     """Break under no equivalent, as most checks do: they are about behaviour."""
     del arguments
     return ()
@@ -49,7 +49,7 @@ class About(NamedTuple):
     """
 
     looks_at: tuple[str, ...] = ()
-    breaks_under: _BreaksUnder = _nothing
+    breaks_under: _BreaksUnder = _breaks_under_none
     picture: Literal["", "outline", "wheel", "frame"] = ""
 
 
@@ -61,7 +61,7 @@ Subject = Literal["urdf", "robot", "package", "submission", "reference"]
 _SUBJECTS: tuple[Subject, ...] = get_args(Subject)
 
 
-class _Parameter(NamedTuple):
+class _CheckParameter(NamedTuple):
     """One argument of a check: its annotation, and its default if it has one."""
 
     name: str
@@ -86,7 +86,7 @@ class Check(NamedTuple):
     name: str
     function: Callable[..., Outcome]
     examined: tuple[Subject, ...]
-    parameters: Mapping[str, _Parameter]
+    parameters: Mapping[str, _CheckParameter]
     distribution: str = ""
     about: About = About()
 
@@ -117,7 +117,7 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
     parameters = {}
     for name, default in ((parameter.name, parameter.default) for parameter in rest[len(also) :]):
         is_required = default is inspect.Parameter.empty
-        parameters[name] = _Parameter(name, hints[name], is_required, None if is_required else default)
+        parameters[name] = _CheckParameter(name, hints[name], is_required, None if is_required else default)
     main = subject.name if subject.name in _SUBJECTS else "robot"
     examined = tuple(
         name for given in (main, *(parameter.name for parameter in also)) for name in _SUBJECTS if name == given

@@ -36,7 +36,7 @@ def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonN
         tolerance: How far a centre, a size or a point of the surface may be off, in metres.
     """
     shown = visuals(robot, link)
-    solid = _solid(robot, link, "the shapes that it shows")
+    solid = _solid_collisions(robot, link, "the shapes that it shows")
     if max(len(shown), len(solid)) > MAX_SHAPES:
         raise NotDecided(f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes")
     partners = most_pairs(
@@ -50,11 +50,11 @@ def collision_matches_visual(robot: Configuration, *, link: str, tolerance: NonN
     if not lonely and not others:
         return passed(f"{link!r} has {counted(len(solid), 'collision shape')}, as shown")
     if not lonely:
-        message = f"{link!r} has a collision shape that it does not show: {_description(others[0])}"
+        message = f"{link!r} has a collision shape that it does not show: {_describe_shape(others[0])}"
         return failed(message, others[0].location)
     if not others:
-        return failed(f"no collision shape of {link!r} is {_description(lonely[0])}, as shown", lonely[0].location)
-    return _unlike(link, lonely, others, tolerance)
+        return failed(f"no collision shape of {link!r} is {_describe_shape(lonely[0])}, as shown", lonely[0].location)
+    return _judge_unmatched(link, lonely, others, tolerance)
 
 
 def collides_as(
@@ -86,9 +86,13 @@ def collides_as(
         relative_to: The link in whose frame the place is given, by default the link itself.
         only: Whether the link has no other collision shape.
     """
-    shapes: list[Shape] = [Box(box)] if box is not None else []
-    shapes += [Cylinder(*cylinder)] if cylinder is not None else []
-    shapes += [Sphere(sphere)] if sphere is not None else []
+    shapes: list[Shape] = []
+    if box is not None:
+        shapes.append(Box(box))
+    if cylinder is not None:
+        shapes.append(Cylinder(*cylinder))
+    if sphere is not None:
+        shapes.append(Sphere(sphere))
     if len(shapes) != 1:
         raise RubricError(("collides_as takes exactly one of box, cylinder and sphere",))
     [wanted] = shapes
@@ -105,19 +109,19 @@ def collides_as(
         found = mismatch(wanted, T_link_wanted, collision.geometry, T_link_shape, tolerance + SLACK, turned=is_turned)
         return found if found is None or xyz is not None else found._replace(apart=0.0)
 
-    solid = _solid(robot, link, what)
+    solid = _solid_collisions(robot, link, what)
     fitting = next((one for one in solid if _fits(off(one), tolerance)), None)
     if fitting is None:
-        nearest = min(solid, key=lambda one: _rank(off(one)))
-        return _differs(f"no collision shape of {link!r} is {what}", nearest, off(nearest), tolerance)
+        nearest = min(solid, key=lambda one: _rank_mismatch(off(one)))
+        return _fail_with_nearest(f"no collision shape of {link!r} is {what}", nearest, off(nearest), tolerance)
     other = next((one for one in solid if one is not fitting), None)
     if only and other is not None:
-        message = f"{link!r} has another collision shape, {_description(other)}; it should have only {what}"
+        message = f"{link!r} has another collision shape, {_describe_shape(other)}; it should have only {what}"
         return failed(message, other.location)
     return passed(f"{link!r} collides as {what}")
 
 
-def _solid(robot: Configuration, link: str, expected: str) -> tuple[Collision, ...]:
+def _solid_collisions(robot: Configuration, link: str, expected: str) -> tuple[Collision, ...]:
     """Return the collision shapes of a link that have a size; raise MissingElement if there is none."""
     solid = tuple(collision for collision in robot.link(link).collisions if not is_empty(collision.geometry))
     if not solid:
@@ -143,7 +147,7 @@ def _mismatch(visual: Visual, collision: Collision, tolerance: float) -> Mismatc
     return Mismatch(apart, 0.0, 0.0 if angle <= _MESH_ANGLE else inf, angle)
 
 
-def _unlike(link: str, lonely: Sequence[Visual], others: Sequence[Collision], tolerance: float) -> Outcome:
+def _judge_unmatched(link: str, lonely: Sequence[Visual], others: Sequence[Collision], tolerance: float) -> Outcome:
     """Return the outcome for visuals without a collision shape, and collision shapes without a visual."""
     files = {visual.geometry.filename for visual in lonely if isinstance(visual.geometry, Mesh)}
     meshes = [collision.geometry for collision in others if isinstance(collision.geometry, Mesh)]
@@ -154,18 +158,20 @@ def _unlike(link: str, lonely: Sequence[Visual], others: Sequence[Collision], to
             what = f"whether the collision mesh {file_name(unknown.filename)} of {link!r} has the shape that is shown"
             raise NotDecided(f"{what} cannot be determined: {cause}", cause)
     pairs = [(_mismatch(visual, other, tolerance), visual, other) for visual in lonely for other in others]
-    off, visual, nearest = min(pairs, key=lambda pair: _rank(pair[0]))
-    return _differs(f"no collision shape of {link!r} is {_description(visual)}, as shown", nearest, off, tolerance)
+    off, visual, nearest = min(pairs, key=lambda pair: _rank_mismatch(pair[0]))
+    return _fail_with_nearest(
+        f"no collision shape of {link!r} is {_describe_shape(visual)}, as shown", nearest, off, tolerance
+    )
 
 
-def _rank(off: Mismatch | None) -> tuple[bool, float]:
+def _rank_mismatch(off: Mismatch | None) -> tuple[bool, float]:
     """Return the order of pairs: those of one kind first, then by the difference."""
     return off is None, 0.0 if off is None else min(off.apart + off.size + min(off.turn, 1e9), inf)
 
 
-def _differs(message: str, nearest: Collision, off: Mismatch | None, tolerance: float) -> Outcome:
+def _fail_with_nearest(message: str, nearest: Collision, off: Mismatch | None, tolerance: float) -> Outcome:
     """Return a failure that says how the nearest shape differs from the one that should be, at the place to look at."""
-    message += f"; the nearest is {_description(nearest)}"
+    message += f"; the nearest is {_describe_shape(nearest)}"
     if off is None:
         return failed(message, nearest.geometry.location or nearest.location)
     found = [
@@ -178,7 +184,7 @@ def _differs(message: str, nearest: Collision, off: Mismatch | None, tolerance: 
     return failed(f"{message} ({text})", place(wrong[0][2], wrong[0][3]) or nearest.location)
 
 
-def _description(element: Visual | Collision) -> str:
+def _describe_shape(element: Visual | Collision) -> str:
     """Return a shape with its sizes, and its place in the link."""
     return f"{_shape_text(element.geometry)} at {point(element.origin.xyz)} m"
 

@@ -44,7 +44,7 @@ def mass_is(robot: Configuration, *, link: str, mass: NonNegative, tolerance: No
         mass: The mass in kilograms.
         tolerance: How far the mass may be off, in kilograms.
     """
-    inertial = _inertial(robot, link)
+    inertial = _needed_inertial(robot, link)
     actual = inertial.mass
     fine = within(actual, mass, tolerance)
     message = f"the mass of {link!r} is {actual:.6g} kg"
@@ -68,8 +68,8 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
         tolerance: How far the inertia about any axis may be off, in percent of the largest principal moment of the
             solid.
     """
-    inertial = _inertial(robot, link)
-    impossible = _impossible(link, inertial)
+    inertial = _needed_inertial(robot, link)
+    impossible = _refuse_impossible(link, inertial)
     if impossible is not None:
         return impossible
     what, shapes = _solid_shapes(robot, link)
@@ -90,10 +90,10 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
         return failed(f"the inertia of {link!r} cannot be compared: its numbers are too large or too small", at)
     wrong = []
     if not within(off, 0.0, tolerance):
-        reason = _components(inertial, solid, T_link_inertial, tolerance)
+        reason = _components_off(inertial, solid, T_link_inertial, tolerance)
         solid_text = f"a uniform solid of its {what} with a mass of {inertial.mass:.6g} kg"
-        wrong.append(f"the inertia of {link!r} is {_rounded(off)} % off that of {solid_text}: {reason}")
-    if not within(distance, 0.0, max(_CENTRE, _CENTRE_SHARE * _size(shapes))):
+        wrong.append(f"the inertia of {link!r} is {_round_percentage(off)} % off that of {solid_text}: {reason}")
+    if not within(distance, 0.0, max(_CENTRE, _CENTRE_SHARE * _size_bound(shapes))):
         at = at if wrong else place(inertial.origin.location, "xyz") or place(inertial.location)
         centres = f"at {point(given.centre)} m; it should be at {point(solid.centre)} m"
         wrong.append(f"the centre of mass of {link!r} is {centres} in {link!r} ({in_millimetres(distance)} off)")
@@ -107,7 +107,7 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
     return judged(not wrong, message, off, 0.0, tolerance, "%", at=at)
 
 
-def _inertial(robot: Configuration, link: str) -> Inertial:
+def _needed_inertial(robot: Configuration, link: str) -> Inertial:
     """Return the <inertial> of a link; raise MissingElement if ROS 2 reads none."""
     found = robot.link(link)
     if found.inertial is None:
@@ -116,7 +116,7 @@ def _inertial(robot: Configuration, link: str) -> Inertial:
     return found.inertial
 
 
-def _impossible(link: str, inertial: Inertial) -> Outcome | None:
+def _refuse_impossible(link: str, inertial: Inertial) -> Outcome | None:
     """Return the failure of a mass or inertia that is physically impossible."""
     if not inertial.mass > 0.0:
         message = f"the mass of {link!r} is {inertial.mass:.6g} kg; it should be positive"
@@ -138,13 +138,13 @@ def _solid_shapes(robot: Configuration, link: str) -> tuple[str, list[tuple[Shap
     Raises UnknownShape for a mesh, MissingElement for a link without a shape.
     """
     found = robot.link(link)
-    for word, field in (("collision shape", "collisions"), ("visual", "visuals")):
-        placed = with_volume(getattr(found, field))
+    for word in ("collision shape", "visual"):
+        placed = with_volume(found.visuals if word == "visual" else found.collisions)
         if len(placed) > MAX_SHAPES:
             raise NotDecided(f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes")
         shapes = [(_measurable(geometry), placed_by(IDENTITY, origin)) for geometry, origin in placed]
         if shapes:
-            return word + "s" * (len(shapes) > 1), shapes
+            return word if len(shapes) == 1 else f"{word}s", shapes
     message = f"link {link!r} has no visual or collision shape with a volume"
     raise MissingElement("visual", link, message=message, location=place(found.location))
 
@@ -155,7 +155,7 @@ def _measurable(geometry: Geometry) -> Shape:
     return geometry
 
 
-def _components(inertial: Inertial, solid: MassProperties, T_link_inertial: Transform, tolerance: float) -> str:
+def _components_off(inertial: Inertial, solid: MassProperties, T_link_inertial: Transform, tolerance: float) -> str:
     """Return which numbers of an <inertia> are off, along the axes in which it is given."""
     expected = turned(solid.inertia, T_link_inertial.inverse().rotation)
     # Of a symmetric matrix that is more off, one number is.
@@ -165,12 +165,12 @@ def _components(inertial: Inertial, solid: MassProperties, T_link_inertial: Tran
     return ", ".join(f"{name} is {actual:.3g}, not {wanted + 0.0:.3g}" for name, actual, wanted in off)
 
 
-def _size(shapes: Sequence[tuple[Shape, Transform]]) -> float:
+def _size_bound(shapes: Sequence[tuple[Shape, Transform]]) -> float:
     """Return an upper bound on the distance of two points of shapes, in metres: of a single shape, that distance."""
     pairs = combinations_with_replacement([(pose.translation, bounding_radius(shape)) for shape, pose in shapes], 2)
     return max(hypot(*minus(one, other)) + radius + reach for (one, radius), (other, reach) in pairs)
 
 
-def _rounded(percentage: float) -> str:
+def _round_percentage(percentage: float) -> str:
     """Return a percentage rounded for reading: 61.2, 1,000."""
     return f"{percentage:.3g}" if not 1e3 <= percentage < 1e10 else f"{percentage:,.0f}"

@@ -64,14 +64,15 @@ def joint_limits(
     """
     joint = robot.moving_joint(link)
     if joint.type not in ("revolute", "prismatic"):
-        message = (
-            f"the joint that moves {link!r} is {joint.type}, so it has no limits; they should be {_range(lower, upper)}"
-        )
-        return failed(message, place(joint.location, "type"), detail=_named(joint))
+        message = f"the joint that moves {link!r} is {joint.type}, so it has no limits"
+        message += f"; they should be {_range_text(lower, upper)}"
+        return failed(message, place(joint.location, "type"), detail=_joint_detail(joint))
     limit, units = joint.limit, "degrees" if joint.type == "revolute" else "m"
-    fault = f"it should be {_range(lower, upper)} {units}"
+    fault = f"it should be {_range_text(lower, upper)} {units}"
     if limit is None:
-        return failed(f"the joint that moves {link!r} has no limits; {fault}", joint.location, detail=_named(joint))
+        return failed(
+            f"the joint that moves {link!r} has no limits; {fault}", joint.location, detail=_joint_detail(joint)
+        )
     given = (limit.lower, limit.upper)
     ends = {"prismatic": given, "revolute": (degrees(limit.lower), degrees(limit.upper))}
     low, high = ends.pop(joint.type)
@@ -85,13 +86,13 @@ def joint_limits(
     if (
         is_meant and (numbers[0].is_wrong or numbers[1].is_wrong) and max(map(abs, given)) <= FULL_TURN
     ):  # else in degrees
-        range_of_other = f"{_range(lower, upper)} {'m' if other == 'prismatic' else 'degrees'}"
+        range_of_other = f"{_range_text(lower, upper)} {'m' if other == 'prismatic' else 'degrees'}"
         message = (
             f"the joint that moves {link!r} is {joint.type}; it should be {other}, with a range of {range_of_other}"
         )
-        return failed(message, place(joint.location, "type"), detail=_named(joint))
-    message = f"the range of the joint that moves {link!r} is {_range(low, high)} {units}"
-    return _compared(message, numbers, joint, limit.location, "deg" if joint.type == "revolute" else "m")
+        return failed(message, place(joint.location, "type"), detail=_joint_detail(joint))
+    message = f"the range of the joint that moves {link!r} is {_range_text(low, high)} {units}"
+    return _compare_numbers(message, numbers, joint, limit.location, "deg" if joint.type == "revolute" else "m")
 
 
 def joint_axis(
@@ -122,7 +123,7 @@ def joint_axis(
     joint = robot.moving_joint(link)
     if joint.type == "floating":
         message = f"the joint that moves {link!r} is floating, so it has no axis"
-        return failed(message, place(joint.location, "type"), detail=_named(joint))
+        return failed(message, place(joint.location, "type"), detail=_joint_detail(joint))
     own, T_relative_joint = robot.axis(joint), robot.pose(joint.child, relative_to=relative_to)
     actual, expected = T_relative_joint.rotate(own), unit(direction) or direction
     off = degrees_between(actual, expected)
@@ -132,7 +133,7 @@ def joint_axis(
     if not off <= tolerance + SLACK:
         message += f"; it should point along {point(expected)} ({in_degrees(off)} off)"
         at = axis_place(joint)
-        return judged(False, message, actual, expected, tolerance, "deg", at=at, detail=_named(joint))
+        return judged(False, message, actual, expected, tolerance, "deg", at=at, detail=_joint_detail(joint))
     if through is None:
         return judged(True, message, actual, expected, tolerance, "deg")
     away = hypot(*cross(minus(through, T_relative_joint.translation), actual))
@@ -141,7 +142,7 @@ def joint_axis(
     message += "" if fine else "; it should pass through that point"
     at = place(joint.origin.location if joint.origin else None, "xyz") or joint.location
     found = away if isfinite(away) else None
-    return judged(fine, message, found, 0.0, distance, "m", at=at, detail="" if fine else _named(joint))
+    return judged(fine, message, found, 0.0, distance, "m", at=at, detail="" if fine else _joint_detail(joint))
 
 
 def mimics(
@@ -181,7 +182,7 @@ def mimics(
     ratio, shift = followed[leading.name]
     message = f"the joint that moves {link!r} mimics the joint that moves {leader!r}"
     numbers = _expected_numbers({"multiplier": (ratio, multiplier), "offset": (shift, offset)}, tolerance)
-    return _compared(message, numbers, joint, joint.mimic.location if joint.mimic else None)
+    return _compare_numbers(message, numbers, joint, joint.mimic.location if joint.mimic else None)
 
 
 def joint_dynamics(
@@ -210,8 +211,8 @@ def joint_dynamics(
     )
     message = f"the joint that moves {link!r} has {'<dynamics>' if given else 'no <dynamics>'}"
     if given is None and not numbers:
-        return failed(f"{message}; it should have one", joint.location, detail=_named(joint))
-    return _compared(message, numbers, joint, given.location if given else joint.location)
+        return failed(f"{message}; it should have one", joint.location, detail=_joint_detail(joint))
+    return _compare_numbers(message, numbers, joint, given.location if given else joint.location)
 
 
 def _mimic_chain(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[float, float]]:
@@ -229,14 +230,14 @@ def _mimic_chain(robot: Configuration, joint: Joint, link: str) -> dict[str, tup
         if name == first.name or name in found:
             message = f"the joint that moves {link!r} mimics itself, directly or through others"
             at = place(joint.mimic.location, "joint")
-            raise MissingElement("mimicked joint", link, message=message, detail=_named(first), location=at)
+            raise MissingElement("mimicked joint", link, message=message, detail=_joint_detail(first), location=at)
         found[name] = ratio, shift
         if not robot.robot.has_joint(name):
             return found
         joint = robot.joint(name)
 
 
-def _range(lower: float, upper: float) -> str:
+def _range_text(lower: float, upper: float) -> str:
     return f"{number_text(lower, 5)} to {number_text(upper, 5)}"
 
 
@@ -270,7 +271,7 @@ def _expected_numbers(values: Mapping[str, tuple[float, float | None]], toleranc
     ]
 
 
-def _compared(
+def _compare_numbers(
     message: str, numbers: Sequence[_Number], joint: Joint, element: LazyLocation | None, of: str | None = None
 ) -> Outcome:
     """Compare numbers of an element, which are in the unit `of` if they have one tolerance; NaN fails."""
@@ -281,12 +282,12 @@ def _compared(
     tolerances = {number.tolerance for number in numbers}
     tolerance = tolerances.pop() if len(tolerances) == 1 else None
     at = place(element, next(reversed(faults.values()), None))
-    detail = _named(joint) if faults else ""
+    detail = _joint_detail(joint) if faults else ""
     return judged(
         not faults, message, actual, expected, tolerance, of if tolerance is not None else None, at=at, detail=detail
     )
 
 
-def _named(joint: Joint) -> str:
+def _joint_detail(joint: Joint) -> str:
     """Return the end of a message that names a joint."""
     return f" (joint {joint.name!r})"

@@ -85,9 +85,9 @@ def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool 
     launch = _launch_of(package, name)
     if launch.faults:
         raise _fault_that_stops(package, name, launch)
-    places = _places(package, launch, "read", "urdf", "include", built=built)
-    if wrong := [it for it in places if it.state == "wrong" and _stops(it.file)]:
-        return _wrong(package, wrong)
+    places = _find_places(package, launch, "read", "urdf", "include", built=built)
+    if wrong := [it for it in places if it.state == "wrong" and _stops_launch(it.file)]:
+        return _fail_places(package, wrong)
     started = {node.name for node in launch.nodes if node.when}
     missing = [choice for choice in (node.split(" or ") for node in nodes) if started.isdisjoint(choice)]
     listed = ", ".join(" or ".join(choice) for choice in missing)
@@ -101,7 +101,7 @@ def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool 
         reason = f": {launch.unknown[0].message}" if launch.unknown else ""
         message = f"cannot determine statically whether {listed} is started{reason}"
         raise NotDecided(message, "cannot determine statically which nodes the launch file starts")
-    unknown = next((it.text for it in places if it.state == "unknown" and _stops(it.file) and it.file.path), "")
+    unknown = next((it.text for it in places if it.state == "unknown" and _stops_launch(it.file) and it.file.path), "")
     if unknown:
         cause = "cannot determine statically whether the files that it reads are installed"
         raise NotDecided(f"{unknown}, and the launch file reads it", cause)
@@ -119,12 +119,12 @@ def launch_finds_files(package: Package, *, name: str, built: bool = True, start
         started: Whether ros2 launch starts the file; if not, what stops it, and what is unknown then, does not count.
     """
     launch = _launch_of(package, name)
-    places = _places(package, launch, "urdf", "rviz", "include", built=built)
+    places = _find_places(package, launch, "urdf", "rviz", "include", built=built)
     if not started:
-        places = _others(places)
+        places = _without_stopping(places)
     wrong = [it for it in places if it.state == "wrong"]
     if wrong:
-        return _wrong(package, wrong)
+        return _fail_places(package, wrong)
     if not started:
         return passed("the launch file looks for no file in a wrong place")
     unknown = next((it for it in places if it.state == "unknown"), None)
@@ -136,7 +136,7 @@ def launch_finds_files(package: Package, *, name: str, built: bool = True, start
         raise NotDecided(unknown.text, _UNKNOWN_FILES)
     if not launch.faults:
         _check_starts(launch)
-    return _found(places)
+    return _pass_places(places)
 
 
 def _check_starts(launch: "Launch") -> None:
@@ -147,18 +147,18 @@ def _check_starts(launch: "Launch") -> None:
         raise NotDecided(f"{what}: line {at.line}: {message}", what)
 
 
-def _places(package: Package, launch: "Launch", *purposes: "Purpose", built: bool) -> list[_FilePlace]:
+def _find_places(package: Package, launch: "Launch", *purposes: "Purpose", built: bool) -> list[_FilePlace]:
     """Return where a launch file looks for files. Raises MissingElement for one that a build does not install."""
     places = [_place_of(package, file) for file in launch.named(*purposes)]
     present = set(map(posixpath.basename, package.tree.files))
     for it in places:
         is_needed = built or posixpath.basename(it.file.path or "") not in present
         if it.state == "missing" and is_needed and not any(wrong.state == "wrong" for wrong in places):
-            raise _missing(package, it)
+            raise _missing_file(package, it)
     return places
 
 
-def _stops(file: "NamedFile") -> bool:
+def _stops_launch(file: "NamedFile") -> bool:
     """Return whether ros2 launch stops if it does not find a file."""
     return file.purpose in ("read", "include") or file.by != ""
 
@@ -182,10 +182,10 @@ def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | 
     return "", next((node.location for node in similar), None)
 
 
-def _others(places: Sequence[_FilePlace]) -> list[_FilePlace]:
+def _without_stopping(places: Sequence[_FilePlace]) -> list[_FilePlace]:
     """Return files that a launch does not stop at, but for unknown ones and those with the mistake that stops it."""
-    stopping = {_is_local(it) for it in places if it.state == "wrong" and _stops(it.file)}
-    others = (it for it in places if not _stops(it.file) and it.state != "unknown")
+    stopping = {_is_local(it) for it in places if it.state == "wrong" and _stops_launch(it.file)}
+    others = (it for it in places if not _stops_launch(it.file) and it.state != "unknown")
     return [it for it in others if it.state != "wrong" or _is_local(it) not in stopping]
 
 
@@ -193,14 +193,14 @@ def _is_local(place: _FilePlace) -> bool:
     return place.file.path is not None and is_of_one_machine(place.file.path)
 
 
-def _found(places: Sequence[_FilePlace]) -> Outcome:
+def _pass_places(places: Sequence[_FilePlace]) -> Outcome:
     if any(it.state == "missing" for it in places):
         return passed("the launch file looks for files of the package")
     found = dict.fromkeys(it.text for it in places if it.text)
     return passed(f"a build installs {enumerated(found)}, where the launch file looks")
 
 
-def _wrong(package: Package, wrong: Sequence[_FilePlace]) -> Outcome:
+def _fail_places(package: Package, wrong: Sequence[_FilePlace]) -> Outcome:
     message = "; ".join(dict.fromkeys(it.text for it in wrong))
     is_local = any(map(_is_local, wrong))
     if is_local:
@@ -218,7 +218,7 @@ def _no_files(launch: "Launch") -> NotDecided | MissingElement:
     return MissingElement("named file", "", message="the launch file names neither a URDF nor an RViz file")
 
 
-def _missing(package: Package, place: _FilePlace) -> MissingElement:
+def _missing_file(package: Package, place: _FilePlace) -> MissingElement:
     """Return what the package is missing for a named file, by the kinds and names that the checks of packages use."""
     setup, purpose, name = package.setup, place.file.purpose, package.folder
     kind = f"installed {purpose}"
@@ -240,8 +240,8 @@ def _place_of(package: Package, file: "NamedFile") -> _FilePlace:
         owner, _, rest = path.removeprefix(f"{SHARE}/").partition("/")
         other = package.find(owner)
         if other is None:
-            return _in_unknown_package(package, owner, rest, file)
-        return _in_package(other, f"share/{owner}/{rest}", file)
+            return _place_in_unknown(package, owner, rest, file)
+        return _place_in_package(other, f"share/{owner}/{rest}", file)
     fault = _fault_of_path(package, path)
     if fault:
         return _FilePlace(file, "wrong", f"the launch file looks for the {what} at {fault}")
@@ -262,7 +262,7 @@ def _fault_of_path(package: Package, path: str) -> str:
     return ""
 
 
-def _in_unknown_package(package: Package, owner: str, rest: str, file: "NamedFile") -> _FilePlace:
+def _place_in_unknown(package: Package, owner: str, rest: str, file: "NamedFile") -> _FilePlace:
     """Return what is known of a path in the share folder of a package that is not part of the submission."""
     what = _WORDS[file.purpose]
     fault = "" if package.depends_on(owner) else _fault_of_owner(package, owner, rest, what)
@@ -286,7 +286,7 @@ def _fault_of_owner(package: Package, owner: str, rest: str, what: str) -> str:
     return ""
 
 
-def _in_package(owner: Package, target: str, file: "NamedFile") -> _FilePlace:
+def _place_in_package(owner: Package, target: str, file: "NamedFile") -> _FilePlace:
     """Return whether a build of a package installs a file at the path where it is looked for."""
     setup, what = owner.setup, _WORDS[file.purpose]
     if owner.is_cmake or (setup is not None and setup.fault is not None and not setup.fault.sure):
@@ -295,13 +295,13 @@ def _in_package(owner: Package, target: str, file: "NamedFile") -> _FilePlace:
         return _FilePlace(file, "missing", f"a build installs no {what}: there is no setup.py that Python can read")
     installed = setup.installed()
     if target in installed:
-        return _undecodable(owner, installed[target], file) or _FilePlace(file, "found", target)
+        return _place_not_utf8(owner, installed[target], file) or _FilePlace(file, "found", target)
     if setup.unknown:
         return _FilePlace(file, "unknown", f"cannot determine statically whether a build installs {target}")
-    return _not_there(owner, installed, target, file)
+    return _place_not_there(owner, installed, target, file)
 
 
-def _undecodable(owner: Package, path: str, file: "NamedFile") -> _FilePlace | None:
+def _place_not_utf8(owner: Package, path: str, file: "NamedFile") -> _FilePlace | None:
     """Return where reading a file stops the launch file, because its text is not UTF-8; None where it does not."""
     try:
         if file.by in BY_UTF8:
@@ -316,7 +316,7 @@ def _undecodable(owner: Package, path: str, file: "NamedFile") -> _FilePlace | N
     return None
 
 
-def _not_there(owner: Package, installed: Iterable[str], target: str, file: "NamedFile") -> _FilePlace:
+def _place_not_there(owner: Package, installed: Iterable[str], target: str, file: "NamedFile") -> _FilePlace:
     """Return where else a build installs a file, or what the package has instead of it."""
     name, looks = posixpath.basename(target), f"the launch file looks for the {_WORDS[file.purpose]} at {target}"
     others = [path for path in installed if posixpath.basename(path) == name]
@@ -356,9 +356,11 @@ def _launch_of(package: Package, name: str) -> "Launch":
 def _fault_that_stops(package: Package, name: str, launch: "Launch") -> MissingElement:
     """Return the fault of a launch file that starts nothing because of it."""
     path, first = _path_of(package, name), launch.faults[0]
-    return MissingElement("launch file", path, message=_faults(launch), location=first.location, problem=first.message)
+    return MissingElement(
+        "launch file", path, message=_join_faults(launch), location=first.location, problem=first.message
+    )
 
 
-def _faults(launch: "Launch") -> str:
+def _join_faults(launch: "Launch") -> str:
     messages = list(dict.fromkeys(fault.message for fault in launch.faults))
     return f"{messages[0]} (and {len(messages) - 1} more)" if len(messages) > 1 else messages[0]

@@ -32,21 +32,23 @@ def urdf_loads(urdf: Reading) -> Outcome:
     first = (causes or problems or list(urdf.problems))[0]
     others = f" (and {counted(len(problems) - 1, 'more such problem')})" if len(problems) > 1 else ""
     message = f"{first.message}{others}"
-    if assumed := _assumed(urdf):
+    if assumed := _list_assumed(urdf):
         what = "Not deducted elsewhere" if urdf.is_meant else "Assumed"
         message += f"{'' if message.endswith('?') else '.'} {what}: {assumed}"
     outcome = failed(message, first.location, problem=first.message)
     return outcome._replace(mistake=f"{first.code}: {first.kind.title}")
 
 
-def _assumed(urdf: Reading) -> str:
+def _list_assumed(urdf: Reading) -> str:
     """Return what is assumed about a file that ROS 2 rejects, each with its lines; empty if nothing is."""
     lines: dict[str, list[str]] = {}
     for problem in urdf.problems:
         if problem.kind is xml_problems.RECOVERED and not problem.subject:
             lines.setdefault(problem.message, []).append(str(problem.location.line))
-    found = [(message, [*dict.fromkeys(at)]) for message, at in lines.items()]
-    texts = [f"{it} (line{'s' * (len(at) > 1)} {enumerated(at, _MAX_ASSUMED)})" for it, at in found]
+    texts = []
+    for message, found in lines.items():
+        at = [*dict.fromkeys(found)]
+        texts.append(f"{message} ({'line' if len(at) == 1 else 'lines'} {enumerated(at, _MAX_ASSUMED)})")
     return enumerated(texts, _MAX_ASSUMED)
 
 

@@ -71,11 +71,11 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
 
     found = find_evidence(submission.labelled_files, names, submission.readable_documents)
     if found.files:
-        return _pictures("needs manual grading: ", found.files)
+        return _pending_pictures("needs manual grading: ", found.files)
     labels = enumerated([repr(name) for name in names[:3]], word="or")
     if found.possible:
         start = f"no picture or document is certain to be {labels}; needs manual grading, perhaps: "
-        return _pictures(start, found.possible)._replace(problem="perhaps")
+        return _pending_pictures(start, found.possible)._replace(problem="perhaps")
     paths = [labelled.file.path for labelled in submission.labelled_files]
     others = enumerated(paths, _MAX_LISTED) or "no pictures"
     message = f"no picture or PDF is named {labels}; the submission has {others}; needs manual grading"
@@ -83,7 +83,7 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
     return pending(message, problem=f"{_NOT_FOUND}, but there are documents" if has_documents else _NOT_FOUND)
 
 
-def _pictures(start: str, found_files: "tuple[EvidenceFile, ...]") -> Outcome:
+def _pending_pictures(start: str, found_files: "tuple[EvidenceFile, ...]") -> Outcome:
     listed = enumerated([file.words for file in found_files], _MAX_LISTED)
     return Outcome("pending", start + listed, tuple(dict.fromkeys(file.path for file in found_files)))
 

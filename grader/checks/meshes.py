@@ -125,7 +125,7 @@ def shows_mesh(
     if not named:
         return _another_file(meshes, file)
     wanted = _Pose(relative_to or link, scale, xyz, rpy, tolerance)
-    outcomes = [_examine(robot, submission, it, wanted) for it in named]
+    outcomes = [_examine_mesh(robot, submission, it, wanted) for it in named]
     return min(outcomes, key=lambda outcome: _BEST_FIRST.index(outcome.status))
 
 
@@ -139,7 +139,7 @@ def _another_file(meshes: Sequence[_ShownMesh], file: str) -> Outcome:
     return failed(f"{message}; its path should end in {quoted(file)}{reason}", place(it.mesh.location, "filename"))
 
 
-def _examine(robot: Configuration, submission: Submission, it: _ShownMesh, wanted: _Pose) -> Outcome:
+def _examine_mesh(robot: Configuration, submission: Submission, it: _ShownMesh, wanted: _Pose) -> Outcome:
     """Return the outcome for one mesh of the right name."""
     name, fault, doubt, cause = file_name(it.file.written), it.file.fault, it.file.doubt, it.file.doubt
     try:
@@ -147,7 +147,7 @@ def _examine(robot: Configuration, submission: Submission, it: _ShownMesh, wante
     except NotDecided as reason:
         doubt, cause = str(reason), reason.cause
     wrong = [(f"the mesh of {it.link!r} {fault}", place(it.mesh.location, "filename"))] if fault else []
-    wrong += _differences(robot, it, wanted)
+    wrong += _pose_differences(robot, it, wanted)
     if wrong:
         return failed("; ".join(text for text, _ in wrong), wrong[0][1], detail=f" (mesh {name})")
     if doubt:
@@ -156,11 +156,14 @@ def _examine(robot: Configuration, submission: Submission, it: _ShownMesh, wante
     return passed(f"{it.link!r} shows the mesh {name}")
 
 
-def _differences(robot: Configuration, it: _ShownMesh, wanted: _Pose) -> Iterator[tuple[str, LazyLocation | None]]:
+def _pose_differences(robot: Configuration, it: _ShownMesh, wanted: _Pose) -> Iterator[tuple[str, LazyLocation | None]]:
     """Yield what is wrong with the scale and the pose of a mesh, and where."""
     scale = it.mesh.scale
     if wanted.scale is not None and not all(map(_is_scaled, scale, wanted.scale, [wanted.tolerance] * 3)):
-        yield f"its scale is {_plain(scale)}; it should be {_plain(wanted.scale)}", place(it.mesh.location, "scale")
+        yield (
+            f"its scale is {_scale_text(scale)}; it should be {_scale_text(wanted.scale)}",
+            place(it.mesh.location, "scale"),
+        )
     if wanted.xyz is None and wanted.rpy is None:
         return
     pose = visual_pose(robot, it.link, it.visual, wanted.frame)
@@ -180,7 +183,7 @@ def _is_scaled(actual: float, expected: float, tolerance: float) -> bool:
     return abs(actual - expected) <= (tolerance + SLACK) * abs(expected)
 
 
-def _plain(scale: Vector) -> str:
+def _scale_text(scale: Vector) -> str:
     return " ".join(f"{value:.6g}" for value in scale)
 
 

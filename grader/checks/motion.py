@@ -58,7 +58,7 @@ def rolls_forward(
         return judged(False, message, None, ahead, tolerance, "deg", at=at, detail=detail)
     off = degrees_between(travel, ahead)
     fine = off <= tolerance + SLACK
-    message = f"a small positive rotation of {link!r} {_heading(off, travel, base)}"
+    message = f"a small positive rotation of {link!r} {_describe_heading(off, travel, base)}"
     message += "" if fine else "; it should drive it forward"
     return judged(fine, message, travel, ahead, tolerance, "deg", at=at, detail=detail)
 
@@ -74,7 +74,7 @@ def travel_of(
     poses = [(visual.geometry, visual_pose(robot, link, visual, base)) for visual in visuals(robot, link)]
     lowest = min(poses, key=lambda shape: extent(shape[0], shape[1], up)[0]) if len(poses) > 1 else poses[0]
     low = farthest(*lowest, minus((0.0, 0.0, 0.0), up))
-    moved = _flat(minus(robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base).apply(low), low), up)
+    moved = _flatten(minus(robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base).apply(low), low), up)
     travel = unit((-moved[0], -moved[1], -moved[2])) if hypot(*moved) > _STANDSTILL else None
     if travel is None:
         return None, "its lowest point does not move"
@@ -164,13 +164,13 @@ def _as_turning(robot: Configuration, link: str) -> Configuration:
     return Configuration(replace(robot.known, joints=tuple(joints)), robot.positions, is_guarded=robot.is_guarded)
 
 
-def _flat(vector: Vector, up: Vector) -> Vector:
+def _flatten(vector: Vector, up: Vector) -> Vector:
     """Return the part of a vector in the plane across a unit direction."""
     lifted = dot(vector, up)
     return (vector[0] - lifted * up[0], vector[1] - lifted * up[1], vector[2] - lifted * up[2])
 
 
-def _heading(off: float, travel: Vector, base: str) -> str:
+def _describe_heading(off: float, travel: Vector, base: str) -> str:
     if off <= 45.0:
         slant = f", {in_degrees(off)} off straight ahead" if off > 0.05 else ""
         return f"drives {base!r} forward{slant}"

@@ -193,7 +193,7 @@ def in_degrees(angle: float) -> str:
 @lru_cache(maxsize=4096)
 def point(values: tuple[float, ...]) -> str:
     """Return coordinates as a URDF writes them, rounded for reading."""
-    return " ".join(map(_short, values))
+    return " ".join(map(_short_number, values))
 
 
 def place(element: LazyLocation | None, attribute: str | None = None, inside: str | None = None) -> LazyLocation | None:
@@ -202,7 +202,7 @@ def place(element: LazyLocation | None, attribute: str | None = None, inside: st
 
 
 @lru_cache(maxsize=4096)
-def _short(value: float) -> str:
+def _short_number(value: float) -> str:
     if abs(value) >= _MANY:
         return f"{value:.3g}"
     text = f"{value:.4f}".rstrip("0").rstrip(".")

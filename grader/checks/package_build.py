@@ -211,7 +211,7 @@ def _require_installed(
 def _stops_at(package: Package, setup: "Setup", files: Sequence[str], kind: _FileKind | None) -> bool:
     """Return whether a build stops at the entry for these files, so that it is there."""
     folders = {posixpath.dirname(path) for path in files}
-    owners = ((_owner(stop.path, package), posixpath.dirname(stop.path)) for stop in setup.stops if stop.path)
+    owners = ((_kind_of_file(stop.path, package), posixpath.dirname(stop.path)) for stop in setup.stops if stop.path)
     return any(owner == kind or folder in folders for owner, folder in owners)
 
 
@@ -244,7 +244,7 @@ def _pattern_for(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: _File
     return next((glob for glob in empty if kind is not None and kind in glob.pattern.lower()), None)
 
 
-def _owner(path: str, package: Package) -> _FileKind | None:
+def _kind_of_file(path: str, package: Package) -> _FileKind | None:
     """Return the kind of file that an entry is about, by its ending or by the other files of its folder."""
     if ".launch." in path or path.endswith("_launch.py"):
         return "launch"
@@ -254,5 +254,5 @@ def _owner(path: str, package: Package) -> _FileKind | None:
     folder = posixpath.dirname(path)
     beside = [path for path in package.tree.files if posixpath.dirname(path) == folder] if folder else []
     endings = (*_ENDINGS["urdf"], *_ENDINGS["rviz"])
-    kinds = {_owner(path, package) for path in beside if path.endswith(endings) or ".launch." in path}
+    kinds = {_kind_of_file(path, package) for path in beside if path.endswith(endings) or ".launch." in path}
     return next(iter(kinds)) if len(kinds) == 1 else None

@@ -40,7 +40,7 @@ def without_problems(urdf: Reading, submission: Submission, *, problems: _Codes)
     found = [problem for problem in submission.urdf.problems if problem.code in problems]
     certain = [problem for problem in found if problem.kind.effect != "undetermined"]
     if certain:
-        return _problem(certain)
+        return _fail_with_problems(certain)
     open_ones = [it for it in submission.urdf.problems if it.kind.effect == "undetermined" or it.kind is UNLISTED]
     if open_ones:
         first = open_ones[0]
@@ -50,7 +50,7 @@ def without_problems(urdf: Reading, submission: Submission, *, problems: _Codes)
     return passed(f"the URDF has none of the problems {enumerated(problems, _MAX_NAMED)}")
 
 
-def _problem(found: Sequence[Problem]) -> Outcome:
+def _fail_with_problems(found: Sequence[Problem]) -> Outcome:
     first, more = found[0], len(found) - 1
     others = f" (and {counted(more, 'more such problem')})" if more else ""
     outcome = failed(f"{first.code}: {first.message}{others}", first.location, problem=first.message)

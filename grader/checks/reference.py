@@ -67,7 +67,7 @@ def kinematics_match_reference(
         relative_to: The link in whose frame poses are compared; by default the root of the reference, or that of the
             robot if it has no link of this name.
     """
-    bases = _bases(robot, reference, links, relative_to)
+    bases = _find_bases(robot, reference, links, relative_to)
     pairs = [(_link_name(robot, link), _of_reference(reference, link)) for link in links]
     joints = _pair_joints(robot, reference, bases, pairs, match)
     if isinstance(joints, Outcome):
@@ -90,7 +90,9 @@ def _of_reference(reference: Configuration, link: str) -> str:
         raise RubricError((f"the reference solution cannot be compared with: {error}",)) from None
 
 
-def _bases(robot: Configuration, reference: Configuration, links: Sequence[str], relative_to: str) -> tuple[str, str]:
+def _find_bases(
+    robot: Configuration, reference: Configuration, links: Sequence[str], relative_to: str
+) -> tuple[str, str]:
     """Return the links in whose frames the poses of the robot and of the reference are compared."""
     if relative_to:
         return _link_name(robot, relative_to), _of_reference(reference, relative_to)
@@ -106,8 +108,8 @@ def _pair_joints(
     match: _MatchBy,
 ) -> list[tuple[Joint, Joint]] | Outcome:
     """Return the joints of the robot that move links, each with that of the reference, or the failure to pair them."""
-    own = _movers(robot, bases[0], [link for link, _ in pairs])
-    others = _movers(reference, bases[1], [link for _, link in pairs])
+    own = _find_movers(robot, bases[0], [link for link, _ in pairs])
+    others = _find_movers(reference, bases[1], [link for _, link in pairs])
     shown = enumerated([quoted(link) for link, _ in pairs], _MAX_NAMED)
     if match == "order":
         if len(own) != len(others):
@@ -179,7 +181,7 @@ class _RobotPair(NamedTuple):
         for (name, _), wanted in zip(self.links, self._reference_poses(positions), strict=True):
             pose = posed.pose(name, relative_to=self.bases[0])
             distance = dist(pose.translation, wanted.translation)
-            found.append(_Offset(name, distance, _angle(pose, wanted), positions))
+            found.append(_Offset(name, distance, _angle_between(pose, wanted), positions))
         return max(found, key=lambda offset: (self.times(offset), offset.distance))
 
     def _reference_poses(self, positions: tuple[float, ...]) -> tuple[Transform, ...]:
@@ -205,7 +207,7 @@ class _MotionComparison:
         joints = [joint for _, joint in pair.joints]
         self._pair, self._tolerance, self._angle = pair, pair.tolerance, pair.angle
         self._zero = (0.0,) * len(joints)
-        self._singles = [*_singles(joints)]
+        self._singles = [*_single_positions(joints)]
         self._random = _random_positions(joints, samples) if joints else []
 
     def outcome(self) -> Outcome:
@@ -217,36 +219,36 @@ class _MotionComparison:
         if self._is_within(worst):
             joints = counted(len(self._pair.joints), "joint")
             return passed(
-                f"{self._links()} as in the reference at {counted(len(offsets), 'position')} of {joints}: at most "
-                f"{self._text(worst)} off"
+                f"{self._links_text()} as in the reference at {counted(len(offsets), 'position')} of {joints}: at most "
+                f"{self._offset_text(worst)} off"
             )
         wrong = dict.fromkeys(index for index, offset in alone if not self._is_within(offset))
         cause, at = "", self._pair.robots[0].link(worst.link).location
         if not self._is_within(zero):
-            cause = f"; it is already {self._text(zero)} off with all joints at 0" if zero is not worst else ""
+            cause = f"; it is already {self._offset_text(zero)} off with all joints at 0" if zero is not worst else ""
         elif wrong:
             differing = [self._pair.joints[index][0] for index in wrong]
             at = differing[0].axis_location or differing[0].location
             names = enumerated([quoted(joint.name) for joint in differing], _MAX_NAMED, "or")
             cause = f"; it differs as soon as {names} moves"
-        message = f"{worst.link!r} does not move as in the reference: it is {self._text(worst)} off"
-        detail = f" with {self._positions(worst)}{cause}"
+        message = f"{worst.link!r} does not move as in the reference: it is {self._offset_text(worst)} off"
+        detail = f" with {self._positions_text(worst)}{cause}"
         outcome = failed(message, at, detail=detail)
         if worst.distance <= self._tolerance + SLACK:
             return outcome._replace(measured=worst.angle, expected=0.0, tolerance=self._angle, unit="deg")
         return outcome._replace(measured=worst.distance, expected=0.0, tolerance=self._tolerance, unit="m")
 
-    def _links(self) -> str:
+    def _links_text(self) -> str:
         names = [quoted(link) for link, _ in self._pair.links]
         return f"{enumerated(names, _MAX_NAMED)} {'moves' if len(names) == 1 else 'move'}"
 
     def _is_within(self, offset: _Offset) -> bool:
         return offset.distance <= self._tolerance + SLACK and offset.angle <= self._angle + SLACK
 
-    def _text(self, offset: _Offset) -> str:
+    def _offset_text(self, offset: _Offset) -> str:
         return f"{in_millimetres(offset.distance)} and {in_degrees(offset.angle)}"
 
-    def _positions(self, offset: _Offset) -> str:
+    def _positions_text(self, offset: _Offset) -> str:
         if not any(offset.positions):
             return "all joints at 0"
         moved = [
@@ -259,12 +261,12 @@ class _MotionComparison:
         return enumerated(moved, _MAX_NAMED)
 
 
-def _angle(one: Transform, other: Transform) -> float:
+def _angle_between(one: Transform, other: Transform) -> float:
     """Return the angle between two orientations in degrees: exact near 0, where the trace of the rotation is not."""
     return degrees(2.0 * asin(min(dist(one.rotation, other.rotation) / (2.0 * sqrt(2.0)), 1.0)))
 
 
-def _movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[str, Joint]:
+def _find_movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[str, Joint]:
     """Return the joints that move links relative to a base by their names, along the chain to each link.
 
     Instead of a mimic joint it is the joint that leads it. Raises MissingElement, and NotDecided where a mimic is not
@@ -276,13 +278,13 @@ def _movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[str, 
         if len(chain) > _MAX_CHAIN:
             raise NotDecided(f"more than {_MAX_CHAIN} joints lead to {quoted(link)}", "a chain has too many joints")
         for joint in chain:
-            leader = _leader(robot.known, joint.known)
+            leader = _find_leader(robot.known, joint.known)
             if leader is not None and leader.type != "fixed":
                 found.setdefault(leader.name, leader)
     return found
 
 
-def _leader(robot: Robot, joint: Joint) -> Joint | None:
+def _find_leader(robot: Robot, joint: Joint) -> Joint | None:
     """Return the joint that leads a mimic joint, perhaps over others; None where there is none."""
     passed: set[str] = set()
     while True:
@@ -296,10 +298,10 @@ def _leader(robot: Robot, joint: Joint) -> Joint | None:
         joint = robot.joint(joint.mimic.joint)
 
 
-def _singles(joints: Sequence[Joint]) -> Iterator[tuple[int, tuple[float, ...]]]:
+def _single_positions(joints: Sequence[Joint]) -> Iterator[tuple[int, tuple[float, ...]]]:
     """Yield positions with one joint at an end of its range, or between, and the others at 0; each with its index."""
     for index, joint in enumerate(joints):
-        low, high = _range(joint)
+        low, high = _joint_range(joint)
         for position in (low, high, low + _BETWEEN * (high - low)):
             yield index, tuple(position if other == index else 0.0 for other in range(len(joints)))
 
@@ -309,11 +311,11 @@ def _random_positions(joints: Sequence[Joint], count: int) -> list[tuple[float, 
     from random import Random  # late: few rubrics need it, and it takes long to import
 
     random = Random(_SEED)  # noqa: S311  not for secrets
-    ranges = [_range(joint) for joint in joints]
+    ranges = [_joint_range(joint) for joint in joints]
     return [tuple(low + (high - low) * random.random() for low, high in ranges) for _ in range(count)]
 
 
-def _range(joint: Joint) -> tuple[float, float]:
+def _joint_range(joint: Joint) -> tuple[float, float]:
     """Return the range of a joint in radians or metres; a joint without limits that does not turn freely stays at 0."""
     if joint.type == "continuous":
         return -pi, pi

@@ -71,10 +71,10 @@ _PLACES = {place.partition(".")[2]: place for place in CHECKS}
 
 def own_checks() -> list[Check]:
     """Return the checks that come with the grader, in the order of the catalogue."""
-    return [_own(place) for place in CHECKS]
+    return [_own_check(place) for place in CHECKS]
 
 
-def _own(place: str) -> Check:
+def _own_check(place: str) -> Check:
     module, _, name = place.partition(".")
     return describe(getattr(import_module(f"{__package__}.{module}"), name))
 
@@ -96,12 +96,12 @@ def find_check(name: str) -> Check | None:
     Raises InputError for a check of another package that cannot be used, or that two packages have.
     """
     if name in _PLACES:
-        return _own(_PLACES[name])
+        return _own_check(_PLACES[name])
     entries = _entry_points().get(name, [])
     if len(entries) > 1:  # which of them is found first depends on the machine
         packages = enumerated(sorted(map(_package_of, entries)))
         raise InputError(f"the check {name} is in several packages, {packages}: uninstall all but one")
-    return _load(name, entries[0]) if entries else None
+    return _load_plugin(name, entries[0]) if entries else None
 
 
 def usable_check(name: str) -> Check | None:
@@ -112,7 +112,7 @@ def usable_check(name: str) -> Check | None:
         return None
 
 
-def _load(name: str, entry: "EntryPoint") -> Check:
+def _load_plugin(name: str, entry: "EntryPoint") -> Check:
     distribution = _package_of(entry)
     try:
         return describe(entry.load(), distribution)._replace(name=name)

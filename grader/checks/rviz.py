@@ -34,8 +34,8 @@ def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
         name: The name of the RViz file, such as view.rviz.
         launch: The name of the launch file whose RViz file also passes, whatever that is called; by default, none.
     """
-    opened = _launch(package, launch)
-    path = _path(package, name, opened)
+    opened = _read_launch(package, launch)
+    path = _rviz_path(package, name, opened)
     if path.rpartition("/")[2] == name or (opened is not None and path == package.rviz_opened(opened)):
         return passed(f"the RViz file is {path}")
     if opened is not None and (opened.syntax or opened.unknown or not all(file.sure for file in opened.named("rviz"))):
@@ -54,19 +54,19 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
             `name` decides.
     """
     package = submission.needed_package()
-    rviz = _read(package, name, launch)
-    opened = _launch(package, launch)
-    frames = _frames(opened, frame)
+    rviz = _read_rviz(package, name, launch)
+    opened = _read_launch(package, launch)
+    frames = _frames_of_link(opened, frame)
     actual, expected = rviz.fixed_frame, next(filter(None, frames), frame)
     if not actual:
         return failed(f"the RViz file sets no Fixed Frame; it should be {expected!r}", rviz.frame_location)
     if None in frames and actual.endswith(frame):
         raise NotDecided(_UNKNOWN_PREFIX)
     robot = submission.urdf.reading.robot if isinstance(submission.urdf, Read) else None
-    links = [it for link in robot.links for it in _frames(opened, link.name) if it] if robot is not None else []
+    links = [it for link in robot.links for it in _frames_of_link(opened, link.name) if it] if robot is not None else []
     message, detail = f"the Fixed Frame is {actual!r}", ""
     if actual not in frames:
-        message += f"; it should be {expected!r}{_by_prefix(expected, frame)}"
+        message += f"; it should be {expected!r}{_prefix_reason(expected, frame)}"
         if links and actual not in links and actual != frame:
             detail = f"; the robot has no link {actual!r}{did_you_mean(actual, links)}"
     elif links and actual not in links:
@@ -83,12 +83,12 @@ def rviz_shows_robot(package: Package, *, name: str, topic: str = "/robot_descri
         launch: The name of the launch file whose RViz file is examined, whatever that is called; by default, only
             `name` decides.
     """
-    rviz = _read(package, name, launch)
+    rviz = _read_rviz(package, name, launch)
     models = [display for display in rviz.displays if display.kind == "RobotModel"]
     if not models:
         return _no_display(rviz, "RobotModel")
-    opened = _launch(package, launch)
-    verdicts = [(_fault_of(model, topic, opened), model) for model in models]
+    opened = _read_launch(package, launch)
+    verdicts = [(_judge_model(model, topic, opened), model) for model in models]
     fine = [model for (status, _), model in verdicts if status == "passed"]
     if fine:
         return passed(f"the display {fine[0].name or 'RobotModel'!r} shows the robot")
@@ -106,10 +106,10 @@ def rviz_display_on(package: Package, *, name: str, kind: str, launch: str = "")
         launch: The name of the launch file whose RViz file is examined, whatever that is called; by default, only
             `name` decides.
     """
-    rviz = _read(package, name, launch)
+    rviz = _read_rviz(package, name, launch)
     found = [display for display in rviz.displays if display.kind == kind.rpartition("/")[2]]
     owner = kind.rpartition("/")[0]
-    faults = [_class_of_ros1(display) or _of_another(display, owner) or _off(display) for display in found]
+    faults = [_class_of_ros1(display) or _why_other_class(display, owner) or _why_off(display) for display in found]
     if "" in faults:
         return passed(f"a {kind} display is on")
     return failed(faults[0], found[0].location) if found else _no_display(rviz, kind)
@@ -128,32 +128,32 @@ def _class_of_ros1(display: "Display") -> str:
     return f"rviz/{display.kind} is a class of ROS 1; {right}" if display.package == "rviz" else ""
 
 
-def _of_another(display: "Display", package: str) -> str:
+def _why_other_class(display: "Display", package: str) -> str:
     if package in ("", display.package):
         return ""
     own, wanted = f"{display.package}/{display.kind}", f"{package}/{display.kind}"
     return f"the class of the {display.kind} display is {own}; it should be {wanted}"
 
 
-def _off(display: "Display") -> str:
+def _why_off(display: "Display") -> str:
     if display.enabled:
         return ""
     return f"the {display.kind} display is off{': its group is off' if display.is_enabled else ''}"
 
 
-def _frames(opened: "Launch | None", link: str) -> tuple[str | None, ...]:
+def _frames_of_link(opened: "Launch | None", link: str) -> tuple[str | None, ...]:
     return opened.frames_of(link) if opened is not None else (link,)
 
 
-def _by_prefix(frame: str, link: str) -> str:
+def _prefix_reason(frame: str, link: str) -> str:
     """Return why a frame is not called like its link."""
     prefix = frame.removesuffix(link)
     return f", because the frame_prefix of robot_state_publisher is {prefix!r}" if prefix else ""
 
 
-def _fault_of(model: "Display", topic: str, opened: "Launch | None") -> tuple[Status, str]:
+def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> tuple[Status, str]:
     """Return whether a RobotModel display shows the robot, and if not, why."""
-    fault = _class_of_ros1(model) or _off(model)
+    fault = _class_of_ros1(model) or _why_off(model)
     if not fault and model.package != _PLUGINS:
         return "pending", f"{model.package}/RobotModel is not a class of RViz itself; needs manual grading"
     if not fault and not model.is_on("Visual Enabled"):
@@ -166,17 +166,17 @@ def _fault_of(model: "Display", topic: str, opened: "Launch | None") -> tuple[St
     value = model.node.get("Description Topic", "Value") or model.node.get("Description Topic")
     actual = (value.text or "" if value is not None else "").strip()
     if actual.strip("/") == topic.strip("/"):
-        return _fault_of_prefix(model, opened)
+        return _judge_prefix(model, opened)
     fault = f"reads the topic {actual!r}; it should read" if actual else "has no Description Topic; it should be"
     return "failed", f"the RobotModel display {fault} {topic!r}"
 
 
-def _fault_of_prefix(model: "Display", opened: "Launch | None") -> tuple[Status, str]:
+def _judge_prefix(model: "Display", opened: "Launch | None") -> tuple[Status, str]:
     """Return whether a RobotModel display finds the links' frames: it puts its TF Prefix and a slash before them."""
     node = model.node.get("TF Prefix")
     own = node.text or "" if node is not None else ""
     # TFLinkUpdater::getLinkTransforms of rviz_default_plugins always adds the slash, robot_state_publisher none.
-    found, prefixes = f"{own}/" if own else "", _frames(opened, "")
+    found, prefixes = f"{own}/" if own else "", _frames_of_link(opened, "")
     if found in prefixes:
         return "passed", ""
     if None in prefixes:
@@ -186,20 +186,20 @@ def _fault_of_prefix(model: "Display", opened: "Launch | None") -> tuple[Status,
     return "failed", f"{message}robot_state_publisher publishes '{expected}LINK'"
 
 
-def _launch(package: Package, launch: str) -> "Launch | None":
+def _read_launch(package: Package, launch: str) -> "Launch | None":
     path = package.launch_file(launch) if launch else None
     return package.launch(path) if path is not None else None
 
 
-def _path(package: Package, name: str, opened: "Launch | None") -> str:
+def _rviz_path(package: Package, name: str, opened: "Launch | None") -> str:
     path = package.rviz_file(name, opened)
     if path is None:
         raise package.missing("rviz")
     return path
 
 
-def _read(package: Package, name: str, launch: str) -> "RvizFile":
-    path = _path(package, name, _launch(package, launch))
+def _read_rviz(package: Package, name: str, launch: str) -> "RvizFile":
+    path = _rviz_path(package, name, _read_launch(package, launch))
     rviz = package.rviz(path)
     if rviz.unread:
         raise NotDecided(rviz.unread, "the RViz file cannot be read")

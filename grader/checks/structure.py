@@ -157,7 +157,7 @@ def counts(
         "fixed joint": fixed,
     }
     expected = {noun: number for noun, number in wanted.items() if number is not None}
-    found = _count(robot, expected)
+    found = _count_parts(robot, expected)
     numbers = tuple(found[noun] for noun in expected), tuple(expected.values())
     wrong = [noun for noun, number in expected.items() if found[noun] != number]
     shown = {noun: counted(found[noun], noun) for noun in expected}
@@ -208,12 +208,15 @@ def _not_below(robot: Configuration, link: str, parent: str) -> Outcome:
     return failed(message, place(joint.location, "link", "parent"), detail=f" (joint {joint.name!r})")
 
 
-def _count(robot: Configuration, nouns: Collection[str]) -> Counter[str]:
+def _count_parts(robot: Configuration, nouns: Collection[str]) -> Counter[str]:
     """Return the numbers of links and joints by kind in the largest tree; raise NotDecided if xacro leaves one open."""
     tree = robot.main_tree
     found = Counter({"link": len(tree), "joint": max(0, len(tree) - 1)})
-    for joint in (robot.parent_joints[link] for link in tree[1:]) if set(nouns) - {"link", "joint"} else ():
-        is_moving = joint.type != "fixed" and joint.mimic is None
+    if {"link", "joint"}.issuperset(nouns):
+        return found
+    for link in tree[1:]:
+        joint = robot.parent_joints[link]
         found[f"{joint.type} joint"] += 1
-        found["moving joint"] += is_moving
+        if joint.type != "fixed" and joint.mimic is None:
+            found["moving joint"] += 1
     return found

@@ -109,14 +109,16 @@ def toml_type(annotation: Any) -> TomlType:
     if origin is Literal:
         return simple_type(f"one of {', '.join(inner)}", {"enum": list(inner)}, lambda value: value in inner)
     if origin in (UnionType, Union):
-        return _union([toml_type(member) for member in inner if member is not NoneType])  # None: the argument is absent
+        return _union_type(
+            [toml_type(member) for member in inner if member is not NoneType]
+        )  # None: the argument is absent
     if origin in (list, tuple):
         length = len(inner) if origin is tuple and Ellipsis not in inner else None
-        return _sequence(toml_type(inner[0]), origin, length, _PLURALS.get(inner[0], "values"))
-    return _table(inner)
+        return _sequence_type(toml_type(inner[0]), origin, length, _PLURALS.get(inner[0], "values"))
+    return _table_type(inner)
 
 
-def _union(members: "list[TomlType]") -> TomlType:
+def _union_type(members: "list[TomlType]") -> TomlType:
     if len(members) == 1:
         return members[0]
     name = " or ".join(member.name for member in members)
@@ -124,7 +126,7 @@ def _union(members: "list[TomlType]") -> TomlType:
     return simple_type(name, choices, lambda _: True, partial(_parse_any, members))
 
 
-def _table(inner: tuple[Any, ...]) -> TomlType:
+def _table_type(inner: tuple[Any, ...]) -> TomlType:
     item, plural = (
         (toml_type(inner[1]), _PLURALS.get(inner[1], "values")) if len(inner) == 2 else (_SIMPLE[str], "strings")
     )
@@ -167,7 +169,7 @@ def _is_table(value: Any) -> bool:
     return isinstance(value, dict) and value != {}
 
 
-def _sequence(item: TomlType, origin: type, length: int | None, plural: str) -> TomlType:
+def _sequence_type(item: TomlType, origin: type, length: int | None, plural: str) -> TomlType:
     schema: dict[str, Any] = {"type": "array", "items": item.schema, "minItems": length or 1}
     if length is not None:
         schema["maxItems"] = length

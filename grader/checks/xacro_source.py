@@ -55,13 +55,13 @@ def xacro_uses(
         macros: How many macros must at least be defined and called, or their names.
         includes: How many files must at least be included, or the ends of their paths.
     """
-    source = _source(submission, file)
+    source = _find_source(submission, file)
     if isinstance(source, Outcome):
         return source
     if not (file or properties or macros or includes):
-        return _expansion(submission)
-    paths = [path for path in source.documents if submission.is_single or _ends(path, file)]
-    found = _inventory(source, submission)
+        return _judge_expansion(submission)
+    paths = [path for path in source.documents if submission.is_single or _ends_with(path, file)]
+    found = _take_inventory(source, submission)
     included = [path for (by, _), every in source.includes.items() if by in paths for path in every]
     lacks = [
         *_missing_uses("property", "properties", properties, found.properties, found.used, paths),
@@ -76,7 +76,7 @@ def xacro_uses(
     return failed("; ".join(lack.message for lack in lacks), at, detail="".join(lack.detail for lack in lacks))
 
 
-def _inventory(source: "ExpandedSource", submission: Submission) -> "Inventory":
+def _take_inventory(source: "ExpandedSource", submission: Submission) -> "Inventory":
     from grader.xacro.inventory import take_inventory  # late: few rubrics need it
 
     try:
@@ -97,7 +97,7 @@ def _refuse_unknown(source: "ExpandedSource", found: "Inventory") -> None:
         raise NotDecided(f"{reason} ({place.path}, line {place.line})", reason)
 
 
-def _source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
+def _find_source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
     """Return the xacro that is examined, or the failure of a robot that is not written in xacro."""
     from grader.xacro.expansion import ExpandedSource
 
@@ -105,9 +105,9 @@ def _source(submission: Submission, file: str) -> "ExpandedSource | Outcome":
     assert isinstance(urdf, Read)  # else there is none that is needed
     source = reading.source
     if not isinstance(source, ExpandedSource) and find_xacro(source.text) is not None:
-        source = _expand(submission, urdf.path, urdf.data)
+        source = _expand_file(submission, urdf.path, urdf.data)
     if isinstance(source, ExpandedSource):
-        if not file or submission.is_single or any(_ends(path, file) for path in source.documents):
+        if not file or submission.is_single or any(_ends_with(path, file) for path in source.documents):
             return source
     elif not file or submission.is_single:
         others = [path for path in submission.tree.files if path.lower().endswith(".xacro") and path != urdf.path]
@@ -127,7 +127,7 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
     """Return the xacro in a file of the submission that the graded URDF does not include."""
     from grader.xacro.expansion import ExpandedSource
 
-    found = [path for path in submission.tree.files if _ends(path, file)]
+    found = [path for path in submission.tree.files if _ends_with(path, file)]
     if len(found) > 1:
         raise NotDecided(
             f"several files are called {file}: {enumerated(found, _MAX_NAMED)}", "several files have the name"
@@ -135,7 +135,7 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
     if not found:
         raise MissingElement("file", file, message=f"the submission has no file {quoted(file)}")
     try:
-        source = _expand(submission, found[0], submission.tree.files[found[0]].read(URDF_LIMIT))
+        source = _expand_file(submission, found[0], submission.tree.files[found[0]].read(URDF_LIMIT))
     except InputError as error:
         raise NotDecided(str(error), "a file cannot be read") from None
     if isinstance(source, ExpandedSource) and find_xacro(source.text) is not None:
@@ -143,7 +143,7 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
     return failed(f"{found[0]} has no expression and no tag of xacro", Location(found[0], 1, 1))
 
 
-def _expand(submission: Submission, path: str, data: bytes) -> "ExpandedSource | Source":
+def _expand_file(submission: Submission, path: str, data: bytes) -> "ExpandedSource | Source":
     """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at all."""
     from grader.xacro.expansion import ExpandedSource, expand
 
@@ -156,7 +156,7 @@ def _expand(submission: Submission, path: str, data: bytes) -> "ExpandedSource |
     raise MissingElement("xacro", path, message=first.message, location=first.location, problem=first.message)
 
 
-def _expansion(submission: Submission) -> Outcome:
+def _judge_expansion(submission: Submission) -> Outcome:
     """Return whether xacro is expanded before ROS 2 reads the robot."""
     urdf = submission.urdf
     assert isinstance(urdf, Read)
@@ -195,7 +195,7 @@ def _missing_includes(wanted: int | list[str], included: Sequence[str]) -> Itera
         if len(included) < wanted:
             yield _Lack(f"{counted(len(included), 'file')} included; there should be {wanted}")
         return
-    missing = [end for end in wanted if not any(_ends(path, end) for path in included)]
+    missing = [end for end in wanted if not any(_ends_with(path, end) for path in included)]
     if missing:
         names = [path.rpartition("/")[2] for path in included]
         detail = f"; included: {enumerated(names, _MAX_NAMED) or 'none'}"
@@ -204,6 +204,6 @@ def _missing_includes(wanted: int | list[str], included: Sequence[str]) -> Itera
         )
 
 
-def _ends(path: str, end: str) -> bool:
+def _ends_with(path: str, end: str) -> bool:
     """Return whether a path ends with whole names; everything ends with nothing."""
     return not end or f"/{path}".endswith(f"/{end.strip('/')}")

@@ -77,16 +77,18 @@ def element_present(
     root = reading.elements
     if root is None:
         raise MissingElement("robot", "", message="the file is not well-formed XML, so it has no elements")
-    outcome = _search(reading, root, wanted)
-    is_dropped = outcome.status == "passed" and tag == "link" and _having(_without_dropped(robot, root), wanted) is None
+    outcome = _judge_elements(reading, root, wanted)
+    is_dropped = (
+        outcome.status == "passed" and tag == "link" and _find_wanted(_without_dropped(robot, root), wanted) is None
+    )
     if outcome.status == "failed" or is_dropped:
         _check_known(reading, root, wanted)
     if is_dropped:
-        link = _having(root, wanted)
+        link = _find_wanted(root, wanted)
         assert link is not None  # it passed
         steps = (step for key in (path, *wanted.values) for step in steps_of(key))
         part = next(step for step in steps if step in _PARTS)
-        message, at = f"ROS 2 drops {wanted.inner}", _place(reading, link)
+        message, at = f"ROS 2 drops {wanted.inner}", _element_place(reading, link)
         raise MissingElement(part, attribute_of(link, "name") or "", message=message, location=at)
     return outcome
 
@@ -103,15 +105,15 @@ def _without_dropped(robot: Configuration, root: Element) -> Element:
     return copy
 
 
-def _having(root: Element, wanted: WantedElement) -> Element | None:
+def _find_wanted(root: Element, wanted: WantedElement) -> Element | None:
     """Return the first element below <robot> that has the wanted content."""
     fitting = (child for child in root if name_of(child) == wanted.tag and wanted.fits(child))
     steps = steps_of(wanted.path)
     return next((it for it in fitting if not all(map(wanted.wrong, elements_at(it, steps)))), None)
 
 
-def _search(reading: Reading, root: Element, wanted: WantedElement) -> Outcome:
-    if _having(root, wanted) is not None:
+def _judge_elements(reading: Reading, root: Element, wanted: WantedElement) -> Outcome:
+    if _find_wanted(root, wanted) is not None:
         return passed(f"there is {wanted.inner}{' with the expected values' if wanted.values else ''}")
     tags = [child for child in root if name_of(child) == wanted.tag]
     if not tags:
@@ -126,9 +128,9 @@ def _search(reading: Reading, root: Element, wanted: WantedElement) -> Outcome:
     wrong = wanted.wrong(best)
     if (len(found) > 1 or wanted.identity == "@name") and wanted.identity in wrong:
         return _no_identity(reading, fitting[0], found, wanted)
-    faults = [_fault(key, texts_at(best, key), wanted.values[key]) for key in wrong]
+    faults = [_fault_text(key, texts_at(best, key), wanted.values[key]) for key in wrong]
     first = next((text for text in texts_at(best, wrong[0]) if not wanted.has(wrong[0], text)), FoundElement("", best))
-    at = _place(reading, first.element, first.attribute)
+    at = _element_place(reading, first.element, first.attribute)
     return failed(f"{wanted.inner}: {'; '.join(first_lines(faults, _MAX_NAMED))}", at)
 
 
@@ -138,7 +140,7 @@ def _no_tag(reading: Reading, root: Element, wanted: WantedElement) -> Outcome:
     if inside is not None:
         above = inside.getparent()
         detail = f"; there is one in <{name_of(above)}>" if above is not None else ""
-        return failed(message, _place(reading, inside), detail=detail)
+        return failed(message, _element_place(reading, inside), detail=detail)
     return failed(message, detail=did_you_mean(wanted.tag, {name_of(element) for element in root}))
 
 
@@ -150,7 +152,7 @@ def _no_attributes(reading: Reading, tags: Sequence[Element], wanted: WantedElem
     for key, value in wanted.attributes.items():
         found = [one[key] or "" for one in given]
         detail += did_you_mean(xml_text(value), filter(None, found))
-    return failed(f"there is no {wanted.element}", _place(reading, tags[0]), detail=detail)
+    return failed(f"there is no {wanted.element}", _element_place(reading, tags[0]), detail=detail)
 
 
 def _no_path(reading: Reading, element: Element, wanted: WantedElement) -> Outcome:
@@ -159,7 +161,9 @@ def _no_path(reading: Reading, element: Element, wanted: WantedElement) -> Outco
         steps.pop()
     above = elements_at(element, steps[:-1])[0]
     message = f"there is no {wanted.inner}"
-    return failed(message, _place(reading, above), detail=did_you_mean(steps[-1], {name_of(child) for child in above}))
+    return failed(
+        message, _element_place(reading, above), detail=did_you_mean(steps[-1], {name_of(child) for child in above})
+    )
 
 
 def _no_identity(reading: Reading, above: Element, found: Sequence[Element], wanted: WantedElement) -> Outcome:
@@ -167,10 +171,10 @@ def _no_identity(reading: Reading, above: Element, found: Sequence[Element], wan
     names = [text.text for element in found for text in texts_at(element, wanted.identity)]
     detail = f"; the file has {enumerated([*map(quoted, names)], _MAX_NAMED)}" if names else ""
     message = f"no {wanted.inner} has the {wanted.identity!r} {quoted(str(wanted.values[wanted.identity]))}"
-    return failed(message, _place(reading, above), detail=detail)
+    return failed(message, _element_place(reading, above), detail=detail)
 
 
-def _fault(key: str, found: Sequence[FoundElement], expected: Content) -> str:
+def _fault_text(key: str, found: Sequence[FoundElement], expected: Content) -> str:
     """Return what is wrong with the texts at a path: 'update_rate' is 10; it should be 30."""
     wanted = expected if isinstance(expected, list) else [expected]
     should = f"it should be {enumerated([_value_text(value) for value in wanted])}"
@@ -185,7 +189,7 @@ def _value_text(value: Scalar) -> str:
     return text if not isinstance(value, str) or numbers_in(text) else quoted(text)
 
 
-def _place(reading: Reading, element: Element, name: str | None = None) -> LazyLocation | None:
+def _element_place(reading: Reading, element: Element, name: str | None = None) -> LazyLocation | None:
     assert reading.elements is not None
     tag = next(index for index, other in enumerate(reading.elements.iter()) if other is element)
     return LazyLocation(reading.source, tag, name)
@@ -197,6 +201,8 @@ def _check_known(reading: Reading, root: Element, wanted: WantedElement) -> None
     fitting = (child for child in tags if wanted.may_fit(child, reading.unresolved.get(child)))
     for element in (root, *(inner for child in fitting for inner in child.iter())):
         found = reading.unresolved.get(element)
-        for reason in (*found.attributes.values(), found.content) if found is not None else ():
+        if found is None:
+            continue
+        for reason in (*found.attributes.values(), found.content):
             if reason:
                 raise NotDecided(reason)

@@ -26,7 +26,7 @@ def load_with_answers(name: str, file: Path | None = None) -> Rubric:
         return _read_answers(rubric, file)
     if not rubric.answers or missing_answers(rubric):
         return rubric
-    own = _file(rubric)
+    own = _answers_file(rubric)
     if not own.resolve().is_relative_to(path.parent.resolve()):
         raise RubricError((f"{printable_path(own)}: the answers file must be in the rubric's folder",))
     return _read_answers(rubric, own)
@@ -41,17 +41,16 @@ def _read_answers(rubric: Rubric, file: Path) -> Rubric:
     if data == rubric.data:
         return rubric
     text, table = read_toml(data, file)
-    complain_of(_complaints(rubric, table), text, file)
+    complain_of(_find_complaints(rubric, table), text, file)
     return _with_answers(rubric, table)
 
 
 def missing_answers(rubric: Rubric) -> str:
     """Return a warning if the rubric's file of model answers does not exist; empty otherwise."""
-    if not rubric.answers or _file(rubric).exists():
+    file = _answers_file(rubric)
+    if not rubric.answers or file.exists():
         return ""
-    return (
-        f"{rubric.id}: the answers file {printable_path(_file(rubric))} does not exist, so no model answers are shown"
-    )
+    return f"{rubric.id}: the answers file {printable_path(file)} does not exist, so no model answers are shown"
 
 
 def _with_answers(rubric: Rubric, answers: Mapping[str, str]) -> Rubric:
@@ -60,11 +59,11 @@ def _with_answers(rubric: Rubric, answers: Mapping[str, str]) -> Rubric:
     return replace(rubric, criteria=tuple(criteria))
 
 
-def _file(rubric: Rubric) -> Path:
+def _answers_file(rubric: Rubric) -> Path:
     return rubric.path.parent / rubric.answers
 
 
-def _complaints(rubric: Rubric, table: Mapping[str, Any]) -> list[tuple[TomlPath, str]]:
+def _find_complaints(rubric: Rubric, table: Mapping[str, Any]) -> list[tuple[TomlPath, str]]:
     questions = {row.id: row for row in rubric.criteria if row.check.function is answered}
     complaints: list[tuple[TomlPath, str]] = []
     for name, value in table.items():

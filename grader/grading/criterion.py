@@ -85,14 +85,18 @@ class _Worth(NamedTuple):
     @property
     def text(self) -> str:
         """The points in words: 14 points; 14 points and 5 bonus points; 5 bonus points."""
-        extra = f"{format_points(self.bonus)} bonus point{'' if self.bonus == 1 else 's'}" if self.bonus else ""
-        return " and ".join(filter(None, (counted_points(self.points) if self.points or not extra else "", extra)))
+        if not self.bonus:
+            return counted_points(self.points)
+        extra = f"{format_points(self.bonus)} bonus {'point' if self.bonus == 1 else 'points'}"
+        return f"{counted_points(self.points)} and {extra}" if self.points else extra
 
     @property
     def short(self) -> str:
         """The points in short: 14; 14 + 5 bonus; 5 bonus."""
-        extra = f"{format_points(self.bonus)} bonus" if self.bonus else ""
-        return " + ".join(filter(None, (format_points(self.points) if self.points or not extra else "", extra)))
+        if not self.bonus:
+            return format_points(self.points)
+        extra = f"{format_points(self.bonus)} bonus"
+        return f"{format_points(self.points)} + {extra}" if self.points else extra
 
 
 def worth(criteria: Iterable[Criterion]) -> _Worth:

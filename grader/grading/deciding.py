@@ -63,13 +63,13 @@ class _Grading:
 
     def decide(self, criterion: Criterion) -> None:
         """Run the check of a criterion, or skip it because of another that failed."""
-        cause = self._cause(criterion)
-        result = Result(criterion, _skip_outcome(cause), cause) if cause else self._check(criterion)
+        cause = self._blocking_cause(criterion)
+        result = Result(criterion, _skip_outcome(cause), cause) if cause else self._decide_by_check(criterion)
         for carried in criterion.carried:
             result = self._carry(result, carried) if result.is_lost else result
         self.results[criterion.id] = result
 
-    def _cause(self, criterion: Criterion) -> str | None:
+    def _blocking_cause(self, criterion: Criterion) -> str | None:
         """Return the criterion because of which this one is skipped, if there is one."""
         for name in criterion.requires:
             required = self.results.get(name)
@@ -80,11 +80,11 @@ class _Grading:
             return next((result.criterion.id for result in loading if result.outcome.status == "failed"), None)
         return None
 
-    def _check(self, criterion: Criterion) -> Result:
+    def _decide_by_check(self, criterion: Criterion) -> Result:
         try:
-            result = self._run(criterion, criterion.check, criterion.arguments)
+            result = self._run_check(criterion, criterion.check, criterion.arguments)
         except MissingElement as missing:
-            return self._miss(criterion, missing)
+            return self._fail_or_skip(criterion, missing)
         if result.outcome.status != "failed":
             return result
         return result._replace(outcome=self._explain(result.outcome))
@@ -100,7 +100,7 @@ class _Grading:
         if cause is None:
             return result
         try:
-            other = self._run(result.criterion, carried.check, carried.arguments)
+            other = self._run_check(result.criterion, carried.check, carried.arguments)
         except MissingElement:
             return result
         name, outcome = cause.criterion.id, result.outcome
@@ -125,7 +125,7 @@ class _Grading:
         before = (self.results[name] for name in names if name in self.results)
         return next((found for found in before if found.outcome.status == "failed"), None)
 
-    def _run(self, criterion: Criterion, check: Check, arguments: Mapping[str, Any]) -> Result:
+    def _run_check(self, criterion: Criterion, check: Check, arguments: Mapping[str, Any]) -> Result:
         """Return the result of a check; raise MissingElement, or RubricError for a mistake of the rubric."""
         try:
             examined = self._subjects.of(check, criterion.at)
@@ -151,7 +151,7 @@ class _Grading:
 
             return Result(criterion, _fault_outcome(check, _text_of(error)), traceback=format_exc())
 
-    def _miss(self, criterion: Criterion, missing: MissingElement) -> Result:
+    def _fail_or_skip(self, criterion: Criterion, missing: MissingElement) -> Result:
         """Return a failure for the first criterion that misses a thing; later ones would repeat it and are skipped."""
         if missing.kind in self._manual:
             return Result(criterion, _by_evidence(self.submission, self._manual[missing.kind]))

@@ -49,7 +49,7 @@ def explain(
         message = f"{lost}: {dropped.message}"
         outcome = outcome._replace(message=message, location=dropped.location, mistake=mistake, problem=dropped.message)
     place = outcome.location
-    inside = _extent(place, source) if any(problem.kind in _INSIDE for problem in problems) else range(0)
+    inside = _element_offsets(place, source) if any(problem.kind in _INSIDE for problem in problems) else range(0)
     for problem in problems:
         kind, where = problem.kind, problem.location
         explains = kind in _EXPLAINING or (kind is urdf_problems.DEFAULT_AXIS and outcome.unit == "deg")
@@ -62,7 +62,7 @@ def explain(
     return outcome
 
 
-def _extent(place: Location | None, source: Source | None) -> range:
+def _element_offsets(place: Location | None, source: Source | None) -> range:
     """Return the offsets of the element at a place, or of the tag if an attribute is there."""
     if place is None or source is None or place.path != source.path:
         return range(0)

@@ -57,9 +57,11 @@ def grade(
         from grader.package.package_problems import package_problems
 
         problems += package_problems(submission.package)
-    evidence, other_pictures = _evidence_of(rubric, submission, chosen if is_whole else ())
+    evidence, other_pictures = _find_evidence(rubric, submission, chosen if is_whole else ())
     notes += _note_on_unread(submission, evidence)
-    convention, by_convention = _by_convention(rubric, submission, results) if is_explained else ((), frozenset[str]())
+    convention, by_convention = (
+        _explain_by_convention(rubric, submission, results) if is_explained else ((), frozenset[str]())
+    )
     notes += convention
     if submission.is_costly and rubric.hints != "none" and any(result.is_lost for result in results):
         notes += (_NO_HINTS,)
@@ -97,7 +99,7 @@ def _choose_parts(
     return chosen, tuple(notes)
 
 
-def _evidence_of(
+def _find_evidence(
     rubric: Rubric, submission: Submission, chosen: Sequence[str]
 ) -> "tuple[tuple[EvidenceResult, ...], tuple[EvidenceFile, ...]]":
     """Return the evidence that the lab asks for, and the other pictures, which neither it nor a criterion names."""
@@ -140,7 +142,7 @@ def _note_on_unread(submission: Submission, evidence: Sequence[EvidenceResult]) 
     return (f"not searched for evidence: {enumerated(list(map(str, unread)), _MAX_UNREAD)}",) if unread else ()
 
 
-def _by_convention(
+def _explain_by_convention(
     rubric: Rubric, submission: Submission, results: Sequence[Result]
 ) -> tuple[tuple[str, ...], frozenset[str]]:
     """Return a note on frames of the whole robot that are rotated or moved alike, and the criteria that it explains.
@@ -149,7 +151,7 @@ def _by_convention(
     mistakes.
     """
     lost = {result.criterion.id for result in results if result.is_lost and result.criterion.check.subject == "robot"}
-    found = _convention(rubric, submission) if len(lost) >= _MIN_OF_CONVENTION else None
+    found = _find_convention(rubric, submission) if len(lost) >= _MIN_OF_CONVENTION else None
     if found is None or not isinstance(submission.urdf, Read):
         return (), frozenset()
     reading = submission.urdf.reading._replace(robot=found.robot)
@@ -164,7 +166,7 @@ def _by_convention(
     return ((note,), gained) if is_one else ((), frozenset())
 
 
-def _convention(rubric: Rubric, submission: Submission) -> "Convention | None":
+def _find_convention(rubric: Rubric, submission: Submission) -> "Convention | None":
     """Return how all frames of a robot are turned or moved, compared with the reference."""
     robot = submission.robot
     if robot is None or rubric.solution is None:

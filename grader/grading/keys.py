@@ -45,12 +45,12 @@ def _is_below(path: str) -> bool:
     return path.endswith(".toml") and not set(path) & set("\\:\0") and ".." not in path.split("/") and path[0] != "/"
 
 
-def _range(least: int, most: int) -> Constraint:
+def _in_range(least: int, most: int) -> Constraint:
     schema = {"minimum": least, "maximum": most} if most < MAX_POINTS else {"minimum": least}
     return Constraint(f"a number from {least} to {most}", lambda value: least <= value <= most, schema)
 
 
-def _table(schema: Mapping[str, Any]) -> TomlType:
+def _table_type(schema: Mapping[str, Any]) -> TomlType:
     return simple_type("a table", schema, lambda value: isinstance(value, dict))
 
 
@@ -58,10 +58,10 @@ _TEXT = toml_type(str)
 _NUMBER = simple_type("a number", {"type": "number"}, _is_number, Decimal)
 _POINTS = constrained(
     _NUMBER,
-    _range(0, MAX_POINTS),
+    _in_range(0, MAX_POINTS),
     Constraint(f"a number with at most {_DECIMALS} decimals", lambda points: not points.scaleb(_DECIMALS) % 1),
 )
-_PERCENT, _MINUTES = (constrained(_NUMBER, _range(0, most)) for most in (100, MAX_POINTS))
+_PERCENT, _MINUTES = (constrained(_NUMBER, _in_range(0, most)) for most in (100, MAX_POINTS))
 NAMES = simple_type(
     "a list of strings", {"type": "array", "items": _TEXT.schema}, lambda value: _is_list(value, str), tuple
 )
@@ -121,7 +121,7 @@ CARRIED = KeyTable(
             "The ids of criteria above this one: their mistakes can make this one fail.",
         ),
         "check": described(_TEXT, "The check that counts instead."),
-        "with": described(_table({"type": "object"}), "The arguments of that check."),
+        "with": described(_table_type({"type": "object"}), "The arguments of that check."),
     },
     required=("from", "check"),
 )
@@ -138,7 +138,7 @@ CRITERION = KeyTable(
             _POINTS, "The points for passing, with at most four decimals. A criterion is all or nothing."
         ),
         "check": described(_TEXT, "The check that decides it: one of the grader, or of an installed plug-in."),
-        "with": described(_table({"type": "object"}), "The arguments of the check."),
+        "with": described(_table_type({"type": "object"}), "The arguments of the check."),
         "at": described(
             toml_type(Mapping[str, float]), "Positions of joints for the check, in degrees or metres; default: 0."
         ),
@@ -159,7 +159,7 @@ DEFAULTS = KeyTable(
         "points": described(_POINTS, "The points of criteria that give none."),
         "about": described(_TEXT, "The heading of criteria that give none."),
         "with": described(
-            _table({"type": "object", "additionalProperties": {"type": "object"}}),
+            _table_type({"type": "object", "additionalProperties": {"type": "object"}}),
             "For each check a table of arguments, for criteria that do not give them.",
         ),
     },
@@ -232,16 +232,18 @@ RUBRIC = KeyTable(
         "hints": described(
             toml_type(HintLevel), "How much hints tell students: none, place, cause (the default) or edit."
         ),
-        "defaults": described(_table(DEFAULTS.schema), "Default values for the criteria."),
+        "defaults": described(_table_type(DEFAULTS.schema), "Default values for the criteria."),
         "part": described(PART.rows, "The parts of the lab, in the order of the report."),
         "criterion": described(CRITERION.rows, "The criteria, in the order in which they are checked."),
         "evidence": described(EVIDENCE.rows, "The pictures and documents that the lab asks for."),
-        "late": described(_table(LATE.schema), "The late penalty. It applies to classes, when grades are exported."),
+        "late": described(
+            _table_type(LATE.schema), "The late penalty. It applies to classes, when grades are exported."
+        ),
         "adjust": described(
-            _table({"type": "object", "additionalProperties": ADJUSTMENT.schema}),
+            _table_type({"type": "object", "additionalProperties": ADJUSTMENT.schema}),
             "Corrections after grading: a table for each criterion that is dropped, or whose points all students get.",
         ),
-        "test": described(_table(TEST.schema), "Settings for `grader rubric test`."),
+        "test": described(_table_type(TEST.schema), "Settings for `grader rubric test`."),
     },
     required=("id", "title", "part", "criterion"),
 )
@@ -266,7 +268,9 @@ def rubric_schema() -> _Schema:
     schema["properties"]["criterion"]["items"] = criterion
     defaults = {check.name: {"$ref": f"#/$defs/{check.name}"} for check in checks}
     schema["properties"]["defaults"]["properties"]["with"] |= {"properties": defaults, "additionalProperties": False}
-    tables = [KeyTable(check.name, {name: _argument(check, name) for name in check.parameters}) for check in checks]
+    tables = [
+        KeyTable(check.name, {name: _argument_type(check, name) for name in check.parameters}) for check in checks
+    ]
     definitions = {table.name: table.schema for table in tables}
     chosen = [({"check": {"const": name}}, {"with": arguments}) for name, arguments in defaults.items()]
     rules = [{"if": {"properties": it, "required": ["check"]}, "then": {"properties": then}} for it, then in chosen]
@@ -274,7 +278,7 @@ def rubric_schema() -> _Schema:
     return {"$schema": _DRAFT, "title": "grader rubric", **schema, "$defs": definitions}
 
 
-def _argument(check: Check, name: str) -> TomlType:
+def _argument_type(check: Check, name: str) -> TomlType:
     """Return the type of an argument with its meaning, and its default if a rubric can give that."""
     import json  # late: only the schema needs it
 

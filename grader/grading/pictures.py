@@ -20,18 +20,18 @@ def pictures_of(result: Result, submission: Submission) -> tuple[EmbeddedPicture
     Of a Word file these are all of its pictures; a PDF opens on the page of the evidence or the answer. If no file is
     named for the evidence, all files of evidence are searched; if no answer was found, all PDF files.
     """
-    paths = _files(result) or tuple(
+    paths = _shown_files(result) or tuple(
         labelled.file.path
         for labelled in submission.labelled_files
         if _is_evidence(result) or (_is_question(result) and labelled.file.suffix == ".pdf")
     )
-    return tuple(_limit(found for path in paths for found in _at(path, result, submission)))
+    return tuple(_limit_pictures(found for path in paths for found in _read_pictures(path, result, submission)))
 
 
 def may_have_pictures(result: Result) -> bool:
     """Return whether pictures of the submission may belong to a criterion."""
     without_file = _is_question(result) and result.outcome.location is None
-    return bool(_files(result)) or _is_evidence(result) or without_file
+    return bool(_shown_files(result)) or _is_evidence(result) or without_file
 
 
 def is_empty(result: Result, report: Report) -> bool:
@@ -83,7 +83,7 @@ def evidence_files(result: Result) -> tuple[str, ...]:
     return tuple(name for name in measured if isinstance(name, str))
 
 
-def _files(result: Result) -> tuple[str, ...]:
+def _shown_files(result: Result) -> tuple[str, ...]:
     """Return the paths of the files of evidence, of the PDF of an answer, or of the document with pictures in it."""
     if files := evidence_files(result):
         return files
@@ -94,7 +94,7 @@ def _files(result: Result) -> tuple[str, ...]:
     return (place.path,) if place.path.lower().endswith(shown) else ()
 
 
-def _at(path: str, result: Result, submission: Submission) -> Iterator[EmbeddedPicture | NotShown]:
+def _read_pictures(path: str, result: Result, submission: Submission) -> Iterator[EmbeddedPicture | NotShown]:
     file = submission.whole_tree.files.get(path) or submission.tree.files.get(path)
     if file is None:
         yield NotShown(path, "it is no longer in the submission")
@@ -103,11 +103,11 @@ def _at(path: str, result: Result, submission: Submission) -> Iterator[EmbeddedP
     else:
         shown = read_picture(file)
         if isinstance(shown, EmbeddedPicture) and file.suffix == ".pdf":
-            shown = shown._replace(page=_page(file, result, submission.readable_documents))
+            shown = shown._replace(page=_find_page(file, result, submission.readable_documents))
         yield shown
 
 
-def _page(file: File, result: Result, documents: DocumentCollection | None) -> int:
+def _find_page(file: File, result: Result, documents: DocumentCollection | None) -> int:
     """Return the page of a PDF with the answer, or with the heading that names the evidence; the first without one."""
     document = documents.document(file) if documents is not None else None
     if documents is None or not isinstance(document, TextDocument):
@@ -121,7 +121,7 @@ def _page(file: File, result: Result, documents: DocumentCollection | None) -> i
     return document.page(start) or 1
 
 
-def _limit(found: Iterable[EmbeddedPicture | NotShown]) -> Iterator[EmbeddedPicture | NotShown]:
+def _limit_pictures(found: Iterable[EmbeddedPicture | NotShown]) -> Iterator[EmbeddedPicture | NotShown]:
     """Yield pictures up to the limits for one criterion, then a notice that there are more."""
     left = _MAX_BYTES
     for count, one in enumerate(found):

@@ -151,13 +151,17 @@ class Report(NamedTuple):
     @property
     def all_notes(self) -> tuple[str, ...]:
         """The notes, the first on a robot that looks like another one, the last on hints that are missing."""
-        first, last = self.another_robot, "" if self.hints_complete else INCOMPLETE_HINTS
-        return (*filter(None, [first]), *self.notes, *filter(None, [last]))
+        notes = list(self.notes)
+        if self.another_robot:
+            notes.insert(0, self.another_robot)
+        if not self.hints_complete:
+            notes.append(INCOMPLETE_HINTS)
+        return tuple(notes)
 
     @property
     def score(self) -> Decimal:
         """The points earned so far, without those that need manual grading."""
-        return _sum(result.points for result in self.results)
+        return _sum_points(result.points for result in self.results)
 
     @property
     def counting(self) -> Decimal | None:
@@ -192,17 +196,17 @@ class Report(NamedTuple):
     @property
     def max_score(self) -> Decimal:
         """The maximum of the graded parts, without extra credit."""
-        return _sum(result.criterion.maximum for result in self.results)
+        return _sum_points(result.criterion.maximum for result in self.results)
 
     @property
     def pending(self) -> Decimal:
         """The points that still need manual grading."""
-        return _sum(result.criterion.points for result in self.results if result.is_open)
+        return _sum_points(result.criterion.points for result in self.results if result.is_open)
 
     @property
     def bonus(self) -> Decimal:
         """The points of extra credit that were earned: they are part of the score."""
-        return _sum(result.points for result in self.results if result.criterion.bonus)
+        return _sum_points(result.points for result in self.results if result.criterion.bonus)
 
     @property
     def fault(self) -> str:
@@ -221,5 +225,5 @@ def without_gifts(results: Iterable[Result], submission: Submission) -> tuple[Re
     )
 
 
-def _sum(points: Iterable[Decimal]) -> Decimal:
+def _sum_points(points: Iterable[Decimal]) -> Decimal:
     return sum(points, _NOTHING)

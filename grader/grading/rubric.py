@@ -176,10 +176,10 @@ def load_rubric(name: str | Path) -> Rubric:
 
 def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
     """Return the rubric in the bytes of a file, with or without the model answers in it; raise RubricError."""
-    valid = _validated(data, path)
+    valid = _validate(data, path)
     rubric = valid.rubric
     found = enumerate(zip(valid.criteria, valid.bound, valid.carried, strict=True))
-    criteria = (_criterion(position, *rows, answers=answers) for position, rows in found)
+    criteria = (_make_criterion(position, *rows, answers=answers) for position, rows in found)
     adjusted = {name: Adjustment(**row) for name, row in valid.adjusted.items()}
     return Rubric(
         id=rubric["id"],
@@ -199,13 +199,13 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         without_package=rubric.get("without_package", ""),
         hints=rubric.get("hints", "cause"),
         ignored=tuple(Ignored(**row) for row in valid.ignored),
-        solution=_solution(rubric, path, data),
-        links=frozenset(_links(arguments for _, arguments in valid.bound)),
+        solution=_reference_solution(rubric, path, data),
+        links=frozenset(_links_named(arguments for _, arguments in valid.bound)),
     )
 
 
 @lru_cache(maxsize=2)
-def _validated(data: bytes, path: Path) -> Validation:
+def _validate(data: bytes, path: Path) -> Validation:
     """Return the valid content of a file, which a command may need with and without answers."""
     text, table = read_toml(data, path)
     valid = Validation(table)
@@ -213,14 +213,14 @@ def _validated(data: bytes, path: Path) -> Validation:
     return valid
 
 
-def _links(arguments: Iterable[Mapping[str, Any]]) -> Iterator[str]:
+def _links_named(arguments: Iterable[Mapping[str, Any]]) -> Iterator[str]:
     """Yield the names of links in the arguments of checks."""
     for given in arguments:
         names = texts_in([value for key, value in given.items() if key in LINK_ARGUMENTS])
         yield from (name for name in names if name and not is_selector(name))
 
 
-def _solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSolution | None:
+def _reference_solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSolution | None:
     if not rubric.get("reference"):
         return None
     place, package = path.parent / rubric["reference"], rubric.get("package", "")
@@ -228,13 +228,15 @@ def _solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSolution | N
 
     def missing() -> str:
         line, name = key_lines(data.decode())["reference",], rubric["id"]
-        copy = f" (`grader rubric copy {name} FOLDER` copies a rubric with its reference)" * (name in shipped_rubrics())
-        return f"{printable_path(path)}:{line}: the reference {printable_path(place)} does not exist{copy}"
+        text = f"{printable_path(path)}:{line}: the reference {printable_path(place)} does not exist"
+        if name in shipped_rubrics():
+            text += f" (`grader rubric copy {name} FOLDER` copies a rubric with its reference)"
+        return text
 
     return ReferenceSolution(place, lab, missing)
 
 
-def _criterion(
+def _make_criterion(
     position: int, row: TomlRow, bound: BoundCheck, carried: Sequence[BoundCarried], *, answers: bool
 ) -> Criterion:
     check, arguments = bound[0], dict(bound[1])

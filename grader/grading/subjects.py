@@ -48,13 +48,16 @@ class Subjects:
 
         Raises MissingElement or NotDecided for what the submission does not have.
         """
-        found = [self._known[name] if name in self._known else self._missing(name) for name in check.examined]
-        return [self._at(it, at) if at and isinstance(it, Configuration) and it is self.robot else it for it in found]
+        found = [self._known[name] if name in self._known else self._needed_subject(name) for name in check.examined]
+        return [
+            self._pose_robot(it, at) if at and isinstance(it, Configuration) and it is self.robot else it
+            for it in found
+        ]
 
     def pose_text(self, at: Mapping[str, float]) -> str:
         """Return the positions of joints that are there: 'joint_2' at 40 degrees and 'slide' at 0.1 m."""
         assert self.robot is not None
-        joints = ((_joint(self.robot, name), value) for name, value in at.items())
+        joints = ((_find_joint(self.robot, name), value) for name, value in at.items())
         units = ((joint, value, "m" if joint.type in _SLIDING else "degrees") for joint, value in joints)
         return enumerated([f"{quoted(joint.name)} at {point((value,))} {unit}" for joint, value, unit in units])
 
@@ -69,17 +72,17 @@ class Subjects:
             return arguments
         return {key: _named_links(value, self.robot) for key, value in arguments.items()}
 
-    def _at(self, robot: Configuration, at: Mapping[str, float]) -> Configuration:
+    def _pose_robot(self, robot: Configuration, at: Mapping[str, float]) -> Configuration:
         key = tuple(at.items())
         if key not in self._posed:
-            found = [(_joint(robot, name), value) for name, value in key]
+            found = [(_find_joint(robot, name), value) for name, value in key]
             positions = {joint.name: radians(value) if joint.type in _TURNING else value for joint, value in found}
             for name in positions:
                 _check_name(robot, name)
             self._posed[key] = robot.at(positions)
         return self._posed[key]
 
-    def _missing(self, name: Subject) -> object:
+    def _needed_subject(self, name: Subject) -> object:
         """Return the package; raise MissingElement or NotDecided for any other subject that a submission lacks."""
         if name == "package":
             return self.submission.needed_package()
@@ -93,7 +96,7 @@ def check_selectors(robot: Configuration, criterion: Criterion) -> None:
     _named_links([dict(criterion.arguments), *carried, [*criterion.at]], robot)
 
 
-def _joint(robot: Configuration, name: str) -> Joint:
+def _find_joint(robot: Configuration, name: str) -> Joint:
     """Return a joint that turns or slides, by its name or by a selector of the link that it moves."""
     if is_selector(name) and not robot.robot.has_joint(name):
         link = selected_link(robot.known, robot.known_parents, name)

@@ -56,9 +56,9 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
             raise RubricError((f"{shown}:{line}: a key has more than {_MAX_DEPTH} parts",))
         return text, tomllib.loads(text, parse_float=Decimal)
     except UnicodeDecodeError as error:
-        raise RubricError((f"{shown}{_encoding(data, error.start)}",)) from None
+        raise RubricError((f"{shown}{_why_not_utf8(data, error.start)}",)) from None
     except tomllib.TOMLDecodeError as error:
-        raise RubricError((f"{shown}:{_mistake(str(error), text)}",)) from None
+        raise RubricError((f"{shown}:{_syntax_mistake(str(error), text)}",)) from None
     except RecursionError:
         raise RubricError((f"{shown}: lists or tables are nested too deeply",)) from None
     except (ValueError, ArithmeticError):
@@ -75,7 +75,7 @@ def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Pat
         raise RubricError((*listed, f"{shown}: {more} more mistakes are not listed") if more > 0 else listed)
 
 
-def _mistake(error: str, text: str) -> str:
+def _syntax_mistake(error: str, text: str) -> str:
     """Return the place of the mistake that a message of tomllib is about, what it says, and the line."""
     lines = text.replace("\r\n", "\n").split("\n")
     said, line, column, _ = re.split(_PLACE, error)
@@ -84,7 +84,7 @@ def _mistake(error: str, text: str) -> str:
     return f"{row}:{at}: {said[0].lower()}{said[1:]}: {printable(around)}"
 
 
-def _encoding(data: bytes, at: int) -> str:
+def _why_not_utf8(data: bytes, at: int) -> str:
     """Return why bytes are not UTF-8 text, after a line if that is known."""
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return ": this is UTF-16 text; save it as UTF-8"
@@ -105,16 +105,16 @@ def _statement_paths(text: str) -> Iterator[tuple[int, TomlPath]]:
     """Yield the line and the path of every table header and key."""
     counts: dict[TomlPath, int] = {}
     table: TomlPath = ()
-    for line, tokens in _statements(text):
+    for line, tokens in _split_statements(text):
         if tokens[0] == "[":
             is_array = tokens[1] == "["
-            table = _table(_names(tokens[1 + is_array : tokens.index("]")]), counts, is_array=is_array)
+            table = _table_path(_key_names(tokens[1 + is_array : tokens.index("]")]), counts, is_array=is_array)
             yield line, table
         else:
-            yield line, (*table, *_names(tokens[: tokens.index("=")]))
+            yield line, (*table, *_key_names(tokens[: tokens.index("=")]))
 
 
-def _table(names: list[str], counts: dict[TomlPath, int], *, is_array: bool) -> TomlPath:
+def _table_path(names: list[str], counts: dict[TomlPath, int], *, is_array: bool) -> TomlPath:
     """Return the path of a header's table; in an array of tables it is in the last table so far."""
     path: TomlPath = ()
     for index, name in enumerate(names):
@@ -133,7 +133,7 @@ def line_of(lines: dict[TomlPath, int], path: TomlPath) -> int:
     return lines[path]
 
 
-def _statements(text: str) -> list[tuple[int, list[str]]]:
+def _split_statements(text: str) -> list[tuple[int, list[str]]]:
     """Return each header and key with its value as tokens, and the line on which it begins."""
     statements: list[tuple[int, list[str]]] = []
     line, depth = 1, 0
@@ -151,7 +151,7 @@ def _statements(text: str) -> list[tuple[int, list[str]]]:
     return statements
 
 
-def _names(tokens: list[str]) -> list[str]:
+def _key_names(tokens: list[str]) -> list[str]:
     """Return the keys that tokens stand for, quoted ones without their quotes."""
     names = [token for token in tokens if token != "."][:_MAX_DEPTH]
     return [next(iter(tomllib.loads(f"{token}=0"))) if token[0] in "\"'" else token for token in names]

@@ -38,20 +38,20 @@ class Validation:
         self._defaults: TomlRow = {}
         self._default_arguments: dict[str, TomlRow] = {}
         self._read_defaults()
-        self.parts = self._rows("part", keys.PART)
-        self.criteria = self._rows("criterion", keys.CRITERION, self._defaults)
-        self.evidence = self._rows("evidence", keys.EVIDENCE)
+        self.parts = self._read_rows("part", keys.PART)
+        self.criteria = self._read_rows("criterion", keys.CRITERION, self._defaults)
+        self.evidence = self._read_rows("evidence", keys.EVIDENCE)
         self.late = self._row(("late",), self.rubric["late"], keys.LATE) if "late" in self.rubric else None
         self.ignored = [
             self._row(("test", "ignore", index), row, keys.IGNORE)
             for index, row in enumerate(self._row(("test",), self.rubric.get("test", {}), keys.TEST).get("ignore", ()))
         ]
-        part_ids, positions = self._positions("part"), self._positions("criterion")
+        part_ids, positions = self._find_positions("part"), self._find_positions("criterion")
         self._check_part(("defaults",), self._defaults, part_ids)
         self._check_criteria(part_ids, positions)
         for index, row in enumerate(self.evidence):
             self._check_part(("evidence", index), row, part_ids)
-        self.adjusted = self._adjustments(positions)
+        self.adjusted = self._read_adjustments(positions)
         self._check_totals()
 
     @property
@@ -65,7 +65,7 @@ class Validation:
             if "part" in self.rubric["criterion"][index]:
                 self._check_part(where, row, part_ids)
             self._check_order((*where, "requires"), row, positions)
-            if (bound := self._arguments(where, row)) is not None:
+            if (bound := self._bind_check(where, row)) is not None:
                 self.bound.append(bound)
                 self._check_subject(where, row, bound[0])
             given = row.get("carried", [])
@@ -75,7 +75,7 @@ class Validation:
             if use := {TOTAL: "final marks", DEADLINE: "deadlines"}.get(row.get("id", "")):
                 self._complain((*where, "id"), f"the id {row['id']!r} is reserved for {use}: choose another one")
 
-    def _rows(self, key: str, table: KeyTable, defaults: Mapping[str, Any] | None = None) -> list[TomlRow]:
+    def _read_rows(self, key: str, table: KeyTable, defaults: Mapping[str, Any] | None = None) -> list[TomlRow]:
         rows = enumerate(self.rubric.get(key, ()))
         return [self._row((key, index), row, table, defaults or {}) for index, row in rows]
 
@@ -84,7 +84,7 @@ class Validation:
         defaults = self._row(("defaults",), self.rubric.get("defaults", {}), keys.DEFAULTS)
         for name, given in defaults.pop("with", {}).items():
             where: TomlPath = ("defaults", "with", name)
-            check = self._check(where, name)
+            check = self._look_up_check(where, name)
             if not isinstance(given, dict):
                 self._complain(where, f"the arguments of {name} must be a table, not {shorten_value(given)}")
             elif check is not None:
@@ -104,7 +104,7 @@ class Validation:
             message = f"the check {check.name} compares with the reference solution: the rubric needs the key reference"
             self._complain((*where, "check"), message)
 
-    def _positions(self, key: str) -> dict[str, int]:
+    def _find_positions(self, key: str) -> dict[str, int]:
         """Return the position of the first row with each id, and complain of later ones with the same id."""
         positions: dict[str, int] = {}
         for index, row in enumerate(self.rubric.get(key, ())):
@@ -126,7 +126,9 @@ class Validation:
             given = given[key] if isinstance(key, int) else given.get(key, {})
         index, is_required = int(where[1]), where[-1] == "requires"
         verb, action = ("requires", "require") if is_required else ("is carried from", "be carried from")
-        for name in given if isinstance(given, list) else ():
+        if not isinstance(given, list):
+            return
+        for name in given:
             if not isinstance(name, str) or positions.get(name, index) < index:
                 continue
             if name == row.get("id"):
@@ -142,10 +144,10 @@ class Validation:
     ) -> BoundCarried | None:
         carried = self._row(where, table, keys.CARRIED)
         self._check_order((*where, "from"), row, positions)
-        bound = self._arguments(where, carried)
+        bound = self._bind_check(where, carried)
         return (carried["from"], *bound) if bound is not None and "from" in carried else None
 
-    def _adjustments(self, positions: Mapping[str, int]) -> dict[str, TomlRow]:
+    def _read_adjustments(self, positions: Mapping[str, int]) -> dict[str, TomlRow]:
         """Return the adjustments by criterion."""
         for name in (adjusted := self.rubric.get("adjust", {})):
             if name not in positions:
@@ -160,10 +162,10 @@ class Validation:
             if isinstance(row, dict)
         }
 
-    def _arguments(self, where: TomlPath, row: TomlRow) -> BoundCheck | None:
+    def _bind_check(self, where: TomlPath, row: TomlRow) -> BoundCheck | None:
         """Return the check of a row with its converted arguments; None if there is no such check."""
         name, given = row.get("check"), row.get("with", {})
-        check = self._check((*where, "check"), name) if name is not None else None
+        check = self._look_up_check((*where, "check"), name) if name is not None else None
         if check is None:
             return None
         arguments = self._parse_arguments((*where, "with"), check, given)
@@ -189,7 +191,7 @@ class Validation:
                 self._complain((*where, key), f"{key} of {check.name} must be {error}, not {shorten_value(value)}")
         return arguments
 
-    def _check(self, where: TomlPath, name: str) -> Check | None:
+    def _look_up_check(self, where: TomlPath, name: str) -> Check | None:
         try:
             check = self._find_check(name)
         except InputError as error:  # in another package

@@ -33,17 +33,19 @@ def convention_of(robot: Configuration, reference: Configuration, base: str) -> 
     One link may be elsewhere: its own mistake.
     """
     names = [link.name for link in reference.robot.links if robot.robot.has_link(link.name)]
-    pairs = [pair for name in names if (pair := _pair(robot, reference, name, base)) is not None]
+    pairs = [pair for name in names if (pair := _matching_points(robot, reference, name, base)) is not None]
     if len(pairs) < _MIN_POINTS or 2 * sum(dist(*pair) <= _NEAR for pair in pairs) >= len(pairs):
         return None  # too few points, or most are where they should be: the quick answer for most robots
-    count, T_base_other = max((_fit(pairs, rotation) for rotation in _quarter_turns()), key=lambda fit: fit[0])
-    description = _description(T_base_other)
+    count, T_base_other = max((_fit_rotation(pairs, rotation) for rotation in _quarter_turns()), key=lambda fit: fit[0])
+    description = _describe_motion(T_base_other)
     if not description or count < max(_MIN_POINTS, len(pairs) - 1):
         return None
     return Convention(description, _reframe(robot, reference, base, T_base_other))
 
 
-def _pair(robot: Configuration, reference: Configuration, link: str, base: str) -> tuple[Vector, Vector] | None:
+def _matching_points(
+    robot: Configuration, reference: Configuration, link: str, base: str
+) -> tuple[Vector, Vector] | None:
     """Return where the first shape of a link is in the frame of both robots' base, or its frame if it has no shape."""
     try:
         found = [(it.pose(link, relative_to=base), it.link(link).visuals) for it in (robot, reference)]
@@ -66,7 +68,7 @@ def _quarter_turns() -> Iterator[Rotation]:
             yield a, b, c, d, e, f, g, h, i
 
 
-def _fit(pairs: _Pairs, rotation: Rotation) -> tuple[int, Transform]:
+def _fit_rotation(pairs: _Pairs, rotation: Rotation) -> tuple[int, Transform]:
     """Return how many points a rotation and the best translation lay over each other, and both."""
     from statistics import median  # late: most robots are not rotated
 
@@ -76,7 +78,7 @@ def _fit(pairs: _Pairs, rotation: Rotation) -> tuple[int, Transform]:
     return sum(dist(offset, (x, y, z)) <= _NEAR for offset in offsets), Transform(rotation, (x, y, z))
 
 
-def _description(T: Transform) -> str:
+def _describe_motion(T: Transform) -> str:
     """Return a turn and a move in words; empty if there is none."""
     angle, words = turn_between(T.rotation, IDENTITY_ROTATION), []
     if angle > 1.0:
@@ -100,24 +102,26 @@ def _reframe(robot: Configuration, reference: Configuration, base: str, T_base_o
             continue
         if turn_between((T_ours @ turned).rotation, wanted) + 1.0 < turn_between(T_ours.rotation, wanted):
             frames.setdefault(link.name, turned)
-    links = tuple(_link(link, frames.get(link.name, IDENTITY)) for link in robot.robot.links)
+    links = tuple(_reframe_link(link, frames.get(link.name, IDENTITY)) for link in robot.robot.links)
     joints = tuple(
-        _joint(it, frames.get(it.parent, IDENTITY), frames.get(it.child, IDENTITY)) for it in robot.robot.joints
+        _reframe_joint(it, frames.get(it.parent, IDENTITY), frames.get(it.child, IDENTITY)) for it in robot.robot.joints
     )
     return replace(robot.robot, links=links, joints=joints)
 
 
-def _link(link: Link, T_link_other: Transform) -> Link:
+def _reframe_link(link: Link, T_link_other: Transform) -> Link:
     if T_link_other == IDENTITY:
         return link
     back = T_link_other.inverse()
-    visuals = tuple(replace(it, origin=_place(back, it.origin)) for it in link.visuals)
+    visuals = tuple(replace(it, origin=_reframe_origin(back, it.origin)) for it in link.visuals)
     return replace(
-        link, visuals=visuals, collisions=tuple(replace(it, origin=_place(back, it.origin)) for it in link.collisions)
+        link,
+        visuals=visuals,
+        collisions=tuple(replace(it, origin=_reframe_origin(back, it.origin)) for it in link.collisions),
     )
 
 
-def _joint(joint: Joint, T_parent_other: Transform, T_child_other: Transform) -> Joint:
+def _reframe_joint(joint: Joint, T_parent_other: Transform, T_child_other: Transform) -> Joint:
     if joint.origin is None or (T_parent_other, T_child_other) == (IDENTITY, IDENTITY):
         return joint
     T_parent_child = placed_by(T_parent_other.inverse(), joint.origin) @ T_child_other
@@ -125,6 +129,6 @@ def _joint(joint: Joint, T_parent_other: Transform, T_child_other: Transform) ->
     return replace(joint, origin=origin, axis=T_child_other.unrotate(joint.axis) if joint.axis is not None else None)
 
 
-def _place(T: Transform, origin: Origin) -> Origin:
+def _reframe_origin(T: Transform, origin: Origin) -> Origin:
     moved = placed_by(T, origin)
     return replace(origin, xyz=moved.translation, rpy=moved.rpy)

@@ -41,7 +41,7 @@ def least_edge_overlap(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -
         overlaps = _half_widths(a, normals) + _half_widths(b, rotation.T @ normals) - abs(T_a_b.translation @ normals)
         overlaps[lengths == np.inf] = np.inf
         best = normals[:, overlaps.argmin()]
-        rims = [(plane, _closer(turns, atan2(best @ plane[:, 0], -(best @ plane[:, 1])))) for plane, turns in rims]
+        rims = [(plane, _angles_near(turns, atan2(best @ plane[:, 0], -(best @ plane[:, 1])))) for plane, turns in rims]
     x, y, z = best.tolist()
     return (x, y, z)
 
@@ -59,7 +59,7 @@ def _all_around(radius: float) -> _Array:
     return np.linspace(0.0, pi, count, endpoint=False)
 
 
-def _closer(turns: _Array, middle: float) -> _Array:
+def _angles_near(turns: _Array, middle: float) -> _Array:
     closer: _Array = middle + (turns[1] - turns[0]) * _STEPS
     return closer
 

@@ -117,7 +117,7 @@ def _undefined_pose(joint: Joint, robot: Robot) -> MissingElement:
     elif unit(joint.axis) is None:
         reason = "the joint's axis is 0 0 0"
     else:
-        for leader in _leaders(joint, robot):
+        for leader in _mimic_leaders(joint, robot):
             if "mimic" in leader.unresolved:
                 leader.unresolved["mimic"].check()
         reason, at = "the joint's numbers are too large", joint.location
@@ -125,7 +125,7 @@ def _undefined_pose(joint: Joint, robot: Robot) -> MissingElement:
     return MissingElement("pose below joint", joint.name, message=message, detail=detail, location=at)
 
 
-def _leaders(joint: Joint, robot: Robot) -> Iterable[Joint]:
+def _mimic_leaders(joint: Joint, robot: Robot) -> Iterable[Joint]:
     """Return a joint, the joint that it mimics, the one that this mimics, and so on."""
     found = {joint.name: joint}
     while joint.mimic is not None and joint.mimic.joint not in found and robot.has_joint(joint.mimic.joint):
@@ -157,10 +157,10 @@ def _motion_of(joint: Joint, position: float) -> Transform | None:
         # KDL divides by the axis' length before it uses the position. An unreadable axis matters only if the joint
         # moves.
         return IDENTITY if joint.axis is None and not position else None
-    return IDENTITY if joint.type == "planar" or not position else _along(joint, direction, position)
+    return IDENTITY if joint.type == "planar" or not position else _motion_along(joint, direction, position)
 
 
-def _along(joint: Joint, direction: Vector, position: float) -> Transform:
+def _motion_along(joint: Joint, direction: Vector, position: float) -> Transform:
     """Return a motion along the axis of a prismatic joint, or about that of another one."""
     if joint.type == "prismatic":
         x, y, z = direction
@@ -329,9 +329,10 @@ class Configuration:
         if above is not None and name != above:
             self.link(above)
             return None
-        for joint in joints if self.robot.rejected else ():
-            if "@type" in joint.unresolved:
-                joint.unresolved["@type"].check()
+        if self.robot.rejected:
+            for joint in joints:
+                if "@type" in joint.unresolved:
+                    joint.unresolved["@type"].check()
         return tuple(reversed(joints))
 
     def between(self, one: str, other: str) -> tuple[Joint, ...]:

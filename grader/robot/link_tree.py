@@ -67,14 +67,18 @@ def _most_plausible(joints: list[Joint]) -> dict[str, Joint]:
         above.update(dict.fromkeys(passed, link))
         return link
 
-    by_plausibility = sorted(
-        joints, key=lambda joint: (joint.child not in joint.name) * (1 + (joint.parent in joint.name))
-    )
-    for joint in by_plausibility:
+    for joint in sorted(joints, key=_implausibility):
         if joint.child not in parents and root(joint.parent) != joint.child:
             parents[joint.child] = joint
             above[joint.child] = joint.parent
     return parents
+
+
+def _implausibility(joint: Joint) -> int:
+    """Return how implausible the ends of a joint are by its name: 0, 1, or 2 if they look swapped."""
+    if joint.child in joint.name:
+        return 0
+    return 2 if joint.parent in joint.name else 1
 
 
 def check_tree(robot: Robot, links: dict[str, Element], problems: Problems) -> None:
@@ -230,7 +234,7 @@ def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
     if found is None or robot.has_link(name):
         return name
     robot.check_complete()
-    places = _places(robot, parents)
+    places = _find_places(robot, parents)
     root = _main_root(places, name)
     places = {link: place for link, place in places.items() if place.root == root}
     if name == "@root":
@@ -239,8 +243,8 @@ def selected_link(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
     if found[1] is None:
         inner = {parents[link].parent for link in places if link != root}
         tips = {link for link, place in places.items() if place.depth == most and link not in inner}
-        return _only(robot, tips, name)
-    return _only(robot, _links_of(places, parents, int(found[1]), most, name), name)
+        return _only_link(robot, tips, name)
+    return _only_link(robot, _links_moved_by(places, parents, int(found[1]), most, name), name)
 
 
 def selected_or_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
@@ -251,7 +255,7 @@ def selected_or_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> s
         return name
 
 
-def _links_of(
+def _links_moved_by(
     places: dict[str, _LinkPlace], parents: Mapping[str, Joint], number: int, most: int, name: str
 ) -> set[str]:
     """Return the links that the joint of this number moves, of those on the chains with the most moving joints."""
@@ -265,7 +269,7 @@ def _links_of(
     return {link for link in on_chain if places[link].is_moved and places[link].depth == number}
 
 
-def _places(robot: Robot, parents: Mapping[str, Joint]) -> dict[str, _LinkPlace]:
+def _find_places(robot: Robot, parents: Mapping[str, Joint]) -> dict[str, _LinkPlace]:
     """Return the places of the links that are in a tree, each after that of its parent."""
     below: dict[str, list[str]] = {}
     for link, joint in parents.items():
@@ -291,7 +295,7 @@ def _main_root(places: Mapping[str, _LinkPlace], name: str) -> str:
     raise MissingElement("link", name, message=f"there is no {name}: {message}", detail=detail)
 
 
-def _only(robot: Robot, links: set[str], name: str) -> str:
+def _only_link(robot: Robot, links: set[str], name: str) -> str:
     if len(links) > 1:
         reason = f"several links can be {name}"
         in_file = [quoted(link.name) for link in robot.links if link.name in links]

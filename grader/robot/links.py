@@ -39,7 +39,7 @@ class Materials:
         """Read a material directly under <robot>; without a valid colour it is black."""
         problems = self._problems
         name = element.get("name") or ""
-        material, _ = self._read(element, name, "ROS 2 shows black")
+        material, _ = self._read_material(element, name, "ROS 2 shows black")
         if element.get("name") is None:
             problems.add(urdf_problems.UNNAMED_MATERIAL, "this material has no name; no link can use it", element)
         elif material is None:
@@ -62,12 +62,12 @@ class Materials:
         if not len(element) and name in self.known and name:
             return self.known[name], name, False
         fallback = "the definition above applies" if name in self.known else f"material {quoted(name)} stays undefined"
-        own, reported = self._read(element, name, f"ROS 2 logs an error: {fallback}")
+        own, reported = self._read_material(element, name, f"ROS 2 logs an error: {fallback}")
         found = self.known.get(name) if name else own
         if own is None:
             if found is None and name and not reported:
                 self._note_undefined(name, element, link)
-                found = self._elsewhere(name)
+                found = self._find_elsewhere(name)
         elif found is None:
             found = self.known[name] = own
         elif (own.rgba, own.texture) != (found.rgba, found.texture):
@@ -75,7 +75,7 @@ class Materials:
             self._problems.add(urdf_problems.REDEFINED_MATERIAL, message, element, "name")
         return found, name, found is None and reported
 
-    def _read(self, element: Element, name: str, consequence: str) -> tuple[Material | None, bool]:
+    def _read_material(self, element: Element, name: str, consequence: str) -> tuple[Material | None, bool]:
         """Return the material that an element defines, if it does, and whether its colour is reported as a problem."""
         inside = first_children(element)
         colour = inside.get("color")
@@ -99,7 +99,7 @@ class Materials:
         location = self._problems.location(element if colour is None else colour)
         return Material(name, channels or _BLACK, filename or "", location, unresolved), reported
 
-    def _elsewhere(self, name: str) -> Material | None:
+    def _find_elsewhere(self, name: str) -> Material | None:
         """Return a material that may be defined in a part of the robot that xacro leaves open."""
         root = self._problems.root
         found = self._problems.unresolved.get(root)
@@ -211,8 +211,8 @@ def _read_geometry(
     needed = {"box": "size", "mesh": "filename"}.get(shape.tag)
     if needed and shape.get(needed) is None:
         reader.fail(f"<{shape.tag}> has no {needed}", shape)
-    geometry = _shape(shape, reader, problems.location(shape))
-    for attribute, value in _sizes(geometry):
+    geometry = _geometry_from(shape, reader, problems.location(shape))
+    for attribute, value in _sizes_by_attribute(geometry):
         if value < 0:
             message = f"{attribute} of <{shape.tag}> is negative ({value:g}), which ROS 2 does not check"
             problems.add(urdf_problems.NEGATIVE_SIZE, message, shape, attribute)
@@ -220,7 +220,7 @@ def _read_geometry(
     return geometry
 
 
-def _shape(shape: Element, reader: ElementReader, location: LazyLocation) -> Geometry:
+def _geometry_from(shape: Element, reader: ElementReader, location: LazyLocation) -> Geometry:
     match shape.tag:
         case "box":
             return Box(reader.vector(shape, "size"), location)
@@ -231,7 +231,7 @@ def _shape(shape: Element, reader: ElementReader, location: LazyLocation) -> Geo
     return Mesh(shape.get("filename") or "", reader.vector(shape, "scale", (1.0, 1.0, 1.0)), location)
 
 
-def _sizes(geometry: Geometry) -> list[tuple[str, float]]:
+def _sizes_by_attribute(geometry: Geometry) -> list[tuple[str, float]]:
     """Return the attributes with the sizes of a shape that has some."""
     match geometry:
         case Box(size=edges):

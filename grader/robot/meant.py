@@ -1,7 +1,7 @@
 """The words for which ROS 2 rejects a file and that surely stand for others: what the robot is if they are undone."""
 
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import NamedTuple
 
@@ -45,13 +45,13 @@ def read_as_meant(root: Element, robot: Robot, read: Callable[[], tuple[Robot, P
     before: list[tuple[Element, str, dict[str, str]]] = []
     try:
         for _ in range(_MAX_ROUNDS):
-            ways = (_of_format(root), _references(root, robot), _repeated_names(root))
+            ways = (_misspelt_format(root), _misspelt_references(root, robot), _repeated_names(root))
             words = next(filter(None, ([*islice(way, _MAX_WORDS)] for way in ways)), [])
             if not words:
                 return None
             for word in words:
                 before.append((word.element, str(word.element.tag), dict(word.element.attrib)))  # type: ignore[arg-type]
-                _write(word.element, word.tag, word.attributes)
+                _rewrite_element(word.element, word.tag, word.attributes)
             undone += words
             robot, problems = read()
             if "rejects" not in problems.effects:
@@ -60,44 +60,33 @@ def read_as_meant(root: Element, robot: Robot, read: Callable[[], tuple[Robot, P
         return None
     finally:
         for element, tag, attributes in reversed(before):
-            _write(element, tag, attributes)
+            _rewrite_element(element, tag, attributes)
 
 
-def _write(element: Element, tag: str, attributes: dict[str, str]) -> None:
+def _rewrite_element(element: Element, tag: str, attributes: dict[str, str]) -> None:
     element.tag = tag
     element.attrib.clear()
     for name, value in attributes.items():
         element.set(name, value)
 
 
-def _with_value(element: Element, attribute: str, value: str, what: str) -> Word:
+def _word_with_value(element: Element, attribute: str, value: str, what: str) -> Word:
     given: dict[str, str] = dict(element.attrib)  # type: ignore[arg-type]
     sentence = f"{what} {quoted(given[attribute])} is read as {quoted(value)}"
     return Word(element, attribute, str(element.tag), {**given, attribute: value}, sentence)
 
 
-def _references(root: Element, robot: Robot) -> Iterator[Word]:
-    """Yield links that joints name and that do not exist, and joint types, each near one that can be meant.
-
-    If no joint names the link that is near, and several joints name the other one, or a joint is named after it, the
-    definition has the wrong word.
-    """
+def _misspelt_references(root: Element, robot: Robot) -> Iterator[Word]:
+    """Yield links that joints name and that do not exist, and joint types, each near one that can be meant."""
     links = [link.name for link in robot.links]
     uses = Counter(name for joint in robot.joints for name in (joint.parent, joint.child))
     unknown = [name for name in uses if name and not robot.has_link(name)]
     if len(unknown) > _MAX_WORDS:
         return
-    names = "".join(f"_{joint.name}_" for joint in robot.joints)
-    nearest = {near(name, links, "link"): name for name in unknown if uses[name] > 1 or f"_{name}_" in names}
-    defined = {
-        link: name
-        for link, name in nearest.items()
-        if link and link not in uses and (uses[name] > 1 or f"_{link}_" not in names)
-        if name.endswith("link") or not link.endswith("link")  # the shorter name lacks its end
-    }
+    defined = _misspelt_definitions(robot, links, uses, unknown)
     for element in root.iterchildren("link"):
         if (meant := defined.get(element.get("name") or "")) is not None:
-            yield _with_value(element, "name", meant, "the link")
+            yield _word_with_value(element, "name", meant, "the link")
     children = {joint.child for joint in robot.joints}
     misspelt = {name for name in unknown if name not in defined.values()}
     if sum(uses[name] for name in misspelt) > _MAX_ROUNDS * _MAX_WORDS:
@@ -105,16 +94,44 @@ def _references(root: Element, robot: Robot) -> Iterator[Word]:
     for joint in root.iterchildren("joint"):
         kind = near(joint.get("type") or "", JOINT_TYPES) if joint.get("type") not in JOINT_TYPES else None
         if kind is not None:
-            yield _with_value(joint, "type", kind, "the joint type")
-        ends = {role: end for role in ("parent", "child") if (end := joint.find(role)) is not None}
-        for role, end in ends.items():
-            if (name := end.get("link") or "") not in misspelt:
-                continue
-            others = {other.get("link") for other in ends.values()} | (children if role == "child" else set())
-            meant = near(name, [link for link in links if link not in others], "link")
-            if meant is not None:
-                children.add(meant if role == "child" else "")
-                yield _with_value(end, "link", meant, "the link")
+            yield _word_with_value(joint, "type", kind, "the joint type")
+        yield from _misspelt_ends(joint, misspelt, links, children)
+
+
+def _misspelt_definitions(
+    robot: Robot, links: Collection[str], uses: Mapping[str, int], unknown: Collection[str]
+) -> dict[str, str]:
+    """Return the links whose definitions have the wrong word, each with the unknown name that is meant.
+
+    No joint names the link, and several joints name the other one, or a joint is named after it.
+    """
+    names = "".join(f"_{joint.name}_" for joint in robot.joints)
+    nearest = {near(name, links, "link"): name for name in unknown if uses[name] > 1 or f"_{name}_" in names}
+    return {
+        link: name
+        for link, name in nearest.items()
+        if link and link not in uses and (uses[name] > 1 or f"_{link}_" not in names)
+        if name.endswith("link") or not link.endswith("link")  # the shorter name lacks its end
+    }
+
+
+def _misspelt_ends(
+    joint: Element, misspelt: Collection[str], links: Sequence[str], children: set[str]
+) -> Iterator[Word]:
+    """Yield the misspelt parent and child of a joint; `children` grows by what is meant, which no other joint can."""
+    ends = {role: end for role in ("parent", "child") if (end := joint.find(role)) is not None}
+    for role, end in ends.items():
+        name = end.get("link") or ""
+        if name not in misspelt:
+            continue
+        others = {other.get("link") for other in ends.values()}
+        if role == "child":
+            others |= children
+        meant = near(name, [link for link in links if link not in others], "link")
+        if meant is not None:
+            if role == "child":
+                children.add(meant)
+            yield _word_with_value(end, "link", meant, "the link")
 
 
 def _repeated_names(root: Element) -> Iterator[Word]:
@@ -129,23 +146,26 @@ def _repeated_names(root: Element) -> Iterator[Word]:
         missing = [name for name in dict.fromkeys(names) if name and name not in given]
         if len(repeated) == len(missing) == 1 and given[repeated[0]] == 2:
             *_, later = (element for element in root.iterchildren(tag) if element.get("name") == repeated[0])
-            yield _with_value(later, "name", missing[0], f"the second {tag}")
+            yield _word_with_value(later, "name", missing[0], f"the second {tag}")
 
 
-def _of_format(root: Element) -> Iterator[Word]:
+def _misspelt_format(root: Element) -> Iterator[Word]:
     """Yield tags and attributes that the format does not have there, each near one that it needs and that is absent."""
-    yield from _tags(root, ("link", "joint"))
-    yield from _attributes(root)
+    yield from _misspelt_tags(root, ("link", "joint"))
+    yield from _misspelt_attributes(root)
     for element in (it for tag in ("link", "joint") for it in root.iterchildren(tag)):
-        yield from _attributes(element)
+        yield from _misspelt_attributes(element)
         if element.tag == "joint":
-            needed = ("parent", "child", *(("limit",) if element.get("type") in ("revolute", "prismatic") else ()))
-            yield from _tags(element, [tag for tag in needed if element.find(tag) is None])
+            needed = ["parent", "child"]
+            if element.get("type") in ("revolute", "prismatic"):
+                needed.append("limit")
+            yield from _misspelt_tags(element, [tag for tag in needed if element.find(tag) is None])
             for child in element:
-                yield from _attributes(child) if child.tag in _OF_JOINT else ()
+                if child.tag in _OF_JOINT:
+                    yield from _misspelt_attributes(child)
 
 
-def _tags(parent: Element, needed: Collection[str]) -> Iterator[Word]:
+def _misspelt_tags(parent: Element, needed: Collection[str]) -> Iterator[Word]:
     for child in parent:
         tag = str(child.tag)
         meant = near(tag, needed) if tag not in TAGS and not tag.startswith("{") else None
@@ -153,10 +173,12 @@ def _tags(parent: Element, needed: Collection[str]) -> Iterator[Word]:
             yield Word(child, None, meant, dict(child.attrib), f"<{tag}> is read as <{meant}>")  # type: ignore[arg-type]
 
 
-def _attributes(element: Element) -> Iterator[Word]:
+def _misspelt_attributes(element: Element) -> Iterator[Word]:
     tag, given = str(element.tag), {str(name): str(value) for name, value in element.attrib.items()}
     absent = [name for name in REQUIRED[tag] if name not in given]
-    for name in given if absent else ():
+    if not absent:
+        return
+    for name in given:
         meant = near(name, absent) if name not in ATTRIBUTES[tag] else None
         if meant is not None:
             renamed = {meant if key == name else key: value for key, value in given.items()}

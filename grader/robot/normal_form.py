@@ -120,16 +120,23 @@ def _pose(pose: Transform) -> tuple[Any, ...]:
 
 def _joint_form(joint: Joint, kept: Collection[str]) -> object:
     kind, limit = joint.type, joint.limit if joint.type not in _UNLIMITED else None
-    axis = unit(joint.axis) if joint.axis is not None and kind in _TURNING else None
     moving = (joint.mimic, joint.dynamics or Dynamics(), joint.safety_controller, joint.calibration)
     return (
         joint.parent, joint.child, joint.name if joint.name in kept else "", kind,
         _pose(placed_by(IDENTITY, joint.origin)) if joint.origin is not None else None,
-        (_turned(axis) if axis is not None else joint.axis) if kind in _TURNING else (),
+        _axis_form(joint),
         _rounded((limit.lower, limit.upper)) if limit is not None and kind in _LIMITED else (),
         _rounded((limit.effort, limit.velocity)) if limit is not None else (),
         _rounded(moving) if kind != "fixed" else (),
     )  # fmt: skip
+
+
+def _axis_form(joint: Joint) -> object:
+    """Return the direction of an axis; of one without a direction what the file gives, and nothing if it has no use."""
+    if joint.type not in _TURNING:
+        return ()
+    axis = unit(joint.axis) if joint.axis is not None else None
+    return _turned(axis) if axis is not None else joint.axis
 
 
 def _rounded(value: Any) -> Any:

@@ -26,17 +26,17 @@ class NumberError(ValueError):
     """Text that ROS 2 does not read as a number; the message says why."""
 
 
-def _cache(read: Callable[[str], _Value]) -> Callable[[str], _Value]:
+def _cached_reader(read: Callable[[str], _Value]) -> Callable[[str], _Value]:
     """Return a reader that keeps values: the files of a class contain the same few texts thousands of times."""
     cached = lru_cache(maxsize=4096)(read)
     return wraps(read)(lambda text: cached(text) if len(text) <= _MAX_CACHED_LENGTH else read(text))
 
 
-@_cache
+@_cached_reader
 def number(text: str) -> float:
     """Return the value of one number as urdfdom's strToDouble does; raises NumberError."""
     if _NUMBER.fullmatch(text) is None:
-        raise NumberError(_reason(text))
+        raise NumberError(_why_no_number(text))
     value = float(text)
     if isinf(value):
         raise NumberError(f"{quoted(text.strip())} is too large for a number")
@@ -48,7 +48,7 @@ def numbers(text: str) -> list[float]:
     return [number(piece) for piece in text.split(" ") if piece]
 
 
-@_cache
+@_cached_reader
 def vector(text: str) -> Vector:
     """Return three numbers as urdfdom's Vector3::init does; raises NumberError."""
     values = numbers(text)
@@ -81,7 +81,7 @@ def _strtol(digits: str) -> int:
     return -value if digits[0] == "-" else value
 
 
-def _reason(text: str) -> str:
+def _why_no_number(text: str) -> str:
     if not text.strip():
         return "it is empty"
     reasons = {

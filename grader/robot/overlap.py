@@ -32,7 +32,7 @@ def penetration(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, allowed:
     scale = 1.0
     if reach > _MAX_LENGTH:
         scale = min(reach / _MAX_LENGTH, 1e308)
-        a, b, T_w_a, T_w_b = shrunk(a, scale), shrunk(b, scale), _scaled(T_w_a, scale), _scaled(T_w_b, scale)
+        a, b, T_w_a, T_w_b = shrunk(a, scale), shrunk(b, scale), _scale_pose(T_w_a, scale), _scale_pose(T_w_b, scale)
     T_a_b = T_w_a.inverse() @ T_w_b
     depth = _overlap(a, b, T_a_b, least_overlap(a, b, T_a_b, limit / scale)) * scale
     return depth if depth > limit else 0.0
@@ -61,7 +61,7 @@ def least_overlap(a: Shape, b: Shape, T_a_b: Transform, limit: float = _ROUNDING
     return best
 
 
-def _scaled(pose: Transform, scale: float) -> Transform:
+def _scale_pose(pose: Transform, scale: float) -> Transform:
     x, y, z = pose.translation
     return Transform(pose.rotation, (x / scale, y / scale, z / scale))
 
@@ -84,10 +84,10 @@ def _likely_directions(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]
     yield from edges_b
     yield unit(c) or (0.0, 0.0, 1.0)
     if isinstance(a, Cylinder):
-        x, y, _ = T_a_b.rotate(_beyond(b, T_a_b.unrotate(c)))
+        x, y, _ = T_a_b.rotate(_vector_from_nearest(b, T_a_b.unrotate(c)))
         yield unit((x, y, 0.0)) or (1.0, 0.0, 0.0)
     if isinstance(b, Cylinder):
-        x, y, _ = T_a_b.unrotate(_beyond(a, c))
+        x, y, _ = T_a_b.unrotate(_vector_from_nearest(a, c))
         yield T_a_b.rotate(unit((x, y, 0.0)) or (1.0, 0.0, 0.0))
     if isinstance(b, Sphere):
         yield unit(_outside(a, c)) or (1.0, 0.0, 0.0)
@@ -100,7 +100,7 @@ def _likely_directions(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]
             yield (normal[0] / length, normal[1] / length, normal[2] / length)
 
 
-def _beyond(shape: Shape, point: Vector) -> Vector:
+def _vector_from_nearest(shape: Shape, point: Vector) -> Vector:
     """Return the vector to a point from the nearest point of a box, or from the centre of a round shape."""
     if not isinstance(shape, Box):
         return point
@@ -111,7 +111,7 @@ def _beyond(shape: Shape, point: Vector) -> Vector:
 def _outside(shape: Shape, point: Vector) -> Vector:
     """Return the vector to a point from the nearest point of a shape; zero for a point in a box or cylinder."""
     if not isinstance(shape, Cylinder):
-        return _beyond(shape, point)
+        return _vector_from_nearest(shape, point)
     x, y, z = point
     out = max(1.0 - abs(shape.radius) / hypot(x, y), 0.0) if hypot(x, y) else 0.0
     return (x * out, y * out, copysign(max(abs(z) - abs(shape.length) / 2.0, 0.0), z))

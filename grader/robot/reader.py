@@ -101,7 +101,7 @@ def _read_content(document: XmlDocument, root: Element) -> Reading:
     listed = document.problems
     robot, problems = _read_robot(document, root)
     effects = {problem.kind.effect for problem in listed} | problems.effects
-    found, incomplete = problems.listed, _incomplete(document, robot) if effects.intersection(_FATAL) else ""
+    found, incomplete = problems.listed, _why_incomplete(document, robot) if effects.intersection(_FATAL) else ""
     is_meant = document.is_meant and "rejects" not in problems.effects
     undone: tuple[Word, ...] = ()
     if document.is_meant and not is_meant and not incomplete:
@@ -126,7 +126,9 @@ def _read_content(document: XmlDocument, root: Element) -> Reading:
 
 
 def _verdict(effects: Collection[Effect]) -> Verdict:
-    return "rejected" if not _FATAL.isdisjoint(effects) else "degraded" if "drops" in effects else "clean"
+    if not _FATAL.isdisjoint(effects):
+        return "rejected"
+    return "degraded" if "drops" in effects else "clean"
 
 
 def _read_robot(document: XmlDocument, root: Element) -> tuple[Robot, Problems]:
@@ -162,13 +164,15 @@ def _read_robot(document: XmlDocument, root: Element) -> tuple[Robot, Problems]:
     return robot, problems
 
 
-def _incomplete(document: XmlDocument, robot: Robot) -> str:
+def _why_incomplete(document: XmlDocument, robot: Robot) -> str:
     """Return why there may be more links and joints than are known: unknown content, or the name of one is unknown."""
     root = document.root if document.root is not None else document.recovered
     of_root = document.unresolved.get(root) if root is not None else None
+    if of_root is not None and of_root.content:
+        return of_root.content
     parts = [*(link.unresolved for link in robot.links), *(joint.unresolved for joint in robot.joints)]
     named = (found[key].reason for found in parts for key in ("@name", "parent", "child") if key in found)
-    return next(filter(None, (of_root.content if of_root is not None else "", *named)), "")
+    return next(filter(None, named), "")
 
 
 def _read_joints(root: Element, problems: Problems) -> tuple[Joint, ...]:
@@ -194,7 +198,7 @@ def find_xacro(text: str) -> int | None:
     """Return the offset of the first xacro in a text outside of comments: a tag, ${...} or $(...)."""
     if "$" not in text and "xacro:" not in text:
         return None
-    comments = list(_comments(text))
+    comments = list(_comment_spans(text))
     outside = zip([0, *(end for _, end in comments)], [*(start for start, _ in comments), len(text)], strict=True)
     found = next(filter(None, (_XACRO.search(text, *span) for span in outside)), None)
     return found.start() if found is not None else None
@@ -209,7 +213,7 @@ def _check_text(problems: Problems, *, is_expanded: bool) -> None:
         name = problems.source.path.rpartition("/")[2]
         message = f"this is xacro, which ROS 2 does not evaluate in a .urdf: run `ros2 run xacro xacro {quote(name)}`"
         problems.listed.append(Problem(urdf_problems.RAW_XACRO, message, problems.source.at(xacro)))
-    for start, end in _comments(text):
+    for start, end in _comment_spans(text):
         if text.find(": ", start, end) >= 0 or text.find("\t", start, end) >= 0:
             message = "this comment contains a colon and a space, or a tab"
             message += ": it can stop a launch file that passes the URDF as YAML"
@@ -217,7 +221,7 @@ def _check_text(problems: Problems, *, is_expanded: bool) -> None:
             break
 
 
-def _comments(text: str) -> Iterator[tuple[int, int]]:
+def _comment_spans(text: str) -> Iterator[tuple[int, int]]:
     """Yield the offsets at which each comment begins and ends."""
     start = text.find("<!--")
     while start >= 0 and (end := text.find("-->", start + 4)) >= 0:

@@ -55,12 +55,12 @@ def support(geometry: Geometry, direction: Vector) -> Vector:
     tie = _TIE * max(abs(x), abs(y), abs(z))
     if isinstance(geometry, Box):
         a, b, c = geometry.size
-        return (_end(a, x, tie), _end(b, y, tie), _end(c, z, tie))
+        return (_signed_half(a, x, tie), _signed_half(b, y, tie), _signed_half(c, z, tie))
     if isinstance(geometry, Cylinder):
         outward = unit((x, y, 0.0)) if hypot(x, y) > tie else None
         radius = abs(geometry.radius)
         x, y, _ = outward or (0.0, 0.0, 0.0)
-        return (radius * x, radius * y, _end(geometry.length, z, tie))
+        return (radius * x, radius * y, _signed_half(geometry.length, z, tie))
     if isinstance(geometry, Sphere):
         radius = abs(geometry.radius)
         x, y, z = unit(direction) or (0.0, 0.0, 0.0)
@@ -138,7 +138,7 @@ def shrunk(shape: Shape, scale: float) -> Shape:
     return Sphere(shape.radius / scale)
 
 
-def _end(size: float, component: float, tie: float) -> float:
+def _signed_half(size: float, component: float, tie: float) -> float:
     if abs(component) <= tie:
         return 0.0
     return abs(size) / 2.0 if component > 0.0 else -abs(size) / 2.0
@@ -169,7 +169,9 @@ def mismatch(
     None for shapes of different kinds. Without `turned`, their orientations do not count.
     """
     apart = hypot(*minus(T_w_a.translation, T_w_b.translation))
-    found = [Mismatch(apart, *(way if turned else (way[0], 0.0, 0.0))) for way in _ways(a, T_w_a, b, T_w_b)]
+    found = [
+        Mismatch(apart, *(way if turned else (way[0], 0.0, 0.0))) for way in _differences_by_pose(a, T_w_a, b, T_w_b)
+    ]
     return min(found, key=lambda way: (not way.size <= tolerance) + (not way.turn <= tolerance), default=None)
 
 
@@ -179,39 +181,41 @@ def turn_between(one: Rotation, other: Rotation) -> float:
     return degrees(acos(max(-1.0, min(1.0, (trace - 1.0) / 2.0))))
 
 
-def _ways(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> Iterator[tuple[float, float, float]]:
+def _differences_by_pose(
+    a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform
+) -> Iterator[tuple[float, float, float]]:
     """Yield the size, turn and angle of the difference for each way to lay a shape over another, aligned axes first."""
     match a, b:
         case Sphere(), Sphere():
-            yield _off(a.radius, b.radius), 0.0, 0.0
+            yield _size_difference(a.radius, b.radius), 0.0, 0.0
         case Cylinder(), Cylinder():
-            size = max(_off(a.radius, b.radius), _off(a.length, b.length))
-            lean = _between(T_w_a.rotate(AXES[2]), T_w_b.rotate(AXES[2]))
-            yield size, hypot(*lean) * hypot(a.radius, a.length / 2.0), _angle(lean)
+            size = max(_size_difference(a.radius, b.radius), _size_difference(a.length, b.length))
+            lean = _nearest_chord(T_w_a.rotate(AXES[2]), T_w_b.rotate(AXES[2]))
+            yield size, hypot(*lean) * hypot(a.radius, a.length / 2.0), _chord_angle(lean)
         case Box(), Box():
             ours, theirs = ([T.rotate(axis) for axis in AXES] for T in (T_w_a, T_w_b))
             for order in permutations(range(3)):
-                size = max(_off(edge, b.size[other]) for edge, other in zip(a.size, order, strict=True))
-                leans = [_between(axis, theirs[other]) for axis, other in zip(ours, order, strict=True)]
-                yield size, _corner(a.size, leans), max(map(_angle, leans))
+                size = max(_size_difference(edge, b.size[other]) for edge, other in zip(a.size, order, strict=True))
+                leans = [_nearest_chord(axis, theirs[other]) for axis, other in zip(ours, order, strict=True)]
+                yield size, _corner_motion(a.size, leans), max(map(_chord_angle, leans))
 
 
-def _off(one: float, other: float) -> float:
+def _size_difference(one: float, other: float) -> float:
     return abs(one - other)  # a negative size is a mistake, which simulators refuse
 
 
-def _between(one: Vector, other: Vector) -> Vector:
+def _nearest_chord(one: Vector, other: Vector) -> Vector:
     """Return the vector from a unit vector to another or to its opposite, whichever is nearer."""
     side = 1.0 if dot(one, other) >= 0.0 else -1.0
     return (side * other[0] - one[0], side * other[1] - one[1], side * other[2] - one[2])
 
 
-def _angle(chord: Vector) -> float:
+def _chord_angle(chord: Vector) -> float:
     """Return the angle in degrees between the unit vectors that a vector connects."""
     return degrees(2.0 * asin(min(1.0, hypot(*chord) / 2.0)))
 
 
-def _corner(size: Vector, leans: list[Vector]) -> float:
+def _corner_motion(size: Vector, leans: list[Vector]) -> float:
     """Return how far the farthest corner of a box moves if the directions of its edges change by these vectors."""
     return max(
         hypot(
