@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TypeVar
 
-from grader.errors import MissingElement
+from grader.errors import MissingElement, NotDecided
 from grader.robot.model import (
     Calibration,
     Collision,
@@ -22,11 +22,9 @@ from grader.robot.model import (
     Origin,
     Robot,
     SafetyController,
-    UnresolvedParts,
     Vector,
     Visual,
 )
-from grader.source import LazyLocation
 from grader.text import quoted
 
 _KEYS = {"name": "@name", "type": "@type", "visuals": "visual", "collisions": "collision"}  # in UnresolvedParts
@@ -79,6 +77,12 @@ def _value_if_known(part: Link | Joint, field: str, value: _Value) -> _Value:
     raise MissingElement(key, owner, message=message, location=found.location)
 
 
+def _copy_fields(view: object, known: object, *names: str) -> None:
+    """Give a view fields of what it shows, which are never open; it is frozen as that is."""
+    for name in names:
+        object.__setattr__(view, name, getattr(known, name))
+
+
 class _MaterialView(Material):
     """A material of which something is open, so that neither its colour nor its texture can be read."""
 
@@ -87,10 +91,7 @@ class _MaterialView(Material):
 
     def __init__(self, known: Material) -> None:
         object.__setattr__(self, "_known", known)
-
-    @property
-    def name(self) -> str:
-        return self._known.name
+        _copy_fields(self, known, "name", "location", "unresolved")
 
     @property
     def rgba(self) -> tuple[float, float, float, float]:
@@ -101,14 +102,6 @@ class _MaterialView(Material):
     def texture(self) -> str:
         self._check()
         return self._known.texture
-
-    @property
-    def location(self) -> LazyLocation | None:
-        return self._known.location
-
-    @property
-    def unresolved(self) -> UnresolvedParts:
-        return self._known.unresolved
 
     def _check(self) -> None:
         for part in self.unresolved.values():
@@ -123,6 +116,7 @@ class _LinkView(Link):
 
     def __init__(self, known: Link) -> None:
         object.__setattr__(self, "_known", known)
+        _copy_fields(self, known, "location", "unresolved")
 
     @property
     def known(self) -> Link:
@@ -144,14 +138,6 @@ class _LinkView(Link):
     def inertial(self) -> Inertial | None:
         return _value_if_known(self, "inertial", self._known.inertial)
 
-    @property
-    def location(self) -> LazyLocation | None:
-        return self._known.location
-
-    @property
-    def unresolved(self) -> UnresolvedParts:
-        return self._known.unresolved
-
 
 class _JointView(Joint):
     """A joint of which something is open."""
@@ -161,6 +147,7 @@ class _JointView(Joint):
 
     def __init__(self, known: Joint) -> None:
         object.__setattr__(self, "_known", known)
+        _copy_fields(self, known, "location", "axis_location", "unresolved")
 
     @property
     def known(self) -> Joint:
@@ -210,66 +197,29 @@ class _JointView(Joint):
     def calibration(self) -> Calibration | None:
         return _value_if_known(self, "calibration", self._known.calibration)
 
-    @property
-    def location(self) -> LazyLocation | None:
-        return self._known.location
-
-    @property
-    def axis_location(self) -> LazyLocation | None:
-        return self._known.axis_location
-
-    @property
-    def unresolved(self) -> UnresolvedParts:
-        return self._known.unresolved
-
 
 class _IncompleteRobot(Robot):
     """A robot that may have more links and joints than are known: those that are known can be read one by one."""
 
-    __slots__ = ("_known",)
-    _known: Robot
+    __slots__ = ()
 
     def __init__(self, known: Robot) -> None:
-        object.__setattr__(self, "_known", known)
-
-    @property
-    def name(self) -> str:
-        return self._known.name
+        _copy_fields(self, known, "name", "materials", "rejected", "incomplete", "_links", "_joints")
 
     @property
     def links(self) -> tuple[Link, ...]:
-        self.check_complete()
-        return self._known.links
+        raise NotDecided(self.incomplete)
 
     @property
     def joints(self) -> tuple[Joint, ...]:
-        self.check_complete()
-        return self._known.joints
-
-    @property
-    def materials(self) -> tuple[Material, ...]:
-        return self._known.materials
-
-    @property
-    def rejected(self) -> bool:
-        return self._known.rejected
-
-    @property
-    def incomplete(self) -> str:
-        return self._known.incomplete
-
-    def link(self, name: str) -> Link:
-        return self._known.link(name)
-
-    def joint(self, name: str) -> Joint:
-        return self._known.joint(name)
+        raise NotDecided(self.incomplete)
 
     def has_link(self, name: str) -> bool:
-        if not self._known.has_link(name):
+        if name not in self._links:
             self.check_complete()
         return True
 
     def has_joint(self, name: str) -> bool:
-        if not self._known.has_joint(name):
+        if name not in self._joints:
             self.check_complete()
         return True
