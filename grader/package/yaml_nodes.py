@@ -8,6 +8,7 @@ import yaml
 
 from grader.source import Location, Source
 
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _MAX_EVENTS = 25_000
 _MAX_ALIASES = 1000
 _MAX_DEPTH = 200  # the parser gets slower with each open bracket
@@ -62,14 +63,21 @@ class YamlNode:
         return self.value if isinstance(self.value, list) else []
 
 
+def yaml_value(text: str) -> Any:
+    """Return the value of a short YAML text: a number, a text, a list. Raises ValueError if it has none."""
+    try:
+        return yaml.load(text, Loader=_LOADER)  # noqa: S506  a safe loader
+    except (yaml.YAMLError, RecursionError) as error:
+        raise ValueError(str(error)) from None
+
+
 def read_yaml(data: bytes, path: str) -> YamlNode:
     """Return the first document of a YAML text; an empty text is an empty mapping. Raises YamlFault."""
     is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
     text = data.decode("utf-16" if is_wide else "utf-8", "replace")
     source = Source(path, text)
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
-        return _compose(yaml.parse(text.removeprefix("\ufeff"), Loader=loader), source)
+        return _compose(yaml.parse(text.removeprefix("\ufeff"), Loader=_LOADER), source)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         location = _location(source, mark) if mark else Location(path, 1, 1)

@@ -10,12 +10,11 @@ from functools import partial
 from pathlib import PurePosixPath
 from typing import Any
 
-import yaml
-
 from grader.names import did_you_mean
 from grader.package.launch.api import ENTITY, PROCESS, SOURCE, SUBSTITUTION, LaunchClass, class_named, exports, is_a
 from grader.package.launch.model import UnknownText, not_evaluated
 from grader.package.launch.substitutions import PERFORMS
+from grader.package.yaml_nodes import yaml_value
 from grader.python.evaluation import Evaluation, record
 from grader.python.parse import Position
 from grader.python.values import (
@@ -309,8 +308,8 @@ def boolean(text: str, at: Position) -> bool:
     """Return the value of a text as launch reads it where it wants a boolean, by the rules of YAML."""
     found: object = BOOLEANS[text] if text in ("0", "1") else None
     if found is None and len(text) < 20:
-        with suppress(yaml.YAMLError):
-            found = yaml.safe_load(text)
+        with suppress(ValueError):
+            found = yaml_value(text)
     if not isinstance(found, bool):
         raise EvaluationFails(f"{text[:40]!r} is neither true nor false", at)
     return found

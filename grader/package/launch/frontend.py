@@ -9,13 +9,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import yaml
-
 from grader.names import closest, did_you_mean
 from grader.package.launch.api import class_named, front_end
 from grader.package.launch.arguments import TYPED, check
 from grader.package.launch.model import Findings, LaunchFault
-from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
 from grader.python.parse import START, Position
 from grader.python.values import Call, EvaluationFails, EvaluationSignal, Undetermined, Unknown, Value
 from grader.source import Location, Source
@@ -165,8 +163,8 @@ def _plain(node: YamlNode) -> Any:
     if text is None or node.quoted:
         return text
     try:
-        found = yaml.safe_load(text) if len(text) < 50 else text  # longer ones are no numbers
-    except (yaml.YAMLError, ValueError):
+        found = yaml_value(text) if len(text) < 50 else text  # longer ones are no numbers
+    except ValueError:
         return text
     return text if isinstance(found, dict | list) or (isinstance(found, str) and found != text) else found
 
@@ -373,8 +371,8 @@ def _typed_text(text: str, kind: type | None, at: Position) -> Any:
             return text
     text = {"1": "true", "0": "false"}.get(text, text) if kind is bool else text
     try:
-        found = yaml.safe_load(text) if text else text
-    except (yaml.YAMLError, ValueError, RecursionError):
+        found = yaml_value(text) if text else text
+    except ValueError:
         return text
     if not _is_typed(found, kind, at):
         raise EvaluationFails(f"{text[:40]!r} is of no type that is accepted here: put quotes in it", at)

@@ -12,8 +12,6 @@ from functools import cache
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-import yaml
-
 from grader.package.launch.arguments import FILE, OPENED, SCALARS, TYPED, boolean, items_in, kind_of, type_of
 from grader.package.launch.model import (
     STATE_PUBLISHER,
@@ -28,6 +26,7 @@ from grader.package.launch.model import (
 )
 from grader.package.launch.places import PREFIX, ROS, SHARE
 from grader.package.launch.substitutions import PART_UNKNOWN, known_text, resolve
+from grader.package.yaml_nodes import yaml_value
 from grader.python.parse import Position
 from grader.python.values import Call, EvaluationFails, EvaluationSignal, Undetermined, Unknown, Value
 
@@ -40,7 +39,6 @@ _OF_ROS = frozenset(
      "rqt_graph", "rqt_gui", "tf2_tools", "rosbag2", "ros2bag", "teleop_twist_keyboard"}
 )  # fmt: skip
 _MAX_YAML = 200_000  # characters
-_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")
 _STARTS = re.compile(rf"ros2\s+(run|launch)|rviz2|{PART_UNKNOWN}")
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
@@ -313,8 +311,8 @@ def _yaml_of(name: str, value: Value, context: Context, at: Position) -> Any:
     try:
         if len(text) > _MAX_YAML:
             raise Undetermined(f"the parameter {name!r} is too long to be read as YAML", at)
-        return yaml.load(text or "''", Loader=_LOADER)  # noqa: S506  a safe loader
-    except (yaml.YAMLError, ValueError, RecursionError):
+        return yaml_value(text) if text else text
+    except ValueError:
         if isinstance(found, Contents) and found.by == "xacro":
             raise Undetermined(
                 f"whether the output of xacro is YAML, as which {name!r} is read, is not evaluated", at
