@@ -172,21 +172,21 @@ class _AnswerSearch:
             else:
                 spans = [head for head in self._headings(document) if is_about(wanted, head)][:_MAX_MATCHES]
             for head in spans:
-                passage = self._cut(document, head)
+                passage = self._passage_of(document, head)
                 if passage is None:
                     continue
                 is_short = len(passage.text.split(maxsplit=_MAX_HEADING_WORDS)) <= _MAX_HEADING_WORDS
                 found = (passage.is_empty, is_short, head.is_item, head.is_mention)
                 if best is None or found < rank:
-                    best, rank = self._explain(passage, document, head, wanted), found
+                    best, rank = self._explained_passage(passage, document, head, wanted), found
         return best
 
-    def _explain(self, passage: Passage, document: TextDocument, head: Heading, wanted: Label) -> Passage:
+    def _explained_passage(self, passage: Passage, document: TextDocument, head: Heading, wanted: Label) -> Passage:
         """Return a passage with what makes its heading less than certain."""
         if head.is_item:
             items = [item for item in self._headings(document) if item.is_item and item.section == head.section]
             if len(items) > 1 and min(min(item.label.steps) for item in items) == 1:  # perhaps the points of one answer
-                whole = self._cut(document, items[0]._replace(end=items[-1].end)) or passage
+                whole = self._passage_of(document, items[0]._replace(end=items[-1].end)) or passage
                 how = f"a numbered list below the heading of task {head.task}, whose items may be steps or not"
                 return whole._replace(how=how, is_certain=False)
             return passage._replace(how=f"item {min(wanted.steps)} below the heading of task {head.task}")
@@ -200,7 +200,7 @@ class _AnswerSearch:
         headings = [[(document, head) for head in self._headings(document)] for document in self._read]
         for group in (*headings, [(document, _heading_of_file(document, wanted.pattern)) for document in self._read]):
             heads = [(document, head) for document, head in group if _is_shared(wanted.pattern, head)]
-            cut = (self._cut(document, head) for document, head in heads[:_MAX_MATCHES])
+            cut = (self._passage_of(document, head) for document, head in heads[:_MAX_MATCHES])
             answers = [passage for passage in cut if passage is not None]
             match = _match_answer(wanted, self._task, answers)
             if match is not None:
@@ -208,7 +208,7 @@ class _AnswerSearch:
         found.sort(key=lambda passage: (passage.is_empty, not passage.is_certain))
         return found[0] if found else None
 
-    def _cut(self, document: TextDocument, head: Heading) -> Passage | None:
+    def _passage_of(self, document: TextDocument, head: Heading) -> Passage | None:
         lines, start, end = document.lines, head.start, head.end
         while start < end and not has_words(lines[start]):
             start += 1

@@ -78,15 +78,19 @@ def find_evidence(
     if certain := [it for it in exact if not _PRELAB.search(it.file.path)]:
         return FoundEvidence(as_evidence(certain))
     headings = _headings_about(documents, wanted) if documents is not None else []
-    inside = [(_below(document, head), _is_certain(label, document, head)) for document, head, label in headings]
+    inside = [
+        (_evidence_below(document, head), _is_certain(label, document, head)) for document, head, label in headings
+    ]
     if found := [file for file, is_certain in inside if is_certain and not _PRELAB.search(file.path)]:
         return FoundEvidence(tuple(found))
     without_task = [it for it in files if any(label.steps and label.steps <= it.label.steps for label in wanted)]
     perhaps = [*exact, *(it for it in without_task if it.label.task is None)]
-    return FoundEvidence((), (*as_evidence(perhaps), *(it for it, _ in inside), *_unlisted(documents, perhaps)))
+    return FoundEvidence(
+        (), (*as_evidence(perhaps), *(it for it, _ in inside), *_unlisted_documents(documents, perhaps))
+    )
 
 
-def _unlisted(documents: DocumentCollection | None, listed: Sequence[LabelledFile]) -> Iterator[EvidenceFile]:
+def _unlisted_documents(documents: DocumentCollection | None, listed: Sequence[LabelledFile]) -> Iterator[EvidenceFile]:
     paths = {labelled.file.path for labelled in listed}
     return (EvidenceFile(it.path, it.size) for it in _whole_documents(documents) if it.path not in paths)
 
@@ -134,7 +138,7 @@ def _is_certain(wanted: Label, document: TextDocument, head: Heading) -> bool:
     return is_named and document.has_picture(head.start, head.end)
 
 
-def _below(document: TextDocument, head: Heading) -> EvidenceFile:
+def _evidence_below(document: TextDocument, head: Heading) -> EvidenceFile:
     text = " ".join(head.text.split())
     shown = cut(text, _MAX_SHOWN)
     file = document.file

@@ -86,7 +86,7 @@ def with_inner(
     depth: int = 0,
 ) -> Tree:
     """Return the tree with what is in its archives; beside a package and a URDF, only in those that are."""
-    archives = _archives(tree, is_opened)
+    archives = _archives_to_open(tree, is_opened)
     if not archives:
         return tree
     allowance = allowance or limits.Allowance()
@@ -95,7 +95,7 @@ def with_inner(
     count = len(tree.files)
     for archive in archives:
         try:
-            inner = _inner(archive, allowance, depth)
+            inner = _open_inner(archive, allowance, depth)
             if count + len(inner.files) > limits.MAX_FILES:
                 raise limits.files_limit_error(archive.path)
         except InputError as error:
@@ -104,10 +104,10 @@ def with_inner(
         else:
             parts.append((archive.path + "/", inner))
             count += len(inner.files)
-    return _combine(tree.name, parts, unopened)
+    return _combined_tree(tree.name, parts, unopened)
 
 
-def _archives(tree: Tree, is_opened: Callable[[str], bool]) -> list[File]:
+def _archives_to_open(tree: Tree, is_opened: Callable[[str], bool]) -> list[File]:
     """Return the archives that are opened."""
     files = tree.files.values()
     archives = [file for file in files if file.suffix in ARCHIVES]
@@ -117,7 +117,7 @@ def _archives(tree: Tree, is_opened: Callable[[str], bool]) -> list[File]:
     return archives
 
 
-def _combine(name: str, parts: Sequence[tuple[str, Tree]], unopened: Sequence[IgnoredFile]) -> Tree:
+def _combined_tree(name: str, parts: Sequence[tuple[str, Tree]], unopened: Sequence[IgnoredFile]) -> Tree:
     """Return one tree of several, each with the start of its paths."""
     return make_tree(
         name,
@@ -130,7 +130,7 @@ def _combine(name: str, parts: Sequence[tuple[str, Tree]], unopened: Sequence[Ig
     )
 
 
-def _inner(archive: File, allowance: limits.Allowance, depth: int) -> Tree:
+def _open_inner(archive: File, allowance: limits.Allowance, depth: int) -> Tree:
     """Return what is in an archive inside of another one, or of a folder; raises InputError."""
     from tempfile import TemporaryFile
 

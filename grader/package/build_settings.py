@@ -52,14 +52,14 @@ def argument_findings(
     for name, value in kwargs.items():
         if name not in _CHECKED and value is not None and not (name in _USUAL and _USUAL[name](value)):
             yield unknown_in(value) or unknown(f"this value of {name} in setup() is not evaluated")
-    yield from _version(kwargs, unknown)
-    yield from _entry_points(kwargs, unknown)
-    yield from _packages(kwargs, listing, unknown)
+    yield from _version_findings(kwargs, unknown)
+    yield from _entry_point_findings(kwargs, unknown)
+    yield from _package_findings(kwargs, listing, unknown)
     modules = kwargs.get("py_modules") or []
     if not _is_list(modules) or any(f"{name.replace('.', '/')}.py" not in listing.files for name in modules):
         yield unknown("this value of py_modules is not evaluated")
     if not is_configured and all(kwargs.get(name) is None for name in _PACKAGES) and "src" not in listing.folders:
-        yield from _discovery(listing)
+        yield from _discovery_findings(listing)
 
 
 def _is_list(value: Value) -> bool:
@@ -84,7 +84,7 @@ _USUAL: Mapping[str, Callable[[Value], bool]] = {
 }
 
 
-def _version(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
+def _version_findings(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
     version = kwargs.get("version")
     if isinstance(version, str):
         if version and not _VERSION.fullmatch(version):
@@ -93,7 +93,7 @@ def _version(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> 
         yield unknown_in(version) or unknown("this version is not evaluated")
 
 
-def _entry_points(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
+def _entry_point_findings(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
     groups = kwargs.get("entry_points")
     if groups is None:
         return
@@ -108,7 +108,7 @@ def _entry_points(kwargs: Mapping[str, Value], unknown: Callable[[str], Unknown]
             yield f"the entry point {line!r} is not valid: write name = package.module:function"
 
 
-def _packages(
+def _package_findings(
     kwargs: Mapping[str, Value], listing: PackageListing, unknown: Callable[[str], Unknown]
 ) -> Iterator[_Finding]:
     packages = kwargs.get("packages")
@@ -120,7 +120,7 @@ def _packages(
         yield unknown("this value of packages is not evaluated")
 
 
-def _discovery(listing: PackageListing) -> Iterator[_Finding]:
+def _discovery_findings(listing: PackageListing) -> Iterator[_Finding]:
     """Yield the error of setuptools where it searches for packages and finds several."""
     folders = [name for name in listing.names("") if name in listing.folders and name.isidentifier()]
     found = sorted(name for name in folders if name not in _NO_PACKAGES and not name.startswith("_"))
@@ -130,7 +130,7 @@ def _discovery(listing: PackageListing) -> Iterator[_Finding]:
 
 def file_findings(listing: PackageListing, unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
     """Yield what is wrong with setup.cfg and pyproject.toml, and what of them is not evaluated."""
-    for name, read in (("setup.cfg", _cfg), ("pyproject.toml", _toml)):
+    for name, read in (("setup.cfg", _cfg_findings), ("pyproject.toml", _toml_findings)):
         if name in listing.files:
             try:
                 yield from read(listing.files[name].read(_MAX_SETTINGS).decode(), unknown)
@@ -138,7 +138,7 @@ def file_findings(listing: PackageListing, unknown: Callable[[str], Unknown]) ->
                 yield unknown(f"{name} cannot be read")
 
 
-def _cfg(text: str, unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
+def _cfg_findings(text: str, unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
     parser = ConfigParser()
     parser.optionxform = str  # type: ignore[assignment,method-assign]
     try:
@@ -152,19 +152,19 @@ def _cfg(text: str, unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
         return
     for section, names in options.items():
         if section in _SECTIONS:
-            yield from _options(section, names - _SECTIONS[section], unknown)
+            yield from _option_findings(section, names - _SECTIONS[section], unknown)
         elif names and not _OF_TOOLS.fullmatch(section):
             yield unknown(f"the section [{section}] of setup.cfg is not evaluated")
 
 
-def _options(section: str, others: set[str], unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
+def _option_findings(section: str, others: set[str], unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
     if section == "install" and "script_dir" in others:
         yield "setup.cfg sets script_dir in [install], where it is called install_scripts"
     elif others:
         yield unknown(f"the option {min(others)} in [{section}] of setup.cfg is not evaluated")
 
 
-def _toml(text: str, unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
+def _toml_findings(text: str, unknown: Callable[[str], Unknown]) -> Iterator[_Finding]:
     try:
         table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:

@@ -167,7 +167,7 @@ class PackageListing:
             raise Undetermined(_UNUSUAL)
         self.budget.charge(1 + 2 * len(self._paths))
         place = parts.index("**") if recursive and "**" in parts else None
-        pattern = _Pattern([_test(part, hidden=hidden) for part in parts], place)
+        pattern = _Pattern([_name_test(part, hidden=hidden) for part in parts], place)
         start = f"{folder}/" if folder else ""
         if any(pattern.leads_to(names) for names in _names_below(start, self._unseen)):
             raise Undetermined(_IGNORED)
@@ -202,7 +202,7 @@ def _names_below(start: str, paths: Iterable[str]) -> Iterator[list[str]]:
 
 
 @lru_cache(maxsize=256)
-def _test(part: str, *, hidden: bool) -> Callable[[str], object]:
+def _name_test(part: str, *, hidden: bool) -> Callable[[str], object]:
     """Return whether a part of a pattern matches a name."""
     if not _MAGIC.search(part):
         return part.__eq__
@@ -237,10 +237,10 @@ def file_functions(listing: PackageListing, root: str) -> FunctionTable:
     for name, test in tests.items():
         functions[f"pathlib.Path.{name}"] = partial(folder.test, test)
         functions[f"os.path.{name.replace('_', '')}"] = partial(folder.test, test)
-    return {name: partial(_evaluate, function, listing) for name, function in functions.items()}
+    return {name: partial(_evaluate_search, function, listing) for name, function in functions.items()}
 
 
-def _evaluate(
+def _evaluate_search(
     function: Callable[[Evaluation, Call], Value], listing: PackageListing, evaluation: Evaluation, call: Call
 ) -> Value:
     """Evaluate a search, charge it and record whether the order of files in a folder matters."""
@@ -383,15 +383,17 @@ def _find_packages(listing: PackageListing, _: Evaluation, call: Call) -> Value:
     is_listed = isinstance(exclude, list | tuple) and isinstance(include, list | tuple)
     if not is_known or "namespace" in call.name or not is_listed:
         return Unknown("which packages there are is not evaluated", call.at)
-    return [name for name in _packages(listing, "") if _fits(name, include) and not _fits(name, exclude)]
+    return [
+        name for name in _package_names(listing, "") if _matches_any(name, include) and not _matches_any(name, exclude)
+    ]
 
 
-def _packages(listing: PackageListing, folder: str) -> Iterator[str]:
+def _package_names(listing: PackageListing, folder: str) -> Iterator[str]:
     for name in listing.names(folder):
         path = _path_below(folder, name)
         if "." not in name and f"{path}/__init__.py" in listing.files:
             yield path.replace("/", ".")
-            yield from _packages(listing, path)
+            yield from _package_names(listing, path)
 
 
 def _path_below(folder: str, name: str) -> str:
@@ -399,5 +401,5 @@ def _path_below(folder: str, name: str) -> str:
     return f"{folder}/{name}" if folder else name
 
 
-def _fits(name: str, patterns: Value) -> bool:
+def _matches_any(name: str, patterns: Value) -> bool:
     return any(isinstance(pattern, str) and fnmatchcase(name, pattern) for pattern in patterns)

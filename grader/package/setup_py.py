@@ -120,11 +120,11 @@ def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None)
     strings = [node for node in ast.walk(code.tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
     written = {str(node.value): position_of(node) for node in reversed(strings)}  # the first of several counts
     listing = PackageListing(tree, budget, ORDERS[0])
-    setups = [_evaluate(code, listing, written, "setup.py")]
+    setups = [_evaluate_setup(code, listing, written, "setup.py")]
     if "__file__" in code.source.text:
-        setups.append(_evaluate(code, PackageListing(tree, budget, ORDERS[0]), written, f"{_ROOT}/setup.py"))
+        setups.append(_evaluate_setup(code, PackageListing(tree, budget, ORDERS[0]), written, f"{_ROOT}/setup.py"))
     orders = ORDERS[1:] if listing.order_matters else ()
-    setups += [_evaluate(code, PackageListing(tree, budget, order), written, "setup.py") for order in orders]
+    setups += [_evaluate_setup(code, PackageListing(tree, budget, order), written, "setup.py") for order in orders]
     results = {(it.name, frozenset(it.copies), it.is_called, bool(it.faults)) for it in setups}
     doubts = [unknown for it in setups[1:] for unknown in it.unknown]
     if len(results) == 1 and not doubts:
@@ -135,7 +135,7 @@ def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None)
     return replace(setups[0], name=None, copies=(), stops=(), unknown=(*setups[0].unknown, doubt), doubt=doubt)
 
 
-def _evaluate(code: Code, listing: PackageListing, written: dict[str, Position], file: str) -> Setup:
+def _evaluate_setup(code: Code, listing: PackageListing, written: dict[str, Position], file: str) -> Setup:
     """Evaluate a file with folders listed in some order; `file` is what __file__ is."""
     data_files = _DataFiles(listing, _ROOT, written, is_first=file == "setup.py")
     calls: list[Call] = []

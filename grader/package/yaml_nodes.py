@@ -37,7 +37,7 @@ class YamlNode:
     @property
     def location(self) -> Location:
         """Where it begins."""
-        return _location(self.source, self.mark)
+        return _location_of(self.source, self.mark)
 
     @property
     def span(self) -> tuple[int, int]:
@@ -77,10 +77,10 @@ def read_yaml(data: bytes, path: str) -> YamlNode:
     text = data.decode("utf-16" if is_wide else "utf-8", "replace")
     source = Source(path, text)
     try:
-        return _compose(yaml.parse(text.removeprefix("\ufeff"), Loader=_LOADER), source)
+        return _compose_nodes(yaml.parse(text.removeprefix("\ufeff"), Loader=_LOADER), source)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        location = _location(source, mark) if mark else Location(path, 1, 1)
+        location = _location_of(source, mark) if mark else Location(path, 1, 1)
         if error.problem == _TOO_DEEP:
             raise YamlFault(_DEEP, Location(path, 1, 1)) from None
         message = f"{error.context or ''} {error.problem or ''}".strip()
@@ -91,12 +91,12 @@ def read_yaml(data: bytes, path: str) -> YamlNode:
         raise YamlFault(_DEEP, Location(path, 1, 1)) from None
 
 
-def _location(source: Source, mark: Any) -> Location:
+def _location_of(source: Source, mark: Any) -> Location:
     """Return the location of a mark by its offset: the lines of YAML also end at separators of Unicode."""
     return source.at(min(mark.index + source.text.startswith("\ufeff"), len(source.text)))
 
 
-def _compose(events: Iterator[yaml.Event], source: Source) -> YamlNode:
+def _compose_nodes(events: Iterator[yaml.Event], source: Source) -> YamlNode:
     root = YamlNode(source, next(events).start_mark, {})
     open_nodes: list[tuple[YamlNode, list[str]]] = []  # each with the key in it whose value follows
     anchors = _Anchors(source)
@@ -112,7 +112,7 @@ def _compose(events: Iterator[yaml.Event], source: Source) -> YamlNode:
             continue
         node = anchors.node(event)
         if open_nodes:
-            _attach(*open_nodes[-1], node)
+            _attach_node(*open_nodes[-1], node)
         elif first:
             root, first = node, False
         if isinstance(event, yaml.CollectionStartEvent):
@@ -131,7 +131,7 @@ class _Anchors:
     def node(self, event: yaml.NodeEvent) -> YamlNode:
         """Return the node of an event. Raises YamlFault for an alias without an anchor, and for too many."""
         if isinstance(event, yaml.AliasEvent):
-            return self._node_of(event.anchor or "", _location(self._source, event.start_mark))
+            return self._node_of(event.anchor or "", _location_of(self._source, event.start_mark))
         if isinstance(event, yaml.ScalarEvent):
             node = YamlNode(self._source, event.start_mark, event.value, event.style in ("'", '"'), event.end_mark)
         else:
@@ -150,7 +150,7 @@ class _Anchors:
         return found
 
 
-def _attach(parent: YamlNode, key: list[str], node: YamlNode) -> None:
+def _attach_node(parent: YamlNode, key: list[str], node: YamlNode) -> None:
     if isinstance(parent.value, list):
         parent.value.append(node)
     elif isinstance(parent.value, dict) and key:

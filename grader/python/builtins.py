@@ -57,7 +57,7 @@ def _refuse_function(name: str) -> Callable[..., py.Value]:
     return lambda *_, **__: _refuse(f"the function {name}")
 
 
-def _of_items(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
+def _taking_items(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
     """Return a function whose first argument is a loop's items, as list takes it: known or not."""
     return lambda *args, **kwargs: function(*(list(iterate(value)) for value in args[:1]), *args[1:], **kwargs)
 
@@ -124,7 +124,7 @@ def truth(value: py.Value) -> bool:
     return bool(call_plain(bool, value))
 
 
-def _ordering(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
+def _taking_known_items(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
     """Return sorted, min or max: of the items of a value, or of several values."""
 
     def of_known(*args: py.Value, **named: py.Value) -> py.Value:
@@ -138,12 +138,12 @@ def _ordering(function: Callable[..., py.Value]) -> Callable[..., py.Value]:
 
 
 _HOLDING: dict[str, Callable[..., Any]] = {
-    "list": _of_items(list), "tuple": _of_items(tuple), "dict": make_dict, "next": _next,
+    "list": _taking_items(list), "tuple": _taking_items(tuple), "dict": make_dict, "next": _next,
     "len": lambda value: len(_sized(value)), "reversed": lambda value: py.Items(reversed(_sized(value))),
     "bool": lambda *args: truth(*args) if args else False, "iter": lambda value: py.Items(iterate(value)),
     "enumerate": lambda value, start=0: py.Items(enumerate(iterate(value), known(start))),
     "zip": lambda *values: py.Items(zip(*map(iterate, values), strict=False)),
-    "sorted": _ordering(sorted), "min": _ordering(min), "max": _ordering(max),
+    "sorted": _taking_known_items(sorted), "min": _taking_known_items(min), "max": _taking_known_items(max),
     "any": lambda items: any(map(truth, iterate(items))), "all": lambda items: all(map(truth, iterate(items))),
 }  # fmt: skip
 _APPLYING: dict[str, Callable[..., Any]] = {"map": _map, "filter": _filter}

@@ -58,7 +58,12 @@ def read_packages(tree: Tree, lab: Lab) -> tuple[Package, ...]:
     known: dict[str, Package] = {}
     packages = [_read_package(tree, folder, known, lab.package) for folder in find_packages(tree, lab.package)]
     packages.sort(
-        key=lambda it: (_distance(it, lab.package), is_backup(it.folder), _missing(it, lab.urdf), _depth(it.folder))
+        key=lambda it: (
+            _name_distance(it, lab.package),
+            is_backup(it.folder),
+            _missing_files(it, lab.urdf),
+            _depth(it.folder),
+        )
     )
     for package in packages:
         known.setdefault(package.name, package)
@@ -68,7 +73,7 @@ def read_packages(tree: Tree, lab: Lab) -> tuple[Package, ...]:
 def best_named(packages: tuple[Package, ...], name: str) -> Package | None:
     """Return the package that has this name, or is in a folder of this name; any if the name is empty."""
     for package in packages[:1]:
-        return package if not name or _distance(package, name) <= _IN_NAMED_FOLDER else None
+        return package if not name or _name_distance(package, name) <= _IN_NAMED_FOLDER else None
     return None
 
 
@@ -95,7 +100,7 @@ def why_not(graded: Package | None, other: Package, urdf: str) -> str:
         return f"the package {graded.name!r} is graded, not {other.name!r}"
     if is_backup(other.folder) and not is_backup(graded.folder):
         return BACKUP
-    if _missing(other, urdf) != _missing(graded, urdf):
+    if _missing_files(other, urdf) != _missing_files(graded, urdf):
         return "the package that is graded has more of the files that the lab asks for"
     return DEEPER if other.folder.count("/") != graded.folder.count("/") else LATER
 
@@ -104,7 +109,7 @@ def _depth(folder: str) -> tuple[int, str]:
     return folder.count("/") + bool(folder), folder
 
 
-def _missing(package: Package, urdf: str) -> tuple[int, bool]:
+def _missing_files(package: Package, urdf: str) -> tuple[int, bool]:
     """Return how many of its usual files a package lacks, and whether it lacks the URDF at its path."""
     files = package.tree.files
     has_urdf = urdf in files and files[urdf].size > 0
@@ -112,7 +117,7 @@ def _missing(package: Package, urdf: str) -> tuple[int, bool]:
     return sum(not present for present in usual), not has_urdf
 
 
-def _distance(package: Package, name: str) -> int:
+def _name_distance(package: Package, name: str) -> int:
     if package.manifest is not None and package.manifest.name == name:
         return _NAMED
     own = package.manifest.name if package.manifest is not None else package.name

@@ -81,7 +81,7 @@ def find_robots(tree: Tree, urdf_name: str = "", max_size: int = URDF_LIMIT) -> 
         start = _robot_start(file) if is_read else None
         if start is not None or is_urdf:
             by_content += not is_urdf
-            found.append(RobotFile(file.path, file.size, is_urdf, *(_describe(start) if start else ())))
+            found.append(RobotFile(file.path, file.size, is_urdf, *(_name_and_includes(start) if start else ())))
     return tuple(sorted(found))
 
 
@@ -124,7 +124,7 @@ def _end_of_prolog(data: bytes) -> int:
     return found.end() if found is not None else 0
 
 
-def _describe(start: bytes) -> tuple[str, frozenset[str]]:
+def _name_and_includes(start: bytes) -> tuple[str, frozenset[str]]:
     tag = _ROBOT.match(start)
     name = _NAME.search(tag[1]) if tag is not None else None
     includes = (found.decode("utf-8", "replace") for found in _INCLUDE.findall(_COMMENT.sub(b"", start)))

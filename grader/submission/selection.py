@@ -247,12 +247,12 @@ def find_urdf(
     if len(robots) < 2:
         return UrdfChoice(next((robot.path for robot in robots), None), generated)
     best, *others = sorted(_candidates(tree, lab, robots, labs, opening, packages))
-    named = (OtherCandidate(it.path, _reason(best, it, lab)) for it in others)
-    fitting = tuple(it.path for it in others if _fits(best, it, lab))
+    named = (OtherCandidate(it.path, _reason_against(best, it, lab)) for it in others)
+    fitting = tuple(it.path for it in others if _may_be_meant(best, it, lab))
     return UrdfChoice(best.path, (*named, *generated), fitting, best.reading)
 
 
-def _fits(best: _Candidate, other: _Candidate, lab: Lab) -> bool:
+def _may_be_meant(best: _Candidate, other: _Candidate, lab: Lab) -> bool:
     """Return whether another robot may be meant as well: one in another package, or loose, perhaps of a teammate."""
     stems = [path.partition(".")[0] for path in (best.path, other.path)]  # my_robot.urdf.xacro makes my_robot.urdf
     is_elsewhere = best.package != other.package or (best.is_loose and stems[0] != stems[1])
@@ -268,11 +268,14 @@ def _candidates(
     opening: Opening,
     packages: tuple[Package, ...],
 ) -> Iterator[_Candidate]:
-    ordered = sorted(robots, key=lambda it: (labs.belonging(it.path), _tier(it, lab.urdf), it.path))
-    readings, launched = _readings(tree, lab, ordered, packages, opening), _launched(tree, robots, packages)
+    ordered = sorted(robots, key=lambda it: (labs.belonging(it.path), _tier_of(it, lab.urdf), it.path))
+    readings, launched = (
+        _read_candidates(tree, lab, ordered, packages, opening),
+        _launched_paths(tree, robots, packages),
+    )
     parts, folders = parts_of(robots), [package.folder for package in packages]
     for robot in robots:
-        path, tier, around = robot.path, _tier(robot, lab.urdf), package_around(packages, robot.path)
+        path, tier, around = robot.path, _tier_of(robot, lab.urdf), package_around(packages, robot.path)
         yield _Candidate(
             is_another=readings[path].is_another,
             place=labs.belonging(path),
@@ -290,7 +293,7 @@ def _candidates(
         )
 
 
-def _readings(
+def _read_candidates(
     tree: Tree, lab: Lab, robots: Sequence[RobotFile], packages: tuple[Package, ...], opening: Opening
 ) -> dict[str, _Reading]:
     """Return each robot as it is read, expanded by xacro, by its path; of very many only the first are read."""
@@ -308,14 +311,14 @@ def _readings(
             continue
         try:
             read = read_as_ros(tree.files[robot.path].read(opening.max_size), robot.path, surroundings)
-            found[robot.path] = _measured(read, surroundings, robot.robot, lab)
+            found[robot.path] = _count_links(read, surroundings, robot.robot, lab)
         except (InputError, NotDecided):  # it may be the robot of the lab
             found[robot.path] = _Reading(surroundings)
         parts_left = surroundings.budget.left
     return found
 
 
-def _measured(read: Read, surroundings: Surroundings, name: str, lab: Lab) -> _Reading:
+def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) -> _Reading:
     robot = read.reading.robot
     if robot is None and read.reading.undetermined:
         return _Reading(surroundings, read=read)
@@ -326,7 +329,7 @@ def _measured(read: Read, surroundings: Surroundings, name: str, lab: Lab) -> _R
     return _Reading(surroundings, is_another, counted, not robot.name, read)
 
 
-def _launched(tree: Tree, robots: tuple[RobotFile, ...], packages: tuple[Package, ...]) -> set[str]:
+def _launched_paths(tree: Tree, robots: tuple[RobotFile, ...], packages: tuple[Package, ...]) -> set[str]:
     """Return the paths of the robots that launch files load, also without a package."""
     loose = [robot.path for robot in robots if package_around(packages, robot.path) is None]
     found: set[str] = set()
@@ -340,7 +343,7 @@ def _launched(tree: Tree, robots: tuple[RobotFile, ...], packages: tuple[Package
     return found
 
 
-def _tier(robot: RobotFile, urdf: str) -> _Tier:
+def _tier_of(robot: RobotFile, urdf: str) -> _Tier:
     steps = [step for step in urdf.split("/") if step not in ("", ".")]
     stem = steps[-1].split(".")[0]
     if robot.path.split("/")[-len(steps) :] == steps:
@@ -356,7 +359,7 @@ def _tier(robot: RobotFile, urdf: str) -> _Tier:
     return _Tier.OTHER_ROBOT
 
 
-def _reason(best: _Candidate, other: _Candidate, lab: Lab) -> str:
+def _reason_against(best: _Candidate, other: _Candidate, lab: Lab) -> str:
     """Return why a file is not graded: the first field in which it differs from the best."""
     pairs = zip(_Candidate._fields, best, other, strict=True)
     field = next(name for name, wanted, found in pairs if wanted != found)

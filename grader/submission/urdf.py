@@ -187,7 +187,7 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
     if expanded.robot is None:
         return Read(path, data, reading, has_xacro=True)
     if reading.verdict == "clean":
-        if _model(reading) == _model(expanded):
+        if _loaded_model(reading) == _loaded_model(expanded):
             return Read(path, data, reading, has_xacro=True)
         reading = reading._replace(verdict="degraded")  # ROS 2 ignores the tags of xacro, and what they stand for
     return Read(path, data, expanded, is_expanded=True, has_xacro=True, as_it_stands=reading)
@@ -214,7 +214,7 @@ def _says_xacro(name: str) -> bool:
     return not name.endswith(".urdf") if ".xacro" in name else ".urdf" not in name and name != "-"
 
 
-def _model(reading: Reading) -> tuple[object, ...]:
+def _loaded_model(reading: Reading) -> tuple[object, ...]:
     """Return the links, shapes and joints that ROS 2 loads, without the masses: RViz needs none."""
     robot = reading.robot
     if robot is None:

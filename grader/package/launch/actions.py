@@ -105,7 +105,7 @@ class ActionVisitor:
         """Return whether an action is executed: if `when`, and if its condition holds."""
         given = call.kwargs.get("condition")
         try:
-            holds = _condition(given, context, call.at) if given is not None else True
+            holds = _condition_holds(given, context, call.at) if given is not None else True
         except EvaluationSignal as signal:
             self.findings.add(signal, call.at, when)
             holds = None
@@ -117,7 +117,7 @@ class ActionVisitor:
         kind, start = call.name.rpartition(".")[2], len(context.reads)
         self._evaluate_fields(call, context, when)
         try:
-            _KINDS.get(kind, _refuse)(self, call, context, when)
+            _KINDS.get(kind, _refuse_action)(self, call, context, when)
         except EvaluationSignal as signal:
             self.findings.add(signal, call.at, when)
             if not isinstance(signal, EvaluationFails) and kind not in _PROCESSES and when is not False:
@@ -162,11 +162,11 @@ class ActionVisitor:
         self.findings.is_silent, self.executed = silent, kept
 
 
-def _refuse(_: ActionVisitor, call: Call, __: Context, ___: bool | None) -> None:
+def _refuse_action(_: ActionVisitor, call: Call, __: Context, ___: bool | None) -> None:
     raise Undetermined(f"what {call.name.rpartition('.')[2]} does is not evaluated")
 
 
-def _condition(given: Value, context: Context, at: Position) -> bool:
+def _condition_holds(given: Value, context: Context, at: Position) -> bool:
     if isinstance(given, Unknown):
         raise Undetermined(given.reason, given.at)
     if not isinstance(given, Call):
@@ -199,14 +199,14 @@ def _evaluate_field(value: Value, test: str, context: Context, at: Position) -> 
                 resolve(name, context, at)
 
 
-def _description(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+def _visit_description(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     visitor.visit_all(call.kwargs.get("initial_entities") or [], call, context, when)
     for method in call.method_calls:
         if method.name.endswith((".add_action", ".add_entity")):
             visitor.visit_all([*method.args, *method.kwargs.values()], method, context, when)
 
 
-def _declare(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+def _declare_argument(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     del visitor
     name, choices, default = (call.kwargs.get(it) for it in ("name", "choices", "default_value"))
     if not isinstance(name, str):
@@ -217,7 +217,7 @@ def _declare(visitor: ActionVisitor, call: Call, context: Context, when: bool | 
     if default is None and not is_given:
         raise EvaluationFails(f"the launch argument {name!r} has no default, and no value is given", call.at)
     if name not in context.arguments:
-        _set(name, default, call, context, when)
+        _set_argument(name, default, call, context, when)
     value = context.arguments[name]
     if choices is not None and when:
         if not isinstance(value, str) or not isinstance(choices, list | tuple):
@@ -226,13 +226,13 @@ def _declare(visitor: ActionVisitor, call: Call, context: Context, when: bool | 
             raise EvaluationFails(f"the value {value!r} of {name!r} is not one of its choices", call.at)
 
 
-def _assign(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+def _assign_argument(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     del visitor
     if when is not False:
-        _set(known_text(call.kwargs["name"], context, call.at), call.kwargs["value"], call, context, when)
+        _set_argument(known_text(call.kwargs["name"], context, call.at), call.kwargs["value"], call, context, when)
 
 
-def _set(name: str, value: Value, call: Call, context: Context, when: bool | None) -> None:
+def _set_argument(name: str, value: Value, call: Call, context: Context, when: bool | None) -> None:
     uncertain = Unknown(f"the launch argument {name!r} is set under a condition", call.at)
     try:
         context.arguments[name] = resolve(value, context, call.at) if when else uncertain
@@ -241,7 +241,7 @@ def _set(name: str, value: Value, call: Call, context: Context, when: bool | Non
         raise
 
 
-def _environment(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+def _set_environment(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     del visitor
     variable = known_text(call.kwargs["name"], context, call.at) if when is not False else "X"
     if not variable or "=" in variable:
@@ -250,7 +250,7 @@ def _environment(visitor: ActionVisitor, call: Call, context: Context, when: boo
         raise Undetermined(f"what is found with another {variable} is not evaluated", call.at)
 
 
-def _namespace(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+def _push_namespace(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     del visitor
     if when is not False:
         check_namespace(call.kwargs["namespace"], context, call.at)
@@ -263,30 +263,30 @@ def _set_parameter(visitor: ActionVisitor, call: Call, context: Context, when: b
         evaluate_dict({"": call.kwargs["value"]}, context, call.at)
 
 
-def _nothing(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+def _do_nothing(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     """Do nothing: its arguments are evaluated."""
 
 
-def _shutdown(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+def _shut_down(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     del context
     if when is not False and not visitor.findings.is_silent:
         raise Undetermined("what a shutdown stops is not evaluated", call.at)
 
 
-def _group(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+def _visit_group(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     """Visit a group: what it sets ends with it, unless scoped is False."""
     inner = context.copy() if call.kwargs.get("scoped", True) else context
     visitor.visit_all(call.kwargs["actions"], call, inner, when)
 
 
-def _timer(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+def _start_timer(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     if when:
         visitor.later.append((call.kwargs["actions"], call, context, when))
     else:
         visitor.perhaps(call.kwargs["actions"], call, context, when)
 
 
-def _register(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+def _register_handler(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     handler = call.kwargs["event_handler"]
     kind = handler.name.rpartition(".")[2] if isinstance(handler, Call) else ""
     if kind not in ("OnProcessExit", "OnProcessStart"):
@@ -300,7 +300,7 @@ def _register(visitor: ActionVisitor, call: Call, context: Context, when: bool |
         visitor.perhaps(actions, handler, context, when)
 
 
-def _opaque_function(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+def _call_opaque_function(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     function, args = call.kwargs["function"], call.kwargs.get("args") or []
     if not isinstance(function, Function) or not isinstance(args, list | tuple) or call.kwargs.get("kwargs"):
         raise Undetermined("the result of this OpaqueFunction is not evaluated", call.at)
@@ -314,7 +314,7 @@ def _opaque_function(visitor: ActionVisitor, call: Call, context: Context, when:
         visitor.visit_all(found, call, context, when)
 
 
-def _include(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     if when is False:
         return
     source = call.kwargs["launch_description_source"]
@@ -351,7 +351,7 @@ def _launch_arguments(given: Value, context: Context, at: Position) -> dict[str,
     return found
 
 
-def _process(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+def _execute_process(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     """Start a process, which an action can do once only."""
     before = visitor.executed.get(call, False)
     visitor.executed[call] = when
@@ -371,10 +371,10 @@ def _process(visitor: ActionVisitor, call: Call, context: Context, when: bool | 
 
 # What each kind of action does, besides the evaluation of its arguments.
 _KINDS: Mapping[str, Callable[[ActionVisitor, Call, Context, bool | None], None]] = {
-    **dict.fromkeys(_PROCESSES, _process), "LogInfo": _nothing, "LaunchDescription": _description,
-    "DeclareLaunchArgument": _declare, "SetLaunchConfiguration": _assign, "GroupAction": _group,
-    **dict.fromkeys(("SetEnvironmentVariable", "AppendEnvironmentVariable"), _environment),
-    "IncludeLaunchDescription": _include, "OpaqueFunction": _opaque_function, "TimerAction": _timer,
-    "RegisterEventHandler": _register, **dict.fromkeys(("Shutdown", "EmitEvent"), _shutdown),
-    "PushROSNamespace": _namespace, "SetParameter": _set_parameter,
+    **dict.fromkeys(_PROCESSES, _execute_process), "LogInfo": _do_nothing, "LaunchDescription": _visit_description,
+    "DeclareLaunchArgument": _declare_argument, "SetLaunchConfiguration": _assign_argument, "GroupAction": _visit_group,
+    **dict.fromkeys(("SetEnvironmentVariable", "AppendEnvironmentVariable"), _set_environment),
+    "IncludeLaunchDescription": _include_file, "OpaqueFunction": _call_opaque_function, "TimerAction": _start_timer,
+    "RegisterEventHandler": _register_handler, **dict.fromkeys(("Shutdown", "EmitEvent"), _shut_down),
+    "PushROSNamespace": _push_namespace, "SetParameter": _set_parameter,
 }  # fmt: skip

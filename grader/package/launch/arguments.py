@@ -74,13 +74,13 @@ def _function_of(name: str) -> "Callable[[Evaluation, Call], Value] | None":
     names, cls = exports().get(owner), class_named(owner)
     if names is not None and own in names:
         made = class_named(names[own])
-        return partial(_construct, made) if made is not None else None
+        return partial(_record_constructor, made) if made is not None else None
     if names is not None or (cls is not None and own not in cls.methods and not own.startswith("_")):
-        return partial(_fail, f"{cls.short if cls is not None else owner} has no {own!r}")
+        return partial(_fail_missing, f"{cls.short if cls is not None else owner} has no {own!r}")
     return None
 
 
-def _construct(cls: LaunchClass, evaluation: Evaluation, call: Call) -> Value:
+def _record_constructor(cls: LaunchClass, evaluation: Evaluation, call: Call) -> Value:
     call.name = cls.name
     doubt = check(cls, call)
     if doubt is not None:
@@ -88,7 +88,7 @@ def _construct(cls: LaunchClass, evaluation: Evaluation, call: Call) -> Value:
     return record(evaluation, call)
 
 
-def _fail(message: str, *_: object) -> Value:
+def _fail_missing(message: str, *_: object) -> Value:
     raise EvaluationFails(message)
 
 
@@ -96,18 +96,18 @@ def check(cls: LaunchClass, call: Call) -> Unknown | None:
     """Name and check the arguments of a constructor; return what is not evaluated. Raises EvaluationFails."""
     if cls.short not in _EVALUATED and not is_a(cls.name, SOURCE):
         return Unknown(f"{cls.short} is not evaluated", call.at)
-    _bind(cls, call)
+    _name_arguments(cls, call)
     doubt: Unknown | None = None
     for name, value in [*call.kwargs.items(), ("", None)]:
         try:
-            if message := _wrong(cls, call, name, value):
+            if message := _wrong_argument(cls, call, name, value):
                 raise EvaluationFails(message, call.at)
         except Undetermined as error:
             doubt = doubt or Unknown(str(error), call.at)
     return doubt
 
 
-def _bind(cls: LaunchClass, call: Call) -> None:
+def _name_arguments(cls: LaunchClass, call: Call) -> None:
     """Give the arguments of a constructor their names. Raises EvaluationFails as Python does."""
     positional = [name for name, it in cls.parameters.items() if it.is_positional]
     if len(call.args) > len(positional):
@@ -128,7 +128,7 @@ def _bind(cls: LaunchClass, call: Call) -> None:
         raise EvaluationFails(f"{cls.short} needs the argument {missing[0]}=...", call.at)
 
 
-def _wrong(cls: LaunchClass, call: Call, name: str, value: Value) -> str:
+def _wrong_argument(cls: LaunchClass, call: Call, name: str, value: Value) -> str:
     """Return what is wrong with an argument, or, without a name, with all together. Raises Undetermined."""
     if not name:
         message = _SPECIAL[cls.short](call) if cls.short in _SPECIAL else ""
@@ -192,7 +192,7 @@ def kind_of(value: Value) -> str:
     return _NAMES.get(type(value), f"a {type(value).__name__}")
 
 
-def _typed(kind: type) -> Callable[[Value], str]:
+def _check_of_type(kind: type) -> Callable[[Value], str]:
     """Return the check of a value of a type, or of a substitution whose text is read as one."""
 
     def checked(value: Value) -> str:
@@ -268,26 +268,26 @@ def type_of(call: Call) -> "type | None":
     return found
 
 
-def _texts(value: Value) -> str:
+def _wrong_texts(value: Value) -> str:
     items = items_in(value)
     return "has to be a list: put [ ] around it" if items is None else next(filter(None, map(_wrong_text, items)), "")
 
 
-def _mapping(value: Value) -> str:
+def _wrong_mapping(value: Value) -> str:
     if not isinstance(value, dict):
         return "" if items_in(value) is None and isinstance(value, Unknown) else "has to be a dict"
     return next(filter(None, (_wrong_text(item) for pair in value.items() for item in pair)), "")
 
 
-def _period(value: Value) -> str:
-    return "" if isinstance(value, str) else _typed(float)(value)  # a string is read as a number
+def _wrong_period(value: Value) -> str:
+    return "" if isinstance(value, str) else _check_of_type(float)(value)  # a string is read as a number
 
 
-def _actions(value: Value) -> str:
+def _wrong_actions(value: Value) -> str:
     return "takes a list of actions: put [ ] around them" if items_in(value) is None else ""
 
 
-def _remappings(value: Value) -> str:
+def _wrong_remappings(value: Value) -> str:
     for rule in items_in(value) or []:
         if isinstance(rule, Unknown):
             raise Undetermined(rule.reason)
@@ -299,9 +299,16 @@ def _remappings(value: Value) -> str:
 
 
 _CHECKS: Mapping[str, Callable[[Value], str]] = {
-    "text": _wrong_text, "texts": _texts, "mapping": _mapping, "bool": _typed(bool), "float": _period,
-    "remappings": _remappings, "actions": _actions, "parameters": _wrong_parameters, "parameter": _wrong_parameter,
-}  # fmt: skip
+    "text": _wrong_text,
+    "texts": _wrong_texts,
+    "mapping": _wrong_mapping,
+    "bool": _check_of_type(bool),
+    "float": _wrong_period,
+    "remappings": _wrong_remappings,
+    "actions": _wrong_actions,
+    "parameters": _wrong_parameters,
+    "parameter": _wrong_parameter,
+}
 
 
 def boolean(text: str, at: Position) -> bool:
@@ -315,7 +322,7 @@ def boolean(text: str, at: Position) -> bool:
     return found
 
 
-def _declaration(call: Call) -> str:
+def _wrong_declaration(call: Call) -> str:
     choices, default = call.kwargs.get("choices"), call.kwargs.get("default_value")
     if choices is not None and not items_in(choices):
         return "choices is empty, or no list"
@@ -324,7 +331,7 @@ def _declaration(call: Call) -> str:
     return ""
 
 
-def _include(call: Call) -> str:
+def _wrong_include(call: Call) -> str:
     source, given = call.kwargs["launch_description_source"], call.kwargs.get("launch_arguments")
     if not (isinstance(source, Call) and is_a(source.name, SOURCE)) and (wrong := _wrong_text(source)):
         return f"the first argument {wrong}, not {kind_of(source)}"
@@ -333,7 +340,7 @@ def _include(call: Call) -> str:
     return "launch_arguments takes pairs" if given is not None and items_in(given) is None else ""
 
 
-def _opaque(call: Call) -> str:
+def _wrong_opaque_function(call: Call) -> str:
     if not isinstance(call.kwargs["function"], Function) or not isinstance(
         call.kwargs.get("args"), list | tuple | None
     ):
@@ -341,7 +348,7 @@ def _opaque(call: Call) -> str:
     return ""
 
 
-def _event_handler(call: Call) -> str:
+def _wrong_event_handler(call: Call) -> str:
     value, target = call.kwargs.get("on_exit", call.kwargs.get("on_start")), call.kwargs.get("target_action")
     items = value if isinstance(value, list) else [value]
     if not isinstance(value, Function) and not all(isinstance(it, Call) and _is_entity(it) for it in items):
@@ -351,32 +358,39 @@ def _event_handler(call: Call) -> str:
     return ""
 
 
-def _description(call: Call) -> str:
+def _wrong_description(call: Call) -> str:
     actions = call.kwargs.get("initial_entities")
     return "put [ ] around the actions" if actions is not None and items_in(actions) is None else ""
 
 
-def _text_substitution(call: Call) -> str:
+def _wrong_text_substitution(call: Call) -> str:
     text = call.kwargs["text"]
     return (
         "" if isinstance(text, str) or (_is_text(text) and not isinstance(text, Call)) else f"text is {kind_of(text)}"
     )
 
 
-def _timer(call: Call) -> str:
+def _wrong_timer(call: Call) -> str:
     if not isinstance(call.kwargs["period"], float):
         raise Undetermined("a timer whose period is no decimal number")
     return ""
 
 
-def _group(call: Call) -> str:
+def _wrong_group(call: Call) -> str:
     if call.kwargs.keys() - {"actions", "scoped", "condition"} or not isinstance(call.kwargs.get("scoped", True), bool):
         raise Undetermined("what this group keeps")
     return ""
 
 
 _SPECIAL: Mapping[str, Callable[[Call], str]] = {
-    "DeclareLaunchArgument": _declaration, "OpaqueFunction": _opaque, "IncludeLaunchDescription": _include,
-    "LaunchDescription": _description, "TextSubstitution": _text_substitution, "ParameterValue": _wrong_typed,
-    "GroupAction": _group, "TimerAction": _timer, **dict.fromkeys(("OnProcessExit", "OnProcessStart"), _event_handler),
-}  # fmt: skip
+    "DeclareLaunchArgument": _wrong_declaration,
+    "OpaqueFunction": _wrong_opaque_function,
+    "IncludeLaunchDescription": _wrong_include,
+    "LaunchDescription": _wrong_description,
+    "TextSubstitution": _wrong_text_substitution,
+    "ParameterValue": _wrong_typed,
+    "GroupAction": _wrong_group,
+    "TimerAction": _wrong_timer,
+    "OnProcessExit": _wrong_event_handler,
+    "OnProcessStart": _wrong_event_handler,
+}

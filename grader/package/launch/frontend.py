@@ -129,16 +129,16 @@ class _YamlReader:
             if len(table) != 1:
                 names = ", ".join(list(table)[:4]) or "nothing"
                 message = f"expected one action below one key, found {names}. Is it indented far enough?"
-                raise EvaluationFails(message, _position(item))
+                raise EvaluationFails(message, _position_of(item))
             found += [self.entity(kind, value, depth + 1) for kind, value in table.items()]
         return found
 
     def entity(self, kind: str, node: YamlNode, depth: int) -> _Entity:
         """Return one action or element."""
-        entity = _Entity(kind, _position(node), is_yaml=True)
+        entity = _Entity(kind, _position_of(node), is_yaml=True)
         self.count += 1
         if depth > _MAX_DEPTH or self.count > _MAX_ENTITIES:
-            raise EvaluationFails("the launch file has too many elements", _position(node))
+            raise EvaluationFails("the launch file has too many elements", _position_of(node))
         if isinstance(node.value, list):
             entity.actions = self.entries(node, depth)
         elif not isinstance(node.value, dict):
@@ -151,14 +151,14 @@ class _YamlReader:
                 elif value.items and isinstance(value.items[0].value, dict):
                     entity.nested[key] = [self.entity(key, item, depth + 1) for item in value.items]
                 else:
-                    entity.attributes[key] = _plain(value)
+                    entity.attributes[key] = _plain_value(value)
         return entity
 
 
-def _plain(node: YamlNode) -> Any:
+def _plain_value(node: YamlNode) -> Any:
     """Return the value of a scalar, or of a list of scalars; None of anything else."""
     if isinstance(node.value, list):
-        return [_plain(item) for item in node.items]
+        return [_plain_value(item) for item in node.items]
     text = node.text
     if text is None or node.quoted:
         return text
@@ -169,7 +169,7 @@ def _plain(node: YamlNode) -> Any:
     return text if isinstance(found, dict | list) or (isinstance(found, str) and found != text) else found
 
 
-def _position(node: YamlNode) -> Position:
+def _position_of(node: YamlNode) -> Position:
     return Position(node.location.line, node.location.column)
 
 
@@ -178,7 +178,7 @@ def actions_of(parent: _Entity, findings: Findings) -> list[Value]:
     found: list[Value] = []
     for entity in parent.actions:
         try:
-            found.append(_action(entity, findings))
+            found.append(_action_of(entity, findings))
         except EvaluationFails as error:
             findings.add_fault(str(error), error.at or entity.at)
         except EvaluationSignal as signal:
@@ -186,24 +186,24 @@ def actions_of(parent: _Entity, findings: Findings) -> list[Value]:
     return found
 
 
-def _action(entity: _Entity, findings: Findings) -> Call:
+def _action_of(entity: _Entity, findings: Findings) -> Call:
     kind = entity.kind
     if kind not in _ACTIONS:
         if kind in front_end("action"):
             raise Undetermined(f"the action {kind} is not evaluated", entity.at)
         raise EvaluationFails(f"there is no action {kind!r}{did_you_mean(kind, _ACTIONS)}", entity.at)
-    given = _attributes(entity, f"if unless {_ACTIONS[kind]}")
+    given = _attributes_of(entity, f"if unless {_ACTIONS[kind]}")
     condition = _condition_of(given, entity)
-    kwargs = {_ARGUMENTS.get(name, name): _value(entity, name, value) for name, value in given.items()}
+    kwargs = {_ARGUMENTS.get(name, name): _argument_value(entity, name, value) for name, value in given.items()}
     if condition is not None:
         kwargs["condition"] = condition
     _add_elements(entity, kwargs)
     if "children" in _ACTIONS[kind]:
         kwargs["actions"] = actions_of(entity, findings)
-    return _checked(Call(front_end("action")[kind], [], kwargs, entity.at))
+    return _checked_call(Call(front_end("action")[kind], [], kwargs, entity.at))
 
 
-def _attributes(entity: _Entity, known: str) -> dict[str, Any]:
+def _attributes_of(entity: _Entity, known: str) -> dict[str, Any]:
     """Return the attributes of an entity, of their types. Raises EvaluationSignal."""
     if entity.error:
         raise EvaluationFails(entity.error, entity.at)
@@ -230,11 +230,12 @@ def _attributes(entity: _Entity, known: str) -> dict[str, Any]:
     if missing:
         raise EvaluationFails(f"<{entity.kind}> needs the attribute {missing[0]!r}", entity.at)
     return {
-        name: _typed(entity, name, value, names[name].partition(":")[2]) for name, value in entity.attributes.items()
+        name: _typed_attribute(entity, name, value, names[name].partition(":")[2])
+        for name, value in entity.attributes.items()
     }
 
 
-def _typed(entity: _Entity, name: str, value: Any, kind: str) -> Any:
+def _typed_attribute(entity: _Entity, name: str, value: Any, kind: str) -> Any:
     wanted = _TYPES[kind] if kind else str
     if not entity.is_yaml:
         return value if wanted is str else _typed_text(value, wanted, entity.at)
@@ -244,7 +245,7 @@ def _typed(entity: _Entity, name: str, value: Any, kind: str) -> Any:
     return value
 
 
-def _checked(call: Call) -> Call:
+def _checked_call(call: Call) -> Call:
     """Return a call whose arguments its constructor accepts. Raises EvaluationSignal."""
     cls = class_named(call.name)
     doubt = check(cls, call) if cls is not None else None
@@ -265,7 +266,7 @@ def _condition_of(given: dict[str, Any], entity: _Entity) -> Call | None:
     return None
 
 
-def _value(entity: _Entity, name: str, value: Any) -> Value:
+def _argument_value(entity: _Entity, name: str, value: Any) -> Value:
     if entity.kind == "arg" and name in ("name", "description"):
         return value  # without substitutions
     if name in ("cmd", "args"):
@@ -290,19 +291,19 @@ def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
     for name, inner in entity.nested.items():
         match name:
             case "param":
-                kwargs["parameters"] = [_parameter(it) for it in inner]
+                kwargs["parameters"] = [_parameter_of(it) for it in inner]
             case "remap" | "arg":
                 pair = ("from", "to") if name == "remap" else ("name", "value")
-                given = [(it, _attributes(it, _NESTED[name])) for it in inner]
+                given = [(it, _attributes_of(it, _NESTED[name])) for it in inner]
                 found = [tuple(_parse_value(values[key], it.at) for key in pair) for it, values in given]
                 kwargs["remappings" if name == "remap" else "launch_arguments"] = found
             case "choice":
-                kwargs["choices"] = [_attributes(it, _NESTED[name])["value"] for it in inner]
+                kwargs["choices"] = [_attributes_of(it, _NESTED[name])["value"] for it in inner]
 
 
-def _parameter(entity: _Entity) -> Value:
+def _parameter_of(entity: _Entity) -> Value:
     """Return an item of the parameters of a node. Raises EvaluationSignal."""
-    given = _attributes(entity, _NESTED["param"])
+    given = _attributes_of(entity, _NESTED["param"])
     if ("from" in given) == ("name" in given):
         raise EvaluationFails("a <param> has either name or from", entity.at)
     if "from" in given:
@@ -312,7 +313,7 @@ def _parameter(entity: _Entity) -> Value:
     if inner:
         if "value" in given or "type" in given:
             raise EvaluationFails("a <param> has either a value or other <param> in it", entity.at)
-        tables = (_parameter(it) for it in inner)
+        tables = (_parameter_of(it) for it in inner)
         return {name: {key: value for table in tables if isinstance(table, dict) for key, value in table.items()}}
     if "value" not in given:
         raise EvaluationFails("a <param> needs a value", entity.at)
@@ -324,7 +325,7 @@ def _parameter(entity: _Entity) -> Value:
     kwargs: dict[str, Value] = {"value": _parse_if_text(value, entity.at)}
     if kind == "str":
         kwargs["value_type"] = Call("builtins.str", [], {}, entity.at)
-    return {name: _checked(Call(TYPED[0], [], kwargs, entity.at))}
+    return {name: _checked_call(Call(TYPED[0], [], kwargs, entity.at))}
 
 
 def _parse_value(text: str, at: Position) -> list[Value]:

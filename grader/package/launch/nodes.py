@@ -47,7 +47,9 @@ _NAMESPACE = re.compile(r"|/|/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*"
 
 def start_node(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
     """Add the node that a Node action starts, and the files that it is given."""
-    package, executable = (_attempt(call.kwargs.get(name), context, call.at) for name in ("package", "executable"))
+    package, executable = (
+        _text_if_known(call.kwargs.get(name), context, call.at) for name in ("package", "executable")
+    )
     if not isinstance(package, str) or not isinstance(executable, str):
         unknown = next((it.reason for it in (package, executable) if isinstance(it, Unknown)), "")
         findings.add_unknown(f"the program of a node is not evaluated: {unknown}".removesuffix(": "), call.at)
@@ -117,7 +119,7 @@ def _frame_prefix(call: Call, context: Context) -> str | None:
     given = [table["frame_prefix"] for table in _tables_in(call.kwargs.get("parameters")) if "frame_prefix" in table]
     words = _words_of(call.kwargs.get("arguments"), context, call.at)
     given += [word.partition(":=")[2] for word in words if word.startswith("frame_prefix:=")]
-    found = _attempt(_inner_value(given[-1]), context, call.at) if given else ""
+    found = _text_if_known(_inner_value(given[-1]), context, call.at) if given else ""
     return found if isinstance(found, str) and PART_UNKNOWN not in found else None
 
 
@@ -154,7 +156,7 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
         findings.add_doubt("a robot_description that is a list is not evaluated", call.at)
         findings.refer("urdf", Unknown("robot_description is a list", call.at), call)
         return
-    match found := _attempt(value, context, call.at):
+    match found := _text_if_known(value, context, call.at):
         case Contents(path=path, by=by) if by != "xacro" and path.endswith(".xacro"):
             name = path.rpartition("/")[2]
             message = f"{name} is read without xacro; if it uses xacro, write Command(['xacro ', ...])"
@@ -184,7 +186,7 @@ def _find_configuration(findings: Findings, call: Call, context: Context) -> Non
         findings.refer("rviz", None, call, wrong=message)
     elif path is None or PART_UNKNOWN in path:
         pieces = arguments if isinstance(arguments, list | tuple) else []
-        found = (_attempt(piece, context, call.at) for piece in pieces)
+        found = (_text_if_known(piece, context, call.at) for piece in pieces)
         unnamed = Unknown("which file rviz2 opens is not evaluated", call.at)
         findings.refer("rviz", next((it for it in found if isinstance(it, Unknown)), unnamed), call)
     elif path != path.lstrip():
@@ -204,7 +206,7 @@ def _display_config(words: list[str]) -> str | None:
     return None
 
 
-def _attempt(value: Value, context: Context, at: Position) -> Resolved:
+def _text_if_known(value: Value, context: Context, at: Position) -> Resolved:
     """Return the text of a value; Unknown where launch may fail, which is added elsewhere."""
     try:
         return resolve(value, context, at) if value is not None else Unknown("there is none", at)
@@ -217,7 +219,7 @@ def _words_of(value: Value, context: Context, at: Position) -> list[str]:
     items = value
     if not isinstance(value, list | tuple | str):
         items = [] if value is None else [value]
-    texts = [_attempt(item, context, at) for item in items]
+    texts = [_text_if_known(item, context, at) for item in items]
     return [text if isinstance(text, str) else PART_UNKNOWN for text in texts]
 
 
@@ -292,7 +294,7 @@ def _evaluate_typed(call: Call, context: Context) -> None:
 
 
 def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> None:
-    found = _yaml_of(name, value, context, at)
+    found = _value_as_yaml(name, value, context, at)
     if isinstance(found, list) and _is_uniform(found):
         return
     if not isinstance(found, (*SCALARS, bytes)):
@@ -300,7 +302,7 @@ def _read_as_yaml(name: str, value: Value, context: Context, at: Position) -> No
         raise EvaluationFails(f"the parameter {name!r} is read as YAML, and is {kind_of(found)} then: {hint}", at)
 
 
-def _yaml_of(name: str, value: Value, context: Context, at: Position) -> Any:
+def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> Any:
     """Return the value of a text as YAML. Raises EvaluationSignal."""
     found = resolve(value, context, at)
     if isinstance(found, Unknown):
@@ -349,11 +351,11 @@ def start_known_file(findings: Findings, path: str, call: Call, context: Context
         if node in _GIVEN and package != "urdf_launch":
             findings.refer(_GIVEN[node], Unknown(f"{name} decides which file {node} gets", call.at), call)
     if package == "urdf_launch":
-        _refer_files(findings, call, context, is_shown=_RVIZ in nodes)
+        _refer_known_files(findings, call, context, is_shown=_RVIZ in nodes)
     return True
 
 
-def _refer_files(findings: Findings, call: Call, context: Context, *, is_shown: bool) -> None:
+def _refer_known_files(findings: Findings, call: Call, context: Context, *, is_shown: bool) -> None:
     """Add the files that the arguments of urdf_launch name."""
     given = [context.arguments.get(key) for key in ("urdf_package", "urdf_package_path")]
     match given:

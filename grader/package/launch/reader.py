@@ -129,9 +129,9 @@ class _LaunchReader:
         suffix = PurePosixPath(path).suffix.lower()
         is_xml = suffix == ".xml" or (suffix in (".launch", "") and data.lstrip().startswith(b"<"))
         if is_xml or suffix in (".yaml", ".yml"):
-            own = _frontend(data, path, context, include, is_yaml=not is_xml)
+            own = _launch_of_entities(data, path, context, include, is_yaml=not is_xml)
         else:
-            own = _python(data, path, installed, context, include)
+            own = _launch_of_python(data, path, installed, context, include)
         self.open.pop()
         for launch in included:
             joined = {name: getattr(own, name) + getattr(launch, name) for name in _JOINED}
@@ -157,7 +157,7 @@ class _LaunchReader:
         return ""
 
 
-def _frontend(data: bytes, path: str, context: Context, include: Include, *, is_yaml: bool) -> Launch:
+def _launch_of_entities(data: bytes, path: str, context: Context, include: Include, *, is_yaml: bool) -> Launch:
     from grader.package.launch.frontend import (
         actions_of,
         read_frontend,  # late: most launch files are Python
@@ -173,10 +173,10 @@ def _frontend(data: bytes, path: str, context: Context, include: Include, *, is_
     actions = actions_of(root, findings)
     visitor = ActionVisitor(findings, include, lambda _, at, *__: Unknown("a function is not evaluated here", at))
     visitor.launch(Call(DESCRIPTION, [], {"initial_entities": actions}, root.at), context, root.at)
-    return _launch(source, findings, ())
+    return _launch_of_findings(source, findings, ())
 
 
-def _python(data: bytes, path: str, installed: str, context: Context, include: Include) -> Launch:
+def _launch_of_python(data: bytes, path: str, installed: str, context: Context, include: Include) -> Launch:
     code = parse(data, path)
     if isinstance(code, SyntaxFault):
         syntax = LaunchFault(f"Python cannot read the file: {code.message}", code.location)
@@ -201,7 +201,7 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
             findings.add_undecided(f"{_ENTRY}, which the file does not define itself, is not evaluated", START)
     _add_python(findings, file)
     nodes = [call for call in interpreter.calls if call.name == _NODE and call not in visitor.visited]
-    return _launch(code.source, findings, tuple(_forgotten(node, findings) for node in nodes))
+    return _launch_of_findings(code.source, findings, tuple(_forgotten_node(node, findings) for node in nodes))
 
 
 def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
@@ -230,13 +230,13 @@ def _description_error(value: Value) -> str:
             return f"{_ENTRY} does not return a LaunchDescription([...]), but {kind_of(value)}"
 
 
-def _forgotten(node: Call, findings: Findings) -> StartedNode:
+def _forgotten_node(node: Call, findings: Findings) -> StartedNode:
     given = (node.kwargs.get(name) for name in ("package", "executable"))
     package, executable = (value if isinstance(value, str) else "" for value in given)
     return StartedNode(package, executable, False, findings.locate(node.at))
 
 
-def _launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
+def _launch_of_findings(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
     named = {reference.path for reference in findings.references if reference.purpose != "read"}
     references = [it for it in findings.references if it.purpose != "read" or it.path not in named]
     order = attrgetter("location.line", "location.column", "message")
@@ -293,7 +293,7 @@ class _PythonLaunchFile:
                 **dict.fromkeys(("os.path.exists", "os.path.isfile", "pathlib.Path.exists"), self._exists),
                 **dict.fromkeys(("xacro.process_file", "xacro.process", "xacro.parse"), self._xacro),
                 **dict.fromkeys(("builtins.open.read", *_TEXTS), self._text),
-                **dict.fromkeys(("os.environ.__getitem__", "os.environ.get", "os.getenv"), _variable),
+                **dict.fromkeys(("os.environ.__getitem__", "os.environ.get", "os.getenv"), _read_variable),
                 "os.path.join": _join_paths,
                 "os.path.expanduser": _expand_user,
                 "pathlib.Path.home": lambda *_: PurePosixPath(HOME),
@@ -318,7 +318,7 @@ class _PythonLaunchFile:
             if any(not before.name.endswith("__enter__") for before in opened.method_calls):
                 raise Undetermined("a file that is closed or read once more is not evaluated")
             record(evaluation, call)
-        return FileText(reason="the content of a file is not evaluated", at=opened.at, contents=_contents(opened))
+        return FileText(reason="the content of a file is not evaluated", at=opened.at, contents=_contents_read(opened))
 
     def _package(self, evaluation: Evaluation, call: Call) -> str:
         name = known(call.argument(0, "package_name", "package"))
@@ -371,11 +371,11 @@ class _PythonLaunchFile:
         call.args = [path, *call.args[1:]]
         self.reads.append((Contents(path, "xacro"), call.at))
         if call.name == "xacro.process":
-            return FileText(reason="the output of xacro is not evaluated", at=call.at, contents=_contents(call))
+            return FileText(reason="the output of xacro is not evaluated", at=call.at, contents=_contents_read(call))
         return record(evaluation, call)
 
 
-def _contents(call: Call) -> Contents:
+def _contents_read(call: Call) -> Contents:
     """Return what a call of open or xacro reads, as far as this is known."""
     given = call.kwargs.get("mappings")
     pairs = given.items() if isinstance(given, dict) else ()
@@ -390,7 +390,7 @@ def _add_action(evaluation: Evaluation, call: Call) -> Value:
     record(evaluation, call)
 
 
-def _variable(_: Evaluation, call: Call) -> Value:
+def _read_variable(_: Evaluation, call: Call) -> Value:
     """Return a variable of the environment: whether it is set is not known."""
     name, default = known(call.argument(0, "key")), known(call.argument(1, "default"))
     if name == "HOME":

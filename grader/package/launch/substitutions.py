@@ -37,11 +37,11 @@ def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Res
         case Call():
             return _Substitution(value, context, depth).value()
         case list() | tuple() | dict() | set():
-            return _joined([resolve(part, context, at, depth + 1) for part in value], at)
+            return _joined_text([resolve(part, context, at, depth + 1) for part in value], at)
     raise Undetermined("the text of this value is not evaluated", at)
 
 
-def _joined(parts: list[Resolved], at: Position) -> Resolved:
+def _joined_text(parts: list[Resolved], at: Position) -> Resolved:
     if len(parts) == 1:
         return parts[0]
     texts = [part for part in parts if isinstance(part, str)]
@@ -169,7 +169,7 @@ def _expression_text(text: str, at: Position, context: Context) -> str:
     """Return the value of a PythonExpression as a text. Raises EvaluationSignal."""
     budget = Budget(_WORK)
     try:
-        return str_of(evaluate(text, _find, budget))
+        return str_of(evaluate(text, _find_name, budget))
     except EvaluationFails as error:
         raise EvaluationFails(f"the expression {text[:60]!r} fails: {error}", at) from None
     except (Undetermined, OutOfBudget) as error:
@@ -178,7 +178,7 @@ def _expression_text(text: str, at: Position, context: Context) -> str:
         context.budget.left -= budget.used
 
 
-def _find(name: str) -> Value:
+def _find_name(name: str) -> Value:
     if name in BUILTINS or name in MATH:
         return MATH.get(name, BUILTINS.get(name))
     if name == "math":
@@ -199,14 +199,14 @@ def _command_output(texts: Sequence[Resolved], at: Position) -> Contents:
         raise EvaluationFails("the quotes in this command are not closed", at) from None
     if not words:
         raise EvaluationFails("this command is empty", at)
-    found = _file_of(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words)
+    found = _printed_file(words[3:] if words[:3] == ["ros2", "run", "xacro"] else words)
     if found is None:
         unknown = next((text.reason for text in texts if isinstance(text, Unknown)), "")
         raise Undetermined(f"the output of this command is not evaluated{unknown and ': ' + unknown}", at)
     return found
 
 
-def _file_of(words: list[str]) -> Contents | None:
+def _printed_file(words: list[str]) -> Contents | None:
     """Return the contents of the one file that xacro or cat prints; None for any other command."""
     program = words[0].rpartition("/")[2].removesuffix(".py") if words else ""
     files = [word for word in words[1:] if not word.startswith("-") and ":=" not in word]
