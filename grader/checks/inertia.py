@@ -9,7 +9,8 @@ from grader.checks.outcome import Outcome, failed, in_millimetres, judged, place
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import MAX_SHAPES
 from grader.errors import MissingElement, NotDecided
-from grader.robot.inertia import (
+from grader.robot.kinematics import Configuration, placed_by
+from grader.robot.mass_properties import (
     MassProperties,
     largest_difference,
     principal_moments,
@@ -17,7 +18,6 @@ from grader.robot.inertia import (
     uniform_solid,
     with_volume,
 )
-from grader.robot.kinematics import Configuration, placed_by
 from grader.robot.model import INERTIA, Geometry, Inertial, Mesh
 from grader.robot.overlap import penetration
 from grader.robot.shapes import Shape, UnknownShape, bounding_radius

@@ -20,27 +20,29 @@ _FEW, _MANY = 100.0, 1e7  # from here on: no decimals, an exponent
 
 
 class Outcome(NamedTuple):
-    """The result of one check: a sentence, the location, and the measured values in `unit`.
+    """The result of one check: whether its fact is true, a sentence about it, what was measured, and where to look.
 
-    `mistake` is the message without what differs between students who made the same mistake, such as the names of their
-    joints: statistics count equal mistakes, and equal causes of manual grading. It is empty where the message holds
-    nothing of that kind. `problem` is the message of the problem of the file, at `location`, that the outcome reports,
-    where its own message says more; of an answer or a picture what is in doubt, in a few words.
+    A check returns it, mostly from `judged`, `measured`, `failed` or `passed` below; the grader itself makes those
+    that are skipped or errored. Points come from the status alone, and every format shows the message.
 
-    Example: the message "there is no link 'chassis'; the file has: 'base', 'arm'" has the mistake "there is no link
-    'chassis'"; what follows is the `detail` that `failed` appends. The message "ROS 2 cannot read "x" (and 2 more such
-    problems)" has the problem "ROS 2 cannot read "x"", so that the report does not list that one again.
+    >>> outcome = measured("the radius of 'wheel' is", 0.2, 0.1, 0.002)
+    >>> outcome.status, outcome.measured, outcome.unit
+    ('failed', 0.2, 'm')
+    >>> outcome.message
+    "the radius of 'wheel' is 0.2 m; it should be 0.1 m (100 mm too large)"
+    >>> failed("there is no link 'chassis'", detail="; the file has: 'base'").mistake
+    "there is no link 'chassis'"
     """
 
     status: Status
     message: str
-    measured: _Measured = None
+    measured: _Measured = None  # in `unit`, as are the next two
     expected: _Measured = None
     tolerance: float | None = None
     unit: str | None = None
-    location: Location | None = None
-    mistake: str = ""
-    problem: str = ""
+    location: Location | None = None  # the place to look at, of a failure
+    mistake: str = ""  # the message without what differs between students: equal mistakes are counted together
+    problem: str = ""  # the message of the file's problem that it reports, or in a few words what is in doubt
 
 
 def fault_of(returned: object) -> str:

@@ -9,7 +9,7 @@ from grader.checks.outcome import Outcome, failed, judged, number_text, passed, 
 from grader.checks.toml_types import Count
 from grader.errors import MissingElement
 from grader.names import did_you_mean
-from grader.robot.joints import MOVING_TYPES
+from grader.robot.joint_reader import MOVING_TYPES
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.text import counted, enumerated

@@ -14,8 +14,8 @@ from grader.classroom.workers.pool import NO_MEMORY
 from grader.errors import InputError, MachineError
 from grader.files.limits import ARCHIVES
 from grader.files.reading import URDF_LIMIT
+from grader.grading.criterion_pictures import content_of, is_empty
 from grader.grading.grade import grade
-from grader.grading.pictures import content_of, is_empty
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
 from grader.submission.submission import Opening, Submission

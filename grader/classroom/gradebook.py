@@ -51,7 +51,7 @@ class Gradebook:
         rubric, roster = folder / self.settings.rubric, folder / names.ROSTER
         self.rubric = load_rubric(rubric)
         if answers is not None:
-            from grader.grading.answers import load_with_answers
+            from grader.grading.model_answers import load_with_answers
 
             self.rubric = load_with_answers(str(rubric), answers)
         self.roster: Roster | None = None

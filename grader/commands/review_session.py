@@ -20,9 +20,9 @@ from grader.classroom.typed_names import criterion_of
 from grader.commands.writing import save
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import InputError
-from grader.grading.answers import load_with_answers
+from grader.grading.criterion_pictures import evidence_files, may_have_pictures, pictures_of
 from grader.grading.grade import grade
-from grader.grading.pictures import evidence_files, may_have_pictures, pictures_of
+from grader.grading.model_answers import load_with_answers
 from grader.grading.report import Report
 from grader.report.criteria import answer_lines, counts_lines
 from grader.report.pages.review import NO_ANSWER, OpenedItem

@@ -23,7 +23,7 @@ def load(name: str, answers: Path | None = None) -> "Rubric":
         from grader.grading.rubric import load_rubric
 
         return load_rubric(name)
-    from grader.grading.answers import load_with_answers
+    from grader.grading.model_answers import load_with_answers
 
     return load_with_answers(name, answers)
 
@@ -93,8 +93,8 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
 
     Raises RubricError if the reference loses points.
     """
-    from grader.grading.answers import load_with_answers, missing_answers
     from grader.grading.grade import grade
+    from grader.grading.model_answers import load_with_answers, missing_answers
 
     rubric = load_with_answers(name)
     if missing_answers(rubric) and not rubric.is_shipped:

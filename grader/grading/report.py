@@ -126,25 +126,32 @@ class Grade(NamedTuple):
 
 
 class Report(NamedTuple):
-    """The points of one submission under one rubric.
+    """The points of one submission under one rubric, and everything that is said about them.
 
-    `problems` are those of the URDF and, where a package is graded, of its files. `other_pictures` are pictures that no
-    piece of evidence asks for. `notes` are sentences on how the submission was read. `hints_complete` says whether the
-    search for hints ended before its budget did. `by_convention` are the criteria that one decision on all frames
-    of the robot costs: no hint corrects one of them alone. `score` is that of the criteria, whatever the `grade` is.
+    `grade` makes it, `hinted` adds hints to its results, and a class adds marks and the grade of the student. Each
+    format of `grader.report` lays it out; none of them decides anything.
+
+    >>> from grader.grading.grade import grade
+    >>> from grader.grading.rubric import load_rubric
+    >>> from grader.submission.opening import read_submission
+    >>> report = grade(load_rubric("lab6"), read_submission(b'<robot name="r"/>', identity="ash", path="r.urdf"))
+    >>> report.score, report.max_score
+    (Decimal('0'), Decimal('70'))
+    >>> report.results[0].outcome.message
+    'the robot has no <link>; ROS 2 rejects the file'
     """
 
     submission: Submission
     rubric: Rubric
-    parts: tuple[str, ...]
-    results: tuple[Result, ...]
-    problems: tuple[Problem, ...] = ()
+    parts: tuple[str, ...]  # the ids of the graded ones
+    results: tuple[Result, ...]  # one for each criterion of these parts, in the rubric's order
+    problems: tuple[Problem, ...] = ()  # of the URDF and, where a package is graded, of its files
     evidence: tuple[EvidenceResult, ...] = ()
-    other_pictures: "tuple[EvidenceFile, ...]" = ()
-    notes: tuple[str, ...] = ()
-    another_robot: str = ""
-    by_convention: frozenset[str] = frozenset()
-    hints_complete: bool = True
+    other_pictures: "tuple[EvidenceFile, ...]" = ()  # that no piece of evidence asks for
+    notes: tuple[str, ...] = ()  # sentences on how the submission was read
+    another_robot: str = ""  # why the robot looks like that of another lab; empty if it does not
+    by_convention: frozenset[str] = frozenset()  # the criteria that one decision on all frames costs; no hint is on one
+    hints_complete: bool = True  # whether the search for hints ended before its budget did
     version: str = __version__  # of the grader
     grade: Grade | None = None  # in a class, where a person or the late penalty changes the score
 

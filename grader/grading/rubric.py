@@ -65,33 +65,37 @@ class ReferenceSolution:
 
 @dataclass(frozen=True, slots=True)
 class Rubric:
-    """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if any.
+    """A lab as data: which facts are checked, in which order, and what each is worth.
 
-    `folders` are the names of the lab's folder in a repository of several labs. `without_urdf` says what the criteria
-    of the URDF are if there is evidence, but no URDF: "failed", or "manual" for manual grading. It is empty where the
-    rubric does not say, which means "failed". `without_package` is the same for the package. `links` are the links that
-    criteria name. `hints` is the most that hints tell. `solution` is the reference solution, if there is one.
+    `load_rubric` reads it from a TOML file, and refuses it with all mistakes at once. Grading runs its criteria in
+    file order; reports, the gradebook and the commands on rubrics read the rest.
+
+    >>> rubric = load_rubric("lab6")
+    >>> [(part.id, part.needs) for part in rubric.parts][:2]
+    [('task1', 'urdf'), ('task2', 'package')]
+    >>> rubric.criteria[0].check.name, rubric.criteria[0].points
+    ('urdf_loads', Decimal('3'))
     """
 
     id: str
     title: str
     parts: tuple[Part, ...]
     criteria: tuple[Criterion, ...]
-    urdf: str
-    reference: str
-    data: bytes = field(repr=False)
-    path: Path = field(compare=False)
-    package: str = ""
+    urdf: str  # the path of the graded URDF in its package
+    reference: str  # the path of the reference solution; empty without one
+    data: bytes = field(repr=False)  # of the file
+    path: Path = field(compare=False)  # of the file
+    package: str = ""  # the name of the graded package
     evidence: tuple[Evidence, ...] = ()
     late: Late | None = None
-    answers: str = ""
-    folders: tuple[str, ...] = ()
-    without_urdf: str = ""
-    without_package: str = ""
-    hints: HintLevel = "cause"
-    ignored: tuple[Ignored, ...] = ()
+    answers: str = ""  # the path of the file with the model answers, if any
+    folders: tuple[str, ...] = ()  # the names of the lab's folder in a repository of several labs
+    without_urdf: str = ""  # what criteria are with evidence, but no URDF: "manual", or "failed", as where it is empty
+    without_package: str = ""  # the same without a package
+    hints: HintLevel = "cause"  # the most that hints tell
+    ignored: tuple[Ignored, ...] = ()  # mutants that `grader rubric test` lets pass
     solution: ReferenceSolution | None = field(default=None, compare=False, repr=False)
-    links: frozenset[str] = frozenset()
+    links: frozenset[str] = frozenset()  # that criteria name
 
     @property
     def lab(self) -> Lab:
@@ -166,7 +170,7 @@ def find_rubric(name: str) -> Path:
 
 
 def load_rubric(name: str | Path) -> Rubric:
-    """Load a rubric by its id or path, without model answers (see `grader.grading.answers`).
+    """Load a rubric by its id or path, without model answers (see `grader.grading.model_answers`).
 
     Raises RubricError with one line for each mistake in it, InputError if it cannot be read.
     """

@@ -9,7 +9,7 @@ from math import isfinite, nan
 from typing import NamedTuple
 
 from grader.errors import MissingElement
-from grader.robot.joints import MOVING_TYPES
+from grader.robot.joint_reader import MOVING_TYPES
 from grader.robot.link_tree import parent_joints
 from grader.robot.model import Joint, Link, Origin, Robot, Visual
 from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_about, rotation_from_rpy, unit
@@ -195,12 +195,12 @@ def _views_of(known: Robot, *, is_guarded: bool) -> _Views:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Configuration:
-    """A robot with its joints at `positions`: where each link is, relative to any other.
+    """A robot with its joints at positions: where each link is, relative to any other.
 
-    Checks get one with all joints at 0 and ask it for poses and axes; `moved` and `at` return the same robot with its
-    joints elsewhere. A mimic joint follows its leader, unless it has a position itself. Planar and floating joints stay
-    at 0. Links without a parent joint are roots, so a forest is solved tree by tree. Every link is solved once: linear
-    in the number of links, without recursion.
+    Grading makes one of the robot that was read, with its joints at 0 or where the rubric says, and each check of a
+    robot gets it; `moved` and `at` return the same robot with its joints elsewhere. A mimic joint follows its leader,
+    unless it has a position itself. Planar and floating joints stay at 0. Links without a parent joint are roots, so a
+    forest is solved tree by tree. Every link is solved once: linear in the number of links, without recursion.
 
     >>> from grader.robot.model import Joint, Link, Origin, Robot
     >>> arm = Joint("shoulder", "prismatic", "base", "arm", Origin((0.0, 0.0, 0.5)))

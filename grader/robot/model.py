@@ -226,18 +226,26 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """Links and joints in file order; of two with the same name the first is looked up.
+    """The links and joints of a URDF, as plain values that know nothing of poses.
 
-    If ROS 2 has `rejected` the file, this is what could be read of it, not what ROS 2 would do. `incomplete` says why
-    there may be more links and joints, which cannot be determined statically.
+    The reader makes it; `Configuration` puts its joints at positions and computes poses. Checks read it through that,
+    where a value that xacro leaves open raises NotDecided (see `open_values`). Two robots are equal if their values
+    are; where these are in a file does not count.
+
+    >>> robot = Robot("r", (Link("base"), Link("arm")), (Joint("shoulder", "fixed", "base", "arm"),))
+    >>> robot.joint("shoulder").child
+    'arm'
+    >>> robot.link("amr")
+    Traceback (most recent call last):
+    grader.errors.MissingElement: there is no link 'amr'; did you mean 'arm'?
     """
 
     name: str
-    links: tuple[Link, ...] = ()
-    joints: tuple[Joint, ...] = ()
-    materials: tuple[Material, ...] = ()
-    rejected: bool = field(default=False, compare=False)
-    incomplete: str = field(default="", compare=False)
+    links: tuple[Link, ...] = ()  # in file order; of two with the same name the first is looked up
+    joints: tuple[Joint, ...] = ()  # likewise
+    materials: tuple[Material, ...] = ()  # those under <robot> and those that visuals define
+    rejected: bool = field(default=False, compare=False)  # ROS 2 rejects the file: this is what could be read of it
+    incomplete: str = field(default="", compare=False)  # why there may be more links and joints; empty if there are not
     _links: dict[str, Link] = field(init=False, compare=False, repr=False, hash=False)
     _joints: dict[str, Joint] = field(init=False, compare=False, repr=False, hash=False)
 

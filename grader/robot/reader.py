@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 from grader.problems import Effect, Problem, causes, in_order
 from grader.robot import urdf_problems
 from grader.robot.diagnostics import Problems
-from grader.robot.joints import check_references, read_joint
+from grader.robot.joint_reader import check_references, read_joint
+from grader.robot.link_reader import Materials, read_link
 from grader.robot.link_tree import check_tree
-from grader.robot.links import Materials, read_link
 from grader.robot.model import Joint, Link, Robot
 from grader.robot.numbers import is_version_one
 from grader.source import Source
@@ -35,23 +35,29 @@ _EXTENSIONS = frozenset(
 
 
 class Reading(NamedTuple):
-    """ROS 2's verdict on a URDF. `robot` is as much as could be read, also of a rejected file; None if nothing could.
+    """A URDF as ROS 2 (Jazzy) reads it: the verdict, the robot, and everything that is wrong with the file.
 
-    `root` is the element that it was read from, None where the text is not XML; then it was read from `recovered`, if
-    that is not None. `unresolved` has what xacro leaves open in it. If ROS 2 rejects the file, `is_meant` says whether
-    it would load the robot, which is read with the tags and words undone for which it rejects the file; `undone` are
-    these words.
+    `read_urdf` makes it of any text, and never raises; xacro is expanded before, in `grader.xacro`. A submission holds
+    the reading of its URDF; checks get it as `urdf`, reports list its problems, and hints edit what it was read from.
+
+    >>> reading = read_urdf('<robot name="r"><link name="base"/><joint name="j" type="fixed"/></robot>')
+    >>> reading.verdict
+    'rejected'
+    >>> [link.name for link in reading.robot.links]
+    ['base']
+    >>> reading.problems[0].code, reading.problems[0].location.column
+    ('URDF070', 36)
     """
 
     verdict: Verdict
-    robot: Robot | None
-    problems: tuple[Problem, ...]
-    source: Source
-    root: Element | None = None
-    unresolved: Mapping[Element, Unresolved] = {}
-    recovered: Element | None = None
-    is_meant: bool = False
-    undone: "tuple[Word, ...]" = ()
+    robot: Robot | None  # as much as could be read, also of a rejected file; None if nothing could
+    problems: tuple[Problem, ...]  # in the order of the file
+    source: Source  # the text that the places of problems and elements are in
+    root: Element | None = None  # the <robot> that was read; None where the text is not XML
+    unresolved: Mapping[Element, Unresolved] = {}  # what xacro leaves open
+    recovered: Element | None = None  # the <robot> that was read where the text is not XML
+    is_meant: bool = False  # whether ROS 2 would load the robot, which is read with the words in `undone` undone
+    undone: "tuple[Word, ...]" = ()  # the tags and words for which ROS 2 rejects the file, and that surely are others
 
     @property
     def elements(self) -> Element | None:

@@ -20,9 +20,9 @@ from grader.checks.structure import held_by
 from grader.checks.xacro_source import xacro_uses
 from grader.checks.xml_elements import element_present
 from grader.errors import MissingElement, NotDecided
-from grader.robot.inertia import turned as turned_inertia
-from grader.robot.inertia import uniform_solid
 from grader.robot.kinematics import Configuration
+from grader.robot.mass_properties import turned as turned_inertia
+from grader.robot.mass_properties import uniform_solid
 from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape
 from grader.robot.transforms import Transform, Vector, rotation_about, rotation_from_rpy

@@ -12,7 +12,7 @@ from grader.checks.outcome import Outcome
 from grader.checks.registry import own_checks
 from grader.documents.pictures import EmbeddedPicture
 from grader.grading.criterion import Criterion
-from grader.grading.pictures import may_have_pictures, pictures_of
+from grader.grading.criterion_pictures import may_have_pictures, pictures_of
 from grader.grading.report import Result
 from grader.source import Location
 from grader.submission.submission import Opening

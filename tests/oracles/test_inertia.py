@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from grader.robot.inertia import Tensor, uniform_solid
+from grader.robot.mass_properties import Tensor, uniform_solid
 from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape, volume
 from grader.robot.transforms import Transform, Vector, rotation_from_rpy

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.errors import MissingElement
-from grader.robot.joints import MOVING_TYPES
+from grader.robot.joint_reader import MOVING_TYPES
 from grader.robot.kinematics import SINGLE, Configuration
 from grader.robot.model import Joint, Link, Mimic, Origin, Robot
 from grader.robot.reader import read_urdf

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.robot.inertia import (
+from grader.robot.mass_properties import (
     MassProperties,
     Tensor,
     largest_difference,
