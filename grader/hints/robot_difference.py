@@ -3,7 +3,6 @@
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from itertools import groupby
 from typing import NamedTuple
 
 from grader.hints.robot_draft import Draft, Set, child_of, end_of, escaped
@@ -12,9 +11,13 @@ from grader.hints.tree_difference import Node, Step, paired, steps
 from grader.names import near
 from grader.source import Edits
 from grader.xml.parsing import Element
-from grader.xml.urdf_format import CHILDREN, TAGS, TagFormat
+from grader.xml.urdf_format import CHILDREN, TAGS
 
 _ENDS = ("parent", "child")
+_MOVING = ("revolute", "continuous", "prismatic", "planar")  # the types of joints whose axis counts
+# The attributes that name a joint or a material, which a student may call otherwise.
+_NAMES = {("mimic", "joint"): "joint", ("joint", "name"): "joint", ("material", "name"): "material"}
+_MAX_LINKS = 400  # of a robot: more are not compared
 
 # The ranks of pieces: values of a sibling of the student's own design; the reference's; the student's own, corrected;
 # several at once, or another structure.
@@ -35,13 +38,39 @@ class Piece(NamedTuple):
     around: Element | None = None
 
 
-class _PieceMaker:
-    """Makes pieces for a robot beside the reference's; only `known` names are shown, because the reference has them."""
+class MissingPart(NamedTuple):
+    """A link or joint of the reference that a robot does not have: nothing writes it."""
+
+    tag: str
+    link: str  # that it is, or that the joint moves
+    joint_type: str = ""
+    parent: str = ""
+
+
+class RobotDifference:
+    """A robot beside the reference's: the pieces that lead from one to the other, and what is missing.
+
+    Only `known` names are shown, because the reference has them.
+    """
 
     def __init__(self, draft: Draft, reference: Draft) -> None:
         self.draft, self.reference = draft, reference
-        links, materials = ([one.name for one in found] for found in (reference.robot.links, reference.robot.materials))
-        self.known = {*links, *materials}
+        links = [link.name for link in reference.robot.links]
+        self.known = {*links, *(material.name for material in reference.robot.materials)}
+        self.missing: list[MissingPart] = []
+        self._names = _translation(draft, reference)
+
+    @property
+    def names(self) -> list[str]:
+        """The links of the reference."""
+        return [link.name for link in self.reference.robot.links]
+
+    @cached_property
+    def pieces(self) -> list[Piece]:
+        """The pieces, each once: values first, then what moves, is added and is removed."""
+        found_steps = steps(self._tree(self.draft, {}), self._tree(self.reference, self._names))
+        found = [*self._pieces(found_steps)]
+        return _unique([*found, *self._materials(), *self._joint_names()])
 
     def piece(
         self,
@@ -75,142 +104,8 @@ class _PieceMaker:
         text = self.draft.text(element)
         was = element.getparent()
         cause = f"<{element.tag}> is inside <{was.tag if was is not None else ''}>; it belongs in <{parent.tag}>"
-        return self.piece(element, cause, (*self.draft.remove(element), *self.draft.insert(parent, text)))._replace(
-            around=parent
-        )
-
-
-def _cause(sets: Sequence[Set]) -> str:
-    """Return what is wrong with the values of one element."""
-    tag = sets[0].tag or str(sets[0].owner.tag)
-    names = " and ".join(one.attribute for one in sets)
-    what = "{}" if tag in _ENDS else f"the {names} of {{}}"
-    if sets[0].element is None:
-        return "{} is missing"
-    if all(one.attribute not in one.element.attrib for one in sets if one.element is not None):
-        return f"{what} is missing"
-    parts: list[str] = []
-    old: Values = ()
-    new: Values = ()
-    for one in sets:
-        known = TAGS[tag].attributes.get(one.attribute) if tag in TAGS else None
-        text = one.element.get(one.attribute) if one.element is not None else None
-        if known is None or not known.parts:
-            return what
-        parts += [part or one.attribute for part in known.parts]
-        old, new = (*old, *values_of(known.default if text is None else text)), (*new, *values_of(one.value))
-    return mistake_in(parts, TAGS[tag].attributes[sets[-1].attribute].unit, old, new)
-
-
-def _unique(pieces: Iterable[Piece]) -> list[Piece]:
-    """Return the pieces that change something, each once."""
-    found: dict[object, Piece] = {}
-    for piece in pieces:
-        found.setdefault((piece.sets, piece.edits), piece)
-    return [piece for piece in found.values() if piece.sets or piece.edits]
-
-
-def normal(tag: str, attribute: str, text: str | None) -> str:
-    """Return a value as it is compared: numbers without needless digits, the default where there is none."""
-    known = TAGS[tag].attributes.get(attribute) if tag in TAGS else None
-    if text is None:
-        text = known.default or "" if known is not None else ""
-    is_read = known is not None and known.parts and (len(known.parts) > 1 or text == text.rstrip())
-    values = values_of(text) if is_read else ()
-    return " ".join(f"{value + 0.0:.6g}" for value in values) if values else text
-
-
-_AXIS = ("1 0 0", "revolute", "continuous", "prismatic", "planar")
-# The attributes that name a joint or a material, which a student may call otherwise.
-_NAMES = {("mimic", "joint"): "joint", ("joint", "name"): "joint", ("material", "name"): "material"}
-
-
-def _wanted_value(step: Step) -> str | None:
-    """Return the value that a step sets: that of the reference, else the default; None if there is none."""
-    if step.verb == "set" and step.like is not None:
-        return step.like.values[step.name]
-    known = TAGS[step.own.tag].attributes.get(step.name) if step.own.tag in TAGS else None
-    return known.default or None if known is not None else None
-
-
-def _node_of(element: Element, names: Mapping[str, Mapping[str, str]] | None = None) -> Node:
-    """Return the node of an element, without values and elements that are the default."""
-    tag = str(element.tag)
-    values = {}
-    for name, value in element.attrib.items():
-        text = normal(tag, str(name), str(value))
-        if tag in TAGS and str(name) in TAGS[tag].attributes and text == normal(tag, str(name), None):
-            continue
-        values[str(name)] = (names or {}).get(_NAMES.get((tag, str(name)), ""), {}).get(text, text)
-    if tag not in TAGS and not len(element) and (element.text or "").strip():
-        values[""] = (element.text or "").strip()
-    children = [_node_of(child, names) for child in element if isinstance(child.tag, str)]
-    is_moving = tag != "joint" or element.get("type") in _AXIS[1:]
-    children = [child for child in children if not _is_default(child, is_moving=is_moving)]
-    return Node(tag, _keys(element, values), values, children, element)
-
-
-def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
-    name = values.get("name", "") or values.get("reference", "")
-    if element.tag == "joint" and element.getparent() is not None and child_of(element, "child") is not None:
-        return end_of(element, "child"), name
-    return (name,) if name and element.tag not in ("visual", "collision") else ()
-
-
-def _is_default(node: Node, *, is_moving: bool) -> bool:
-    if node.tag == "axis":
-        return not is_moving or node.values.get("xyz", "1 0 0") == "1 0 0"
-    return node.tag == "origin" and not node.values
-
-
-def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
-    """Return what the joints and materials of the reference are called in the robot."""
-    names: dict[str, dict[str, str]] = {"joint": {}, "material": {}}
-    known = {joint.name for joint in reference.robot.joints}
-    for joint in reference.joints():
-        own = draft.joint_of(end_of(joint, "child"))
-        is_there = any(it.get("name") == joint.get("name") for it in draft.joints())
-        if own is not None and own.get("name") and own.get("name") not in known and not is_there:
-            names["joint"][joint.get("name") or ""] = own.get("name") or ""
-    mine = [_node_of(found) for found in draft.root.iterchildren("material")]
-    pairs = paired(mine, [_node_of(found) for found in reference.root.iterchildren("material")])
-    called = {like.values.get("name", ""): own_node.values.get("name") for own_node, like in pairs.both}
-    names["material"] = {name: own_name for name, own_name in called.items() if own_name}
-    return names
-
-
-_TAG = TagFormat()
-_MAX_LINKS = 400  # of a robot: more are not compared
-
-
-class MissingPart(NamedTuple):
-    """A link or joint of the reference that a robot does not have: nothing writes it."""
-
-    tag: str
-    link: str  # that it is, or that the joint moves
-    joint_type: str = ""
-    parent: str = ""
-
-
-class RobotDifference(_PieceMaker):
-    """A robot and the reference's, paired; `known` are names that may be told, because the reference has them."""
-
-    def __init__(self, draft: Draft, reference: Draft) -> None:
-        super().__init__(draft, reference)
-        self._names = _translation(draft, reference)
-        self.missing: list[MissingPart] = []
-
-    @property
-    def names(self) -> list[str]:
-        """The links of the reference."""
-        return [link.name for link in self.reference.robot.links]
-
-    @cached_property
-    def pieces(self) -> list[Piece]:
-        """The pieces, each once: values first, then what moves, is added and is removed."""
-        found_steps = steps(self._tree(self.draft, {}), self._tree(self.reference, self._names))
-        found = [*self._pieces(found_steps)]
-        return _unique([*found, *self._materials(), *self._joint_names()])
+        edits = (*self.draft.remove(element), *self.draft.insert(parent, text))
+        return self.piece(element, cause, edits)._replace(around=parent)
 
     def _materials(self) -> Iterator[Piece]:
         """Name a material as links use it, or give what a link shows the reference's colour if no material has it."""
@@ -229,10 +124,7 @@ class RobotDifference(_PieceMaker):
                 continue
             if (used.get("name") or "") not in own:
                 yield self.of_sets([Set(used, "color", "rgba", colour.get("rgba") or "")])
-            elif (
-                self.draft.material(names[0]) is None
-                and self.draft.material(self._names["material"].get(names[0], "")) is None
-            ):
+            elif all(self.draft.material(it) is None for it in (names[0], self._names["material"].get(names[0], ""))):
                 yield self.piece(used, "the material of {}", self.draft.replace(used, self.reference.text(like)))
 
     def _joint_names(self) -> Iterator[Piece]:
@@ -250,22 +142,21 @@ class RobotDifference(_PieceMaker):
     def _tree(self, draft: Draft, names: Mapping[str, Mapping[str, str]]) -> Node:
         children = [child for child in draft.root if isinstance(child.tag, str)]
         nodes = [_node_of(child, names) for child in children[: 3 * _MAX_LINKS]]
-        is_nameless = draft is self.reference and self.draft.root.get("name") is None
-        values = {"name": draft.root.get("name") or ""} if is_nameless else {}
+        values: dict[str, str] = {}
+        if draft is self.reference and self.draft.root.get("name") is None:
+            values["name"] = draft.root.get("name") or ""
         version = draft.root.get("version")
-        values |= {"version": version} if version not in (None, "1.0") else {}
+        if version is not None and version != "1.0":
+            values["version"] = version
         return Node("robot", (), values, nodes, draft.root)
 
     def _pieces(self, found: Sequence[Step]) -> Iterator[Piece]:
-        is_set = lambda step: id(step.own) if step.verb in ("set", "unset") else None  # noqa: E731
-        for _, group in groupby(found, key=is_set):
-            those = [*group]
-            if those[0].verb in ("set", "unset"):
-                yield from self._of_values(those)
+        for values in _values_of_one(found):
+            yield from self._of_values(values)
         for step in found:
             own, like = step.own, step.like
             match step.verb:
-                case "rename" | "unset" if new := step.other or TAGS.get(own.tag, _TAG).aliases.get(step.name, ""):
+                case "rename" | "unset" if new := step.other or _meant_attribute(own.tag, step.name):
                     edits = self.draft.rename_attribute(own.of, step.name, new) if new not in own.values else ()
                     yield self.piece(own.of, f"the name of the attribute {new} of {{}}", edits, rank=SIBLING)
                 case "retag" if like is not None:
@@ -314,8 +205,9 @@ class RobotDifference(_PieceMaker):
             return  # nothing shows that it is this one
         own = (Set(element, "", "name", name),)
         everywhere = _rename_link(self.draft, old, name) if tag == "link" else own
-        for sets in filter(None, dict.fromkeys((everywhere, own))):
-            yield self.piece(element, f"the name of a {tag}", sets=sets, link=name if tag == "link" else "")
+        for sets in dict.fromkeys((everywhere, own)):
+            if sets:
+                yield self.piece(element, f"the name of a {tag}", sets=sets, link=name if tag == "link" else "")
 
     def _remove(self, node: Node) -> Iterator[Piece]:
         """Remove what the reference does not have; an origin or axis gets its default."""
@@ -331,12 +223,10 @@ class RobotDifference(_PieceMaker):
 
     def _is_twice(self, element: Element) -> bool:
         """Return whether another element has the same name, or another joint the same child."""
-        tag, parent = str(element.tag), element.getparent()
-        keys = [
-            {it.get("name"), end_of(it, "child") or None} - {None}
-            for it in (parent if parent is not None else ())
-            if it.tag == tag
-        ]
+        parent = element.getparent()
+        if parent is None:
+            return False
+        keys = [{it.get("name"), end_of(it, "child") or None} - {None} for it in parent.iterchildren(str(element.tag))]
         own = {element.get("name"), end_of(element, "child") or None} - {None}
         return sum(not own.isdisjoint(other) for other in keys) > 1
 
@@ -360,17 +250,132 @@ class RobotDifference(_PieceMaker):
         name = element.get("name") or ""
         own = self._names["material" if element.tag == "material" else "joint"]
         text = self.reference.text(element)
-        for old, new in own.items():
-            text = text.replace(f'"{old}"', f'"{escaped(new)}"') if element.tag in ("material", "mimic") else text
+        if element.tag in ("material", "mimic"):
+            for old, new in own.items():
+                text = text.replace(f'"{old}"', f'"{escaped(new)}"')
         defined = self.reference.material(name)
         if element.tag == "material" and defined is not None and self.draft.material(own.get(name, name)) is None:
             return self.reference.text(defined)
         return text
 
 
+def _cause(sets: Sequence[Set]) -> str:
+    """Return what is wrong with the values of one element."""
+    tag = sets[0].tag or str(sets[0].owner.tag)
+    names = " and ".join(one.attribute for one in sets)
+    what = "{}" if tag in _ENDS else f"the {names} of {{}}"
+    if sets[0].element is None:
+        return "{} is missing"
+    if all(one.attribute not in one.element.attrib for one in sets if one.element is not None):
+        return f"{what} is missing"
+    parts: list[str] = []
+    old: Values = ()
+    new: Values = ()
+    for one in sets:
+        known = TAGS[tag].attributes.get(one.attribute) if tag in TAGS else None
+        text = one.element.get(one.attribute) if one.element is not None else None
+        if known is None or not known.parts:
+            return what
+        parts += [part or one.attribute for part in known.parts]
+        old, new = (*old, *values_of(known.default if text is None else text)), (*new, *values_of(one.value))
+    return mistake_in(parts, TAGS[tag].attributes[sets[-1].attribute].unit, old, new)
+
+
+def _unique(pieces: Iterable[Piece]) -> list[Piece]:
+    """Return the pieces that change something, each once."""
+    found: dict[object, Piece] = {}
+    for piece in pieces:
+        found.setdefault((piece.sets, piece.edits), piece)
+    return [piece for piece in found.values() if piece.sets or piece.edits]
+
+
+def normal(tag: str, attribute: str, text: str | None) -> str:
+    """Return a value as it is compared: numbers without needless digits, the default where there is none."""
+    known = TAGS[tag].attributes.get(attribute) if tag in TAGS else None
+    if text is None:
+        text = known.default or "" if known is not None else ""
+    is_read = known is not None and known.parts and (len(known.parts) > 1 or text == text.rstrip())
+    values = values_of(text) if is_read else ()
+    return " ".join(f"{value + 0.0:.6g}" for value in values) if values else text
+
+
+def _wanted_value(step: Step) -> str | None:
+    """Return the value that a step sets: that of the reference, else the default; None if there is none."""
+    if step.verb == "set" and step.like is not None:
+        return step.like.values[step.name]
+    known = TAGS[step.own.tag].attributes.get(step.name) if step.own.tag in TAGS else None
+    return known.default or None if known is not None else None
+
+
+def _node_of(element: Element, names: Mapping[str, Mapping[str, str]] | None = None) -> Node:
+    """Return the node of an element, without values and elements that are the default."""
+    tag = str(element.tag)
+    values = {}
+    for name, value in element.attrib.items():
+        text = normal(tag, str(name), str(value))
+        if tag in TAGS and str(name) in TAGS[tag].attributes and text == normal(tag, str(name), None):
+            continue
+        values[str(name)] = (names or {}).get(_NAMES.get((tag, str(name)), ""), {}).get(text, text)
+    if tag not in TAGS and not len(element) and (element.text or "").strip():
+        values[""] = (element.text or "").strip()
+    children = [_node_of(child, names) for child in element if isinstance(child.tag, str)]
+    is_moving = tag != "joint" or element.get("type") in _MOVING
+    children = [child for child in children if not _is_default(child, is_moving=is_moving)]
+    return Node(tag, _keys(element, values), values, children, element)
+
+
+def _keys(element: Element, values: Mapping[str, str]) -> tuple[str, ...]:
+    name = values.get("name", "") or values.get("reference", "")
+    if element.tag == "joint" and element.getparent() is not None and child_of(element, "child") is not None:
+        return end_of(element, "child"), name
+    return (name,) if name and element.tag not in ("visual", "collision") else ()
+
+
+def _is_default(node: Node, *, is_moving: bool) -> bool:
+    if node.tag == "axis":
+        return not is_moving or node.values.get("xyz", "1 0 0") == "1 0 0"
+    return node.tag == "origin" and not node.values
+
+
+def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
+    """Return what the joints and materials of the reference are called in the robot."""
+    names: dict[str, dict[str, str]] = {"joint": {}, "material": {}}
+    known = {joint.name for joint in reference.robot.joints}
+    for joint in reference.joints():
+        own = draft.joint_of(end_of(joint, "child"))
+        is_there = any(it.get("name") == joint.get("name") for it in draft.joints())
+        if own is not None and own.get("name") and own.get("name") not in known and not is_there:
+            names["joint"][joint.get("name") or ""] = own.get("name") or ""
+    mine = [_node_of(found) for found in draft.root.iterchildren("material")]
+    pairs = paired(mine, [_node_of(found) for found in reference.root.iterchildren("material")])
+    called = {like.values.get("name", ""): own_node.values.get("name") for own_node, like in pairs.both}
+    names["material"] = {name: own_name for name, own_name in called.items() if own_name}
+    return names
+
+
+def _values_of_one(found: Iterable[Step]) -> Iterator[list[Step]]:
+    """Yield the steps that set values, those of one node that follow each other together."""
+    together: list[Step] = []
+    for step in found:
+        is_value = step.verb in ("set", "unset")
+        if together and not (is_value and together[0].own is step.own):
+            yield together
+            together = []
+        if is_value:
+            together.append(step)
+    if together:
+        yield together
+
+
+def _meant_attribute(tag: str, name: str) -> str:
+    """Return the attribute that a wrong name of one often means; empty if none is known."""
+    return TAGS[tag].aliases.get(name, "") if tag in TAGS else ""
+
+
 def _rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
     """Return what gives a link another name, also where joints name it; nothing where several have the old one."""
     own = [link for link in draft.links() if link.get("name") == old]
+    if len(own) != 1:
+        return ()
     ends = [(joint, role) for joint in draft.joints() for role in _ENDS if end_of(joint, role) == old]
-    sets = (*(Set(link, "", "name", new) for link in own), *(Set(joint, role, "link", new) for joint, role in ends))
-    return sets if len(own) == 1 else sets[:0]
+    return (Set(own[0], "", "name", new), *(Set(joint, role, "link", new) for joint, role in ends))

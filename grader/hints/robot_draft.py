@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple, Self, cast
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader import markup
 from grader.hints.edits import (
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from grader.xacro.expansion import ExpandedSource
 
 
+_ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
+_MAX_WAYS = 3
 _COMMENT = re.compile(r"[ \t]*<!--.*?-->", re.DOTALL)
 
 
@@ -45,8 +47,8 @@ class Set(NamedTuple):
         return child_of(self.owner, self.tag) if self.tag else self.owner
 
 
-class _RobotElements:
-    """The elements of a robot, and what ROS 2 reads from them."""
+class Draft:
+    """A robot that is being edited: its elements, what they are called, and the edits of their text."""
 
     def __init__(self, root: Element, robot: Robot, source: Source) -> None:
         self.root = root
@@ -58,8 +60,8 @@ class _RobotElements:
         self._parents: dict[str, Joint] = parent_joints(robot)
 
     @classmethod
-    def of(cls, reading: Reading) -> Self | None:
-        """Return the elements of a robot that could be read."""
+    def of(cls, reading: Reading) -> "Draft | None":
+        """Return the draft of a robot that could be read."""
         if reading.elements is None or reading.robot is None:
             return None
         found = cls(reading.elements, reading.robot, reading.source)
@@ -100,9 +102,9 @@ class _RobotElements:
     def link_of(self, element: Element) -> str:
         """Return the link that an element belongs to: of a joint its child; empty for a material."""
         owner = self.owner(element)
-        return (
-            end_of(owner, "child") if owner.tag == "joint" else (owner.get("name") or "") if owner.tag == "link" else ""
-        )
+        if owner.tag == "joint":
+            return end_of(owner, "child")
+        return (owner.get("name") or "") if owner.tag == "link" else ""
 
     def describe(self, element: Element, tag: str = "", known: Collection[str] = ()) -> str:
         """Return what an element, or its child with a tag, is called: the visual origin of 'lidar', if `known`."""
@@ -116,13 +118,9 @@ class _RobotElements:
             path.insert(0, str(owner.tag))
         name = self.link_of(owner) if owner.tag in ("link", "joint") else owner.get("name") or ""
         what = " ".join(path[:1] + path[1:][-1:])
-        return (
-            f"the {what} of {name!r}"
-            if name in known and what != "link"
-            else f"the link {name!r}"
-            if name in known
-            else f"the {what}"
-        )
+        if name not in known:
+            return f"the {what}"
+        return f"the link {name!r}" if what == "link" else f"the {what} of {name!r}"
 
     def text(self, element: Element) -> str:
         """Return an element as it is written in the file, without comments."""
@@ -132,25 +130,6 @@ class _RobotElements:
     def line(self, element: Element) -> int:
         """Return the line of an element, from 1."""
         return self.source.tag(self._tags[element]).line
-
-
-def end_of(joint: Element, role: str) -> str:
-    """Return the name of the link that is the parent or child of a joint."""
-    found = child_of(joint, role)
-    return (found.get("link") or "") if found is not None else ""
-
-
-def child_of(element: Element, tag: str) -> Element | None:
-    """Return the first child with this tag, which alone counts."""
-    return next(element.iterchildren(tag), None)
-
-
-_ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
-_MAX_WAYS = 3
-
-
-class Draft(_RobotElements):
-    """A robot that is being edited."""
 
     @cached_property
     def _expanded(self) -> "ExpandedEdits | None":
@@ -178,8 +157,9 @@ class Draft(_RobotElements):
 
     def _siblings(self, element: Element, attribute: str, sets: Iterable[Set]) -> dict[Element, str]:
         """Return the values that are set for the elements that come from the same text as one."""
-        tag = self._tags[element]
-        same: list[Element] = [self._elements[it] for it in (self._expanded.siblings(tag) if self._expanded else [])]
+        if self._expanded is None:
+            return {}
+        same = [self._elements[it] for it in self._expanded.siblings(self._tags[element])]
         return {it: one.value for it in same for one in sets if one.attribute == attribute and one.element is it}
 
     def shared(self, sets: Iterable[Set]) -> frozenset[str]:
@@ -244,16 +224,18 @@ class Draft(_RobotElements):
             return self._expanded.rewrites(attribute, wanted)
         source, start = self.source.element(tag)
         if self._broken_tag(source.text, start):
-            return [edits] if (edits := self.add_attributes(element, {attribute: value})) else []
+            edits = self.add_attributes(element, {attribute: value})
+            return [edits] if edits else []
         return [(with_attribute(source, start, attribute, escaped(value)),)]
 
     def write_text(self, element: Element, text: str) -> Edits:
         """Return the edit that gives an element another text; none where it has children, or xacro evaluates it."""
         tag = self._tags[element]
         wanted = {tag: ((element.text or "").strip(), escaped(text))}
-        ways: list[Edits] = self._expanded.rewrites("", wanted) if self._expanded is not None else []
-        if ways:
-            return ways[0]
+        if self._expanded is not None:
+            ways = self._expanded.rewrites("", wanted)
+            if ways:
+                return ways[0]
         source, start = self.source.element(tag)
         head, _ = markup.head_end(source.text, start)
         end = source.text.rfind("</", head, markup.element_end(source.text, start))
@@ -265,8 +247,10 @@ class Draft(_RobotElements):
         """Return the edit that gives an attribute another name."""
         source, start = self.source.element(self._tags[element])
         found = markup.attribute(source.text, start, old)
-        rest = source.text[found.start + len(old) : found.end] if found is not None else ""
-        return (source.edit(found.start, found.end, f"{new}{rest}"),) if found is not None else ()
+        if found is None:
+            return ()
+        rest = source.text[found.start + len(old) : found.end]
+        return (source.edit(found.start, found.end, f"{new}{rest}"),)
 
     def rename_tag(self, element: Element, new: str) -> Edits:
         """Return the edits that give an element another name, at its start and at its end."""
@@ -285,10 +269,13 @@ class Draft(_RobotElements):
         end = markup.name_end(source.text, start)
         broken = self._broken_tag(source.text, start)
         if broken:
+            if not broken.endswith(">"):
+                return ()
             given = {str(name): str(value) for name, value in element.attrib.items()}
             new = _empty_element(str(element.tag), {**given, **values})
-            new = new if broken.endswith("/>") else f"{new[:-2]}>"
-            return (source.edit(start, start + len(broken), new),) if broken.endswith(">") else ()
+            if not broken.endswith("/>"):
+                new = f"{new[:-2]}>"
+            return (source.edit(start, start + len(broken), new),)
         added = "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
         return (source.edit(start, end, f"{source.text[start:end]}{added}"),)
 
@@ -325,3 +312,14 @@ def escaped(value: str) -> str:
     for character, entity in _ESCAPES:
         value = value.replace(character, entity)
     return value
+
+
+def end_of(joint: Element, role: str) -> str:
+    """Return the name of the link that is the parent or child of a joint."""
+    found = child_of(joint, role)
+    return (found.get("link") or "") if found is not None else ""
+
+
+def child_of(element: Element, tag: str) -> Element | None:
+    """Return the first child with this tag, which alone counts."""
+    return next(element.iterchildren(tag), None)

@@ -1,7 +1,11 @@
-"""The student's own numbers with another sign, order or unit, doubled or halved, or those of the other side."""
+"""Pieces besides the single steps of the difference to the reference.
+
+The student's own numbers with another sign, order or unit, doubled or halved; those of the link at the other side; and
+all steps that one link, or one element, needs together.
+"""
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 from math import inf
 
@@ -13,38 +17,57 @@ from grader.xml.urdf_format import TAGS
 
 _SIDES = {"left": "right", "right": "left", "front": "rear", "rear": "front", "l": "r", "r": "l", "upper": "lower"}
 _WORD = re.compile(r"[^\W\d_]+")
-_PLACES = ("origin", "axis", "limit", "mimic", "dynamics", "color", "box", "cylinder", "sphere", "mass")
+_MAX_NAMED = 3  # values whose mistakes are named one by one
+_FRAME = "the frame of {!r} and what it shows"
+_WITH_NUMBERS = ("origin", "axis", "limit", "mimic", "dynamics", "color", "box", "cylinder", "sphere", "mass")
 
 
 def _parts(draft: Draft, link: str) -> Iterator[tuple[str, Element]]:
     """Yield the elements with numbers of a link and its joint, each with its path."""
     for owner in (draft.joint_of(link), draft.link(link)):
-        for element in owner.iter(*_PLACES) if owner is not None else ():
-            above = element.getparent()
-            around = above.getparent() if above is not None and above.tag == "geometry" else above
-            yield (
-                f"{owner.tag if owner is not None else ''}/{around.tag if around is not None else ''}/{element.tag}",
-                element,
-            )
+        if owner is None:
+            continue
+        for element in owner.iter(*_WITH_NUMBERS):
+            around = element.getparent()
+            if around is not None and around.tag == "geometry":
+                around = around.getparent()
+            yield f"{owner.tag}/{around.tag if around is not None else ''}/{element.tag}", element
+
+
+def _first_parts(draft: Draft, link: str) -> dict[str, Element]:
+    """Return the first element at each path."""
+    found: dict[str, Element] = {}
+    for path, element in _parts(draft, link):
+        found.setdefault(path, element)
+    return found
 
 
 def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
     """Yield the numbers of the link at the other side, mirrored, where the student builds both unlike the reference."""
     for link in links:
         other = _WORD.sub(lambda word: _SIDES.get(word[0], word[0]), link)
-        theirs = dict(reversed([*_parts(difference.draft, other)])) if other != link else {}
-        like = dict(reversed([*_parts(difference.reference, other)])) if theirs else {}
-        mine = dict(reversed([*_parts(difference.reference, link)])) if theirs else {}
-        for path, element in _parts(difference.draft, link):
-            for name, known in TAGS[str(element.tag)].attributes.items() if path in theirs else ():
-                text, tag = theirs[path].get(name), str(element.tag)
-                given = like[path].get(name) if path in like else None
-                values = values_of(text)
-                if len(values) == len(known.parts) and normal(tag, name, text) != normal(tag, name, given):
-                    others = {normal(tag, name, it.get(name)) for it in (element, mine.get(path, element))}
-                    for mirrored in map(format_numbers, _mirrored(values)):
-                        if normal(tag, name, mirrored) not in others:
-                            yield difference.of_sets([Set(element, "", name, mirrored)], SIBLING)
+        theirs = _first_parts(difference.draft, other) if other != link else {}
+        if theirs:
+            like, mine = _first_parts(difference.reference, other), _first_parts(difference.reference, link)
+            for path, element in _parts(difference.draft, link):
+                if path in theirs:
+                    known = [it for it in (element, mine.get(path)) if it is not None]
+                    yield from _of_sibling(difference, theirs[path], like.get(path), known)
+
+
+def _of_sibling(
+    difference: RobotDifference, other: Element, like: Element | None, known: Sequence[Element]
+) -> Iterator[Piece]:
+    """Yield the mirrored numbers of another element that are not `known`: those of its own element, which is first."""
+    tag = str(other.tag)
+    for name, attribute in TAGS[tag].attributes.items():
+        text, given = other.get(name), like.get(name) if like is not None else None
+        values = values_of(text)
+        if len(values) == len(attribute.parts) and normal(tag, name, text) != normal(tag, name, given):
+            tried = {normal(tag, name, it.get(name)) for it in known}
+            for mirrored in map(format_numbers, _mirrored(values)):
+                if normal(tag, name, mirrored) not in tried:
+                    yield difference.of_sets([Set(known[0], "", name, mirrored)], SIBLING)
 
 
 def _mirrored(values: Values) -> Iterator[Values]:
@@ -61,7 +84,7 @@ def of_own(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]
     seen: set[object] = set()
     is_alone = difference.draft is difference.reference
     for link in links:
-        like = dict(reversed([*_parts(difference.reference, link)]))
+        like = _first_parts(difference.reference, link)
         for path, element in _parts(difference.draft, link):
             tag = str(element.tag)
             numbers = TAGS[tag].attributes
@@ -72,19 +95,21 @@ def of_own(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]
             for name in numbers:
                 given = like[path].get(name) if path in like else None
                 if is_alone or normal(tag, name, element.get(name)) != normal(tag, name, given):
-                    found = (piece for piece in _of_number(difference, element, name) if piece.edits not in seen)
-                    for piece in found:
-                        seen |= {piece.edits} if piece.edits else set()
-                        yield piece
+                    for piece in _of_number(difference, element, name):
+                        if piece.edits not in seen:
+                            yield piece
+                        if piece.edits:
+                            seen.add(piece.edits)
 
 
 def _of_number(difference: RobotDifference, element: Element, name: str) -> Iterator[Piece]:
     unit = TAGS[str(element.tag)].attributes[name].unit
     least = 0.0 if unit == "m" and element.tag != "origin" else -inf  # of a size
     defined = [found for found in difference.draft.numbers(element, name) if values_of(found[0])]  # not 1e400
-    for values in () if defined else plausible(unit, values_of(element.get(name))):
-        if min(values) > least:
-            yield difference.of_sets([Set(element, "", name, format_numbers(values))], OWN)
+    if not defined:
+        for values in plausible(unit, values_of(element.get(name))):
+            if min(values) > least:
+                yield difference.of_sets([Set(element, "", name, format_numbers(values))], OWN)
     coordinates = values_of(element.get(name)) if element.tag == "origin" else ()
     for text, edits_with in defined:
         (old,) = values_of(text)
@@ -105,19 +130,19 @@ def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
     """Yield all lengths in metres, for a robot of which they are all in centimetres or millimetres."""
     found: list[tuple[Element, str, Values]] = []
     for element in difference.draft.root.iter():
-        for name, known in TAGS[str(element.tag)].attributes.items() if element.tag in TAGS else ():
+        if element.tag not in TAGS:
+            continue
+        for name, known in TAGS[str(element.tag)].attributes.items():
             values = values_of(element.get(name)) if known.unit == "m" else ()
-            found += [(element, name, values)] * any(values)
-    is_large = any(max(values) >= LARGE for element, _, values in found if element.tag != "origin")
-    for factor, unit in ((100.0, "centimetres"), (1000.0, "millimetres")) if is_large else ():
+            if any(values):
+                found.append((element, name, values))
+    if not any(max(values) >= LARGE for element, _, values in found if element.tag != "origin"):
+        return
+    for factor, unit in ((100.0, "centimetres"), (1000.0, "millimetres")):
         metres = [(it, name, tuple(value / factor for value in values)) for it, name, values in found]
         sets = tuple(Set(it, "", name, format_numbers(values)) for it, name, values in metres)
         cause = f"the unit of all lengths: {unit}, not metres"
         yield Piece(cause, "", sets, (), OWN)
-
-
-_MAX_NAMED = 3  # values whose mistakes are named one by one
-_FRAME = "the frame of {!r} and what it shows"
 
 
 def whole_links(difference: RobotDifference) -> Iterator[Piece]:
@@ -127,14 +152,16 @@ def whole_links(difference: RobotDifference) -> Iterator[Piece]:
         own = links.setdefault(piece.link, [])
         own += [one for one in piece.sets if one not in own and one.attribute != "name"]
     for link, sets in links.items():
+        if link not in difference.known:
+            continue
         poses = [one for one in sets if "origin" in (one.tag, one.owner.tag) or "axis" in (one.tag, one.owner.tag)]
         carried = {joint for joint in difference.draft.joints() if end_of(joint, "parent") == link}
         after = [
             one for own in links.values() for one in own if not carried.isdisjoint((one.owner, one.owner.getparent()))
         ]
-        groups = (poses, _FRAME), (poses + after, f"{_FRAME} and carries"), (sets, "the values of {!r}")
-        for those, text in groups if link in difference.known else ():
-            yield from _group(difference, link, those, text.format(link))
+        yield from _group(difference, link, poses, _FRAME.format(link))
+        yield from _group(difference, link, poses + after, f"{_FRAME} and carries".format(link))
+        yield from _group(difference, link, sets, f"the values of {link!r}")
 
 
 def _group(difference: RobotDifference, link: str, sets: list[Set], what: str) -> Iterator[Piece]:
