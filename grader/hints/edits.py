@@ -1,4 +1,4 @@
-"""Edits of the text of a file: made for its elements, and applied; `submission.editing` applies them to files."""
+"""Edits that hints propose: made for the elements of a text, applied to it, and to the files of a submission."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -22,18 +22,27 @@ _PIECE = re.compile(r"(\s*)(\S+)")
 
 
 class Proposal(NamedTuple):
-    """An edit that may undo a mistake, and what is wrong: "the sign of the roll of ...".
+    """An edit that may undo a mistake, in the words and with the order in which it is tried.
 
-    `link` is the link that is moved or changed. The `rank` orders proposals: those of the reference come first. `way`
-    counts the ways to make the same change in xacro, the most plausible first; `shared` are links of the same text.
+    The generators of `generators.py` make proposals from the difference to the reference solution, from the student's
+    own numbers, and from the files of a package. The search grades the submission with each, and makes those that gain
+    points a `FoundHint`.
+
+    >>> from grader.source import Source
+    >>> source = Source("a.urdf", '<origin rpy="1.57 0 0"/>')
+    >>> found = Proposal((with_attribute(source, 0, "rpy", "-1.57 0 0"),), "the sign of the roll of the origin")
+    >>> found.edits
+    (Edit(path='a.urdf', line=1, column=9, old='rpy="1.57 0 0"', new='rpy="-1.57 0 0"', renamed=''),)
+    >>> edited(source.text, source.path, found.edits)
+    '<origin rpy="-1.57 0 0"/>'
     """
 
     edits: Edits
-    cause: str
-    link: str = ""
-    rank: int = 0
-    way: int = 0
-    shared: frozenset[str] = frozenset()
+    cause: str  # what is wrong, for a hint at the level `cause`
+    link: str = ""  # that is moved or changed
+    rank: int = 0  # of equal gains, a lower one is taken first: the reference's values before other numbers
+    way: int = 0  # counts the ways to make the same change in xacro, the most plausible first
+    shared: frozenset[str] = frozenset()  # the links that come from the same text of xacro
 
     @property
     def places(self) -> frozenset[tuple[str, int, int]]:
@@ -47,18 +56,14 @@ class Proposal(NamedTuple):
 
 
 class FoundHint(NamedTuple):
-    """A proven edit, and the points of the criteria that pass with it; without edits, `words` say what is missing.
-
-    `is_late` says that the gains are those after the edits of earlier hints. With an `alternative`, two edits cannot be
-    told apart: both are named, and neither is made.
-    """
+    """What a hint says: an edit that gains points when it is graded, or words for a part that is missing."""
 
     proposal: Proposal
-    gains: Mapping[str, Decimal]
+    gains: Mapping[str, Decimal]  # the criteria that pass with it, each with the points
     certainty: Certainty = "preferred"
-    is_late: bool = False
-    words: str = ""
-    alternative: Proposal | None = None
+    is_late: bool = False  # whether the gains are those after the edits of earlier hints
+    words: str = ""  # that say what is missing, for which there is no edit
+    alternative: Proposal | None = None  # another edit that cannot be told apart: both are named, neither is made
 
     @property
     def edits(self) -> Edits:

@@ -1,4 +1,4 @@
-"""Reports with hints, and submissions with the edits of all hints."""
+"""Reports with hints, in the words of each level, and submissions with the edits of all hints."""
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -23,7 +23,9 @@ if TYPE_CHECKING:
     from grader.xacro.expansion import ExpandedSource
 
 
-_MAX_CRITERIA = 4
+_MAX_NAMED = 4  # criteria and edits that are named
+_MAX_LINES = 6
+_MAX_TEXT = 240  # characters of a changed text
 
 
 class _HintedReport(NamedTuple):
@@ -53,21 +55,23 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
     search = HintSearch(trials, _draft(solution), lambda: _package(solution), report.by_convention).run()
     costs = costs_of(results)
     shown = {name: found for found in reversed(search.found) for name in found.gains}
-    entries = {id(found): _entry(found, shown, results, costs) for found in search.found}
+    entries = {found.edits: _entry(found, shown, results, costs) for found in search.found}
     hints: dict[str, Hint] = {}
     for name, one in {**search.missing, **shown}.items():
         with trials.isolated():
-            entry = entries.get(id(one), name)
+            entry = entries.get(one.edits, name)
             before = search.found[: search.found.index(one)] if one.is_late else []
             found = _first_at(one, results[entry].outcome.location)
-            earlier = tuple(dict.fromkeys(entries[id(it)] for it in before))
+            earlier = tuple(dict.fromkeys(entries[it.edits] for it in before))
             text = message(found, level, submission, earlier)
             hint = _hint(found, text, entry, results[name], keeps_edits=level == "edit")
             hints[name] = hint._replace(after=earlier)
-    left = [name for name in costs if name not in hints and name in search.results and not search.results[name].is_lost]
-    for name in left if level == "edit" else ():
-        others = enumerated(list(dict.fromkeys(entries.values())), _MAX_CRITERIA)
-        hints[name] = Hint(f"Make the edits for {others}.", results[name].outcome.location or Location("", 1, 1), {})
+    if level == "edit":
+        others = enumerated(list(dict.fromkeys(entries.values())), _MAX_NAMED)
+        for name in costs:
+            if name not in hints and name in search.results and not search.results[name].is_lost:
+                at = results[name].outcome.location or Location("", 1, 1)
+                hints[name] = Hint(f"Make the edits for {others}.", at, {})
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
     report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete or submission.is_costly)
     return _HintedReport(report, search.edits, trials.faults)
@@ -129,35 +133,44 @@ def _package(reference: ReferenceSolution | None) -> "Package | None":
     return None
 
 
-_MAX_NAMED = 4  # criteria and edits that are named
-_MAX_LINES = 6
-_MAX_TEXT = 240  # characters of a changed text
-
-
 def message(found: FoundHint, level: HintLevel, submission: Submission, earlier: Sequence[str]) -> str:
     """Return the hint in a sentence, which need not name the URDF. `earlier` are criteria whose hints come first."""
     if found.words:
-        text = found.words if level == "edit" else found.proposal.cause if level == "cause" else "a part is missing"
+        text = _of_missing(found, level)
     elif found.alternative is not None:
         each = [found._replace(proposal=it, alternative=None) for it in (found.proposal, found.alternative)]
         one, other = (message(it, level, submission, ()).removesuffix(".") for it in each)
         text = f"{one}, or {other[0].lower()}{other[1:]}: both work, so look which one is meant"
     elif level == "edit":
-        edits = found.edits
-        changes = _moves(edits, submission) or [_change(edit, submission) for edit in edits[:_MAX_NAMED]]
-        changes += [counted(len(edits) - _MAX_NAMED, "more edit")] * (len(edits) > _MAX_NAMED)
-        source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
-        text = enumerated(changes, _MAX_NAMED + 1)
-        is_expanded = source is not None and source.is_expanded
-        text += _calls(edits, cast("ExpandedSource", source), submission.path) if is_expanded else ""
+        text = _changes(found.edits, submission)
     elif level == "cause":
         text = f"check {_places(found.edits, submission)}: {found.proposal.cause}"
     else:
         text = f"check {_texts_to_check(found.edits, submission)}"
     if earlier:
-        several = "s" * (len(earlier) > 1)
-        return f"After the edit{several} for {enumerated(earlier, _MAX_NAMED)}, {text}."
+        return f"After the edit{'s' if len(earlier) > 1 else ''} for {enumerated(earlier, _MAX_NAMED)}, {text}."
     return f"{text[0].upper()}{text[1:]}."
+
+
+def _of_missing(found: FoundHint, level: HintLevel) -> str:
+    match level:
+        case "edit":
+            return found.words
+        case "cause":
+            return found.proposal.cause
+    return "a part is missing"
+
+
+def _changes(edits: Sequence[Edit], submission: Submission) -> str:
+    """Return the edits in words, and where a macro is called that one of them changes."""
+    changes = _moves(edits, submission) or [_change(edit, submission) for edit in edits[:_MAX_NAMED]]
+    if len(edits) > _MAX_NAMED:
+        changes.append(counted(len(edits) - _MAX_NAMED, "more edit"))
+    text = enumerated(changes, _MAX_NAMED + 1)
+    source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
+    if source is not None and source.is_expanded:
+        text += _calls(edits, cast("ExpandedSource", source), submission.path)
+    return text
 
 
 def _texts_to_check(edits: Sequence[Edit], submission: Submission) -> str:

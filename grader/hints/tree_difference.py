@@ -1,14 +1,15 @@
-"""The difference between two trees: elements of XML, values of YAML, calls of Python.
+"""The difference between two trees, such as the elements of two robots.
 
 Nodes are paired by what they are recognised by, then by likeness, and compared. Each step of the difference is
-independent of the
-others: a caller makes edits of the steps that it needs.
+independent of the others: a caller makes edits of the steps that it needs.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal, NamedTuple
 
 from grader.names import closest
+
+_LAST = ("add", "remove")
 
 
 class Node(NamedTuple):
@@ -60,20 +61,15 @@ def steps(own: Node, like: Node) -> list[Step]:
     moved: list[Step] = []
     left: list[Step] = []
     for step in found:
-        alike = (
-            [node for node in spare if step.like is not None and _is_alike(node, step.like)]
-            if step.verb == "add"
-            else []
-        )
-        if alike:
-            assert step.like is not None
-            moved += [Step("move", alike[0], step.like, parent=step.own), *_steps(alike[0], step.like)]
-            spare = [node for node in spare if node is not alike[0]]
-        else:
+        added = step.like if step.verb == "add" else None
+        alike = next((node for node in spare if added is not None and _is_alike(node, added)), None)
+        if added is None or alike is None:
             left.append(step)
-    order = ("add", "remove")
+        else:
+            moved += [Step("move", alike, added, parent=step.own), *_steps(alike, added)]
+            spare = [node for node in spare if node is not alike]
     kept = [step for step in left if step.verb != "remove" or any(node is step.own for node in spare)]
-    return moved + sorted(kept, key=lambda step: order.index(step.verb) + 1 if step.verb in order else 0)
+    return moved + sorted(kept, key=lambda step: _LAST.index(step.verb) if step.verb in _LAST else -1)
 
 
 def _steps(own: Node, like: Node) -> Iterator[Step]:
@@ -121,8 +117,8 @@ def paired(own: Sequence[Node], like: Sequence[Node]) -> _Pairs:
         found = next((node for node in extra if node.tag == near), None)
         if found is not None:
             _pair(found, other, extra, missing, both)
-    both.sort(key=lambda pair: [*map(id, own)].index(id(pair[0])))
-    return _Pairs(both, extra, missing)
+    in_order = [pair for node in own for pair in both if pair[0] is node]
+    return _Pairs(in_order, extra, missing)
 
 
 def _pair(node: Node, other: Node, extra: list[Node], missing: list[Node], both: list[tuple[Node, Node]]) -> None:
