@@ -193,10 +193,11 @@ def _with_xacro(submission: Submission) -> Iterator[Proposal]:
         return
     from grader.hints.python_file import with_xacro  # late: most URDFs are no such file
 
-    for path in submission.package.launch_files if submission.package is not None else ():
-        source = submission.source(submission.package.path(path)) if submission.package is not None else None
-        for edits in with_xacro(source) if source is not None else ():
-            yield Proposal(edits, _RAW_XACRO)
+    package = submission.package
+    sources = [submission.source(package.path(path)) for path in package.launch_files] if package is not None else []
+    for source in sources:
+        if source is not None:
+            yield from (Proposal(edits, _RAW_XACRO) for edits in with_xacro(source))
     folder, slash, name = urdf.path.rpartition("/")
     renamed = f"{folder}{slash}{name.removesuffix('.urdf')}.urdf.xacro"
     yield Proposal((Edit(urdf.path, 1, 1, "", "", renamed),), _RAW_XACRO)
@@ -216,7 +217,6 @@ def missing_hints(
         return {}
     if 2 * sum(map(difference.draft.robot.has_link, difference.names)) < len(difference.names):
         return {}  # another robot, or one that is hardly begun
-    _ = difference.pieces
     found: dict[str, FoundHint] = {}
     left = sorted(difference.missing, key=lambda part: part.tag, reverse=True)  # links first, each with its joints
     while left:
@@ -231,14 +231,16 @@ def missing_hints(
     has_link = difference.draft.robot.has_link
     joints = [part for part in difference.missing if has_link(part.link) and has_link(part.parent)]
     loading = [name for name in lost if criteria[name].check.subject == "urdf"]
-    if loading and len(joints) == 1:
-        return {name: hint for name, hint in found.items() if hint.proposal.link != joints[0].link} | {
-            loading[0]: _hint_of_parts(difference, joints)
-        }
-    lacking = enumerated([repr(part.link) for part in joints], _MAX_NAMED)
-    cause = f"the joints of {lacking} are missing"
-    every = FoundHint(Proposal((), cause), {}, words=f"add the joints of {lacking}")
-    return found | ({loading[0]: every} if loading and joints else {})
+    if not loading or not joints:
+        return found
+    if len(joints) == 1:
+        found = {name: hint for name, hint in found.items() if hint.proposal.link != joints[0].link}
+        found[loading[0]] = _hint_of_parts(difference, joints)
+    else:
+        lacking = enumerated([repr(part.link) for part in joints], _MAX_NAMED)
+        cause = f"the joints of {lacking} are missing"
+        found[loading[0]] = FoundHint(Proposal((), cause), {}, words=f"add the joints of {lacking}")
+    return found
 
 
 def _hint_of_parts(difference: RobotDifference, parts: list[MissingPart]) -> FoundHint:
@@ -258,12 +260,15 @@ def _part_in_words(part: MissingPart) -> str:
 
 
 def _lines_of_similar(difference: RobotDifference, parts: list[MissingPart]) -> str:
-    """Return where elements like the missing ones are."""
-    draft, lines = difference.draft, []
+    """Return where the first elements like the missing ones are."""
+    draft = difference.draft
+    lines: set[int] = set()
     for part in parts:
-        like = (
-            draft.links() if part.tag == "link" else (it for it in draft.joints() if it.get("type") == part.joint_type)
-        )
-        lines += [str(draft.line(it)) for it, _ in zip(like, range(1), strict=False)]
-    numbers = sorted(dict.fromkeys(lines), key=int)[:_MAX_SIMILAR]
-    return f", as in line{'s' if len(numbers) > 1 else ''} {enumerated(numbers)}" if numbers else ""
+        joints = (joint for joint in draft.joints() if joint.get("type") == part.joint_type)
+        like = next(draft.links() if part.tag == "link" else joints, None)
+        if like is not None:
+            lines.add(draft.line(like))
+    if not lines:
+        return ""
+    numbers = [str(line) for line in sorted(lines)[:_MAX_SIMILAR]]
+    return f", as in line{'s' if len(numbers) > 1 else ''} {enumerated(numbers)}"

@@ -1,4 +1,8 @@
-"""The edits of a package that may make criteria pass, by the files that their checks look at."""
+"""The edits of a package that may make criteria pass, by the files that their checks look at.
+
+Of a file these are its differences to the reference's, entries of lists that it lacks, paths that name no file, names
+that are undefined, and words that are misspelt.
+"""
 
 import ast
 import builtins
@@ -35,6 +39,79 @@ _SUBSTITUTIONS = ("find-pkg-share", "var", "env", "command", "dirname")
 _SUBSTITUTION = re.compile(rf"(?<=\$\()(?!(?:{'|'.join(_SUBSTITUTIONS)})\b)[\w-]+")
 _SINGLE, _TYPOGRAPHIC = "‘’‚", re.compile("[‘’‚“”„]")
 _PROGRAM = re.compile(r"(?:(?<=['\"]xacro)|(?<=['\"]cat))(?=['\"$])")
+_PIECE = re.compile(r"[^\s\"'<>=(){},\[\]$;|]+")
+# What is before the name of a package: get_package_share_directory(', FindPackageShare(", $(find-pkg-share and a space.
+_PACKAGE_ARGUMENT = re.compile(r"(?:package_share_\w+|package_prefix|FindPackage\w*|find-pkg-\w+)[\s(]*['\"]?$")
+_MAX_PIECES = 1000  # of one file
+_MAX_CALL = 80  # characters before an argument that are looked at
+_REST_OF_ARGUMENT = re.compile(r"\s*,\s*")
+_ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".launch.py", ".launch.xml", ".launch.yaml")}
+_ENDINGS["read"] = _ENDINGS["urdf"]
+_SHARE_FUNCTION = "get_package_share_directory"
+_MAX_PATHS = 8  # that are wrong in one file
+_MAX_EDITS = 3  # of one path
+_MAX_FILES = 200
+_LAUNCH = "the launch file"
+_DESCRIPTION = "LaunchDescription"
+_MAX_ITEMS = 30
+_MAX_MADE, _MAX_PROPOSALS = 100, 24  # for one kind of files
+
+
+def package_proposals(
+    package: Package, reference: Package | None, wanted: Iterable[tuple[tuple[str, ...], Mapping[str, Any]]]
+) -> Iterator[Iterator[Proposal]]:
+    """Yield edits of a package for checks, by the kinds of files: what each check looks at, with its arguments."""
+    kinds: dict[str, None] = {}
+    given: set[str] = set()
+    for looks_at, arguments in wanted:
+        kinds |= dict.fromkeys(looks_at)
+        for value in arguments.values():
+            values = value if isinstance(value, list) else [value]
+            given.update(it for it in values if isinstance(it, str))
+    task = PackageTask(package, reference, frozenset(given))
+    for kind in ("", *kinds):
+        yield _best_of_kind(task, kind)
+
+
+def _best_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
+    """Yield the best proposals for a kind of files, each edit once: a later one says better what changes."""
+    own = {it.edits: it for it in islice(_of_kind(task, kind), _MAX_MADE) if it.edits}
+    yield from sorted(own.values(), key=lambda it: (it.rank, it.size))[:_MAX_PROPOSALS]
+
+
+def _of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
+    """Yield edits of the file of a kind, and those that rename or create one; without a kind, of the package's name."""
+    if not kind:
+        yield from package_names(task, task.package.lab_name or task.package.share.split("/")[1])
+        return
+    yield from file_proposals(task, kind)
+    if kind in (SETUP, "launch"):
+        yield from file_proposals(task, "urdf")
+    path, like = task.file(task.package, kind), task.file(task.reference, kind)
+    source = task.source(path)
+    if source is not None and path is not None:
+        yield from (it for it in _of_text(task, kind, source, path, like) if it.edits)
+
+
+def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str | None) -> Iterator[Proposal]:
+    """Yield the edits of a file: its difference to the reference, its syntax, its names, its paths and its words."""
+    what, wanted = WHAT.get(kind, kind), task.wanted(like) or ""
+    own = PythonFile(source)
+    ending, other = (posixpath.splitext(it or "")[1] for it in (path, like))
+    is_python = ending in (".py", "")
+    if wanted and (ending == other or is_python):
+        yield from _reword(source, wanted, what)
+    if is_python:
+        yield from _missing_entries(own, PythonFile(Source(source.path, wanted)), what)
+        yield from _as_lists(own, what)
+        yield from _undefined_names(own, what)
+    elif ending == other:
+        yield from _other_values(source, wanted, what)
+    if kind == "launch":
+        yield from _launch_paths(task, task.launch(path, source), source)
+    elif kind == SETUP:
+        yield from _setup_paths(task)
+    yield from _respellings(source, [wanted, *(task.files if kind == SETUP else task.package.installed)], what)
 
 
 def _respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Proposal]:
@@ -53,7 +130,8 @@ def _respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Pr
     yield from _replace_words(source, _PROGRAM, [" "], what)
     quotes = [source.edit(*it.span(), "'" if it[0] in _SINGLE else '"') for it in _TYPOGRAPHIC.finditer(source.text)]
     yield change(quotes, "a syntax error", what)
-    yield from () if source.path.endswith(".py") else _replace_words(source, _SUBSTITUTION, _SUBSTITUTIONS, what)
+    if not source.path.endswith(".py"):
+        yield from _replace_words(source, _SUBSTITUTION, _SUBSTITUTIONS, what)
 
 
 def _replace_words(source: Source, pattern: re.Pattern[str], words: Iterable[str], what: str) -> Iterator[Proposal]:
@@ -77,7 +155,9 @@ def _reword(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
     if len(own) + len(right) > _MAX_TOKENS:
         return
     changes = [it for it in SequenceMatcher(None, own, right, autojunk=False).get_opcodes() if it[0] != "equal"]
-    for _, first, last, start, end in changes if len(changes) <= _MAX_DIFFERENCES else ():
+    if len(changes) > _MAX_DIFFERENCES:
+        return
+    for _, first, last, start, end in changes:
         offset, old = start_of_text + len("".join(own[:first])), "".join(own[first:last])
         yield change([source.edit(offset, offset + len(old), "".join(right[start:end]))], "a line", what)
 
@@ -89,7 +169,9 @@ def _other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
         known.setdefault(found["key"], []).append(found["value"])
     for found in _SETTING.finditer(source.text):
         values = dict.fromkeys(known.get(found["key"], ()))
-        for value in [*values][:_MAX_VALUES] if found["value"] not in values else ():
+        if found["value"] in values:
+            continue
+        for value in [*values][:_MAX_VALUES]:
             yield change([source.edit(*found.span("value"), value)], f"the value of `{found['key']}`", what)
 
 
@@ -118,21 +200,6 @@ def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
             yield change([file.source.edit(end, end, ",")], "a syntax error", what)
 
 
-_PIECE = re.compile(r"[^\s\"'<>=(){},\[\]$;|]+")
-# What is before the name of a package: get_package_share_directory(', FindPackageShare(", $(find-pkg-share and a space.
-_PACKAGE_ARGUMENT = re.compile(r"(?:package_share_\w+|package_prefix|FindPackage\w*|find-pkg-\w+)[\s(]*['\"]?$")
-_MAX_PIECES = 1000  # of one file
-_MAX_CALL = 80  # characters before an argument that are looked at
-_REST_OF_ARGUMENT = re.compile(r"\s*,\s*")
-_ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".launch.py", ".launch.xml", ".launch.yaml")}
-_ENDINGS["read"] = _ENDINGS["urdf"]
-_SHARE_FUNCTION = "get_package_share_directory"
-_MAX_PATHS = 8  # that are wrong in one file
-_MAX_EDITS = 3  # of one path
-_MAX_FILES = 200
-_LAUNCH = "the launch file"
-
-
 def _setup_paths(task: PackageTask) -> Iterator[Proposal]:
     """Yield edits of the paths and patterns in setup.py that name no file, or a folder."""
     source, setup = task.source(SETUP), task.package.setup
@@ -143,8 +210,11 @@ def _setup_paths(task: PackageTask) -> Iterator[Proposal]:
     patterns = [f"{folder}/*{end}" for path, folder in files.items() for end in ("", posixpath.splitext(path)[1])]
     for path, line in wrong[:_MAX_PATHS]:
         is_folder, above = path in task.package.tree.folders, posixpath.dirname(path)
-        known = [it for it in patterns if posixpath.dirname(it) in (above, path)] if is_folder else [*files, *patterns]
-        for actual in (path, f"{above}/*")[: 1 + is_folder]:
+        known, texts = [*files, *patterns], [path]
+        if is_folder:
+            known = [it for it in patterns if posixpath.dirname(it) in (above, path)]
+            texts.append(f"{above}/*")
+        for actual in texts:
             for wanted in _similar(actual, known)[:_MAX_EDITS]:
                 edits = _moved(source, actual, wanted, line)[:2]
                 yield from (change([edit], "a path", SETUP) for edit in edits)
@@ -198,7 +268,7 @@ def _of_one_machine(name: str, file: PythonFile, actual: str, target: str) -> It
             others = _moved(file.source, rest, target)[:1] if rest and rest != target else []
             if rest in ("", target) or others:
                 new = share if rest else f"os.path.join({share}, {target!r})"
-                imports = file.with_imports([_SHARE_FUNCTION, *([] if rest else ["os"])])
+                imports = file.with_imports([_SHARE_FUNCTION] if rest else [_SHARE_FUNCTION, "os"])
                 yield [*imports, file.replaced(literal, new), *others]
 
 
@@ -240,11 +310,7 @@ def _without(source: Source, start: int, end: int) -> Edit:
     after = _REST_OF_ARGUMENT.match(text, end + 1)
     if text[start - 1 : start] in "'\"" and text[end : end + 1] == text[start - 1 : start] and after is not None:
         return source.edit(start - 1, after.end(), "")
-    return source.edit(start, end + (text[end : end + 1] == "/"), "")
-
-
-_DESCRIPTION = "LaunchDescription"
-_MAX_ITEMS = 30
+    return source.edit(start, end + 1 if text.startswith("/", end) else end, "")
 
 
 def _missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[Proposal]:
@@ -254,11 +320,11 @@ def _missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[P
     others = (it for it in _items(like) if like.plain(it) not in known)
     missing = [it for it in others if not (isinstance(it, ast.Tuple) and like.plain(it.elts[-1]) in installed)]
     several: list[str] = []
-    spare = {
-        _executable(own, value) or "-": name for name, value in own.values.items() if own.plain(value) not in known
-    }
+    spare = {_executable(own, value): name for name, value in own.values.items() if own.plain(value) not in known}
     for item in missing:
-        code = spare.get(_executable(like, item) or "", "") or like.written(item, own.bound)
+        executable = _executable(like, item)
+        code = spare.get(executable) if executable is not None else None
+        code = code or like.written(item, own.bound)
         several.append(code)
         yield from _adding(own, [code], what)
     if len(several) > 1:
@@ -319,62 +385,3 @@ def _add(file: PythonFile, codes: Sequence[str]) -> Edit | None:
     line = indentation(file.text, start)
     space = f"{file.newline}{line}" if line else " "
     return file.source.edit(end, end, "".join(f"{before}{space}{indented(it, line, file.newline)}" for it in codes))
-
-
-_MAX_MADE, _MAX_PROPOSALS = 100, 24  # for one kind of files
-
-
-def package_proposals(
-    package: Package, reference: Package | None, wanted: Iterable[tuple[tuple[str, ...], Mapping[str, Any]]]
-) -> Iterator[Iterator[Proposal]]:
-    """Yield edits of a package for checks, by the kinds of files: what each check looks at, with its arguments."""
-    kinds: dict[str, None] = {}
-    given: set[str] = set()
-    for looks_at, arguments in wanted:
-        kinds |= dict.fromkeys(looks_at)
-        for value in arguments.values():
-            values = value if isinstance(value, list) else [value]
-            given.update(it for it in values if isinstance(it, str))
-    task = PackageTask(package, reference, frozenset(given))
-    for kind in ("", *kinds):
-        yield _best_of_kind(task, kind)
-
-
-def _best_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
-    """Yield the best proposals for a kind of files, each edit once: a later one says better what changes."""
-    own = {it.edits: it for it in islice(_of_kind(task, kind), _MAX_MADE) if it.edits}
-    yield from sorted(own.values(), key=lambda it: (it.rank, it.size))[:_MAX_PROPOSALS]
-
-
-def _of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
-    """Yield edits of the file of a kind, and those that rename or create one; without a kind, of the package's name."""
-    if not kind:
-        yield from package_names(task, task.package.lab_name or task.package.share.split("/")[1])
-        return
-    yield from file_proposals(task, kind)
-    yield from file_proposals(task, "urdf") if kind in (SETUP, "launch") else ()
-    path, like = task.file(task.package, kind), task.file(task.reference, kind)
-    source = task.source(path)
-    if source is not None and path is not None:
-        yield from (it for it in _of_text(task, kind, source, path, like) if it.edits)
-
-
-def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str | None) -> Iterator[Proposal]:
-    """Yield the edits of a file: its difference to the reference, its syntax, its names, its paths and its words."""
-    what, wanted = WHAT.get(kind, kind), task.wanted(like) or ""
-    own = PythonFile(source)
-    ending, other = (posixpath.splitext(it or "")[1] for it in (path, like))
-    is_python = ending in (".py", "")
-    if wanted and (ending == other or is_python):
-        yield from _reword(source, wanted, what)
-    if is_python:
-        yield from _missing_entries(own, PythonFile(Source(source.path, wanted)), what)
-        yield from _as_lists(own, what)
-        yield from _undefined_names(own, what)
-    elif ending == other:
-        yield from _other_values(source, wanted, what)
-    if kind == "launch":
-        yield from _launch_paths(task, task.launch(path, source), source)
-    elif kind == SETUP:
-        yield from _setup_paths(task)
-    yield from _respellings(source, [wanted, *(task.files if kind == SETUP else task.package.installed)], what)

@@ -91,12 +91,11 @@ def change(edits: Iterable[Edit], cause: str, what: str = "") -> Proposal:
 
 def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
     """Yield edits that give a file the name that it has in the reference."""
-    likes = {task.named(path): path for path in (task.reference.tree.files if task.reference is not None else ())}
-    names = {posixpath.basename(path) for path in likes} | task.given
-    wanted = {path: like for path, like in likes.items() if _kind_of(path) == kind}
-    for path in wanted:
+    wanted = [task.named(path) for path in task.reference.tree.files] if task.reference is not None else []
+    names = {posixpath.basename(path) for path in wanted} | task.given
+    for path in dict.fromkeys(wanted):
         folder, name = posixpath.split(path)
-        if any(_is_named(it, name, kind) for it in task.files):
+        if _kind_of(path) != kind or any(_is_named(it, name, kind) for it in task.files):
             continue
         own = [it for it in task.files if kind in (_kind_of(it), posixpath.dirname(it)) or it.startswith(f"{folder}/")]
         yield from _rename(task, kind, name, [it for it in own if posixpath.basename(it) not in names])
@@ -109,7 +108,11 @@ def _is_named(path: str, name: str, kind: str) -> bool:
 def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> Iterator[Proposal]:
     """Yield edits that give one of these files a name: the one with the most similar name first; xacro stays xacro."""
     spare = {posixpath.basename(it): it for it in files if it.endswith(".xacro") <= name.endswith(".xacro")}
-    for other in dict.fromkeys([*filter(None, [closest(name, spare)]), *[*spare][:_MAX_NAMES]]):
+    others = [*spare][:_MAX_NAMES]
+    nearest = closest(name, spare)
+    if nearest is not None:
+        others.insert(0, nearest)
+    for other in dict.fromkeys(others):
         new = posixpath.join(posixpath.dirname(spare[other]), name)
         yield change([task.renamed(spare[other], new)], f"the name of {WHAT.get(kind, 'a file')}")
 
@@ -120,14 +123,18 @@ def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
     if manifest is None or manifest.name is None:
         return
     shares = [path.split("/")[1] for path in task.package.installed if path.startswith("share/")]
-    others = [name for name in shares if closest(name, [new])]
-    names = dict.fromkeys([manifest.name, *([setup.name] if setup and setup.name else []), *others])
-    names.pop(new, None)
+    own = [manifest.name, setup.name if setup is not None else None]
+    similar = [name for name in shares if closest(name, [new])]
+    names = [name for name in dict.fromkeys([*own, *similar]) if name and name != new]
+    if not names:
+        return
     word = re.compile(rf"(?<![\w.])({'|'.join(map(re.escape, names))})(?![\w.])")
     edits: list[Edit] = []
-    for path in (MANIFEST, SETUP, "setup.cfg", *task.package.launch_files[:_MAX_LAUNCH_FILES]) if names else ():
+    for path in (MANIFEST, SETUP, "setup.cfg", *task.package.launch_files[:_MAX_LAUNCH_FILES]):
         source = task.source(path)
-        edits += [source.edit(*it.span(), new) for it in word.finditer(source.text)] if source is not None else []
-    moved = [task.renamed(f"resource/{old}", f"resource/{new}") for old in names if f"resource/{old}" in task.files]
-    edits += moved if f"resource/{new}" not in task.files else []
+        if source is not None:
+            edits += [source.edit(*it.span(), new) for it in word.finditer(source.text)]
+    if f"resource/{new}" not in task.files:
+        moved = [name for name in names if f"resource/{name}" in task.files]
+        edits += [task.renamed(f"resource/{name}", f"resource/{new}") for name in moved]
     yield change(edits, "the name of the package")

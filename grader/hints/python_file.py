@@ -109,7 +109,9 @@ class PythonFile:
         start, _ = self.span(node)
         text = self.segment(node)
         names = [inner for inner in ast.walk(node) if isinstance(inner, ast.Name)]
-        for name in sorted(names, key=lambda inner: self.span(inner)[0], reverse=True) if depth else ():
+        if not depth:
+            return text
+        for name in sorted(names, key=lambda inner: self.span(inner)[0], reverse=True):
             if name.id not in bound and name.id in self.values and len(text) <= _MAX_CODE:
                 at, end = (offset - start for offset in self.span(name))
                 text = text[:at] + self.written(self.values[name.id], bound, depth - 1) + text[end:]
@@ -188,8 +190,10 @@ def with_xacro(source: Source) -> Iterator[Edits]:
     """Yield the edits of a launch file that read the robot with xacro instead of open or cat."""
     for found in _CAT.finditer(source.text):
         yield (source.edit(found.start(), found.end(), "xacro"),)
+    if not source.path.endswith(".py"):
+        return
     file = PythonFile(source)
-    for call in [*file.calls("read"), *file.calls("read_text")] if source.path.endswith(".py") else ():
+    for call in [*file.calls("read"), *file.calls("read_text")]:
         owner = file.meant(call.func.value) if isinstance(call.func, ast.Attribute) else call
         owner = file.values.get(owner.id, owner) if isinstance(owner, ast.Name) else owner
         is_open = isinstance(owner, ast.Call) and _called(owner) == "open" and owner.args

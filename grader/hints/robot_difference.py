@@ -57,7 +57,6 @@ class RobotDifference:
         self.draft, self.reference = draft, reference
         links = [link.name for link in reference.robot.links]
         self.known = {*links, *(material.name for material in reference.robot.materials)}
-        self.missing: list[MissingPart] = []
         self._names = _translation(draft, reference)
 
     @property
@@ -68,9 +67,25 @@ class RobotDifference:
     @cached_property
     def pieces(self) -> list[Piece]:
         """The pieces, each once: values first, then what moves, is added and is removed."""
-        found_steps = steps(self._tree(self.draft, {}), self._tree(self.reference, self._names))
-        found = [*self._pieces(found_steps)]
-        return _unique([*found, *self._materials(), *self._joint_names()])
+        return _unique([*self._pieces(self._steps), *self._materials(), *self._joint_names()])
+
+    @cached_property
+    def missing(self) -> list[MissingPart]:
+        """The links and joints of the reference that the robot does not have."""
+        found: list[MissingPart] = []
+        for step in self._steps:
+            if step.verb == "add" and step.own.tag == "robot" and step.like is not None:
+                like: Element = step.like.of
+                if like.tag == "link":
+                    found.append(MissingPart("link", like.get("name") or ""))
+                elif like.tag == "joint":
+                    ends = (end_of(like, "child"), like.get("type") or "", end_of(like, "parent"))
+                    found.append(MissingPart("joint", *ends))
+        return found
+
+    @cached_property
+    def _steps(self) -> list[Step]:
+        return steps(self._tree(self.draft, {}), self._tree(self.reference, self._names))
 
     def piece(
         self,
@@ -166,17 +181,8 @@ class RobotDifference:
                     yield self.moved(own.of, step.parent.of)
                 case "add" if like is not None and own.tag != "robot":
                     yield from self._inner(own.of, like.of)
-                case "add" if like is not None and like.tag in ("link", "joint"):
-                    self._miss(like.of)
                 case "remove":
                     yield from self._remove(own)
-
-    def _miss(self, like: Element) -> None:
-        if like.tag == "link":
-            self.missing.append(MissingPart("link", like.get("name") or ""))
-        else:
-            ends = (end_of(like, "child"), like.get("type") or "", end_of(like, "parent"))
-            self.missing.append(MissingPart("joint", *ends))
 
     def _of_values(self, found: Sequence[Step]) -> Iterator[Piece]:
         """Yield the values of one element: each alone, and all together."""

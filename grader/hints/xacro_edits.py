@@ -1,4 +1,10 @@
-"""The edits of the texts that the elements of an expanded xacro file come from."""
+"""The edits of the texts that the elements of an expanded xacro file come from.
+
+A value is changed where it is defined, if a name alone gives it: in a property, in the argument of a macro call, in the
+default of an argument. Else it is replaced where it is used, or given in a macro call that lacks it. Nothing inside an
+expression is changed, and nothing that a YAML file gives. What xacro refuses is corrected by near names, by the prefix
+xacro, and by arguments that other calls of a macro give.
+"""
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -17,6 +23,24 @@ from grader.xacro.scopes import Definition, Key, ScopePlace, UnknownName, XacroS
 from grader.xacro.texts import Texts
 
 _MAX_LENGTH = 2_000  # of a text that is edited in parts
+_MAX_NAMES, _MAX_NODES = 8, 2000
+_PREFIXED = ("property", "arg", "macro", "include", "if", "unless")
+_NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
+_TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
+_EXPRESSION = re.compile(r"\$\{([^}]*)\}")
+_NAME = re.compile(r"(?<![\w.'\"])[^\W\d]\w*(?![\w(])")
+_NUMBER = re.compile(r"\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*")
+# The one expression of a text that is a name, perhaps with a minus.
+_ALONE = re.compile(
+    r"""(?P<before>[^$]*)
+    (?: \$\{\s*(?P<sign>-?)\s*(?P<name>[^\W\d]\w*)\s*\}
+      | \$\(\s*arg\s+(?P<argument>[^\s()]+)\s*\) )
+    (?P<after>[^$]*)""",
+    re.VERBOSE,
+)
+_LOADED = re.compile(r"\$\{\s*(?:xacro\.)?load_yaml\(")
+_MAX_DEPTH = 4  # definitions that lead to one another
+_MAX_DEFINITIONS = 12
 
 
 class _Written(NamedTuple):
@@ -104,23 +128,6 @@ def _definition_text(definition: Definition) -> _Written | None:
     return whole._replace(key=definition.key) if whole is not None else None
 
 
-_TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
-_EXPRESSION = re.compile(r"\$\{([^}]*)\}")
-_NAME = re.compile(r"(?<![\w.'\"])[^\W\d]\w*(?![\w(])")
-_NUMBER = re.compile(r"\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*")
-# The one expression of a text that is a name, perhaps with a minus.
-_ALONE = re.compile(
-    r"""(?P<before>[^$]*)
-    (?: \$\{\s*(?P<sign>-?)\s*(?P<name>[^\W\d]\w*)\s*\}
-      | \$\(\s*arg\s+(?P<argument>[^\s()]+)\s*\) )
-    (?P<after>[^$]*)""",
-    re.VERBOSE,
-)
-_LOADED = re.compile(r"\$\{\s*(?:xacro\.)?load_yaml\(")
-_MAX_DEPTH = 4  # definitions that lead to one another
-_MAX_DEFINITIONS = 12
-
-
 class _Rewriter:
     """Makes the edits of one expanded document."""
 
@@ -135,17 +142,18 @@ class _Rewriter:
             return []
         found: list[_TextChange] = []
         has_definition = False
-        for use in changed if "$" in text.text else ():
-            for part, old, new in _parts(text, use):
-                changes = self._definitions(part, use.scope, old, new)
-                if not changes and self._is_loaded(part):
-                    return []
-                has_definition |= bool(changes)
-                found += changes or [_TextChange(part, new)]
+        parts = [(use, *part) for use in changed for part in _parts(text, use)] if "$" in text.text else []
+        for use, part, old, new in parts:
+            changes = self._definitions(part, use.scope, old, new)
+            if not changes and self._is_loaded(part):
+                return []
+            has_definition |= bool(changes)
+            found += changes or [_TextChange(part, new)]
         by_place = {change.written[:3]: change for change in found}
         is_one = all(by_place[change.written[:3]].new == change.new for change in found)
+        ways = [*self._literal(text, changed), *self._in_calls(text, changed)]
         edits = _edits_of(by_place.values()) if has_definition and is_one else None
-        return [*filter(None, [edits]), *self._literal(text, changed), *self._in_calls(text, changed)]
+        return [edits, *ways] if edits else ways
 
     def _in_calls(self, text: _Written, changed: Sequence[_Use]) -> list[Edits]:
         """Return the edits that give a parameter, of which a text is the default, in the calls of its macro."""
@@ -220,7 +228,10 @@ class _Rewriter:
 
     def _named(self, text: _Written) -> Iterator[Definition]:
         for expression in _EXPRESSION.findall(text.text):
-            yield from filter(None, (self._of_name(name, text.scope) for name in _NAME.findall(expression)))
+            for name in _NAME.findall(expression):
+                definition = self._of_name(name, text.scope)
+                if definition is not None:
+                    yield definition
         for argument in re.findall(r"\$\(\s*arg\s+([^\s()]+)\s*\)", text.text):
             if argument in self._texts.defaults:
                 yield self._texts.defaults[argument]
@@ -258,16 +269,19 @@ def _is_equal(one: str, other: str) -> bool:
         return False
 
 
-def _conditions(source: Source, known: Sequence[str], near: Callable[[str, Sequence[str]], str | None]) -> list[Edits]:
+def _conditions(source: Source, known: Sequence[str]) -> list[Edits]:
     """Return the edits that correct a text in quotes in the condition of an <xacro:if> or <xacro:unless>: 'rigth'."""
     found: list[Edits] = []
     for tag in re.finditer(r"<xacro:(?:if|unless)\b", source.text):
         value = markup.attribute(source.text, tag.start(), "value")
-        text = source.text[value.value_start : value.value_end] if value is not None else ""
-        for word in re.findall(r"'(\w+)'|\"(\w+)\"", text):
-            meant = near(word[0] or word[1], known) if (word[0] or word[1]) not in known else None
-            if value is not None and meant is not None:
-                new = re.sub(rf"\b{word[0] or word[1]}\b", meant, text)
+        if value is None:
+            continue
+        text = source.text[value.value_start : value.value_end]
+        for single, double in re.findall(r"'(\w+)'|\"(\w+)\"", text):
+            word = single or double
+            meant = near(word, known) if word not in known else None
+            if meant is not None:
+                new = re.sub(rf"\b{word}\b", meant, text)
                 found.append((with_attribute(source, tag.start(), "value", new),))
     return found
 
@@ -317,20 +331,20 @@ class ExpandedEdits:
 
         `names` are those that the reference and the format have.
         """
-        found = [
-            *_corrections(Source(self._source.path, self._source.text), self._source.documents, self._source.refused)
-        ]
-        words = {word for name in names for word in name.split("_")}
-        given = sorted(words)
+        written = Source(self._source.path, self._source.text)
+        found = [*_corrections(written, self._source.documents, self._source.refused)]
+        given = sorted({word for name in names for word in name.split("_")})
         for document in self._source.documents.values():
-            edited = _conditions(document.place.source, given, near)
+            edited = _conditions(document.place.source, given)
             found += [Proposal(edits, "a text in a condition") for edits in edited]
         return list({correction.edits: correction for correction in reversed(found)}.values())[::-1]
 
     def calls(self, edit: Edit) -> dict[str, list[Location]]:
         """Return the calls of the macros that an edit is in, by their names."""
         found: dict[str, dict[Location, None]] = {}
-        for node in self._source.nodes if edit.old else ():
+        if not edit.old:
+            return {}
+        for node in self._source.nodes:
             place = node.place.at(next((it for it in node.attributes if it and edit.old.startswith(f"{it}=")), None))
             if node.place.calls and place[:3] == edit[:3]:
                 name, call = node.place.calls[-1]
@@ -340,11 +354,6 @@ class ExpandedEdits:
     @cached_property
     def _rewriter(self) -> _Rewriter:
         return _Rewriter(self._source.texts)
-
-
-_MAX_NAMES, _MAX_NODES = 8, 2000
-_PREFIXED = ("property", "arg", "macro", "include", "if", "unless")
-_NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
 def _corrections(document: Source, files: Mapping[str, XacroNode], refusals: Sequence[Refusal]) -> Iterator[Proposal]:
@@ -362,12 +371,22 @@ def _corrections(document: Source, files: Mapping[str, XacroNode], refusals: Seq
             edits = tuple(_tags(node.place, node.tag, f"xacro:{node.tag}"))
             yield Proposal(edits, f"<{node.tag}> without xacro:")
     for error, place, attribute in refusals[:_MAX_NAMES]:
-        for edits in _respell(place, attribute, error.unknown) if error.unknown is not None else ():
-            yield Proposal(edits, "a name that xacro does not know")
-        own = next((node for node in nodes if node.place[:2] == place[:2]), None)
-        others = [node.attributes for node in nodes if own is not None and node is not own and node.tag == own.tag]
-        for given in [it for it in others if set(error.lacking) <= it.keys()] if error.lacking else ():
-            for values in ({name: given[name] for name in error.lacking}, _negated(given, error.lacking)):
+        if error.unknown is not None:
+            for edits in _respell(place, attribute, error.unknown):
+                yield Proposal(edits, "a name that xacro does not know")
+        if error.lacking:
+            yield from _values_of_other_calls(place, nodes, error.lacking)
+
+
+def _values_of_other_calls(
+    place: ScopePlace, nodes: Sequence[XacroNode], lacking: tuple[str, ...]
+) -> Iterator[Proposal]:
+    """Yield the edits that give a call the values that it lacks, from other calls of the macro, also negated."""
+    own = next((node for node in nodes if node.place[:2] == place[:2]), None)
+    for other in nodes:
+        given = other.attributes
+        if own is not None and other is not own and other.tag == own.tag and set(lacking) <= given.keys():
+            for values in ({name: given[name] for name in lacking}, _negated(given, lacking)):
                 yield Proposal(_give(place, values), f"this call gives no value for {' and '.join(values)}")
 
 
@@ -383,8 +402,9 @@ def _respell(place: ScopePlace, attribute: str | None, unknown: UnknownName) -> 
     if near is not None:
         at, where = unknown.known[near] or (place, None)
         ways = [_rename(place, attribute, unknown.name, near)]
-        ways += [_rename(at, where, near, unknown.name)] if where is not None else []
-        yield from filter(None, ways)
+        if where is not None:
+            ways.append(_rename(at, where, near, unknown.name))
+        yield from (edits for edits in ways if edits)
 
 
 def _negated(given: Mapping[str, str], names: Sequence[str]) -> Mapping[str, str]:
@@ -400,13 +420,16 @@ def _give(place: ScopePlace, values: Mapping[str, str]) -> Edits:
 def _rename(place: ScopePlace, attribute: str | None, old: str, new: str) -> Edits:
     """Return the edit of an attribute's value; without an attribute, of an attribute's name, the tag, or any value."""
     source, start = place.source.element(place.tag)
-    tags = tuple(_tags(place, f"xacro:{old}", f"xacro:{new}")) if attribute is None else ()
-    for found in () if tags else markup.attributes(source.text, start):
+    if attribute is None:
+        tags = tuple(_tags(place, f"xacro:{old}", f"xacro:{new}"))
+        if tags:
+            return tags
+    for found in markup.attributes(source.text, start):
         whole = source.text[found.start : found.end]
         changed = re.sub(rf"(?<![\w.]){re.escape(old)}(?!\w)", new, whole, count=0 if "$" in whole else 1)
         if attribute in (None, found.name) and changed != whole:
             return (source.edit(found.start, found.end, changed),)
-    return tags
+    return ()
 
 
 def _tags(place: ScopePlace, old: str, new: str) -> Iterator[Edit]:
