@@ -130,20 +130,20 @@ def _outcome(solution: Solution, fact: Fact) -> Outcome:
 def _rubric_text(head: Head, rows: Sequence[_DraftCriterion]) -> str:
     """Return a rubric with a criterion for each row; those with one heading follow each other."""
     of_package = sum(row.is_of_package for row in rows)
-    lines = [*_head(head, len(rows)), *_defaults({row.fact.check for row in rows})]
-    lines += _part(_ROBOT, "The robot", "urdf", len(rows) - of_package)
+    lines = [*_head_lines(head, len(rows)), *_default_lines({row.fact.check for row in rows})]
+    lines += _part_lines(_ROBOT, "The robot", "urdf", len(rows) - of_package)
     if of_package:
-        lines += _part(_PACKAGE, "The package", "package", of_package)
+        lines += _part_lines(_PACKAGE, "The package", "package", of_package)
     about = ""
-    for name, row in _by_id(rows).items():
+    for name, row in _with_ids(rows).items():
         if row.fact.about != about:
             about = row.fact.about
             lines += ["", f"# --- {printable(about)} ".ljust(_WIDTH, "-")]
-        lines += _criterion(name, row)
+        lines += _criterion_lines(name, row)
     return "\n".join(lines) + "\n"
 
 
-def _by_id(rows: Sequence[_DraftCriterion]) -> dict[str, _DraftCriterion]:
+def _with_ids(rows: Sequence[_DraftCriterion]) -> dict[str, _DraftCriterion]:
     """Return the rows by ids of what they are about and their checks, such as upper-arm-mass-is."""
     found: dict[str, _DraftCriterion] = {}
     numbers: dict[str, int] = {}  # the last that each name got
@@ -156,7 +156,7 @@ def _by_id(rows: Sequence[_DraftCriterion]) -> dict[str, _DraftCriterion]:
     return found
 
 
-def _head(head: Head, points: int) -> Iterator[str]:
+def _head_lines(head: Head, points: int) -> Iterator[str]:
     if head.schema:
         yield f"#:schema {head.schema}"
     yield assignment("id", head.id)
@@ -168,7 +168,7 @@ def _head(head: Head, points: int) -> Iterator[str]:
     yield assignment("points", points)
 
 
-def _defaults(checks: set[str]) -> Iterator[str]:
+def _default_lines(checks: set[str]) -> Iterator[str]:
     yield from ("", "[defaults]", assignment("part", _ROBOT), assignment("points", 1))
     usual = {name: given for name, given in _USUAL.items() if name in checks}
     if usual:
@@ -176,12 +176,12 @@ def _defaults(checks: set[str]) -> Iterator[str]:
     yield from (f"{assignment(name, arguments)}  # {unit}" for name, (arguments, unit) in usual.items())
 
 
-def _part(name: str, title: str, needs: str, points: int) -> Iterator[str]:
+def _part_lines(name: str, title: str, needs: str, points: int) -> Iterator[str]:
     yield from ("", "[[part]]", assignment("id", name), assignment("title", title))
     yield from (assignment("needs", needs), assignment("points", points))
 
 
-def _criterion(name: str, row: _DraftCriterion) -> Iterator[str]:
+def _criterion_lines(name: str, row: _DraftCriterion) -> Iterator[str]:
     fact = row.fact
     yield from ("", "[[criterion]]", assignment("id", name))
     if row.is_of_package:

@@ -99,11 +99,11 @@ def robot_facts(solution: Solution) -> _Facts:
         yield from _tree_facts(solution)
 
 
-def _of(link: str, check: str, **arguments: Any) -> Fact:
+def _link_fact(link: str, check: str, **arguments: Any) -> Fact:
     return Fact(link, check, {"link": link, **arguments}, f"{link} {check}")
 
 
-def _of_robot(check: str, **arguments: Any) -> Fact:
+def _robot_fact(check: str, **arguments: Any) -> Fact:
     return Fact(_THE_ROBOT, check, arguments, check)
 
 
@@ -125,10 +125,10 @@ def _visual_facts(link: Link) -> _Facts:
             is_mesh = isinstance(visual.geometry, Mesh)
             selected = {} if len(kinds) == 1 or is_mesh else {"shape": type(visual.geometry).__name__.lower()}
             if visual.material is not None:
-                yield _of(link.name, "shows_colour", **selected, colour=_rounded(visual.material.rgba, 4))
+                yield _link_fact(link.name, "shows_colour", **selected, colour=_rounded(visual.material.rgba, 4))
             if not is_mesh:
                 xyz = _rounded(visual.origin.xyz)
-                yield _of(link.name, "centre_at", **selected, relative_to=link.name, xyz=xyz, **_axis(visual))
+                yield _link_fact(link.name, "centre_at", **selected, relative_to=link.name, xyz=xyz, **_axis(visual))
     for kind in (kind for kind, number in kinds.items() if number > 1):
         reason = "a check examines one shape of a kind"
         yield Omission(f"place and colour of each {kind.__name__.lower()} of {link.name}", reason)
@@ -137,16 +137,16 @@ def _visual_facts(link: Link) -> _Facts:
 def _size(link: str, visual: Visual) -> Fact:
     match visual.geometry:
         case Box(size=size):  # along the axes of the link, whichever of its own they are
-            first, *others = [_of(link, "shows_box", size=_rounded(edges)) for edges in permutations(size)]
+            first, *others = [_link_fact(link, "shows_box", size=_rounded(edges)) for edges in permutations(size)]
             return first._replace(otherwise=others)
         case Cylinder(radius=radius, length=length):
-            return _of(link, "shows_cylinder", radius=round(radius, 6), length=round(length, 6))
+            return _link_fact(link, "shows_cylinder", radius=round(radius, 6), length=round(length, 6))
         case Sphere(radius=radius):
-            return _of(link, "shows_sphere", radius=round(radius, 6))
+            return _link_fact(link, "shows_sphere", radius=round(radius, 6))
         case mesh:
             file = "/".join(mesh_file(mesh.filename, is_expanded=True).steps)
             xyz, rpy = _rounded(visual.origin.xyz), _rounded(visual.origin.rpy)
-            return _of(link, "shows_mesh", file=file, scale=_rounded(mesh.scale), xyz=xyz, rpy=rpy)
+            return _link_fact(link, "shows_mesh", file=file, scale=_rounded(mesh.scale), xyz=xyz, rpy=rpy)
 
 
 def _axis(visual: Visual) -> dict[str, Any]:
@@ -161,10 +161,10 @@ def _body_facts(link: Link) -> _Facts:
     if link.inertial is not None:
         least = abs(link.inertial.mass) * _MASS_SHARE
         tolerance = {"tolerance": least} if least < _MASS_TOLERANCE else {}
-        yield _of(link.name, "mass_is", mass=link.inertial.mass, **tolerance)
+        yield _link_fact(link.name, "mass_is", mass=link.inertial.mass, **tolerance)
         title = f"the inertia of {link.name!r} is that of a uniform solid of its shapes"
-        loose = _of(link.name, "inertia_plausible", tolerance=_LOOSE_INERTIA)._replace(title=title)
-        yield _of(link.name, "inertia_plausible")._replace(title=title, otherwise=[loose])
+        loose = _link_fact(link.name, "inertia_plausible", tolerance=_LOOSE_INERTIA)._replace(title=title)
+        yield _link_fact(link.name, "inertia_plausible")._replace(title=title, otherwise=[loose])
     if len(link.collisions) > MAX_SHAPES:
         yield Omission(f"{link.name} collisions", f"it has more than {MAX_SHAPES}")
         return
@@ -173,7 +173,7 @@ def _body_facts(link: Link) -> _Facts:
     if not any(not is_empty(visual.geometry) for visual in link.visuals):
         yield from shapes
     elif shapes:
-        yield _of(link.name, "collision_matches_visual")._replace(otherwise=shapes if only else ())
+        yield _link_fact(link.name, "collision_matches_visual")._replace(otherwise=shapes if only else ())
 
 
 def _collision(link: str, collision: Collision, only: Mapping[str, bool]) -> Fact:
@@ -185,19 +185,19 @@ def _collision(link: str, collision: Collision, only: Mapping[str, bool]) -> Fac
         case Sphere(radius=radius):
             shape = {"sphere": round(radius, 6)}
         case _:
-            return _of(link, "collision_matches_visual")
+            return _link_fact(link, "collision_matches_visual")
     xyz, rpy = _rounded(collision.origin.xyz), _rounded(collision.origin.rpy, 4)
-    return _of(link, "collides_as", **shape, xyz=xyz, rpy=rpy, **only)
+    return _link_fact(link, "collides_as", **shape, xyz=xyz, rpy=rpy, **only)
 
 
 def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
     """Yield what may be true of the parent joint of a link; raise MissingElement for an axis of length zero."""
     link, parent = joint.child, joint.parent
     title = f"a {joint.type} joint connects {link!r} to {parent!r}"  # its name is free
-    yield _of(link, "held_by", parent=parent, joint_type=joint.type)._replace(title=title)
+    yield _link_fact(link, "held_by", parent=parent, joint_type=joint.type)._replace(title=title)
     pose = robot.pose(link, relative_to=parent)
     rpy = {"rpy": _rounded(pose.rpy, 4)} if any(_rounded(pose.rpy, 4)) else {}
-    yield _of(link, "frame_at", relative_to=parent, xyz=_rounded(pose.translation), **rpy)
+    yield _link_fact(link, "frame_at", relative_to=parent, xyz=_rounded(pose.translation), **rpy)
     if joint.limit is not None and joint.type in ("revolute", "prismatic"):
         ends = (joint.limit.lower, joint.limit.upper)
         turns = joint.type == "revolute"
@@ -205,17 +205,17 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
         given = {"effort": joint.limit.effort, "velocity": joint.limit.velocity}
         others = {name: value for name, value in given.items() if isfinite(value)}
         others |= {} if turns else {"tolerance": _SLIDING_TOLERANCE}
-        yield _of(link, "joint_limits", lower=lower, upper=upper, **others)
+        yield _link_fact(link, "joint_limits", lower=lower, upper=upper, **others)
     if joint.dynamics is not None and joint.type != "fixed":
         friction, damping = joint.dynamics.friction, joint.dynamics.damping
         title = f"the joint that moves {link!r} has friction {friction:g} and damping {damping:g}"
-        yield _of(link, "joint_dynamics", friction=friction, damping=damping)._replace(title=title)
+        yield _link_fact(link, "joint_dynamics", friction=friction, damping=damping)._replace(title=title)
     mimic = joint.mimic
     if mimic is not None and joint.type != "fixed" and robot.robot.has_joint(mimic.joint):
         leader = robot.joint(mimic.joint).child
-        yield _of(link, "mimics", leader=leader, multiplier=mimic.multiplier, offset=mimic.offset)
+        yield _link_fact(link, "mimics", leader=leader, multiplier=mimic.multiplier, offset=mimic.offset)
     if joint.type in _WITH_AXIS:
-        yield _of(link, "joint_axis", relative_to=parent, direction=_rounded(pose.rotate(robot.axis(joint)), 2))
+        yield _link_fact(link, "joint_axis", relative_to=parent, direction=_rounded(pose.rotate(robot.axis(joint)), 2))
 
 
 def _tree_facts(solution: Solution) -> Iterator[Fact]:
@@ -225,20 +225,20 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     words = words_of_foreign(solution.root)
     used = {joint.name: joint.child for joint in joints if joint.name in words}
     if used:
-        yield _of_robot("joints_named", parent=root, joints=used)
+        yield _robot_fact("joints_named", parent=root, joints=used)
     fixed = (joint.child for joint in joints if joint.parent == root and joint.type == "fixed")
-    yield _of_robot("root_of_tree", link=root, holds=next(fixed, root))
+    yield _robot_fact("root_of_tree", link=root, holds=next(fixed, root))
     moving = [joint for joint in joints if joint.type != "fixed"]
     kinds = Counter(joint.type for joint in moving)
     numbers = {"moving": sum(joint.mimic is None for joint in moving), **{kind: kinds[kind] for kind in _COUNTED}}
-    yield _of_robot("counts", **numbers)
+    yield _robot_fact("counts", **numbers)
     inner = {joint.parent for joint in joints}
     chains = {name: robot.chain(name) or () for name in robot.main_tree if name not in inner}
     tips = [name for name, chain in chains.items() if any(joint.type != "fixed" for joint in chain)]
     if tips:
         names = [repr(tip) for tip in tips[:_MAX_TIPS]]
         title = f"{enumerated(names)} {'moves' if len(names) == 1 else 'move'} as in the reference solution"
-        yield _of_robot("kinematics_match_reference", links=tips[:_MAX_TIPS], match="order")._replace(title=title)
+        yield _robot_fact("kinematics_match_reference", links=tips[:_MAX_TIPS], match="order")._replace(title=title)
 
 
 def element_facts(solution: Solution) -> _Facts:

@@ -81,12 +81,12 @@ def _changes(text: str, hidden: Collection[str]) -> Iterator[_MutantEdit]:
     names = {tag: [it.get("name", "") for it, *_ in places if it.tag == tag] for tag in ("link", "joint", "material")}
     for element, label, start in places:
         for attribute in attributes(text, start):
-            yield from _of_attribute(text, element, label, attribute, names)
+            yield from _attribute_changes(text, element, label, attribute, names)
         if element.getparent() is None:
             continue
         (head, is_empty), end = head_end(text, start), element_end(text, start)
         if not len(element) and (element.text or "").strip():
-            yield from _of_value(text, label, (head, text.rindex("</", head, end)), "")
+            yield from _value_changes(text, label, (head, text.rindex("</", head, end)), "")
         yield _MutantEdit("element deleted", label, start, end, "")
         if label in hidden:
             if is_empty:  # <link name="x"/>
@@ -117,7 +117,7 @@ def _places(text: str) -> Iterator[tuple[Element, str, int]]:
         yield element, label, start
 
 
-def _of_attribute(
+def _attribute_changes(
     text: str, element: Element, label: str, attribute: Attribute, names: Mapping[str, Sequence[str]]
 ) -> Iterator[_MutantEdit]:
     name, span = attribute.name, attribute.value
@@ -134,10 +134,10 @@ def _of_attribute(
     elif name == "type" and element.tag == "joint":
         yield from (_MutantEdit("type", f"{place} -> {other}", *span, other) for other in JOINT_TYPES)
     elif name not in _UNTOUCHED and not name.startswith("xmlns"):
-        yield from _of_value(text, label, span, name)
+        yield from _value_changes(text, label, span, name)
 
 
-def _of_value(text: str, label: str, span: tuple[int, int], name: str) -> Iterator[_MutantEdit]:
+def _value_changes(text: str, label: str, span: tuple[int, int], name: str) -> Iterator[_MutantEdit]:
     """Yield changes of a value: of each number in it, else of the text."""
     start, end = span
     label = f"{label} {name}".rstrip()
@@ -214,7 +214,7 @@ def package_mutants(package: Package, links: Iterable[str], text: _Text) -> Iter
 def _file_changes(source: Source, label: str) -> Iterator[_MutantEdit]:
     """Yield the changes of a file that builds or starts something, by its format."""
     if source.path.endswith(".py"):
-        yield from python_changes(PythonFile(source), label)
+        yield from _python_changes(PythonFile(source), label)
         return
     for mutant in mutants(source.text):
         place = mutant.id.partition(": ")[2]
@@ -234,10 +234,10 @@ def _rviz(source: Source, label: str, links: Iterable[str]) -> Iterator[_MutantE
             yield _MutantEdit("fixed frame", f"{label} -> {other}", *frame.span, other)
     displays = root.get("Visualization Manager", "Displays") if root else None
     for display in displays.items if displays else ():
-        yield from _of_display(display, label)
+        yield from _display_changes(display, label)
 
 
-def _of_display(display: YamlNode, label: str) -> Iterator[_MutantEdit]:
+def _display_changes(display: YamlNode, label: str) -> Iterator[_MutantEdit]:
     title, enabled = display.get("Name") or display.get("Class"), display.get("Enabled")
     place = f"{label} {title.text if title else ''}".rstrip()
     if enabled is not None and enabled.text == "true":
@@ -248,7 +248,7 @@ def _of_display(display: YamlNode, label: str) -> Iterator[_MutantEdit]:
             yield _MutantEdit("text misspelt", f"{place} {'/'.join(keys)}", *node.span, _misspelt(node.text))
 
 
-def python_changes(file: PythonFile, label: str) -> Iterator[_MutantEdit]:
+def _python_changes(file: PythonFile, label: str) -> Iterator[_MutantEdit]:
     """Yield the changes of a file: an entry of data_files, an action or an import deleted, a string misspelt."""
     is_setup = label == SETUP
     family = "data_files entry deleted" if is_setup else "action removed"

@@ -189,17 +189,17 @@ def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Sub
 def _names_in(rubric: Rubric) -> Iterator[str]:
     """Yield every text in the arguments of a rubric's checks, also keys of tables, and the joints that it poses."""
     for it in rubric.criteria:
-        yield from _texts((it.arguments, it.at, [one.arguments for one in it.carried]))
+        yield from _texts_in((it.arguments, it.at, [one.arguments for one in it.carried]))
 
 
-def _texts(value: Any) -> Iterator[str]:
+def _texts_in(value: Any) -> Iterator[str]:
     if isinstance(value, Mapping):
         value = [*value, *value.values()]
     if isinstance(value, str):
         yield value
     elif isinstance(value, Iterable):
         for item in value:
-            yield from _texts(item)
+            yield from _texts_in(item)
 
 
 _GradeAll = Callable[[Sequence[Mutant]], Iterable[MutantOutcome]]  # in any order

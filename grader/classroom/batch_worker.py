@@ -74,7 +74,7 @@ def _grade_one(context: ClassContext, task: Task) -> StoredResult:
         reason = str(error) if is_known else f"the grader itself failed: {type(error).__name__}: {error}"
         reason = NO_MEMORY if isinstance(error, MemoryError) else reason
         return undecided(context, result._replace(verdict="errored", reason=reason))
-    entries = {one.criterion.id: _entry(one) for one in report.results}
+    entries = {one.criterion.id: _stored_criterion(one) for one in report.results}
     result = result._replace(parts=report.parts, results=entries, answers=_answers_of(report, result.digest))
     if fault := report.fault:
         return result._replace(verdict="errored", reason=fault)
@@ -86,7 +86,7 @@ def _grade_one(context: ClassContext, task: Task) -> StoredResult:
     return result if is_handed_out else result._replace(work=forms_of(submission))
 
 
-def _entry(result: Result) -> StoredCriterion:
+def _stored_criterion(result: Result) -> StoredCriterion:
     """Return what a line keeps of a criterion."""
     outcome = result.outcome
     is_open = outcome.status in ("pending", "errored") and not result.is_adjusted

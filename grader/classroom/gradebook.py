@@ -192,10 +192,10 @@ def grade_table(
     header = [*_HEADER, *criteria]
     if is_exported:
         header.append("exported")
-    return [*header, "submission"], (_row(one, criteria, is_exported) for one in grades)
+    return [*header, "submission"], (_table_row(one, criteria, is_exported) for one in grades)
 
 
-def _row(grade: StudentGrade, criteria: Sequence[str], is_exported: bool) -> list[CellValue]:
+def _table_row(grade: StudentGrade, criteria: Sequence[str], is_exported: bool) -> list[CellValue]:
     student, report, late = grade.student, grade.report, grade.late
     row: list[CellValue] = [student.key, student.name or None, student.email or None, student.section or None]
     points: dict[str, str | None] = dict.fromkeys(criteria)

@@ -160,13 +160,13 @@ def read_settings(folder: Path) -> ClassSettings:
 def settings_text(settings: ClassSettings) -> str:
     """Return the settings as TOML; `read_settings` returns the same."""
     values = {one.name: getattr(settings, one.name) for one in fields(settings) if one.name != _ARGUMENTS}
-    lines = [f"{key} = {_toml(value)}\n" for key, value in values.items()]
+    lines = [f"{key} = {_toml_value(value)}\n" for key, value in values.items()]
     if settings.arguments:
         lines.append(f"\n[{_ARGUMENTS}]\n")
-        lines += [f"{_toml(key)} = {_toml(value)}\n" for key, value in sorted(settings.arguments.items())]
+        lines += [f"{_toml_value(key)} = {_toml_value(value)}\n" for key, value in sorted(settings.arguments.items())]
     return "".join((_HEAD, *lines))
 
 
-def _toml(value: object) -> str:
+def _toml_value(value: object) -> str:
     """Return a value in TOML, whose texts and lists of texts are those of JSON but for the character DEL."""
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -122,12 +122,12 @@ def is_submission(name: str) -> bool:
 
 def readings_of(name: str, layout: str) -> list[NamedPath]:
     """Return how a name can be read: in Canvas as team and 7, or team_7 and 101, of team_7_101_555_lab6.zip."""
-    found = [_entry(one) for one in _PATTERNS[layout].finditer(name)]
+    found = [_read_path(one) for one in _PATTERNS[layout].finditer(name)]
     is_known = layout == "moodle" or bool(found and not found[0].student.name)  # an anonymous student's
     return found[:1] if is_known else [one for one in found if _NAME_IN_CANVAS.fullmatch(one.student.name)]
 
 
-def _entry(found: re.Match[str]) -> NamedPath:
+def _read_path(found: re.Match[str]) -> NamedPath:
     text = {"name": found.string[: found.start()], **dict.fromkeys(("canvas", "moodle", "login"), "")}
     text |= found.groupdict(default="")
     name, canvas, moodle = text["name"], text["canvas"], text["moodle"]
@@ -227,14 +227,14 @@ def teams(folder: ClassFolder) -> Iterator[NamedPath]:
     """Yield the submissions of the students in lab folders, and all other submissions as a whole."""
     whole = []
     for team in sorted(folder.children.folders):
-        if students := list(_of_students(folder.inside(team), team)):
+        if students := list(_student_paths(folder.inside(team), team)):
             yield from students
         else:
             whole.append(team)
     yield from entries_of(replace(folder, children=folder.children._replace(folders=whole)), "folders")
 
 
-def _of_students(top: ClassFolder, team: str) -> Iterator[NamedPath]:
+def _student_paths(top: ClassFolder, team: str) -> Iterator[NamedPath]:
     """Yield the submissions of the students in the lab folders of a team."""
     for lab in filter(top.labs.is_lab, top.children.folders):
         below = top.inside(lab)

@@ -122,7 +122,7 @@ def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
         return [mark_in(cells, key, most[key[1]], place)]
 
     mistakes: list[str] = []
-    return collect(_rows(folder, mistakes), read, mistakes, [])
+    return collect(_rows_in_folder(folder, mistakes), read, mistakes, [])
 
 
 def collect(rows: Iterable[tuple[str, Cells]], read: _Reader, mistakes: list[str], ignored: list[str]) -> Marks:
@@ -148,7 +148,7 @@ def collect(rows: Iterable[tuple[str, Cells]], read: _Reader, mistakes: list[str
     return marks
 
 
-def _rows(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, Cells]]:
+def _rows_in_folder(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, Cells]]:
     """Yield the place and the cells of each row of the files in a folder; files that cannot be read are mistakes."""
     for path in sorted(folder.absolute().glob("[!.]*.[cC][sS][vV]")):
         shown = printable_path(Path(folder.name, path.name))

@@ -54,8 +54,8 @@ class StoredResult(NamedTuple):
         """The line of the file, without what is empty, and before it that of the texts."""
         values = self._asdict()
         files = values.pop("texts")
-        line = _line_of({name: value for name, value in values.items() if value or name in ("student", "run")})
-        return _line_of({"texts": self.student, "digest": self.digest, "files": files}) + line if files else line
+        line = _json_line({name: value for name, value in values.items() if value or name in ("student", "run")})
+        return _json_line({"texts": self.student, "digest": self.digest, "files": files}) + line if files else line
 
 
 class Run(NamedTuple):
@@ -73,7 +73,7 @@ class Run(NamedTuple):
     @property
     def line(self) -> bytes:
         """The line of the file."""
-        return _line_of(self._asdict())
+        return _json_line(self._asdict())
 
     @property
     def students(self) -> Iterable[str]:
@@ -85,7 +85,7 @@ class Run(NamedTuple):
         return self.totals.get(student, self.others.get(student))
 
 
-def _line_of(values: Mapping[str, Any]) -> bytes:
+def _json_line(values: Mapping[str, Any]) -> bytes:
     return f"{json.dumps(values, separators=(',', ':'))}\n".encode()
 
 
@@ -108,12 +108,12 @@ class Results:
         self.runs: list[Run] = []
         # A hundred thousand students fit into memory, but not all of their results.
         self._places, self._texts = dict[str, int](), dict[str, int]()
-        with self._whole():
+        with self._refuse_damage():
             self._find(until)
 
     def _find(self, until: int | None) -> None:
         """Find the place of each line, up to the end of a run."""
-        for line in self._lines():
+        for line in self._whole_lines():
             for start, places in ((_GRADED, self._places), (_TEXTS, self._texts)):
                 if line.startswith(start):
                     places[scanstring(line.decode(), len(start) + 1, True)[0]] = self.end
@@ -126,7 +126,7 @@ class Results:
                     break
 
     @contextmanager
-    def _whole(self) -> Iterator[None]:
+    def _refuse_damage(self) -> Iterator[None]:
         """Read lines; raises InputError if one is not as it was written."""
         try:
             yield
@@ -134,7 +134,7 @@ class Results:
             shown = printable_path(self._file)
             raise InputError(f"{shown} is damaged: delete it, and rerun `grader batch`, which makes it again") from None
 
-    def _lines(self) -> Iterator[bytes]:
+    def _whole_lines(self) -> Iterator[bytes]:
         """Yield the whole lines, up to one that was not written to its end."""
         if not self._file.exists():
             return
@@ -163,8 +163,8 @@ class Results:
 
     def each(self, keys: Iterable[str]) -> Iterator[StoredResult | None]:
         """Yield the newest result of each of some students, None for one without."""
-        for values in self._values(self._places, keys):
-            with self._whole():
+        for values in self._read_values(self._places, keys):
+            with self._refuse_damage():
                 found = StoredResult(**values) if values else None
             yield found
 
@@ -174,10 +174,10 @@ class Results:
 
     def texts(self, stored: StoredResult) -> dict[str, str]:
         """Return the texts of the Word and PDF files in a submission as it was graded, by path."""
-        [found] = self._values(self._texts, [stored.student])
+        [found] = self._read_values(self._texts, [stored.student])
         return dict(found["files"]) if found and found["digest"] == stored.digest else {}
 
-    def _values(self, places: Mapping[str, int], keys: Iterable[str]) -> Iterator[dict[str, Any]]:
+    def _read_values(self, places: Mapping[str, int], keys: Iterable[str]) -> Iterator[dict[str, Any]]:
         """Yield the values in a line for each key, none for a key without."""
         if not places:
             yield from ({} for _ in keys)
@@ -186,7 +186,7 @@ class Results:
             for key in keys:
                 if key in places:
                     file.seek(places[key])
-                with self._whole():
+                with self._refuse_damage():
                     values = _values_in(file.readline()) if key in places else {}
                 yield values
 

@@ -290,14 +290,15 @@ class People:
             if claim.group:
                 found = tuple(index for index in found if index in self.members(claim.group))
             if found:
-                return _Match(tuple(at for at in found if not _is_other(self.students[at], claim)), min(by, _WORD))
+                fitting = tuple(at for at in found if not _has_other_lms_id(self.students[at], claim))
+                return _Match(fitting, min(by, _WORD))
         return _Match()
 
     def _having(self, words: Iterable[str], table: Mapping[str, tuple[int, ...]]) -> tuple[int, ...]:
         return tuple(sorted({index for word in words for index in table.get(word, ())}))
 
 
-def _is_other(one: Student, claim: Student) -> bool:
+def _has_other_lms_id(one: Student, claim: Student) -> bool:
     """Return whether the LMS knows a student by another id than that in a claim."""
     ids = ((one.canvas, claim.canvas), (one.moodle, claim.moodle))
     return any(own and given and own != given for own, given in ids)

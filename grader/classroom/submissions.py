@@ -56,7 +56,7 @@ class ClassSubmission(NamedTuple):
     submitted: str = ""
 
 
-def _one_each(folder: ClassFolder, entries: Iterable[NamedPath], root: int) -> Iterator[ClassSubmission]:
+def _submissions_in(folder: ClassFolder, entries: Iterable[NamedPath], root: int) -> Iterator[ClassSubmission]:
     """Yield one submission for each student whom the file names identify."""
     of_student: dict[tuple[Student, str], list[NamedPath]] = defaultdict(list)
     for entry in entries:
@@ -243,7 +243,7 @@ class _Owners:
         keys = enumerated([self.people.students[index].key for index in students], _MAX_NAMED, "or")
         reason = f"may belong to {keys}" if students else "is not on the roster"
         reason += ", and so may another submission: none is graded" if is_contested else ""
-        key, place = (_cell(text) for text in (printable_path(one.student.key), self._shown(one)))
+        key, place = (_csv_cell(text) for text in (printable_path(one.student.key), self._shown(one)))
         row = "" if is_contested else f", or add the row `{key},{place}` below `id,submission`"
         advice = f"write {place} in the column `submission` of its student{row}"
         self._unmatched.append(f"{self._shown(one)} {reason}; to assign it, {advice}")
@@ -275,7 +275,7 @@ def _plain_path(path: str) -> str:
     return " ".join(printable_path(path).split())
 
 
-def _cell(text: str) -> str:
+def _csv_cell(text: str) -> str:
     """Return a text as a cell of a CSV file."""
     return '"' + text.replace('"', '""') + '"' if set(text) & set(',;"') else text
 
@@ -323,7 +323,7 @@ def read_class(
             raise InputError(f"{what} (grade it with `grader grade {shell_quoted(path)}`)")
         ways_to_read = {"teams": teams, "nbgrader": nbgrader}
         entries = ways_to_read[chosen](folder) if chosen in ways_to_read else entries_of(folder, chosen)
-        some = list(_one_each(folder, entries, root))
+        some = list(_submissions_in(folder, entries, root))
         if not some:
             example = "".join(f": {line}" for line in sorted(owners.ignored)[:1])
             raise InputError(f"there is no submission in {printable_path(path)}{example}")

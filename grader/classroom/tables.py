@@ -55,11 +55,11 @@ class TableRow(NamedTuple):
     @property
     def values(self) -> list[str]:
         """The values of the cells, without quotes."""
-        return [_value(cell) for cell in self.cells]
+        return [_unquoted(cell) for cell in self.cells]
 
     def value(self, column: int | None) -> str:
         """Return the stripped value in a column; empty if the row is shorter or the column is None."""
-        return _value(self.cells[column]).strip() if column is not None and column < len(self.cells) else ""
+        return _unquoted(self.cells[column]).strip() if column is not None and column < len(self.cells) else ""
 
 
 class Table(NamedTuple):
@@ -112,7 +112,7 @@ def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Tabl
     header = re.match(r'\s*((?:"(?:[^"]++|"")*+"|[^"\r\n])*+)', text)
     found = re.findall(f"[{_DELIMITERS}]", re.sub(r'"[^"]*"', "", header[1] if header else "")) or [","]
     delimiter = max(dict.fromkeys(found), key=found.count) if is_from_person else found[0]
-    return Table(_rows(text, delimiter, shown), delimiter, encoding, bom)
+    return Table(_split_rows(text, delimiter, shown), delimiter, encoding, bom)
 
 
 def rows_with_lines(data: bytes, shown: str) -> Iterator[tuple[int, list[str]]]:
@@ -131,12 +131,12 @@ def _decode(data: bytes, shown: str) -> tuple[bytes, str, str]:
     raise InputError(f"{shown} is not text in {encoding or 'UTF-8 or Windows-1252'}: export it again, as CSV in UTF-8")
 
 
-def _value(cell: str) -> str:
+def _unquoted(cell: str) -> str:
     found = _QUOTED.match(cell)
     return cell if found is None else found[0][1:-1].replace('""', '"') + cell[found.end() :]
 
 
-def _rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
+def _split_rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
     pattern = re.compile(rf'((?:{_QUOTED.pattern}|(?!"))[^{delimiter}\r\n]*+)({delimiter}|\r\n|\r|\n|\Z)')
     at, line, count = 0, 1, 0
     rows: list[TableRow] = []
@@ -162,7 +162,7 @@ def write_table(header: Sequence[str], rows: Iterable[Sequence[CellValue]]) -> s
     text = io.StringIO(newline="")
     writer = csv.writer(text)
     writer.writerow(map(protected, header))
-    writer.writerows(map(_cell, row) for row in rows)
+    writer.writerows(map(_cell_text, row) for row in rows)
     return text.getvalue()
 
 
@@ -183,7 +183,7 @@ def spelt_out(text: str) -> str:
     return text if text.isprintable() else _ESCAPED.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
 
-def _cell(value: CellValue) -> str:
+def _cell_text(value: CellValue) -> str:
     if value is None:
         return ""
     if isinstance(value, str):

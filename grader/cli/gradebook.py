@@ -22,7 +22,7 @@ _EXCEL = "Write CSV that Excel opens with a double click."
 _FEEDBACK = "Write each student's report into a zip for Moodle or Canvas."
 
 
-def _known(target: str) -> str:
+def _known_target(target: str) -> str:
     if target not in _TARGETS:
         raise typer.BadParameter(f"{target!r} is not one of {', '.join(map(repr, _TARGETS))}.")
     return target
@@ -31,7 +31,7 @@ def _known(target: str) -> str:
 def export(
     target: Annotated[
         str,
-        typer.Argument(metavar="|".join(_TARGETS), callback=_known, help="The format of the grades."),
+        typer.Argument(metavar="|".join(_TARGETS), callback=_known_target, help="The format of the grades."),
     ],
     gradebook: GradebookOption,
     into: Annotated[Path | None, typer.Option(metavar="LMS-FILE", help=_INTO)] = None,

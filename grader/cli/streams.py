@@ -62,7 +62,7 @@ def show_class(work: str) -> Iterator[Callable[["Progress"], None]]:
         now = time.monotonic()
         if now - last_line > pause or (is_terminal and not progress.done):
             last_line = now
-            text = _line(progress, now - began)
+            text = _progress_line(progress, now - began)
             if is_terminal:
                 replace(f"{work}: {text}"[: columns() - 1])
             else:
@@ -75,7 +75,7 @@ def show_class(work: str) -> Iterator[Callable[["Progress"], None]]:
             replace("")
 
 
-def _line(progress: "Progress", seconds: float) -> str:
+def _progress_line(progress: "Progress", seconds: float) -> str:
     rate = progress.done / seconds if seconds else 0.0
     left = (progress.total - progress.done) / rate if rate else 0.0
     kinds = (progress.errored, "errored"), (progress.unreadable, "unreadable")

@@ -118,7 +118,7 @@ def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
     roster_file = options.roster or (folder / names.ROSTER)
     roster = None
     if options.roster or roster_file.exists():
-        roster = read_roster(_read(roster_file), printable_path(roster_file))
+        roster = read_roster(_read_csv(roster_file), printable_path(roster_file))
     inputs = _ClassInputs(folder, _updated(options, settings, folder, rubric), rubric, roster)
     if not options.paths and (gone := [printable_path(root) for root in inputs.near_roots if not root.exists()]):
         raise InputError(
@@ -160,7 +160,7 @@ def _keep_inputs(inputs: _ClassInputs, options: ClassRequest, warn: Warn) -> _Cl
     """Write the settings and the copies of the roster and the rubric into the gradebook. Raises InputError."""
     folder, settings, rubric = inputs.folder, inputs.settings, inputs.rubric
     if options.roster is not None:
-        data, file = _read(options.roster), folder / names.ROSTER
+        data, file = _read_csv(options.roster), folder / names.ROSTER
         _warn_of_edits(file, (settings.roster_hash, sha256_of(data)), options.roster, warn)
         save_bytes(file, data, inputs.roots, _PRIVATE)
         settings = replace(settings, roster_hash=sha256_of(data))
@@ -175,11 +175,11 @@ def _keep_inputs(inputs: _ClassInputs, options: ClassRequest, warn: Warn) -> _Cl
 
 def _warn_of_edits(file: Path, known: Sequence[str], new: Path, warn: Warn) -> None:
     """Say that a copy which a person has edited is replaced."""
-    if file.is_file() and sha256_of(_read(file)) not in known:
+    if file.is_file() and sha256_of(_read_csv(file)) not in known:
         warn(f"{printable_path(file)} was edited: it is replaced by {printable_path(new)}")
 
 
-def _read(file: Path) -> bytes:
+def _read_csv(file: Path) -> bytes:
     return read_capped(file, SIZE_LIMIT, advice="")
 
 

@@ -31,8 +31,8 @@ def give_mark(gradebook: Path, row: Cells, warn: Warn) -> str:
     if not (row["student"] and row["criterion"] and (row["points"] or row["comment"])):
         raise InputError("name a STUDENT and a CRITERION, and give POINTS or --comment")
     book = Gradebook(gradebook)
-    [mark] = _reader(book).marks_in({**_EMPTY, **row})
-    now = _append(book, [mark], row["by"])
+    [mark] = _mark_import(book).marks_in({**_EMPTY, **row})
+    now = _append_marks(book, [mark], row["by"])
     for line in _warnings(book, mark):
         warn(printable(line))
     grade = now.grade(mark.student)
@@ -45,11 +45,11 @@ def mark_missing(gradebook: Path, row: Cells) -> str:
     if row["criterion"] != TOTAL or row["points"] in ("", WITHDRAWN):
         raise InputError(f"write it as --missing {TOTAL} POINTS")
     book = Gradebook(gradebook)
-    reader = _reader(book)
+    reader = _mark_import(book)
     missing = [one.student.key for one in book if Reason.MISSING in one.concerns]
     marks = [mark for key in missing for mark in reader.marks_in({**_EMPTY, **row, "student": key})]
     if marks:
-        _append(book, marks, row["by"])
+        _append_marks(book, marks, row["by"])
     return f"final mark {row['points']} for {len(missing)} of {counted(len(book.keys), 'student')}\n"
 
 
@@ -57,19 +57,19 @@ def import_marks(gradebook: Path, file: Path, by: str) -> str:
     """Append the marks in a CSV file; return how many. Raises InputError, and records none, if a row is wrong."""
     book = Gradebook(gradebook)
     items = review_items(book, with_final=True).items()
-    reader = _reader(book)._replace(answers={at: [one.student.key for one in item.members] for at, item in items})
+    reader = _mark_import(book)._replace(answers={at: [one.student.key for one in item.members] for at, item in items})
     new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file))
-    _append(book, new, by)
+    _append_marks(book, new, by)
     return f"{printable_path(file)}: {len(new)} recorded, {same} the same as before\n"
 
 
-def _reader(book: Gradebook) -> MarkImport:
+def _mark_import(book: Gradebook) -> MarkImport:
     graded = {one.student: one for one in book.results.all()}
     students = [book.student(key, graded.get(key)) for key in book.keys]
     return MarkImport(students, book.rubric, book.marks, {key: one.digest for key, one in graded.items()})
 
 
-def _append(book: Gradebook, marks: Iterable[Mark], by: str) -> Gradebook:
+def _append_marks(book: Gradebook, marks: Iterable[Mark], by: str) -> Gradebook:
     """Append marks to the file of a grader, and return the class with them; its grades are written."""
     new = [one._replace(by=one.by or by, time=book.marks.next_time((one.student, one.criterion))) for one in marks]
     with suppress(OSError, KeyError):  # of an account without a name: the files of two gradebooks can be merged

@@ -212,7 +212,7 @@ def write_sheet(session: ReviewSession, file: Path) -> str:
         raise InputError(f"{printable_path(file)} exists, perhaps with marks in it: name another file for --sheet")
     items = [session.item_at(at) for at in session.listed]
     by_student = sorted(items, key=lambda item: item.members[0].student.key)  # a submission is read once
-    texts = {item.place: _text(session.book, item) for item in by_student}
+    texts = {item.place: _sheet_text(session.book, item) for item in by_student}
     rows = [
         (*item.place, "", format_points(item.criterion.maximum), "", texts[item.place], _students(item))
         for item in items
@@ -226,7 +226,7 @@ def _students(item: ReviewItem) -> str:
     return "; ".join(one.label if one.number else one.student.key for one in item.members)
 
 
-def _text(book: Gradebook, item: ReviewItem) -> str:
+def _sheet_text(book: Gradebook, item: ReviewItem) -> str:
     """Return the answer, else what was found, and the files, which may show more."""
     try:
         opened = open_item(book, item)

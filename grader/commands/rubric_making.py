@@ -40,11 +40,11 @@ def write_rubric(file: Path, reference: str, warn: Warn, *, force: bool) -> str:
     """Write a rubric of a reference's facts; return what it contains, omits, and the next step. Raises GraderError."""
     _check_target(file, force=force)
     solution = _solution(reference, warn)
-    made = draft(solution, _head(file, reference, solution.submission), file)
+    made = draft(solution, _rubric_head(file, reference, solution.submission), file)
     if len(made.data) > URDF_LIMIT:
         raise GraderError(f"the robot has too many facts for a rubric: {len(made.rubric.criteria)} criteria")
     save_bytes(file, made.data)
-    return "".join(f"{printable(line)}\n" for line in _lines(file, made))
+    return "".join(f"{printable(line)}\n" for line in _result_lines(file, made))
 
 
 def _check_target(file: Path, *, force: bool) -> None:
@@ -90,7 +90,7 @@ def _open_reference(reference: str) -> Submission:
     return open_submission(reference, Lab(submission.path.removeprefix(f"{package.folder}/"), package.name))
 
 
-def _head(file: Path, reference: str, submission: Submission) -> Head:
+def _rubric_head(file: Path, reference: str, submission: Submission) -> Head:
     words = re.sub(r"[\s_-]+", " ", printable(file.stem)).strip() or "lab"
     place = _relative(Path(reference), file.parent)
     package, path = submission.package, submission.path or ""
@@ -114,7 +114,7 @@ def _relative(reference: Path, folder: Path) -> str:
     return path.replace(os.sep, "/")
 
 
-def _lines(file: Path, made: RubricDraft) -> Iterator[str]:
+def _result_lines(file: Path, made: RubricDraft) -> Iterator[str]:
     yield f"wrote {printable_path(file)}: {rubric_summary(made.rubric)}; its reference gets full marks"
     if made.rubric.reference.startswith(("..", "/")):
         yield f"note: the reference is {made.rubric.reference}, outside the rubric's folder: move both together"

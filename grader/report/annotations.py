@@ -45,7 +45,7 @@ def render_github(report: Report, base: Base) -> str:
     for level, name in _COMMANDS.items():
         some = [finding for finding in found if finding.level == level]
         room = _MAX_ANNOTATIONS - (level == "note")
-        listed = some if len(some) <= room else [*some[: room - 1], _rest(some[room - 1 :])]
+        listed = some if len(some) <= room else [*some[: room - 1], _rest_finding(some[room - 1 :])]
         lines += [command(name, one.place, f"{one.rule}{one.cost}", one.text) for one in listed]
     return "".join(lines)
 
@@ -54,18 +54,18 @@ def _findings(report: Report, base: Base) -> Iterator[_Finding]:
     """Yield what to fix or grade manually, and remarks; `base` is where the submission is in its repository."""
     found, source_of = report_sections(report), cache(report.submission.source)  # reads each file once
     for entry in (*found.failures, *(one for one in found.pending if not is_manual(one.result))):
-        yield _of_criterion(entry, source_of, base)
+        yield _criterion_finding(entry, source_of, base)
     for result in report.results:
         remarks = remarks_on(result) if not is_failure(result) else ()
         if remarks:
             yield _Finding(result.criterion.id, "note", "\n".join(remarks))
     for problem in other_problems(report):
         where = problem.location
-        text = _text([printable(problem.message)], where, base)
-        yield _Finding(problem.code, problem.severity, text, _place(where, source_of, base))
+        text = _annotation_text([printable(problem.message)], where, base)
+        yield _Finding(problem.code, problem.severity, text, _annotation_place(where, source_of, base))
 
 
-def _of_criterion(entry: Entry, source_of: SourceOf, base: Base) -> _Finding:
+def _criterion_finding(entry: Entry, source_of: SourceOf, base: Base) -> _Finding:
     skipped, is_bonus, where = entry.skipped, entry.result.criterion.bonus, entry.location
     lines = entry.texts("finding", "comment", "hint", "feedback", "expected", "alike")
     if is_bonus:
@@ -78,10 +78,11 @@ def _of_criterion(entry: Entry, source_of: SourceOf, base: Base) -> _Finding:
     elif entry.result.why_given or is_bonus:
         level = "note"
     lost = entry.lost if is_failure(entry.result) else Decimal(0)
-    return _Finding(entry.id, level, _text(lines, where, base), _place(where, source_of, base), lost)
+    text, place = _annotation_text(lines, where, base), _annotation_place(where, source_of, base)
+    return _Finding(entry.id, level, text, place, lost)
 
 
-def _place(where: Location | None, source_of: SourceOf, base: Base) -> Mapping[str, str]:
+def _annotation_place(where: Location | None, source_of: SourceOf, base: Base) -> Mapping[str, str]:
     """Return the properties of an annotation at a location, as seen from the root of the repository; empty without."""
     if where is None or base.is_outside:  # a file of the repository may have the same path
         return {}
@@ -93,14 +94,14 @@ def _place(where: Location | None, source_of: SourceOf, base: Base) -> Mapping[s
     return {"file": printable(base.folder + where.path), "line": line, "endLine": line, **ends}
 
 
-def _text(lines: list[str], where: Location | None, base: Base) -> str:
+def _annotation_text(lines: list[str], where: Location | None, base: Base) -> str:
     """Return the lines, and the location where that is in a macro, or not in a file of the repository."""
     if where is not None and (base.archive or base.is_outside or archive_around(where.path) or where.calls):
         lines = [*lines, f"In {location_text(where)}."]
     return "\n".join(lines)
 
 
-def _rest(found: Sequence[_Finding]) -> _Finding:
+def _rest_finding(found: Sequence[_Finding]) -> _Finding:
     names = ", ".join(dict.fromkeys(finding.rule for finding in found))
     lost = sum((finding.lost for finding in found), Decimal(0))
     text = f"See the report for: {names}"

@@ -81,7 +81,7 @@ _STATISTICS = JsonObject(
 )
 
 
-def _of_report(name: str) -> Key:
+def _report_points(name: str) -> Key:
     """Return the key of points that only a student with a graded submission has."""
     return nullable(POINTS), lambda one: exact(getattr(one.report, name)) if one.stored is not None else None
 
@@ -92,8 +92,8 @@ _STUDENT = JsonObject(
         **inner("student", each(TEXT, "name email section")),
         "status": {"enum": [*_STATUSES]},
         "reason": (TEXT, lambda one: one.stored.reason if one.stored is not None else ""),
-        "score": _of_report("score"),
-        "max_score": _of_report("max_score"),
+        "score": _report_points("score"),
+        "max_score": _report_points("max_score"),
         "pending": (POINTS, "pending"),
         "late": JsonObject({"days": TOTAL, "points": {"type": "number", "maximum": 0}, "reason": TEXT}),
         "total": nullable(POINTS),

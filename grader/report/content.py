@@ -74,13 +74,13 @@ def report_sections(report: Report, *, everything: bool = False) -> ReportSectio
     remarks = zip(_REMARKS, (marked, by_status.get("adjusted", ()), commented), strict=True)
     failed = [known[failure.id] for failure in failures(report)]
     return ReportSections(
-        tuple(_joined(_without_repeats(failed))),
+        tuple(_join_equal(_without_repeats(failed))),
         tuple(
             Line("skipped", skipped_text(cause, some))
             for cause, some in skipped
             if cause not in known or not known[cause].skipped
         ),
-        tuple(_joined(by_status.get("pending", ()))),
+        tuple(_join_equal(by_status.get("pending", ()))),
         tuple(Section(title, tuple(some)) for title, some in remarks if some),
     )
 
@@ -100,7 +100,7 @@ def failures(report: Report) -> tuple[Entry, ...]:
     """
     skipped = dict(alike((one for one in report.results if status_of(one) == "skipped"), lambda one: one.because or ""))
     found = [Entry(one, skipped.get(one.criterion.id, ())) for one in report.results if is_failure(one)]
-    mistakes = [_together(some) for _, some in alike(found, _edit)]
+    mistakes = [_fixed_together(some) for _, some in alike(found, _shared_edit)]
     is_rejected, has_package = report.submission.verdict == "rejected", report.submission.package is not None
 
     def rank(mistake: tuple[Entry, ...]) -> tuple[bool, bool, bool, Decimal]:
@@ -113,13 +113,13 @@ def failures(report: Report) -> tuple[Entry, ...]:
     return tuple(failure for mistake in sorted(mistakes, key=rank) for failure in mistake)
 
 
-def _edit(failure: Entry) -> str:
+def _shared_edit(failure: Entry) -> str:
     """Return what failures have in common that one edit fixes."""
     hint = failure.result.hint
     return hint.shown_by if hint is not None and not failure.result.why_given else failure.id
 
 
-def _together(some: tuple[Entry, ...]) -> tuple[Entry, ...]:
+def _fixed_together(some: tuple[Entry, ...]) -> tuple[Entry, ...]:
     """Return failures that one edit fixes: the one that shows the hint first, then those of the file, the costliest."""
 
     def rank(failure: Entry) -> tuple[bool, bool, Decimal]:
@@ -139,15 +139,15 @@ def _without_repeats(failed: Iterable[Entry]) -> Iterator[Entry]:
         seen |= feedback
 
 
-def _joined(entries: Iterable[Entry]) -> Iterator[Entry]:
+def _join_equal(entries: Iterable[Entry]) -> Iterator[Entry]:
     """Yield one entry for all that could not be graded for the same reason."""
-    for _, (first, *others) in alike(entries, _reason):
+    for _, (first, *others) in alike(entries, _reason_to_join):
         names = enumerated([entry.id for entry in others])
         line = Line("alike", f"The same holds for {names} ({points_of(one.result for one in others)}).")
         yield first._replace(also=tuple(others), blocks=(*first.blocks, line)) if others else first
 
 
-def _reason(entry: Entry) -> str:
+def _reason_to_join(entry: Entry) -> str:
     """Return why a criterion could not be graded; of others, and of those with an answer or a comment, the id."""
     outcome, has_own = entry.result.outcome, any(isinstance(block, Answer) for block in entry.blocks)
     is_ungraded = entry.status in ("pending", "errored") and not (has_own or entry.result.comment)

@@ -73,10 +73,10 @@ def main_root(robot: Configuration) -> str | None:
 def _poses(inspection: Inspection) -> dict[str, list[list[float]] | None]:
     """Return the poses of links as rows of numbers, rounded to 1e-12, because machines differ beyond that."""
     poses = inspection.poses()
-    return {name: _rows(pose) if isinstance(pose, Transform) else None for name, pose in poses}
+    return {name: _matrix_rows(pose) if isinstance(pose, Transform) else None for name, pose in poses}
 
 
-def _rows(pose: Transform) -> list[list[float]]:
+def _matrix_rows(pose: Transform) -> list[list[float]]:
     return [[round(value, 12) + 0.0 for value in row] for row in pose.matrix]
 
 
@@ -148,12 +148,12 @@ def lists(inspection: Inspection) -> Iterator[tuple[str, list[tuple[str, str]]]]
     """Yield the links as a tree with their joints, and their poses: a title, and names with words about each."""
     if inspection.robot is not None and inspection.relative_to is not None:  # else there is neither a tree nor a frame
         links = _tree(inspection.robot)
-        yield "Tree", _first((indent + printable(link), _joint_text(joint)) for indent, link, joint in links)
+        yield "Tree", _first_rows((indent + printable(link), _joint_text(joint)) for indent, link, joint in links)
         title = f"Poses in {printable(inspection.relative_to)!r} (x y z in m, roll pitch yaw in rad)"
-        yield title, _first((printable(link), f"  {_pose_text(pose)}") for link, pose in inspection.poses())
+        yield title, _first_rows((printable(link), f"  {_pose_text(pose)}") for link, pose in inspection.poses())
 
 
-def _first(rows: Iterator[tuple[str, str]]) -> list[tuple[str, str]]:
+def _first_rows(rows: Iterator[tuple[str, str]]) -> list[tuple[str, str]]:
     shown, rest = [*islice(rows, MAX_LISTED)], sum(1 for _ in rows)
     return [*shown, (f"... and {rest} more", " (--format json lists all)")] if rest else shown
 

@@ -18,7 +18,7 @@ def to_json(data: Mapping[str, Any]) -> str:
 
     `indent` of the standard library takes three times as long, because it does not use the C encoder.
     """
-    lines = ",\n".join(f" {_ENCODER.encode(key)}: {_lines(value)}" for key, value in data.items())
+    lines = ",\n".join(f" {_ENCODER.encode(key)}: {_laid_out(value)}" for key, value in data.items())
     return _harmless(f"{{\n{lines}\n}}\n")
 
 
@@ -29,7 +29,7 @@ def _harmless(text: str) -> str:
     return text.replace("##[", "##\\u005b")
 
 
-def _lines(value: Any) -> str:
+def _laid_out(value: Any) -> str:
     return f"[\n  {_objects(value, next(iter(value[0])))}\n ]" if _is_of_objects(value) else _ENCODER.encode(value)
 
 

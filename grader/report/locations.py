@@ -99,11 +99,11 @@ def diff_lines(edits: Sequence[Edit], source_of: SourceOf) -> list[str]:
         for line, of_line in groupby(changes, key=lambda edit: edit.line):
             some = [edit for edit in of_line if edit.old or edit.new]
             if some:
-                lines += [f"@@ line {line} @@", *_diff(*_texts(some, source))]
+                lines += [f"@@ line {line} @@", *_diff(*_texts_around(some, source))]
     return [printable(line) for line in first_lines(lines, _MAX_LINES)]
 
 
-def _texts(edits: list[Edit], source: Source | None) -> tuple[str, str]:
+def _texts_around(edits: list[Edit], source: Source | None) -> tuple[str, str]:
     """Return the whole lines of edits that begin in one line, before and after; of long lines only what changes."""
     height = 1 + max(edit.old.count("\n") for edit in edits)
     start = edits[0].line

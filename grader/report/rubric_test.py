@@ -36,7 +36,7 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
     """Return the result in lines of at most this width: what was graded, what is wrong, the score last."""
     results = test.reference.results
     lost = [f"  {it.criterion.id}: {it.outcome.message}" for it in results if it.criterion.id in test.lost]
-    lines = [f"{test.reference.rubric.id}: {test.reference.rubric.title}", "", *_counts(test)]
+    lines = [f"{test.reference.rubric.id}: {test.reference.rubric.title}", "", *_count_lines(test)]
     if lost:
         lines += ["", "The reference does not get full marks:", *lost]
     lines += _listed("These equivalents of the reference lose points:", test.losses)
@@ -67,26 +67,26 @@ def _fold(line: str, width: int) -> list[str]:
     return textwrap.wrap(line, width, subsequent_indent=indent + "  ", break_long_words=False, break_on_hyphens=False)
 
 
-def _counts(test: RubricTest) -> Iterator[str]:
+def _count_lines(test: RubricTest) -> Iterator[str]:
     report, samples = test.reference, test.samples
     decided = worth(it.criterion for it in report.results if not it.is_open or it.criterion.id in test.lost)
     yield f"Reference    {format_points(report.score)} of {decided.text}"
     if test.equivalents:
-        yield f"Equivalents  {len(test.equivalents)} graded, {_some(len(test.losses), 'loses', 'lose')} points"
+        yield f"Equivalents  {len(test.equivalents)} graded, {_count_or_none(len(test.losses), 'loses', 'lose')} points"
     else:
         yield "Equivalents  none graded: ROS 2 does not load the reference without problems"
     if samples is not None:
         skipped = f", {samples.skipped} of other rubrics skipped" if samples.skipped else ""
-        differ = _some(len(samples.different), "differs", "differ")
+        differ = _count_or_none(len(samples.different), "differs", "differ")
         yield f"Samples      {samples.tried} graded, {differ} from expected.toml{skipped}"
     sample = f" of {test.total}" if test.tried < test.total else ""
     same = f", {test.same} {'is' if test.same == 1 else 'are'} the same robot" if test.same else ""
     ignored = f", {len(test.ignored)} ignored by the rubric" if test.ignored else ""
-    survive = _some(len(test.survivors), "survives", "survive")
+    survive = _count_or_none(len(test.survivors), "survives", "survive")
     yield f"Mutants      {test.tried}{sample} graded, {test.caught} lose points{same}{ignored}, {survive}"
 
 
-def _some(count: int, one: str, several: str) -> str:
+def _count_or_none(count: int, one: str, several: str) -> str:
     return f"{count or 'none'} {one if count == 1 else several}"
 
 

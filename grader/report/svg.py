@@ -67,8 +67,8 @@ def drawing_element(picture: Picture, title: str = "", *, legend: bool = True, a
     parts = _headline(title, above) if title else []
     parts += [f"<g>{''.join(_view(panel, picture))}</g>" for panel in panels]
     parts += _key(picture, panels[0].top)
-    height, words = panels[-1].top + panels[-1].height, _words(picture)
-    lines = [line for part in words if legend for line in _lines(part, _WIDTH)]
+    height, words = panels[-1].top + panels[-1].height, _callout_lines(picture)
+    lines = [line for part in words if legend for line in _wrapped(part, _WIDTH)]
     parts += [_text("text", (_LEFT, height + _LINE * number), line) for number, line in enumerate(lines, 1)]
     below = _LINE * len(lines) + 6.0 if lines else 0.0
     return _svg(title or "Three views of the robot", " ".join(words), height + below, parts)
@@ -81,7 +81,7 @@ def _svg(title: str, words: str, height: float, parts: Iterable[str]) -> str:
     return f'{start} {size}>{said}<rect class="paper" {size}/>{"".join(parts)}</svg>'
 
 
-def _words(picture: Picture) -> list[str]:
+def _callout_lines(picture: Picture) -> list[str]:
     """Return what each callout of a picture is about, and what is not shown."""
     called = [
         f"{one.number}: {one.link or 'the robot'}: {points_of(one.results)} lost"
@@ -94,7 +94,7 @@ def _words(picture: Picture) -> list[str]:
     return [*map(printable, words)]
 
 
-def _lines(words: str, width: float) -> list[str]:
+def _wrapped(words: str, width: float) -> list[str]:
     """Return a text in lines of a width in pixels; of a long text the first."""
     text, most = printable(words[:_MAX_TEXT]), int(width / _LETTER_WIDTH)
     return wrap(text, most, max_lines=_MAX_LINES, placeholder=" ...", break_on_hyphens=False)
@@ -122,17 +122,17 @@ def inspection_svg(inspection: Inspection) -> str:
 
 
 def _file(picture: Picture | None, title: str, words: Iterable[str], reason: str) -> str:
-    above = [line for part in words if part for line in _lines(part, _WIDTH)]
+    above = [line for part in words if part for line in _wrapped(part, _WIDTH)]
     if picture is not None:
         drawn = drawing_element(picture, title, above=above)
     else:
-        above += ["", *_lines(reason, _WIDTH)]
+        above += ["", *_wrapped(reason, _WIDTH)]
         drawn = _svg(title, reason, _height(above), _headline(title, above))
     return drawn.replace("<title>", f"<style>svg{{max-width:100%;height:auto}}{STYLE}</style><title>", 1) + "\n"
 
 
 def _headline(title: str, above: Sequence[str]) -> list[str]:
-    shown = [_text("title", (_LEFT, 26.0), line) for line in _lines(title, _WIDTH / 1.5)[:1]]
+    shown = [_text("title", (_LEFT, 26.0), line) for line in _wrapped(title, _WIDTH / 1.5)[:1]]
     return shown + [_text("faint", (_LEFT, 2.0 * _LEFT + _LINE * number), line) for number, line in enumerate(above, 1)]
 
 

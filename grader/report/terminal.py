@@ -125,7 +125,8 @@ class Page(NamedTuple):
 
 def _show_entry(entry: Entry, report: Report, page: Page, number: int = 0) -> None:
     """Add a criterion; `number` counts failures, of which a short report has only the first with all blocks."""
-    head, message, source_of = _head(entry, page), Text(" ".join(entry.texts("finding"))), report.submission.source
+    head, message = _entry_head(entry, page), Text(" ".join(entry.texts("finding")))
+    source_of = report.submission.source
     if page.is_tight:
         page.inset(Text(": ").join((head, message)), head=Text(), most=_most_rows(page, number))
     else:
@@ -156,7 +157,7 @@ def _most_rows(page: Page, number: int) -> int:
     return _MAX_ROWS if number < _MAX_FIRST else _MAX_REASON
 
 
-def _head(entry: Entry, page: Page) -> Text:
+def _entry_head(entry: Entry, page: Page) -> Text:
     """Return the name of a failure, its cost and place, or the title, name and points of another criterion."""
     name, mark = printable(entry.id), page.mark(entry.status)
     if not is_failure(entry.result):
@@ -419,10 +420,10 @@ def _show_parts(report: Report, page: Page) -> None:
                 page.title(Text.assemble((printable(group.title), "bold"), (f"  {group.points}", "dim")))
             for result in group.results:
                 start = Text.assemble("  ", page.mark(status_of(result)), f" {earned_text(result):<5} ")
-                page.inset(_row(result), indent=len(start), head=start)
+                page.inset(_criterion_row(result), indent=len(start), head=start)
 
 
-def _row(result: Result) -> Text:
+def _criterion_row(result: Result) -> Text:
     """Return a criterion in a line: its title if it passed, else its name, because a title would read as a fact."""
     status = status_of(result)
     if status == "passed":

@@ -12,7 +12,7 @@ from pathlib import Path
 from grader.classroom.lms.fill import FillOptions, fill
 from grader.classroom.lms.forms import FORMS
 from grader.classroom.roster import People, read_roster
-from grader.classroom.tables import Table, TableRow, _rows, read_table
+from grader.classroom.tables import Table, TableRow, _split_rows, read_table
 from grader.commands import review_server
 from grader.commands.review_server import LocalServer, ReviewPage
 from grader.commands.review_session import ReviewSession
@@ -83,7 +83,7 @@ def lms(data: bytes, name: str) -> None:
         assert table.encoded() == data
         filled = fill(data, _SOME, FORMS[name], FillOptions(_OUT_OF, ("A small lab", "small"), shown="lms.csv"))
         text = filled.data.removeprefix(table.bom).decode(table.encoding)  # as what it was read, whatever is left of it
-        _check_filled(table, _rows(text, table.delimiter, "lms.csv"))
+        _check_filled(table, _split_rows(text, table.delimiter, "lms.csv"))
         for line in filled.lines:
             assert line.isprintable(), line
 

@@ -58,14 +58,14 @@ def comment_html(opening: str, lines: Sequence[str]) -> str:
     if items:
         text += f"<ul>{items}</ul>"
     text = protected(text)
-    return f"{text}<!-- grader {_hash(text)} -->"
+    return f"{text}<!-- grader {_hash_of_words(text)} -->"
 
 
 def is_own_comment(text: str) -> bool:
     """Return whether a comment is from `comment_html`, its words unchanged; tags and spaces may have changed."""
     mark = _MARK.search(text)
     rest = _MARK.sub("", text, count=1)
-    return mark is not None and _plain(rest).startswith(_OPENING) and mark[1] == _hash(rest)
+    return mark is not None and _words_of(rest).startswith(_OPENING) and mark[1] == _hash_of_words(rest)
 
 
 def _escape(text: str) -> str:
@@ -74,11 +74,11 @@ def _escape(text: str) -> str:
     return html.escape(line, quote=False).replace("\\", "&#92;")
 
 
-def _hash(text: str) -> str:
-    return sha256_of(_plain(text).encode("utf-8", "replace"))[:12]
+def _hash_of_words(text: str) -> str:
+    return sha256_of(_words_of(text).encode("utf-8", "replace"))[:12]
 
 
-def _plain(text: str) -> str:
+def _words_of(text: str) -> str:
     return " ".join(html.unescape(_TAG.sub(" ", text)).split())
 
 

@@ -74,7 +74,7 @@ class _GradeFile(NamedTuple):
 
     def changed(self, row: TableRow, grade: PublishedGrade) -> tuple[TableRow | None, list[_Note]]:
         """Return a row with its grade and comment, or None; and notes on it, a change's without a kind."""
-        new, who = _cell(grade, self), self.who(row)
+        new, who = _grade_text(grade, self), self.who(row)
         at, comment_at = self.roles["grade"], self.roles.get("comment")
         if why := next(self._why_not(row, new, grade.why_open or "has no grade"), None):
             return None, [(why[0], who, why[1])]
@@ -125,7 +125,7 @@ def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: Fil
         elif not _TEST_STUDENT.fullmatch(one.name or one.login):
             notes.append((_UNKNOWN, file.who(row), "matches no student for certain"))
     rest = [grades[at] for at in sorted({*range(len(grades))}.difference(of_row.values()))]
-    missing = (one for one in rest if _cell(one, file))
+    missing = (one for one in rest if _grade_text(one, file))
     notes += ((_MISSING, named(*one.student[:2]), "has a grade or an excuse, but matches no row") for one in missing)
     kept = [row for row in rows.values() if row is not None]
     graded = [rows[row] is not row for row in file.people if rows[row] is not None]
@@ -151,7 +151,7 @@ def by_reason(notes: Iterable[_Note]) -> list[str]:
     return first_lines([printable(f"{kind}: {who}: {why}") for kind, why, who in groups], _MAX_REASONS)
 
 
-def _cell(grade: PublishedGrade, file: _GradeFile) -> str:
+def _grade_text(grade: PublishedGrade, file: _GradeFile) -> str:
     """Return the points, rounded down, for 99.996 of 100 is not the maximum, with the file's comma; or an excuse."""
     if grade.total is None:
         return file.form.excuse if grade.is_excused else ""
@@ -216,13 +216,13 @@ def _likeness(found: re.Match[str], options: FillOptions) -> int | None:
     if wanted := options.column.strip():
         tests = [wanted in (found[0], found["title"], found.groupdict().get("number"))]
     else:
-        own, known = _words(found["title"]), [_words(name) for name in options.names]
+        own, known = _spaced_words(found["title"]), [_spaced_words(name) for name in options.names]
         tests = [is_so for name in known for is_so in (own.replace(" ", "") == name.replace(" ", ""), name in own)]
         tests.append(any(own in name for name in known))
     return tests.index(True) if True in tests else None
 
 
-def _words(text: str) -> str:
+def _spaced_words(text: str) -> str:
     """Return words between spaces: Lab 6: wheeled base contains lab6, Lab 61 does not."""
     return f" {' '.join(re.findall(_WORDS, text.casefold()))} "
 

@@ -46,8 +46,8 @@ def render_page(template: str, values: Mapping[str, object], data: Mapping[str, 
     scripts = [*map(_file, assets.scripts.split())]
     policy = [
         f"default-src {_NOTHING}",
-        f"style-src {' '.join(map(_hash, styles))}",
-        f"script-src {' '.join(map(_hash, scripts)) or _NOTHING}",
+        f"style-src {' '.join(map(_source_hash, styles))}",
+        f"script-src {' '.join(map(_source_hash, scripts)) or _NOTHING}",
         f"base-uri {_NOTHING}",
         f"form-action {_NOTHING}",
     ]
@@ -85,7 +85,7 @@ def _file(name: str) -> str:
     return (_FILES / name).read_text(encoding="utf-8")
 
 
-def _hash(text: str) -> str:
+def _source_hash(text: str) -> str:
     """Return the source expression that allows one inline script or style."""
     return f"'sha256-{b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 

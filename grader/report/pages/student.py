@@ -44,13 +44,13 @@ def render_html(report: Report) -> str:
         "called": called,
         "sections": sections,
         "cards": dict(item for section in sections for entry in section.entries for item in _addresses(entry)),
-        "parts": [_part(report.rubric.part(part).title, [*some]) for part, some in by_part],
+        "parts": [_part_card(report.rubric.part(part).title, [*some]) for part, some in by_part],
         "no_picture": NO_PICTURE,
     }
     return _render("student.html", values, picture, "student.js")
 
 
-def _part(title: str, some: list[CriteriaGroup]) -> tuple[str, str, list[CriteriaGroup]]:
+def _part_card(title: str, some: list[CriteriaGroup]) -> tuple[str, str, list[CriteriaGroup]]:
     return title, earned_text(*(result for group in some for result in group.results)), some
 
 
