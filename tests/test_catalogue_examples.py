@@ -13,7 +13,7 @@ from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.registry import own_checks
 from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric
-from grader.package.package_problems import package_problems
+from grader.package.found_problems import package_problems
 from grader.report.explanations import EVERY_KIND, example_blocks, explanation
 from grader.submission.opening import open_submission
 from grader.submission.submission import Lab, Submission

@@ -109,7 +109,7 @@ def _readable_manifest(package: Package) -> "Manifest":
     manifest = package.manifest
     if manifest is not None and manifest.unread:
         raise NotDecided(manifest.unread, "package.xml cannot be read")
-    from grader.package.problem_kinds import BAD_MANIFEST
+    from grader.package.package_problems import BAD_MANIFEST
 
     if manifest is None:
         where = f"the folder {package.folder!r}" if package.folder else "the submission"
@@ -226,7 +226,7 @@ def _why_not_installed(
         return MissingElement(what, package.folder, message=message)
     problem = f"the pattern {empty.pattern!r} in setup.py matches no file"
     # Late: a URDF on its own needs none of what reads a package.
-    from grader.package.package_problems import why_no_match
+    from grader.package.found_problems import why_no_match
 
     detail, at = why_no_match(package, empty.pattern), setup.location(empty.at)
     message += f": {problem}"

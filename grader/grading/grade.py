@@ -54,7 +54,7 @@ def grade(
     problems = submission.urdf.problems if isinstance(submission.urdf, Read) else ()
     if submission.package is not None and any(rubric.part(part).needs == "package" for part in chosen):
         # Late: a URDF on its own needs none of what reads a package.
-        from grader.package.package_problems import package_problems
+        from grader.package.found_problems import package_problems
 
         problems += package_problems(submission.package)
     evidence, other_pictures = _find_evidence(rubric, submission, chosen if is_whole else ())

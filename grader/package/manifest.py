@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from grader.package import problem_kinds as kinds
+from grader.package import package_problems as kinds
 from grader.problems import Problem
 from grader.reuse import reuse
 from grader.source import Location, Source

@@ -1,98 +1,30 @@
-"""The problems of a package's files, whatever they are graded on, with their codes and locations."""
+"""The kinds of problems of the files around a URDF. docs/examples/ explains each one: pkg.toml, lch.toml, rvz.toml."""
 
-from collections.abc import Iterable, Iterator
-from fnmatch import fnmatchcase
-
-from grader.names import did_you_mean
-from grader.package import problem_kinds as kinds
-from grader.package.launch.model import Launch
-from grader.package.launch.places import is_of_one_machine, one_machine_only
-from grader.package.package import MANIFEST, RESOURCE_INDEX, Package
-from grader.package.setup_py import Setup
-from grader.problems import Problem
-from grader.source import Location
-from grader.text import enumerated
-
-_MAX_FILES = 5  # launch files, and RViz files
-_MAX_NAMED = 3  # files that a message names
+from grader.problems import Kind, Severity, kinds_in
 
 
-def package_problems(package: Package) -> tuple[Problem, ...]:
-    """Return the problems of package.xml, setup.py, launch files and RViz files, each file's sorted by location."""
-    found: list[Problem] = []
-    if package.manifest is not None:
-        found += _sort(package.manifest.problems)
-    if package.setup is not None:
-        found += _sort(_setup_problems(package, package.setup))
-    for path in package.launch_files[:_MAX_FILES]:
-        found += _sort(_launch_problems(package.launch(path)))
-    for path in package.rviz_files[:_MAX_FILES]:
-        found += _sort(package.rviz(path).problems)
-    return tuple(found)
+def _kind(code: str, severity: Severity, title: str) -> Kind:
+    return Kind(code, title, severity, "other")
 
 
-def _sort(problems: Iterable[Problem]) -> list[Problem]:
-    return sorted(problems, key=lambda it: (it.location.line, it.location.column, it.code, it.message))
+BAD_MANIFEST = _kind("PKG001", "error", "Unreadable package.xml")
+INCOMPLETE_MANIFEST = _kind("PKG002", "warning", "package.xml without a required element")
+STILL_TO_DO = _kind("PKG003", "note", "License, maintainer or description is still TODO")
+OLD_FORMAT = _kind("PKG004", "note", "Old format of package.xml")
+OTHER_NAME = _kind("PKG005", "warning", "Different package names in package.xml and setup.py")
+SETUP_SYNTAX = _kind("PKG010", "error", "Syntax error in setup.py")
+SETUP_NAME = _kind("PKG011", "error", "Error that stops setup.py")
+SETUP_STOPS = _kind("PKG012", "error", "Something in setup.py that a build does not accept")
+EMPTY_GLOB = _kind("PKG013", "warning", "Pattern in setup.py that matches no file")
+NO_MARKER = _kind("PKG014", "warning", "No entry for the resource index")
+NO_MANIFEST_ENTRY = _kind("PKG015", "warning", "package.xml is not installed")
+SETUP_UNKNOWN = _kind("PKG016", "note", "Cannot be determined statically in setup.py")
+LAUNCH_SYNTAX = _kind("LCH001", "error", "Unreadable launch file")
+LAUNCH_FAULT = _kind("LCH002", "error", "Error that stops a launch file")
+HARD_CODED = _kind("LCH003", "warning", "Path that exists on one machine only")
+LAUNCH_UNKNOWN = _kind("LCH004", "note", "Cannot be determined statically in a launch file")
+BAD_RVIZ = _kind("RVZ001", "error", "Unreadable RViz file")
+ROS1_CLASS = _kind("RVZ002", "warning", "Display class of ROS 1")
+NO_TF = _kind("RVZ003", "note", "No TF display")
 
-
-def _setup_problems(package: Package, setup: Setup) -> Iterator[Problem]:
-    if fault := setup.fault:
-        kind = kinds.SETUP_SYNTAX if fault.sure else kinds.SETUP_UNKNOWN
-        what = "Python cannot read setup.py" if fault.sure else "setup.py is not read"
-        yield Problem(kind, f"{what}: {fault.message}", fault.location)
-        return
-    for error in setup.faults:
-        yield Problem(kinds.SETUP_NAME, error.message, setup.location(error.at))
-    for stop in setup.stops:
-        yield Problem(kinds.SETUP_STOPS, stop.message + stop.hint, setup.location(stop.at))
-    for empty in setup.empty:
-        message = f"the pattern {empty.pattern!r} in setup.py matches no file{why_no_match(package, empty.pattern)}"
-        yield Problem(kinds.EMPTY_GLOB, message, setup.location(empty.at))
-    for unknown in setup.unknown:
-        message = f"cannot be determined statically: {unknown.reason}"
-        yield Problem(kinds.SETUP_UNKNOWN, message, setup.location(unknown.at))
-    start, targets = setup.location(setup.called_at), setup.installed()
-    declared = package.manifest.name if package.manifest is not None else None
-    is_known = not (setup.unknown or setup.stops)
-    if declared is not None and setup.name is not None and setup.name != declared:
-        message = f"package.xml names the package {declared!r}, setup.py names it {setup.name!r}"
-        yield Problem(kinds.OTHER_NAME, message, start)
-        is_known = False  # the entries are missing under one of the two names in any case
-    if is_known and RESOURCE_INDEX + package.name not in targets:
-        message = f"data_files has no entry for the resource index: resource/{package.name} is not installed"
-        yield Problem(kinds.NO_MARKER, message, start)
-    if is_known and f"share/{package.name}/package.xml" not in targets:
-        message = f"data_files does not install package.xml in share/{package.name}"
-        yield Problem(kinds.NO_MANIFEST_ENTRY, message, start)
-    elif not is_known and MANIFEST not in targets.values() and MANIFEST not in setup.source.text:
-        message = f"setup.py does not name package.xml, which data_files should install in share/{package.name}"
-        yield Problem(kinds.NO_MANIFEST_ENTRY, message, start)
-
-
-def _launch_problems(launch: Launch) -> Iterator[Problem]:
-    if launch.unread:
-        message = f"the launch file is not read: {launch.unread}"
-        yield Problem(kinds.LAUNCH_UNKNOWN, message, Location(launch.source.path, 1, 1))
-    if launch.syntax is not None:
-        yield Problem(kinds.LAUNCH_SYNTAX, launch.syntax.message, launch.syntax.location)
-    for fault in launch.faults:
-        yield Problem(kinds.LAUNCH_FAULT, fault.message, fault.location)
-    for unknown in launch.unknown:
-        yield Problem(kinds.LAUNCH_UNKNOWN, unknown.message, unknown.location)
-    for reference in launch.references:
-        if reference.path is not None and is_of_one_machine(reference.path):
-            yield Problem(kinds.HARD_CODED, one_machine_only(reference.path), reference.location)
-
-
-def why_no_match(package: Package, pattern: str) -> str:
-    """Return the end of a message on a pattern of setup.py that matches no file: why, or which files there are."""
-    if "\\" in pattern:
-        return ": separate the parts of a path with /, not with \\"
-    folder, _, name = pattern.rpartition("/")
-    if folder and folder not in package.tree.folders:
-        return f", because there is no folder {folder!r}{did_you_mean(folder, package.tree.folders)}"
-    files = [path for path in package.tree.files if name.strip("*") and fnmatchcase(path.rpartition("/")[2], name)]
-    files = files or [path for path in package.tree.files if path.rpartition("/")[0] == folder]
-    if not files:
-        return f", because the folder {folder!r} is empty"
-    return f"; there {'are' if len(files) > 1 else 'is'} {enumerated(files, _MAX_NAMED)}"
+PACKAGE_CATALOGUE = kinds_in(globals().values())

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from grader.package import problem_kinds as kinds
+from grader.package import package_problems as kinds
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.problems import Problem
 from grader.reuse import reuse

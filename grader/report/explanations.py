@@ -14,7 +14,7 @@ from grader.grading.criterion import Criterion, worth
 from grader.grading.rubric import Rubric
 from grader.grading.toml_file import assignment, read_toml, toml_literal
 from grader.names import did_you_mean
-from grader.package.problem_kinds import PACKAGE_CATALOGUE
+from grader.package.package_problems import PACKAGE_CATALOGUE
 from grader.problems import Kind
 from grader.report.criteria import model_lines, sentence
 from grader.robot.urdf_problems import CATALOGUE

@@ -1,7 +1,7 @@
 """Files that hold a robot: recognised by their content, whatever they are called. Nothing is parsed."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from grader.errors import InputError
@@ -90,7 +90,7 @@ def is_robot(data: bytes) -> bool:
     return _ROBOT.match(data, _end_of_prolog(data)) is not None
 
 
-def parts_of(robots: tuple[RobotFile, ...]) -> frozenset[str]:
+def parts_of(robots: Sequence[RobotFile]) -> frozenset[str]:
     """Return the paths of those files that another one includes."""
     includers: dict[str, list[str]] = {}
     for robot in robots:

@@ -155,7 +155,7 @@ def _searched(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     projects = projects if has_own or len(projects) < len(robots) else set()
     every_package = read_packages(tree, lab)
     robots = tuple(robot for robot in robots if robot.path not in projects)
-    choice = find_urdf(tree, lab, robots, labs, opening, every_package)
+    choice = UrdfSearch(tree, lab, labs, opening, every_package).choose(robots)
     places = _Places(labs, _other_lab(tree, labs, choice.path, () if has_own else roots))
     search_tree = places.only(tree, tuple(Belonging))
     own_tree = places.only(tree, (Belonging.THIS_LAB,)) if has_own else search_tree
@@ -231,91 +231,86 @@ class _Candidate(NamedTuple):
     reading: _Reading
 
 
-def find_urdf(
-    tree: Tree,
-    lab: Lab,
-    robots: tuple[RobotFile, ...],
-    labs: LabFolders,
-    opening: Opening,
-    packages: tuple[Package, ...],
-) -> UrdfChoice:
-    """Return which of `robots` is graded. Only if there are several, they and launch files are read."""
-    copies = [
-        path for path in tree.generated if path.lower().endswith(".urdf") and labs.belonging(path) < Belonging.OTHER_LAB
-    ]
-    generated = tuple(OtherCandidate(path, _GENERATED) for path in copies[:_MAX_GENERATED])
-    if len(robots) < 2:
-        return UrdfChoice(next((robot.path for robot in robots), None), generated)
-    best, *others = sorted(_candidates(tree, lab, robots, labs, opening, packages))
-    named = (OtherCandidate(it.path, _reason_against(best, it, lab)) for it in others)
-    fitting = tuple(it.path for it in others if _may_be_meant(best, it, lab))
-    return UrdfChoice(best.path, (*named, *generated), fitting, best.reading)
+class UrdfSearch(NamedTuple):
+    """A search for the URDF of a lab among the robots of a submission."""
 
+    tree: Tree
+    lab: Lab
+    labs: LabFolders
+    opening: Opening
+    packages: tuple[Package, ...]
 
-def _may_be_meant(best: _Candidate, other: _Candidate, lab: Lab) -> bool:
-    """Return whether another robot may be meant as well: one in another package, or loose, perhaps of a teammate."""
-    stems = [path.partition(".")[0] for path in (best.path, other.path)]  # my_robot.urdf.xacro makes my_robot.urdf
-    is_elsewhere = best.package != other.package or (best.is_loose and stems[0] != stems[1])
-    is_worse = other.is_another or other.is_fragment or other.is_part or other.is_backup or other.place != best.place
-    return is_elsewhere and not is_worse and (bool(lab.links) or other.tier[0] <= max(best.tier[0], _Tier.SAME_ROBOT))
+    def choose(self, robots: Sequence[RobotFile]) -> UrdfChoice:
+        """Return which of the robots is graded. Only if there are several, they and launch files are read."""
+        labs = self.labs
+        copies = [path for path in self.tree.generated if path.lower().endswith(".urdf")]
+        copies = [path for path in copies if labs.belonging(path) < Belonging.OTHER_LAB]
+        generated = tuple(OtherCandidate(path, _GENERATED) for path in copies[:_MAX_GENERATED])
+        if len(robots) < 2:
+            return UrdfChoice(next((robot.path for robot in robots), None), generated)
+        best, *others = sorted(self._candidates(robots))
+        named = (OtherCandidate(it.path, _reason_against(best, it, self.lab)) for it in others)
+        fitting = tuple(it.path for it in others if _may_be_meant(best, it, self.lab))
+        return UrdfChoice(best.path, (*named, *generated), fitting, best.reading)
 
+    def _candidates(self, robots: Sequence[RobotFile]) -> Iterator[_Candidate]:
+        labs, urdf = self.labs, self.lab.urdf
+        readings = self._readings(sorted(robots, key=lambda it: (labs.belonging(it.path), _tier_of(it, urdf), it.path)))
+        launched, parts = self._launched_paths(robots), parts_of(robots)
+        folders = [package.folder for package in self.packages]
+        for robot in robots:
+            path, tier, around = robot.path, _tier_of(robot, urdf), package_around(self.packages, robot.path)
+            yield _Candidate(
+                is_another=readings[path].is_another,
+                place=labs.belonging(path),
+                is_fragment=readings[path].is_nameless and path not in launched,
+                is_unlaunched=path not in launched,
+                links=-readings[path].links,
+                is_part=path in parts and tier > _Tier.OTHER_ENDING,
+                is_backup=is_backup(path),
+                tier=(tier, not robot.is_urdf),
+                package=folders.index(around.folder) if around is not None else len(folders),
+                depth=path.count("/"),
+                path=path,
+                is_loose=around is None,
+                reading=readings[path],
+            )
 
-def _candidates(
-    tree: Tree,
-    lab: Lab,
-    robots: tuple[RobotFile, ...],
-    labs: LabFolders,
-    opening: Opening,
-    packages: tuple[Package, ...],
-) -> Iterator[_Candidate]:
-    ordered = sorted(robots, key=lambda it: (labs.belonging(it.path), _tier_of(it, lab.urdf), it.path))
-    readings, launched = (
-        _read_candidates(tree, lab, ordered, packages, opening),
-        _launched_paths(tree, robots, packages),
-    )
-    parts, folders = parts_of(robots), [package.folder for package in packages]
-    for robot in robots:
-        path, tier, around = robot.path, _tier_of(robot, lab.urdf), package_around(packages, robot.path)
-        yield _Candidate(
-            is_another=readings[path].is_another,
-            place=labs.belonging(path),
-            is_fragment=readings[path].is_nameless and path not in launched,
-            is_unlaunched=path not in launched,
-            links=-readings[path].links,
-            is_part=path in parts and tier > _Tier.OTHER_ENDING,
-            is_backup=is_backup(path),
-            tier=(tier, not robot.is_urdf),
-            package=folders.index(around.folder) if around is not None else len(folders),
-            depth=path.count("/"),
-            path=path,
-            is_loose=around is None,
-            reading=readings[path],
-        )
+    def _readings(self, robots: Sequence[RobotFile]) -> dict[str, _Reading]:
+        """Return each robot as it is read, expanded by xacro, by its path; of very many only the first are read."""
+        lab, opening = self.lab, self.opening
+        bytes_left, parts_left = _MAX_READ, READING
+        found: dict[str, _Reading] = {}
+        for robot in robots:
+            bytes_left -= min(robot.size, opening.max_size) + _COST_OF_FILE
+            around = package_around(self.packages, robot.path)
+            known = self.packages
+            if around is not None and around is not self.packages[0]:
+                known = (around, *self.packages)
+            surroundings = Surroundings(Budget(parts_left), self.tree, around, known, opening.arguments)
+            if bytes_left < 0:
+                found[robot.path] = _Reading(surroundings, is_another=bool(lab.links))
+                continue
+            try:
+                read = read_as_ros(self.tree.files[robot.path].read(opening.max_size), robot.path, surroundings)
+                found[robot.path] = _count_links(read, surroundings, robot.robot, lab)
+            except (InputError, NotDecided):  # it may be the robot of the lab
+                found[robot.path] = _Reading(surroundings)
+            parts_left = surroundings.budget.left
+        return found
 
-
-def _read_candidates(
-    tree: Tree, lab: Lab, robots: Sequence[RobotFile], packages: tuple[Package, ...], opening: Opening
-) -> dict[str, _Reading]:
-    """Return each robot as it is read, expanded by xacro, by its path; of very many only the first are read."""
-    bytes_left, parts_left = _MAX_READ, READING
-    found: dict[str, _Reading] = {}
-    for robot in robots:
-        bytes_left -= min(robot.size, opening.max_size) + _COST_OF_FILE
-        around = package_around(packages, robot.path)
-        known = packages
-        if around is not None and around is not packages[0]:
-            known = (around, *packages)
-        surroundings = Surroundings(Budget(parts_left), tree, around, known, opening.arguments)
-        if bytes_left < 0:
-            found[robot.path] = _Reading(surroundings, is_another=bool(lab.links))
-            continue
-        try:
-            read = read_as_ros(tree.files[robot.path].read(opening.max_size), robot.path, surroundings)
-            found[robot.path] = _count_links(read, surroundings, robot.robot, lab)
-        except (InputError, NotDecided):  # it may be the robot of the lab
-            found[robot.path] = _Reading(surroundings)
-        parts_left = surroundings.budget.left
-    return found
+    def _launched_paths(self, robots: Sequence[RobotFile]) -> set[str]:
+        """Return the paths of the robots that launch files load, also without a package."""
+        loose = [robot.path for robot in robots if package_around(self.packages, robot.path) is None]
+        found: set[str] = set()
+        for package in (*self.packages, *launch_folders(self.tree, self.packages, loose)):
+            for reference in {reference.path or "" for reference in package.robot_references()}:
+                name = reference.removeprefix(f"{SHARE}/").partition("/")[0]
+                target = package if name in package.names else package.find(name) or package
+                source = target.source_of(reference)
+                same = [it.path for it in robots if it.name == reference.rpartition("/")[2] and target.holds(it.path)]
+                found.update([target.path(source)] if source else same)
+        return found
 
 
 def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) -> _Reading:
@@ -329,18 +324,12 @@ def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) ->
     return _Reading(surroundings, is_another, counted, not robot.name, read)
 
 
-def _launched_paths(tree: Tree, robots: tuple[RobotFile, ...], packages: tuple[Package, ...]) -> set[str]:
-    """Return the paths of the robots that launch files load, also without a package."""
-    loose = [robot.path for robot in robots if package_around(packages, robot.path) is None]
-    found: set[str] = set()
-    for package in (*packages, *launch_folders(tree, packages, loose)):
-        for reference in {reference.path or "" for reference in package.robot_references()}:
-            name = reference.removeprefix(f"{SHARE}/").partition("/")[0]
-            target = package if name in package.names else package.find(name) or package
-            source = target.source_of(reference)
-            same = [it.path for it in robots if it.name == reference.rpartition("/")[2] and target.holds(it.path)]
-            found.update([target.path(source)] if source else same)
-    return found
+def _may_be_meant(best: _Candidate, other: _Candidate, lab: Lab) -> bool:
+    """Return whether another robot may be meant as well: one in another package, or loose, perhaps of a teammate."""
+    stems = [path.partition(".")[0] for path in (best.path, other.path)]  # my_robot.urdf.xacro makes my_robot.urdf
+    is_elsewhere = best.package != other.package or (best.is_loose and stems[0] != stems[1])
+    is_worse = other.is_another or other.is_fragment or other.is_part or other.is_backup or other.place != best.place
+    return is_elsewhere and not is_worse and (bool(lab.links) or other.tier[0] <= max(best.tier[0], _Tier.SAME_ROBOT))
 
 
 def _tier_of(robot: RobotFile, urdf: str) -> _Tier:

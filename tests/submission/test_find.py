@@ -12,12 +12,11 @@ from grader.errors import InputError
 from grader.files.tree import File, Tree, make_tree
 from grader.grading.grade import grade
 from grader.package.package import Package
-from grader.submission import selection
 from grader.submission.labs import LabFolders
 from grader.submission.opening import open_submission, submission_of
 from grader.submission.packages import find_packages, read_packages
 from grader.submission.robots import find_robots
-from grader.submission.selection import UrdfChoice
+from grader.submission.selection import UrdfChoice, UrdfSearch
 from grader.submission.submission import DEFAULTS, Lab
 from grader.submission.urdf import OtherCandidate
 from tests.samples import LAB6, ROOT
@@ -62,7 +61,7 @@ def find_urdf(tree: Tree, urdf: str) -> UrdfChoice:
     """Return which robot of a tree is graded."""
     robots = find_robots(tree, urdf.rpartition("/")[2])
     lab = Lab(urdf, "my_robot", links=frozenset({"base_link"}))
-    found = selection.find_urdf(tree, lab, robots, LabFolders([]), DEFAULTS, read_packages(tree, lab))
+    found = UrdfSearch(tree, lab, LabFolders([]), DEFAULTS, read_packages(tree, lab)).choose(robots)
     return found._replace(reading=None)
 
 

@@ -10,7 +10,7 @@ _PRELOAD = (
     "grader.classroom.batch_worker",
     "grader.robot.edge_overlap",
     "grader.submission.selection",
-    "grader.package.package_problems",
+    "grader.package.found_problems",
     "grader.classroom.workers.fork_server",
 )
 
