@@ -72,8 +72,7 @@ def kinematics_match_reference(
     joints = _pair_joints(robot, reference, bases, pairs, match)
     if isinstance(joints, Outcome):
         return joints
-    pair = _RobotPair((robot, reference), bases, pairs, joints, tolerance, angle)
-    return _MotionComparison(pair, samples).outcome()
+    return _MotionComparison((robot, reference), bases, pairs, joints, tolerance, angle).outcome(samples)
 
 
 def _link_name(robot: Configuration, link: str) -> str:
@@ -157,9 +156,14 @@ class _Offset(NamedTuple):
     angle: float
     positions: tuple[float, ...]
 
+    @property
+    def text(self) -> str:
+        """The distance and the angle in words."""
+        return f"{in_millimetres(self.distance)} and {in_degrees(self.angle)}"
 
-class _RobotPair(NamedTuple):
-    """A robot and another one: their paired joints and links, and the links in whose frames poses are compared.
+
+class _MotionComparison(NamedTuple):
+    """A robot and the reference: their paired joints and links, and the links in whose frames poses are compared.
 
     Offsets are compared by how many times they are larger than the tolerances: metres of a distance, degrees of an
     angle.
@@ -172,7 +176,36 @@ class _RobotPair(NamedTuple):
     tolerance: float
     angle: float
 
-    def offset(self, positions: tuple[float, ...]) -> _Offset:
+    def outcome(self, samples: int) -> Outcome:
+        """Return whether the offsets are within the tolerances, with all joints at 0, one joint moved, or all of them.
+
+        If they are not, it is the largest offset, and when the robots differ.
+        """
+        joints = [joint for _, joint in self.joints]
+        zero = self._offset((0.0,) * len(joints))
+        alone = [(index, self._offset(positions)) for index, positions in _single_positions(joints)]
+        sampled = map(self._offset, _random_positions(joints, samples) if joints else ())
+        offsets = [zero, *(offset for _, offset in alone), *sampled]
+        worst = max(offsets, key=self._times)  # of equal ones, that of the simplest position
+        if self._is_within(worst):
+            counts = f"{counted(len(offsets), 'position')} of {counted(len(joints), 'joint')}"
+            return passed(f"{self._links_text()} as in the reference at {counts}: at most {worst.text} off")
+        wrong = dict.fromkeys(index for index, offset in alone if not self._is_within(offset))
+        cause, at = "", self.robots[0].link(worst.link).location
+        if not self._is_within(zero):
+            cause = f"; it is already {zero.text} off with all joints at 0" if zero is not worst else ""
+        elif wrong:
+            differing = [self.joints[index][0] for index in wrong]
+            at = differing[0].axis_location or differing[0].location
+            names = enumerated([quoted(joint.name) for joint in differing], _MAX_NAMED, "or")
+            cause = f"; it differs as soon as {names} moves"
+        message = f"{worst.link!r} does not move as in the reference: it is {worst.text} off"
+        outcome = failed(message, at, detail=f" with {self._positions_text(worst)}{cause}")
+        if worst.distance <= self.tolerance + SLACK:
+            return outcome._replace(measured=worst.angle, expected=0.0, tolerance=self.angle, unit="deg")
+        return outcome._replace(measured=worst.distance, expected=0.0, tolerance=self.tolerance, unit="m")
+
+    def _offset(self, positions: tuple[float, ...]) -> _Offset:
         """Return the largest offset at these positions of the joints."""
         pairs = zip(self.joints, positions, strict=True)
         own = {joint.name: position for (joint, _), position in pairs if joint.mimic is None}  # a mimic joint follows
@@ -182,10 +215,10 @@ class _RobotPair(NamedTuple):
             pose = posed.pose(name, relative_to=self.bases[0])
             distance = dist(pose.translation, wanted.translation)
             found.append(_Offset(name, distance, _angle_between(pose, wanted), positions))
-        return max(found, key=lambda offset: (self.times(offset), offset.distance))
+        return max(found, key=lambda offset: (self._times(offset), offset.distance))
 
     def _reference_poses(self, positions: tuple[float, ...]) -> tuple[Transform, ...]:
-        """Return the poses of the other robot's links, computed once for all robots that are compared with it."""
+        """Return the poses of the reference's links, computed once for all robots that are compared with it."""
         known = _EXPECTED.setdefault(self.robots[1], {})
         names, links = (tuple(joint.name for _, joint in self.joints), tuple(link for _, link in self.links))
         key = (self.bases[1], links, names, positions)
@@ -194,59 +227,17 @@ class _RobotPair(NamedTuple):
             known[key] = tuple(posed.pose(link, relative_to=self.bases[1]) for link in links)
         return known[key]
 
-    def times(self, offset: _Offset) -> float:
+    def _times(self, offset: _Offset) -> float:
         """Return how far an offset exceeds the tolerances, rounded, so that equal ones are equal; infinite for NaN."""
         shares = offset.distance / max(self.tolerance, _LEAST), offset.angle / max(self.angle, _LEAST)
         return max(round(share, 6) if share >= 0 else inf for share in shares)
 
-
-class _MotionComparison:
-    """The offsets of a pair of robots at the sampled positions: all joints at 0, one joint moved, and random ones."""
-
-    def __init__(self, pair: _RobotPair, samples: int) -> None:
-        joints = [joint for _, joint in pair.joints]
-        self._pair, self._tolerance, self._angle = pair, pair.tolerance, pair.angle
-        self._zero = (0.0,) * len(joints)
-        self._singles = [*_single_positions(joints)]
-        self._random = _random_positions(joints, samples) if joints else []
-
-    def outcome(self) -> Outcome:
-        """Return whether all offsets are within the tolerances, else the largest one, and when the robots differ."""
-        zero = self._pair.offset(self._zero)
-        alone = [(index, self._pair.offset(positions)) for index, positions in self._singles]
-        offsets = [zero, *(offset for _, offset in alone), *map(self._pair.offset, self._random)]
-        worst = max(offsets, key=self._pair.times)  # of equal ones, that of the simplest position
-        if self._is_within(worst):
-            joints = counted(len(self._pair.joints), "joint")
-            return passed(
-                f"{self._links_text()} as in the reference at {counted(len(offsets), 'position')} of {joints}: at most "
-                f"{self._offset_text(worst)} off"
-            )
-        wrong = dict.fromkeys(index for index, offset in alone if not self._is_within(offset))
-        cause, at = "", self._pair.robots[0].link(worst.link).location
-        if not self._is_within(zero):
-            cause = f"; it is already {self._offset_text(zero)} off with all joints at 0" if zero is not worst else ""
-        elif wrong:
-            differing = [self._pair.joints[index][0] for index in wrong]
-            at = differing[0].axis_location or differing[0].location
-            names = enumerated([quoted(joint.name) for joint in differing], _MAX_NAMED, "or")
-            cause = f"; it differs as soon as {names} moves"
-        message = f"{worst.link!r} does not move as in the reference: it is {self._offset_text(worst)} off"
-        detail = f" with {self._positions_text(worst)}{cause}"
-        outcome = failed(message, at, detail=detail)
-        if worst.distance <= self._tolerance + SLACK:
-            return outcome._replace(measured=worst.angle, expected=0.0, tolerance=self._angle, unit="deg")
-        return outcome._replace(measured=worst.distance, expected=0.0, tolerance=self._tolerance, unit="m")
+    def _is_within(self, offset: _Offset) -> bool:
+        return offset.distance <= self.tolerance + SLACK and offset.angle <= self.angle + SLACK
 
     def _links_text(self) -> str:
-        names = [quoted(link) for link, _ in self._pair.links]
+        names = [quoted(link) for link, _ in self.links]
         return f"{enumerated(names, _MAX_NAMED)} {'moves' if len(names) == 1 else 'move'}"
-
-    def _is_within(self, offset: _Offset) -> bool:
-        return offset.distance <= self._tolerance + SLACK and offset.angle <= self._angle + SLACK
-
-    def _offset_text(self, offset: _Offset) -> str:
-        return f"{in_millimetres(offset.distance)} and {in_degrees(offset.angle)}"
 
     def _positions_text(self, offset: _Offset) -> str:
         if not any(offset.positions):
@@ -255,7 +246,7 @@ class _MotionComparison:
             f"{quoted(joint.name)} at {point((position,))} m"
             if joint.type == "prismatic"
             else f"{quoted(joint.name)} at {point((degrees(position),))} degrees"
-            for (joint, _), position in zip(self._pair.joints, offset.positions, strict=True)
+            for (joint, _), position in zip(self.joints, offset.positions, strict=True)
             if position
         ]
         return enumerated(moved, _MAX_NAMED)

@@ -16,22 +16,18 @@ from grader.source import LazyLocation
 _MAX_FILE_NAME = 100  # characters that a message shows
 MAX_SHAPES = 50  # of one link that are compared with each other
 VISIBLE = 0.01  # the smallest alpha of a colour that shows
+ShapeName = Literal["any", "box", "cylinder", "sphere"]
+_SHAPES: dict[str, type[Box] | type[Cylinder] | type[Sphere]] = {"box": Box, "cylinder": Cylinder, "sphere": Sphere}
 
 
 def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
     """Return the visuals of a link that have a size; raise MissingElement if there is none."""
-    shown = robot.shown.get(link)
-    if shown is None:
-        shown = tuple(visual for visual in robot.link(link).visuals if not is_empty(visual.geometry))
-        robot.shown[link] = shown
+    found = robot.link(link)
+    shown = tuple(visual for visual in found.visuals if not is_empty(visual.geometry))
     if not shown:
         message = f"link {link!r} has no visual with a size"
-        raise MissingElement("visual", link, message=message, location=place(robot.link(link).location))
+        raise MissingElement("visual", link, message=message, location=place(found.location))
     return shown
-
-
-ShapeName = Literal["any", "box", "cylinder", "sphere"]
-_SHAPES: dict[str, type[Box] | type[Cylinder] | type[Sphere]] = {"box": Box, "cylinder": Cylinder, "sphere": Sphere}
 
 
 def main_visual(robot: Configuration, link: str, shape: ShapeName = "any") -> Visual:

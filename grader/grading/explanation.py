@@ -1,6 +1,6 @@
 """Explain a failure by the problem of the file that causes it."""
 
-from collections.abc import Iterable
+from collections.abc import Iterator, Sequence
 
 from grader import markup
 from grader.checks.outcome import Outcome
@@ -34,7 +34,7 @@ _DROPPING = {
 
 
 def explain(
-    outcome: Outcome, problems: Iterable[Problem], source: Source | None, part: str = "", link: str = ""
+    outcome: Outcome, problems: Sequence[Problem], source: Source | None, part: str = "", link: str = ""
 ) -> Outcome:
     """Return a failure with the problem that explains it: why ROS 2 drops a part of a link, or a mistake at its place.
 
@@ -42,48 +42,54 @@ def explain(
     """
     if outcome.problem:  # the check has said it
         return outcome
-    lost, dropping = outcome.message, _DROPPING.get(part, ())
-    mistake = outcome.mistake or lost
+    mistake, dropping = outcome.mistake or outcome.message, _DROPPING.get(part, ())
     dropped = next((it for it in problems if it.kind in dropping and it.subject == link), None)
     if dropped is not None:
-        message = f"{lost}: {dropped.message}"
-        outcome = outcome._replace(message=message, location=dropped.location, mistake=mistake, problem=dropped.message)
+        inner = next(_inside(dropped.location, problems, source), dropped)  # because of this
+        message = f"{outcome.message}: {inner.message}"
+        return outcome._replace(message=message, location=dropped.location, mistake=mistake, problem=dropped.message)
     place = outcome.location
-    inside = _element_offsets(place, source) if any(problem.kind in _INSIDE for problem in problems) else range(0)
+    at_place = [it for it in problems if it.location == place and _explains(it, outcome, is_part=part in _DROPPING)]
+    inside = [*_inside(place, problems, source)]
     for problem in problems:
-        kind, where = problem.kind, problem.location
-        explains = kind in _EXPLAINING or (kind is urdf_problems.DEFAULT_AXIS and outcome.unit == "deg")
-        is_there = where == place and dropped is None and ((explains and not dropping) or kind.is_before_ros)
-        if is_there or (where != place and _is_inside(problem, place, inside, source)):
-            if dropped is not None:  # because of this
-                return outcome._replace(message=f"{lost}: {problem.message}")
+        if problem in at_place or problem in inside:
             message = f"{outcome.message} ({problem.code}: {problem.message})"
-            return outcome._replace(message=message, location=where, mistake=mistake, problem=problem.message)
+            return outcome._replace(
+                message=message, location=problem.location, mistake=mistake, problem=problem.message
+            )
     return outcome
 
 
-def _element_offsets(place: Location | None, source: Source | None) -> range:
+def _explains(problem: Problem, outcome: Outcome, *, is_part: bool) -> bool:
+    """Return whether a problem at the place of a failure explains it; of a missing part, only what precedes ROS 2."""
+    if problem.kind.is_before_ros:
+        return True
+    is_of_axis = problem.kind is urdf_problems.DEFAULT_AXIS and outcome.unit == "deg"
+    return not is_part and (problem.kind in _EXPLAINING or is_of_axis)
+
+
+def _inside(place: Location | None, problems: Sequence[Problem], source: Source | None) -> Iterator[Problem]:
+    """Yield the problems in the element at a place that explain what is around them."""
+    candidates = [it for it in problems if it.kind in _INSIDE and it.location != place]
+    if place is None or source is None or not candidates:
+        return
+    offsets = _element_offsets(place, source)
+    for problem in candidates:
+        where = problem.location
+        if (
+            (where.path, where.calls) == (place.path, place.calls)
+            and source.text.startswith(_INSIDE[problem.kind], offsets.start)
+            and source.offset(where.line, where.column) in offsets
+        ):
+            yield problem
+
+
+def _element_offsets(place: Location, source: Source) -> range:
     """Return the offsets of the element at a place, or of the tag if an attribute is there."""
-    if place is None or source is None or place.path != source.path:
+    if place.path != source.path:
         return range(0)
     text, at = source.text, source.offset(place.line, place.column)
     start = text.rfind("<", 0, at + 1)
     if text.startswith("<robot", start):  # everything is inside
         return range(0)
     return range(start, markup.element_end(text, start) if start == at else markup.head_end(text, start)[0])
-
-
-def _is_inside(problem: Problem, place: Location | None, inside: range, source: Source | None) -> bool:
-    """Return whether a problem that explains what is around it is in the element at a place."""
-    where = problem.location
-    if (
-        source is None
-        or place is None
-        or problem.kind not in _INSIDE
-        or (where.path, where.calls) != (place.path, place.calls)
-    ):
-        return False
-    return (
-        source.text.startswith(_INSIDE[problem.kind], inside.start)
-        and source.offset(where.line, where.column) in inside
-    )

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from grader.errors import MissingElement
 from grader.robot.joint_reader import MOVING_TYPES
 from grader.robot.link_tree import parent_joints
-from grader.robot.model import Joint, Link, Origin, Robot, Visual
+from grader.robot.model import Joint, Link, Origin, Robot
 from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_about, rotation_from_rpy, unit
 from grader.text import quoted
 
@@ -216,7 +216,6 @@ class Configuration:
     known: Robot  # as it was read: its open values can be read
     positions: Mapping[str, float] = field(default_factory=dict)  # radians or metres; the other joints are at 0
     is_guarded: bool = field(default=False, kw_only=True)  # reading what is open in `robot` raises NotDecided
-    shown: dict[str, tuple[Visual, ...]] = field(default_factory=dict, init=False)  # a cache for the checks of visuals
     _relative: dict[tuple[str, str | None], Transform] = field(default_factory=dict, init=False)
     _shared: "_Views | None" = field(default=None, kw_only=True)  # of a configuration that differs in positions only
 
