@@ -227,5 +227,5 @@ def _counting_form(urdf: Urdf, kept: Collection[str]) -> object:
     foreign = [
         etree.tostring(child, with_tail=False) for child in sorted(foreign_elements(root), key=lambda it: str(it.tag))
     ]
-    form = normal_form(robot, {*kept, *words_of_foreign(root)})
+    form = normal_form(robot, {*kept, *words_of_foreign(root)}, decimals=2)  # half a turn may be written 3.14
     return urdf.loaded.verdict, urdf.reading.undetermined, foreign, form

@@ -9,33 +9,34 @@ and limits that ROS 2 does not use for a type of joint.
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import fields, is_dataclass
 from hashlib import sha256
-from typing import Any
+from typing import Any, NamedTuple
 
 from grader.robot.kinematics import placed_by
-from grader.robot.model import Collision, Cylinder, Dynamics, Geometry, Joint, Link, Robot, Sphere, Visual
+from grader.robot.model import Collision, Cylinder, Dynamics, Geometry, Joint, Link, Origin, Robot, Sphere, Visual
 from grader.robot.reader import Reading
 from grader.robot.shapes import is_empty
-from grader.robot.transforms import AXES, IDENTITY, Transform, unit
+from grader.robot.transforms import AXES, IDENTITY, unit
 from grader.xml.parsing import Element
 
 _MODEL = ("link", "joint", "material")
 _DIGITS, _DECIMALS = 6, 12  # significant digits, of which rounding leaves those after the 12th decimal open
-_TURN = 2  # decimals of a direction: half a turn that is written 3.14 is the same in both directions
 _TURNING = ("continuous", "revolute", "prismatic", "planar")
 _LIMITED = ("revolute", "prismatic")
 _UNLIMITED = ("fixed", "floating")
 
 
-def normal_form(robot: Robot, kept: Collection[str] = ()) -> tuple[list[str], list[str]]:
+def normal_form(robot: Robot, kept: Collection[str] = (), *, decimals: int = _DIGITS) -> tuple[list[str], list[str]]:
     """Return the links and joints of a robot as texts, sorted.
 
     Names that nothing refers to do not count: those of the robot, of materials, of joints that no joint mimics, and of
-    links without a joint. `kept` are names that something outside of the file refers to.
+    links without a joint. `kept` are names that something outside of the file refers to. Directions are rounded to
+    `decimals`: with 2, half a turn that is written 3.14 is the same in both directions.
     """
     mimicked = {joint.mimic.joint for joint in robot.joints if joint.mimic is not None}
     connected = {name for joint in robot.joints for name in (joint.parent, joint.child)}
-    links = (_link_form(link, {*kept, *connected}) for link in robot.links)
-    return _sorted(links), _sorted(_joint_form(joint, {*kept, *mimicked}) for joint in robot.joints)
+    forms = _Forms(decimals)
+    links = (forms.of_link(link, {*kept, *connected}) for link in robot.links)
+    return _sorted(links), _sorted(forms.of_joint(joint, {*kept, *mimicked}) for joint in robot.joints)
 
 
 def robot_hash(reading: Reading) -> str:
@@ -83,60 +84,58 @@ def _sorted(forms: Iterable[object]) -> list[str]:
     return sorted(set(map(repr, forms)))
 
 
-def _link_form(link: Link, kept: Collection[str]) -> object:
-    inertial = link.inertial
-    mass = (inertial.mass, inertial.inertia, _pose(placed_by(IDENTITY, inertial.origin))) if inertial else ()
-    name = link.name if link.name in kept else ""
-    return name, _sorted(_shapes(link.visuals)), _sorted(_shapes(link.collisions)), _rounded(mass)
+class _Forms(NamedTuple):
+    """The forms of the parts of a robot; directions are rounded to a number of decimals."""
 
+    decimals: int
 
-def _shapes(shapes: tuple[Visual, ...] | tuple[Collision, ...]) -> Iterator[object]:
-    for shape in shapes:
-        if not is_empty(shape.geometry):
-            pose = placed_by(IDENTITY, shape.origin)
-            material = shape.material if isinstance(shape, Visual) else None
-            colour = (*material.rgba, material.texture) if material is not None else ()
-            yield _rounded(pose.translation), _rounded(shape.geometry), _rotation(shape.geometry, pose), colour
+    def of_link(self, link: Link, kept: Collection[str]) -> object:
+        inertial = link.inertial
+        mass = (inertial.mass, inertial.inertia, *self._of_pose(inertial.origin)) if inertial else ()
+        shapes = _sorted(self._of_shapes(link.visuals)), _sorted(self._of_shapes(link.collisions))
+        return link.name if link.name in kept else "", *shapes, _rounded(mass)
 
+    def of_joint(self, joint: Joint, kept: Collection[str]) -> object:
+        kind, limit = joint.type, joint.limit if joint.type not in _UNLIMITED else None
+        moving = (joint.mimic, joint.dynamics or Dynamics(), joint.safety_controller, joint.calibration)
+        return (
+            joint.parent, joint.child, joint.name if joint.name in kept else "", kind,
+            self._of_pose(joint.origin) if joint.origin is not None else None,
+            self._of_axis(joint),
+            _rounded((limit.lower, limit.upper)) if limit is not None and kind in _LIMITED else (),
+            _rounded((limit.effort, limit.velocity)) if limit is not None else (),
+            _rounded(moving) if kind != "fixed" else (),
+        )  # fmt: skip
 
-def _rotation(geometry: Geometry, pose: Transform) -> tuple[float, ...]:
-    """Return the rotation of a shape without what its symmetry hides: a cylinder has a line, in both directions."""
-    match geometry:
-        case Cylinder():
-            turned = _turned(pose.rotate(AXES[2]))
-            return max(turned, tuple(-value + 0.0 for value in turned))
-        case Sphere():
+    def _of_shapes(self, shapes: tuple[Visual, ...] | tuple[Collision, ...]) -> Iterator[object]:
+        for shape in shapes:
+            if not is_empty(shape.geometry):
+                material = shape.material if isinstance(shape, Visual) else None
+                colour = (*material.rgba, material.texture) if material is not None else ()
+                position, rotation = self._of_pose(shape.origin, shape.geometry)
+                yield position, _rounded(shape.geometry), rotation, colour
+
+    def _of_pose(self, origin: Origin, geometry: Geometry | None = None) -> tuple[Any, tuple[float, ...]]:
+        """Return a position and a rotation, without what the symmetry of a shape hides: a cylinder has a line."""
+        pose = placed_by(IDENTITY, origin)
+        rotation = self._of_direction(pose.rotation)
+        match geometry:
+            case Cylinder():
+                line = self._of_direction(pose.rotate(AXES[2]))
+                rotation = max(line, tuple(-value + 0.0 for value in line))  # either way
+            case Sphere():
+                rotation = ()
+        return _rounded(pose.translation), rotation
+
+    def _of_axis(self, joint: Joint) -> object:
+        """Return the direction of an axis; of one without a direction what the file gives, and nothing without use."""
+        if joint.type not in _TURNING:
             return ()
-    return _turned(pose.rotation)
+        axis = unit(joint.axis) if joint.axis is not None else None
+        return self._of_direction(axis) if axis is not None else joint.axis
 
-
-def _turned(values: tuple[float, ...]) -> tuple[float, ...]:
-    return tuple(round(value, _TURN) + 0.0 for value in values)
-
-
-def _pose(pose: Transform) -> tuple[Any, ...]:
-    return _rounded(pose.translation), _turned(pose.rotation)
-
-
-def _joint_form(joint: Joint, kept: Collection[str]) -> object:
-    kind, limit = joint.type, joint.limit if joint.type not in _UNLIMITED else None
-    moving = (joint.mimic, joint.dynamics or Dynamics(), joint.safety_controller, joint.calibration)
-    return (
-        joint.parent, joint.child, joint.name if joint.name in kept else "", kind,
-        _pose(placed_by(IDENTITY, joint.origin)) if joint.origin is not None else None,
-        _axis_form(joint),
-        _rounded((limit.lower, limit.upper)) if limit is not None and kind in _LIMITED else (),
-        _rounded((limit.effort, limit.velocity)) if limit is not None else (),
-        _rounded(moving) if kind != "fixed" else (),
-    )  # fmt: skip
-
-
-def _axis_form(joint: Joint) -> object:
-    """Return the direction of an axis; of one without a direction what the file gives, and nothing if it has no use."""
-    if joint.type not in _TURNING:
-        return ()
-    axis = unit(joint.axis) if joint.axis is not None else None
-    return _turned(axis) if axis is not None else joint.axis
+    def _of_direction(self, values: tuple[float, ...]) -> tuple[float, ...]:
+        return tuple(round(value, self.decimals) + 0.0 for value in values)
 
 
 def _rounded(value: Any) -> Any:

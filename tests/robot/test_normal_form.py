@@ -32,6 +32,7 @@ COPIES = {
     "defaults": REFERENCE.replace(' rpy="0 0 0"', ""),
     "materials": REFERENCE.replace('"green"', '"grass"'),
     "joint names": REFERENCE.replace("base_lidar_joint", "j1").replace("base_left_wheel_joint", "j2"),
+    "the length of an axis": REFERENCE.replace('axis xyz="0 0 1"', 'axis xyz="0 0 1.0001"', 1),
     "robot name": REFERENCE.replace('name="my_robot"', 'name="mine"'),
     "unused material": REFERENCE.replace("</robot>", '<material name="x"><color rgba="1 0 0 1"/></material></robot>'),
 }
@@ -49,6 +50,7 @@ OTHERS = {
     "a colour": REFERENCE.replace("0 0.6 0 1", "0 0.61 0 1"),
     "a link's name": REFERENCE.replace('"lidar"', '"laser"'),
     "a joint's type": REFERENCE.replace("continuous", "fixed", 1),
+    "a slightly turned axis": REFERENCE.replace('axis xyz="0 0 1"', 'axis xyz="0 0.0008 1"', 1),
     "an axis": REFERENCE.replace('axis xyz="0 0 1"', 'axis xyz="0 0 -1"', 1),
     "a link more": REFERENCE.replace("</robot>", '<link name="x"/></robot>'),
 }
