@@ -62,7 +62,9 @@ def head_end(text: str, start: int) -> tuple[int, bool]:
 def element_end(text: str, start: int) -> int:
     """Return the offset after the end tag of the element at an offset; the end of the text where that is missing."""
     position, is_empty = head_end(text, start)
-    depth = 0 if is_empty else 1
+    if is_empty:
+        return position
+    depth = 1
     while depth:
         token = _TOKEN.search(text, position)
         if token is None:
@@ -72,7 +74,8 @@ def element_end(text: str, start: int) -> int:
             depth -= 1
         elif token[0] == "<":
             position, is_empty = head_end(text, token.start())
-            depth += not is_empty
+            if not is_empty:
+                depth += 1
     return position
 
 

@@ -62,9 +62,13 @@ def near(name: str, known: Iterable[str], suffix: str = "") -> str | None:
     own, others = _words(name), set(islice(known, _MAX_KNOWN + 1)) - {name}
     if len(others) > _MAX_KNOWN:
         return None
-    distances = {other: _distance(own, _words(other), suffix) for other in others}
-    nearest = min(filter(None, distances.values()), default=None)
-    found = [other for other, distance in distances.items() if distance is not None and distance == nearest]
+    distances: dict[str, tuple[int, bool]] = {}
+    for other in others:
+        distance = _distance(own, _words(other), suffix)
+        if distance is not None:
+            distances[other] = distance
+    nearest = min(distances.values(), default=None)
+    found = [other for other, distance in distances.items() if distance == nearest]
     return found[0] if len(found) == 1 else None
 
 
@@ -81,25 +85,40 @@ def _distance(name: list[str], known: list[str], suffix: str) -> tuple[int, bool
         return 0, False
     shorter, longer = sorted((name, known), key=len)
     is_cut = len(longer) == len(shorter) + 1 and longer[-1] == suffix
-    letters = [_letters(*pair) for pair in zip(name, known, strict=False)]
-    if None in letters or not (is_cut or len(name) == len(known)):
+    if not is_cut and len(name) != len(known):
         return None
-    return sum(filter(None, letters)), is_cut
+    differing = 0
+    for pair in zip(name, known, strict=False):
+        letters = _differing_letters(*pair)
+        if letters is None:
+            return None
+        differing += letters
+    return differing, is_cut
 
 
-def _letters(word: str, known: str) -> int | None:
+def _differing_letters(word: str, known: str) -> int | None:
     """Return how many letters or exchanged pairs differ in two words; None if these are too many."""
-    most = 0 if len(known) < 4 or known.isdigit() or _are_distinct(word, known) else 1 if len(known) < 7 else 2
-    if word == known or abs(len(word) - len(known)) > most:
-        return 0 if word == known else None
+    if word == known:
+        return 0
+    most = _most_differing(word, known)
+    if abs(len(word) - len(known)) > most:
+        return None
     before, row = [0], [*range(len(known) + 1)]
     for i, letter in enumerate(word):
         earlier, before, row = before, row, [i + 1]
         for j, other in enumerate(known):
-            is_exchanged = i and j and (letter, other) == (known[j - 1], word[i - 1])
-            costs = (before[j] + (letter != other), before[j + 1] + 1, row[j] + 1)
-            row.append(min(*costs, earlier[j - 1] + 1) if is_exchanged else min(costs))
+            cost = min(before[j] + (0 if letter == other else 1), before[j + 1] + 1, row[j] + 1)
+            if i and j and (letter, other) == (known[j - 1], word[i - 1]):
+                cost = min(cost, earlier[j - 1] + 1)
+            row.append(cost)
     return row[-1] if row[-1] <= most else None
+
+
+def _most_differing(word: str, known: str) -> int:
+    """Return how many letters of a known word may be mistyped."""
+    if len(known) < 4 or known.isdigit() or _are_distinct(word, known):
+        return 0
+    return 1 if len(known) < 7 else 2
 
 
 def _are_distinct(word: str, known: str) -> bool:

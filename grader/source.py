@@ -102,7 +102,9 @@ class Source:
     def offset(self, line: int, column: int) -> int:
         """Return the character offset of a line and column, the inverse of `at`."""
         start = self._lines[line - 1] if 0 < line <= len(self._lines) else len(self.text)
-        return start + column - 1 + (line == 1 and self.text.startswith("\ufeff"))
+        if line == 1 and self.text.startswith("\ufeff"):
+            start += 1
+        return start + column - 1
 
     def edit(self, start: int, end: int, new: str) -> Edit:
         """Return the edit that replaces the text between two offsets."""

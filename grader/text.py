@@ -88,7 +88,9 @@ def people_text(names: Collection[str], most: int) -> str:
 
 def first_lines(lines: Sequence[str], most: int) -> list[str]:
     """Return the lines; of more than `most` the first ones, and a line "... and 3 more"."""
-    return [*lines[:most], *([f"... and {len(lines) - most} more"] if len(lines) > most else [])]
+    if len(lines) <= most:
+        return [*lines]
+    return [*lines[:most], f"... and {len(lines) - most} more"]
 
 
 def counted(number: int, noun: str, plural: str = "") -> str:

@@ -29,6 +29,9 @@ _Results = Mapping[str, Result]
 
 _MAX_GRADINGS = 170  # of one submission that is as short as most
 _HARMFUL = ("rejects", "drops", "undetermined")
+_RESERVE = 20  # gradings for proofs
+_AROUND = " ,\r\n"  # of a text that is added
+_MAX_PARTS = 5  # edits of a hint of which each is tried without
 
 
 class _NoTrialsLeft(Exception):
@@ -48,7 +51,7 @@ class Trials:
 
     @contextmanager
     def isolated(self) -> Iterator[None]:
-        """Record a fault of the grader in one family of edits or one step: it must not cost the hints of the others."""
+        """Record a fault of the grader in one generator or one step: it must not cost the hints of the others."""
         try:
             yield
         except _NoTrialsLeft:
@@ -93,11 +96,9 @@ class Trials:
 
 def _has_new_problems(before: Submission, after: Submission) -> bool:
     """Return whether ROS 2 loads the URDF, with a kind of problem that it had not before: no edit may make it worse."""
-    if (
-        not isinstance(before.urdf, Read)
-        or not isinstance(after.urdf, Read)
-        or before.urdf.loaded.verdict == "rejected"
-    ):
+    if not isinstance(before.urdf, Read) or not isinstance(after.urdf, Read):
+        return False
+    if before.urdf.loaded.verdict == "rejected":
         return False
     known = {problem.kind for problem in before.urdf.loaded.problems if problem.kind.effect in _HARMFUL}
     return any(it.kind not in known for it in after.urdf.loaded.problems if it.kind.effect in _HARMFUL)
@@ -146,14 +147,11 @@ def gains_of(before: _Results, after: _Results) -> dict[str, Decimal]:
     }
 
 
-_RESERVE = 20  # gradings for proofs
-_AROUND = " ,\r\n"  # of a text that is added
-_MAX_PARTS = 5  # edits of a hint of which each is tried without
-
-
 class _Tried(NamedTuple):
+    """A proposal that was graded alone, after the edits so far."""
+
     proposal: Proposal
-    passes: frozenset[str]
+    passes: frozenset[str]  # the criteria that pass with it, and did not before
     is_assumed: bool  # they may pass by what is undone, and not by the edit: others come first
 
 
@@ -176,7 +174,7 @@ class HintSearch:
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
         self.found: list[FoundHint] = []
         self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing, or two edits
-        self._refused = set[Edits]()  # after all hints so far
+        self._refused: set[Edits] = set()  # after all hints so far
         self._told = {*told}  # also criteria for which two edits are told that cannot be told apart
         self._tried_after: dict[Stage, Edits] = {}  # the edits after which a stage was tried last
         self.results: _Results = trials.results  # with all edits

@@ -18,9 +18,9 @@ from grader.names import closest, near
 from grader.source import Edit, Edits, Location, Source
 from grader.xacro.expander import Refusal
 from grader.xacro.expansion import ExpandedSource
-from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import Definition, Key, ScopePlace, UnknownName, XacroScope
 from grader.xacro.texts import Texts
+from grader.xacro.xacro_nodes import XacroNode
 
 _MAX_LENGTH = 2_000  # of a text that is edited in parts
 _MAX_NAMES, _MAX_NODES = 8, 2000

@@ -12,9 +12,9 @@ from grader.xacro import xacro_problems
 from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions, read_yaml_values
 from grader.xacro.macros import MacroError
-from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import Reported, ScopePlace, UnknownName, XacroFails, XacroScope
 from grader.xacro.texts import Texts
+from grader.xacro.xacro_nodes import XacroNode
 
 
 class Misspelt(NamedTuple):

@@ -18,9 +18,9 @@ from grader.source import Location, Source
 from grader.xacro import xacro_problems
 from grader.xacro.expander import STOPS, Expander, Misspelt, Open, Refusal, Respelling
 from grader.xacro.files import Files, Workspace
-from grader.xacro.nodes import XacroNode, read_nodes, recovered_nodes
 from grader.xacro.tags import CALL, HANDLERS
 from grader.xacro.texts import Texts
+from grader.xacro.xacro_nodes import XacroNode, read_nodes, recovered_nodes
 from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, error_location, make_element
 from grader.xml.xml_problems import MISPLACED_DECLARATION, RECOVERED
 

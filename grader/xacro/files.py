@@ -8,9 +8,9 @@ from typing import Protocol
 from grader.errors import InputError, NotDecided
 from grader.python.budget import Budget
 from grader.python.values import EvaluationFails, Undetermined
-from grader.xacro.nodes import XacroNode, read_nodes
 from grader.xacro.scopes import UnknownName, XacroFails
 from grader.xacro.texts import INSTALLED
+from grader.xacro.xacro_nodes import XacroNode, read_nodes
 from grader.xml.parsing import XMLSyntaxError
 
 _SHARED = re.compile(rf"{INSTALLED}/(?P<package>[^/]+)/share/(?P=package)(?:/+(?P<inside>.+))", re.DOTALL)

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from grader.python.budget import Budget
 from grader.python.values import EvaluationFails, Undetermined
 from grader.xacro.macros import read_parameters
-from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import ScopePlace
 from grader.xacro.tags import HANDLERS
 from grader.xacro.texts import PIECE
+from grader.xacro.xacro_nodes import XacroNode
 
 _STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
 _NAME = re.compile(r"(?<![\w.])[^\W\d]\w*+(?:\.[^\W\d]\w*+)*+(?!\s*=[^=])")

@@ -6,9 +6,9 @@ from typing import NamedTuple
 from grader.names import near
 from grader.python.budget import Budget
 from grader.python.values import Undetermined
-from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import Definition, UnknownName, XacroFails, XacroScope
 from grader.xacro.texts import Texts
+from grader.xacro.xacro_nodes import XacroNode
 
 # A parameter with a default, by xacro's `re_macro_arg`. Possessive, to be linear: xacro also tries a later quote as the
 # end of one, and `read_parameters` refuses the texts where that matters.

@@ -17,8 +17,8 @@ from grader.xacro.macros import (
     find_macro,
     read_parameters,
 )
-from grader.xacro.nodes import XacroNode
 from grader.xacro.scopes import BOOLEANS, Definition, Reported, UnknownName, XacroScope
+from grader.xacro.xacro_nodes import XacroNode
 
 _MAX_CALLS = 100  # macros that call each other
 
@@ -134,7 +134,8 @@ def _property(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes)
     symbols, texts, given = scopes.symbols, expander.texts, node.attributes
     name = _property_name(texts.text(_needed(node, "name"), symbols))
     is_removed = _flag(node, "remove", "false", expander, scopes)
-    if ("value" in given) + ("default" in given) + is_removed > 1:
+    ways = [key for key in ("value", "default") if key in given]
+    if len(ways) > 1 or (ways and is_removed):
         raise TagFails(f"the property {name} has more than one of value, default and remove")
     if is_removed and texts.is_bound(name, symbols):
         symbols.remove(name)

@@ -51,21 +51,16 @@ class Unresolved(NamedTuple):
 
 
 class XmlDocument(NamedTuple):
-    """The root element, and everything that TinyXML2 or XML rejects in the text; `first_tag` is an offset.
+    """What is read of a URDF's text: its root element, and everything that TinyXML2, XML or xacro rejects in it."""
 
-    The root is None where TinyXML2 refuses the text, or finds no <robot> at its top level; `recovered` is then what can
-    be read of the robot. If xacro expanded the text, `unresolved` has the elements that are not known completely, and
-    `is_meant` is whether the text means these elements although it is refused.
-    """
-
-    root: Element | None
+    root: Element | None  # None where TinyXML2 refuses the text, or finds no <robot> at its top level
     source: Source
     problems: list[Problem]
-    first_tag: int = 0
-    unresolved: Mapping[Element, Unresolved] = {}
-    is_expanded: bool = False
-    recovered: Element | None = None
-    is_meant: bool = True
+    first_tag: int = 0  # the offset of the first tag
+    unresolved: Mapping[Element, Unresolved] = {}  # the elements that xacro leaves open
+    is_expanded: bool = False  # whether xacro expanded the text
+    recovered: Element | None = None  # of a refused text, the robot as it is after the edits that repair the text
+    is_meant: bool = True  # whether the text means these elements although it is refused
 
 
 def parse_xml(data: bytes) -> Element:
@@ -117,7 +112,9 @@ def _problems(differences: "Iterable[Difference]", source: Source) -> list[Probl
 
 def _read_utf_16(data: bytes, path: str) -> XmlDocument:
     """Read a text in UTF-16, which TinyXML2 refuses, as what it means; without a byte-order mark it begins with a <."""
-    encoding = "utf-16" if data[0] >= 0xFE else "utf-16-le" if data[0] else "utf-16-be"
+    encoding = "utf-16-le" if data[0] else "utf-16-be"
+    if data[0] >= 0xFE:  # a byte-order mark
+        encoding = "utf-16"
     document = read_document(data.decode(encoding, "replace").replace("\0", "\ufffd").encode(), path)
     message = "the file is UTF-16 text, which ROS 2 cannot read; save it as UTF-8"
     problems = [Problem(NOT_UTF8, message, document.source.at(0)), *document.problems]
@@ -160,9 +157,7 @@ class XmlFile:
         try:
             self.root = parse_xml(data)
         except (XMLSyntaxError, ValueError) as error:
-            message, *_ = str(getattr(error, "msg", error)).split(
-                ", line "
-            )  # lxml adds the position to libxml2's message
+            message, _, _ = str(getattr(error, "msg", error)).partition(", line ")  # lxml adds the position
             raise XmlFault(" ".join(message.split()), error_location(error, source)) from None
         self._indices = {element: index for index, element in enumerate(self.root.iter("*"))}
 

@@ -41,7 +41,7 @@ _MAX_DEPTH = 32  # where reading stops; urdfdom never looks deeper than robot/li
 _MAX_ASSUMED = 20
 
 
-class _Change(NamedTuple):
+class _TextEdit(NamedTuple):
     """A change of a text: what is between two offsets becomes `new`."""
 
     start: int
@@ -63,7 +63,7 @@ class _Repair(NamedTuple):
 
     xml: bytes
     offsets: list[int]
-    changes: list[_Change]
+    changes: list[_TextEdit]
     assumed: list[Difference]
     is_lossy: bool
 
@@ -240,13 +240,13 @@ class _Repairer:
         else:
             self._replace(start, self._text.index(opened.name, start) + len(opened.name), f"<{name}")
 
-    def _noted(self) -> list[_Change]:
+    def _noted(self) -> list[_TextEdit]:
         """Return all changes in order: of two at one place, the end tags that are inserted come first."""
-        replaced = [_Change(start, end, new) for start, (end, new) in self._replaced.items()]
-        inserted = [_Change(at, at, new) for at, new in self._inserted.items()]
+        replaced = [_TextEdit(start, end, new) for start, (end, new) in self._replaced.items()]
+        inserted = [_TextEdit(at, at, new) for at, new in self._inserted.items()]
         return sorted(replaced + inserted)
 
-    def _robot_after(self, changes: list[_Change], end: int) -> tuple[bytes, list[int]]:
+    def _robot_after(self, changes: list[_TextEdit], end: int) -> tuple[bytes, list[int]]:
         """Return the robot that is read after changes of the text before an offset, and where its tags are now."""
         if self._robot is None:
             return b"", []
@@ -282,13 +282,13 @@ def _is_value_of(attribute: str, value: str) -> bool:
     return bool(attribute) and (not parts or len(numbers_in(value)) == len(parts))
 
 
-def _joined(changes: list[_Change]) -> list[_Change]:
+def _joined(changes: list[_TextEdit]) -> list[_TextEdit]:
     """Return the changes with inserted end tags as a part of the change that they touch."""
-    found: list[_Change] = []
+    found: list[_TextEdit] = []
     for change in changes:
         last = found[-1] if found else None
         if last is not None and last.end == change.start and not (last.is_replacement and change.is_replacement):
-            found[-1] = _Change(last.start, change.end, last.new + change.new)
+            found[-1] = _TextEdit(last.start, change.end, last.new + change.new)
         else:
             found.append(change)
     return found

@@ -211,10 +211,10 @@ def _skip_blank(text: str, position: int) -> int:
 def read_tag(text: str, start: int, note: _Note) -> tuple[Tag, int]:
     """Return the tag whose < is at `start`, and the offset after it; raises MalformedTagError."""
     position = _skip_blank(text, start + 1)
-    closing = text.startswith("/", position)
     if position > start + 1:
         note("space", "white space after <", start)
-    found = _NAME.match(text, position + closing)
+    closing = text.startswith("/", position)
+    found = _NAME.match(text, position + 1 if closing else position)
     if found is None:
         raise MalformedTagError("there is no tag name after <", start, _resume_after(text, start))
     name = found[0]
@@ -370,7 +370,8 @@ class _Scanner:
             self._add(xml_problems.IGNORED_REST, "ROS 2 ignores everything after this NUL byte", end)
             text = self._text = text[:end]
         position = _skip_blank(text, 0)
-        position += text.startswith("\ufeff", position)
+        if text.startswith("\ufeff", position):
+            position += 1
         if position == len(text):
             return self._refuse(xml_problems.EMPTY_DOCUMENT, "the file is empty; ROS 2 rejects it", 0)
         illegal = _ILLEGAL.search(text)

@@ -8,7 +8,7 @@ JointType = Literal["fixed", "continuous", "revolute", "prismatic", "floating", 
 JOINT_TYPES: tuple[str, ...] = get_args(JointType)
 
 
-class _Attribute(NamedTuple):
+class _AttributeFormat(NamedTuple):
     """An attribute: the unit and the parts of its numbers (no parts: text), and what ROS 2 uses where it is not given.
 
     An attribute without a default is required.
@@ -22,23 +22,23 @@ class _Attribute(NamedTuple):
 class TagFormat(NamedTuple):
     """An element: its attributes in usual order, children (also needed, repeated ones), wrong names of attributes."""
 
-    attributes: Mapping[str, _Attribute] = {}
+    attributes: Mapping[str, _AttributeFormat] = {}
     children: tuple[str, ...] = ()
     needed: tuple[str, ...] = ()  # of geometry one is needed, and of a joint that is revolute or prismatic also limit
     repeated: tuple[str, ...] = ()
     aliases: Mapping[str, str] = {}
 
 
-_REQUIRED, _OPTIONAL = _Attribute(), _Attribute(default="")
+_REQUIRED, _OPTIONAL = _AttributeFormat(), _AttributeFormat(default="")
 _XYZ, _ONE = ("x", "y", "z"), ("",)
 _LINK = TagFormat({"link": _REQUIRED}, aliases={"name": "link", "joint": "link"})
-_POSITIVE, _MIXED = _Attribute("kg m2", _ONE), _Attribute("kg m2", _ONE)
-_END = _Attribute("rad or m", _ONE, "0")
+_POSITIVE, _MIXED = _AttributeFormat("kg m2", _ONE), _AttributeFormat("kg m2", _ONE)
+_END = _AttributeFormat("rad or m", _ONE, "0")
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
 
 TAGS: dict[str, TagFormat] = {
     "robot": TagFormat(
-        {"name": _REQUIRED, "version": _Attribute(default="1.0")},
+        {"name": _REQUIRED, "version": _AttributeFormat(default="1.0")},
         ("link", "joint", "material"), needed=("link",), repeated=("link", "joint", "material"),
     ),
     "link": TagFormat({"name": _REQUIRED}, ("inertial", "visual", "collision"), repeated=("visual", "collision")),
@@ -55,47 +55,50 @@ TAGS: dict[str, TagFormat] = {
     "parent": _LINK,
     "child": _LINK,
     "origin": TagFormat(
-        {"xyz": _Attribute("m", _XYZ, "0 0 0"), "rpy": _Attribute("rad", ("roll", "pitch", "yaw"), "0 0 0")},
+        {
+            "xyz": _AttributeFormat("m", _XYZ, "0 0 0"),
+            "rpy": _AttributeFormat("rad", ("roll", "pitch", "yaw"), "0 0 0"),
+        },
         aliases={"pos": "xyz"},
     ),
-    "box": TagFormat({"size": _Attribute("m", _XYZ)}),
+    "box": TagFormat({"size": _AttributeFormat("m", _XYZ)}),
     "cylinder": TagFormat(
-        {"radius": _Attribute("m", _ONE), "length": _Attribute("m", _ONE)}, aliases={"height": "length"}
+        {"radius": _AttributeFormat("m", _ONE), "length": _AttributeFormat("m", _ONE)}, aliases={"height": "length"}
     ),
-    "sphere": TagFormat({"radius": _Attribute("m", _ONE)}),
-    "mesh": TagFormat({"filename": _REQUIRED, "scale": _Attribute("1", _XYZ, "1 1 1")}),
-    "color": TagFormat({"rgba": _Attribute("1", ("red", "green", "blue", "alpha"))}, aliases={"rgb": "rgba"}),
+    "sphere": TagFormat({"radius": _AttributeFormat("m", _ONE)}),
+    "mesh": TagFormat({"filename": _REQUIRED, "scale": _AttributeFormat("1", _XYZ, "1 1 1")}),
+    "color": TagFormat({"rgba": _AttributeFormat("1", ("red", "green", "blue", "alpha"))}, aliases={"rgb": "rgba"}),
     "texture": TagFormat({"filename": _REQUIRED}),
-    "mass": TagFormat({"value": _Attribute("kg", _ONE)}),
+    "mass": TagFormat({"value": _AttributeFormat("kg", _ONE)}),
     "inertia": TagFormat(
         {"ixx": _POSITIVE, "ixy": _MIXED, "ixz": _MIXED, "iyy": _POSITIVE, "iyz": _MIXED, "izz": _POSITIVE}
     ),
-    "axis": TagFormat({"xyz": _Attribute("1", _XYZ, "0 0 0")}),  # a joint without <axis> has 1 0 0
+    "axis": TagFormat({"xyz": _AttributeFormat("1", _XYZ, "0 0 0")}),  # a joint without <axis> has 1 0 0
     "limit": TagFormat(
         {
             "lower": _END,
             "upper": _END,
-            "effort": _Attribute("N m or N", _ONE),
-            "velocity": _Attribute("rad/s or m/s", _ONE),
+            "effort": _AttributeFormat("N m or N", _ONE),
+            "velocity": _AttributeFormat("rad/s or m/s", _ONE),
         }
     ),
     "dynamics": TagFormat(
         {
-            "damping": _Attribute("N m s/rad or N s/m", _ONE, "0"),
-            "friction": _Attribute("N m or N", _ONE, "0"),
+            "damping": _AttributeFormat("N m s/rad or N s/m", _ONE, "0"),
+            "friction": _AttributeFormat("N m or N", _ONE, "0"),
         }
     ),
-    "mimic": TagFormat({"joint": _REQUIRED, "multiplier": _Attribute("1", _ONE, "1"), "offset": _END}),
+    "mimic": TagFormat({"joint": _REQUIRED, "multiplier": _AttributeFormat("1", _ONE, "1"), "offset": _END}),
     "safety_controller": TagFormat(
         {
             "soft_lower_limit": _END,
             "soft_upper_limit": _END,
-            "k_position": _Attribute("1", _ONE, "0"),
-            "k_velocity": _Attribute("1", _ONE),
+            "k_position": _AttributeFormat("1", _ONE, "0"),
+            "k_velocity": _AttributeFormat("1", _ONE),
         }
     ),
     "calibration": TagFormat(
-        {"rising": _Attribute("rad or m", _ONE, ""), "falling": _Attribute("rad or m", _ONE, "")}
+        {"rising": _AttributeFormat("rad or m", _ONE, ""), "falling": _AttributeFormat("rad or m", _ONE, "")}
     ),
 }  # fmt: skip
 
