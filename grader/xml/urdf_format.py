@@ -19,7 +19,7 @@ class _AttributeFormat(NamedTuple):
     default: str | None = None
 
 
-class TagFormat(NamedTuple):
+class _TagFormat(NamedTuple):
     """An element: its attributes in usual order, children (also needed, repeated ones), wrong names of attributes."""
 
     attributes: Mapping[str, _AttributeFormat] = {}
@@ -31,50 +31,50 @@ class TagFormat(NamedTuple):
 
 _REQUIRED, _OPTIONAL = _AttributeFormat(), _AttributeFormat(default="")
 _XYZ, _ONE = ("x", "y", "z"), ("",)
-_LINK = TagFormat({"link": _REQUIRED}, aliases={"name": "link", "joint": "link"})
+_LINK = _TagFormat({"link": _REQUIRED}, aliases={"name": "link", "joint": "link"})
 _POSITIVE, _MIXED = _AttributeFormat("kg m2", _ONE), _AttributeFormat("kg m2", _ONE)
 _END = _AttributeFormat("rad or m", _ONE, "0")
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
 
-TAGS: dict[str, TagFormat] = {
-    "robot": TagFormat(
+TAGS: dict[str, _TagFormat] = {
+    "robot": _TagFormat(
         {"name": _REQUIRED, "version": _AttributeFormat(default="1.0")},
         ("link", "joint", "material"), needed=("link",), repeated=("link", "joint", "material"),
     ),
-    "link": TagFormat({"name": _REQUIRED}, ("inertial", "visual", "collision"), repeated=("visual", "collision")),
-    "joint": TagFormat(
+    "link": _TagFormat({"name": _REQUIRED}, ("inertial", "visual", "collision"), repeated=("visual", "collision")),
+    "joint": _TagFormat(
         {"name": _REQUIRED, "type": _REQUIRED},
         ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "safety_controller", "calibration"),
         ("parent", "child"),
     ),
-    "material": TagFormat({"name": _REQUIRED}, ("color", "texture")),
-    "visual": TagFormat({"name": _OPTIONAL}, ("origin", "geometry", "material"), ("geometry",)),
-    "collision": TagFormat({"name": _OPTIONAL}, ("origin", "geometry"), ("geometry",)),
-    "inertial": TagFormat({}, ("origin", "mass", "inertia"), ("mass", "inertia")),
-    "geometry": TagFormat({}, _SHAPES),
+    "material": _TagFormat({"name": _REQUIRED}, ("color", "texture")),
+    "visual": _TagFormat({"name": _OPTIONAL}, ("origin", "geometry", "material"), ("geometry",)),
+    "collision": _TagFormat({"name": _OPTIONAL}, ("origin", "geometry"), ("geometry",)),
+    "inertial": _TagFormat({}, ("origin", "mass", "inertia"), ("mass", "inertia")),
+    "geometry": _TagFormat({}, _SHAPES),
     "parent": _LINK,
     "child": _LINK,
-    "origin": TagFormat(
+    "origin": _TagFormat(
         {
             "xyz": _AttributeFormat("m", _XYZ, "0 0 0"),
             "rpy": _AttributeFormat("rad", ("roll", "pitch", "yaw"), "0 0 0"),
         },
         aliases={"pos": "xyz"},
     ),
-    "box": TagFormat({"size": _AttributeFormat("m", _XYZ)}),
-    "cylinder": TagFormat(
+    "box": _TagFormat({"size": _AttributeFormat("m", _XYZ)}),
+    "cylinder": _TagFormat(
         {"radius": _AttributeFormat("m", _ONE), "length": _AttributeFormat("m", _ONE)}, aliases={"height": "length"}
     ),
-    "sphere": TagFormat({"radius": _AttributeFormat("m", _ONE)}),
-    "mesh": TagFormat({"filename": _REQUIRED, "scale": _AttributeFormat("1", _XYZ, "1 1 1")}),
-    "color": TagFormat({"rgba": _AttributeFormat("1", ("red", "green", "blue", "alpha"))}, aliases={"rgb": "rgba"}),
-    "texture": TagFormat({"filename": _REQUIRED}),
-    "mass": TagFormat({"value": _AttributeFormat("kg", _ONE)}),
-    "inertia": TagFormat(
+    "sphere": _TagFormat({"radius": _AttributeFormat("m", _ONE)}),
+    "mesh": _TagFormat({"filename": _REQUIRED, "scale": _AttributeFormat("1", _XYZ, "1 1 1")}),
+    "color": _TagFormat({"rgba": _AttributeFormat("1", ("red", "green", "blue", "alpha"))}, aliases={"rgb": "rgba"}),
+    "texture": _TagFormat({"filename": _REQUIRED}),
+    "mass": _TagFormat({"value": _AttributeFormat("kg", _ONE)}),
+    "inertia": _TagFormat(
         {"ixx": _POSITIVE, "ixy": _MIXED, "ixz": _MIXED, "iyy": _POSITIVE, "iyz": _MIXED, "izz": _POSITIVE}
     ),
-    "axis": TagFormat({"xyz": _AttributeFormat("1", _XYZ, "0 0 0")}),  # a joint without <axis> has 1 0 0
-    "limit": TagFormat(
+    "axis": _TagFormat({"xyz": _AttributeFormat("1", _XYZ, "0 0 0")}),  # a joint without <axis> has 1 0 0
+    "limit": _TagFormat(
         {
             "lower": _END,
             "upper": _END,
@@ -82,14 +82,14 @@ TAGS: dict[str, TagFormat] = {
             "velocity": _AttributeFormat("rad/s or m/s", _ONE),
         }
     ),
-    "dynamics": TagFormat(
+    "dynamics": _TagFormat(
         {
             "damping": _AttributeFormat("N m s/rad or N s/m", _ONE, "0"),
             "friction": _AttributeFormat("N m or N", _ONE, "0"),
         }
     ),
-    "mimic": TagFormat({"joint": _REQUIRED, "multiplier": _AttributeFormat("1", _ONE, "1"), "offset": _END}),
-    "safety_controller": TagFormat(
+    "mimic": _TagFormat({"joint": _REQUIRED, "multiplier": _AttributeFormat("1", _ONE, "1"), "offset": _END}),
+    "safety_controller": _TagFormat(
         {
             "soft_lower_limit": _END,
             "soft_upper_limit": _END,
@@ -97,7 +97,7 @@ TAGS: dict[str, TagFormat] = {
             "k_velocity": _AttributeFormat("1", _ONE),
         }
     ),
-    "calibration": TagFormat(
+    "calibration": _TagFormat(
         {"rising": _AttributeFormat("rad or m", _ONE, ""), "falling": _AttributeFormat("rad or m", _ONE, "")}
     ),
 }  # fmt: skip
