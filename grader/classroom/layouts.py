@@ -76,19 +76,16 @@ class NamedPath(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ClassFolder:
-    """A folder of submissions: its path in the listing (empty or with a slash), the names in it, and the course's.
-
-    `labs` tells the folders of the lab; `ignored` collects lines for the user.
-    """
+    """A folder of submissions."""
 
     listing: ClassListing
-    children: Children
-    start: str
+    children: Children  # what is in it
+    start: str  # its path in the listing: empty, or with a slash at the end
     people: People
-    labs: LabFolders
-    lab: str
-    is_explicit: bool
-    ignored: list[str]
+    labs: LabFolders  # tells which folders are those of the lab
+    lab: str  # the assignment, or the id of the rubric
+    is_explicit: bool  # whether the user has named the layout
+    ignored: list[str]  # collects lines for the user
 
     @property
     def names(self) -> list[str]:

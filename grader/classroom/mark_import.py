@@ -17,17 +17,13 @@ from grader.text import by_name, enumerated, quoted
 
 
 class MarkImport(NamedTuple):
-    """What the rows of a file refer to.
-
-    `digests` are those of the submissions by the key of the student, `answers` the keys of the students with each
-    answer, by criterion and the answer's key.
-    """
+    """What the rows of a file refer to."""
 
     students: Sequence[Any]
     rubric: Rubric
     marks: Marks
-    digests: Mapping[str, str]
-    answers: Mapping[tuple[str, str], Sequence[str]] = {}
+    digests: Mapping[str, str]  # of the submissions, by the key of the student
+    answers: Mapping[tuple[str, str], Sequence[str]] = {}  # students by criterion and the key of the answer
 
     def read(self, data: bytes, shown: str) -> tuple[list[Mark], int]:
         """Return the new marks in a CSV file, without times, and how many count already; raises as `read_marks`."""

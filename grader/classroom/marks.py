@@ -49,20 +49,16 @@ Key = tuple[str, str]  # a student and a criterion
 
 
 class Mark(NamedTuple):
-    """A row: what a grader gave for a criterion or for TOTAL, or a student's DEADLINE.
+    """A row: what a grader gave for a criterion or for TOTAL, or a student's DEADLINE."""
 
-    `value` is the text in the column of points: points, EXCUSED, WITHDRAWN, a time, or empty for a comment alone.
-    `time` is in UTC, or empty; `submission` is the digest of what was marked, or empty; `place` is the file and line.
-    """
-
-    time: str
+    time: str  # in UTC, or empty
     by: str
     student: str
     criterion: str
-    value: str = ""
+    value: str = ""  # the points, EXCUSED, WITHDRAWN or a time; empty for a comment alone
     comment: str = ""
-    submission: str = ""
-    place: str = ""
+    submission: str = ""  # the digest of what was marked, or empty
+    place: str = ""  # the file and line
 
     @property
     def points(self) -> Decimal | None:
@@ -74,15 +70,12 @@ _Reader = Callable[[Cells, str], Iterable[Mark]]  # of the marks in the cells of
 
 
 class Marks(NamedTuple):
-    """The marks of a class: those that count, the newest row where none counts, the newest rows of any kind.
+    """The marks of a class."""
 
-    `ignored` says which rows do not count, and why.
-    """
-
-    counting: dict[Key, Mark]
-    comments: dict[Key, Mark]
-    newest: dict[Key, Mark]
-    ignored: list[str]
+    counting: dict[Key, Mark]  # those that count
+    comments: dict[Key, Mark]  # the newest row where no mark counts
+    newest: dict[Key, Mark]  # the newest rows of any kind
+    ignored: list[str]  # which rows do not count, and why
 
     def add(self, key: Key, rows: Sequence[Mark]) -> None:
         """Add all rows of a student's criterion, in the order of files; raises InputError if they have no order."""

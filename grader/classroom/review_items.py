@@ -17,12 +17,12 @@ Place = tuple[str, str]  # a criterion and the key of an answer
 
 
 class _ReviewStudent(NamedTuple):
-    """A student of an item, what was graded, the mark or comment that counts, and a number if anonymous."""
+    """A student of an item."""
 
     student: Student
     stored: StoredResult
-    mark: Mark | None = None
-    number: int = 0
+    mark: Mark | None = None  # the mark or comment that counts
+    number: int = 0  # of an anonymous student
 
     @property
     def label(self) -> str:

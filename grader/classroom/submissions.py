@@ -43,17 +43,129 @@ _LAYOUTS = ("folders", "canvas", "moodle", "teams", "nbgrader")
 
 
 class ClassSubmission(NamedTuple):
-    """The submission of a student: one folder or file, or several files with the student's own `names` of them.
-
-    `paths` are relative to the class folder or zip with the index `root`; `submitted` is ISO 8601, empty if unknown.
-    """
+    """The submission of a student: one folder or file, or several files."""
 
     student: Student
-    root: int
-    paths: tuple[str, ...]
-    names: tuple[str, ...] = ()
+    root: int  # the index of the class folder or zip
+    paths: tuple[str, ...]  # below it
+    names: tuple[str, ...] = ()  # the student's own of several files
     is_late: bool = False
-    submitted: str = ""
+    submitted: str = ""  # ISO 8601; empty if unknown
+
+
+class Intake(NamedTuple):
+    """The submissions of a class, and lines for the user."""
+
+    layout: str
+    submissions: list[ClassSubmission]  # in the order of the students' keys
+    unclear: frozenset[str]  # keys of students with possible submissions of which none counts
+    unmatched: tuple[str, ...]  # submissions without a certain student, and which row of the roster assigns them
+    notes: tuple[str, ...]  # what was chosen
+    ignored: tuple[str, ...]  # what in the folders is no submission
+
+
+def read_class(
+    paths: Sequence[Path],
+    roster: Roster | None,
+    layout: str = "auto",
+    assignment: str = "",
+    rubric_id: str = "",
+    folders: tuple[str, ...] = (),
+) -> Intake:
+    """Return the submissions in class folders or zips, the sections of one class; raises InputError if there are none.
+
+    `assignment` is the one to grade in nbgrader; `rubric_id` is the name of the lab in names of folders, and `folders`
+    are the names of its own (default: its id).
+    """
+    if layout not in ("auto", *_LAYOUTS):
+        raise InputError(f"there is no layout {layout!r}; the layouts are: auto, {', '.join(_LAYOUTS)}")
+    roots = list(zip(map(listing_of, paths), _names_of_roots(paths), strict=True))
+    owners = _Owners(roster, roots)
+    if not folders and rubric_id:
+        folders = (rubric_id,)
+    labs = LabFolders(folders)
+    found: list[ClassSubmission] = []
+    layouts: dict[str, None] = {}
+    for root, (path, (listing, _)) in enumerate(zip(paths, roots, strict=True)):
+        lab, is_explicit = assignment or rubric_id, layout != "auto"
+        top = ClassFolder(listing, listing.children(""), "", owners.people, labs, lab, is_explicit, owners.ignored)
+        folder = _inner_class(_without_gradebooks(top))
+        chosen = layout
+        if not is_explicit:
+            chosen = "nbgrader" if assignment else _layout_of(folder)
+        if chosen == "teams" and not is_explicit and "package.xml" in folder.children.files:
+            what = f"{printable_path(path)} is one submission and not a class: it contains a package.xml"
+            raise InputError(f"{what} (grade it with `grader grade {shell_quoted(path)}`)")
+        some = list(_submissions_in(folder, _paths_in(folder, chosen), root))
+        if not some:
+            example = f": {min(owners.ignored)}" if owners.ignored else ""
+            raise InputError(f"there is no submission in {printable_path(path)}{example}")
+        has_teams = is_explicit or chosen != "teams" or any(one.student.group for one in some)
+        layouts[chosen if has_teams else "folders"] = None
+        found += some
+    owners.find(found)
+    return owners.intake(" and ".join(layouts))
+
+
+def _names_of_roots(paths: Sequence[Path]) -> list[str]:
+    """Return a name for each class folder, if necessary with the folder around it. Raises InputError."""
+    for count in (1, 2):
+        names = ["/".join(path.resolve().parts[-count:]) for path in paths]
+        if len(set(names)) == len(names):
+            return names
+    raise InputError("the class folders have the same names: rename one, so that the roster can name them")
+
+
+def _paths_in(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
+    """Yield the paths of submissions in a class folder with a layout."""
+    if layout == "teams":
+        return teams(folder)
+    return nbgrader(folder) if layout == "nbgrader" else entries_of(folder, layout)
+
+
+def _without_gradebooks(folder: ClassFolder) -> ClassFolder:
+    """Return a folder without the gradebooks in it."""
+    has, folders = folder.listing.has, folder.children.folders
+    found = {name for name in folders if has(f"{name}/class.toml")}
+    books = {name for name in found if has(f"{name}/results.jsonl") or has(f"{name}/marks")}
+    folder.ignore(books, "is a gradebook")
+    return replace(folder, children=folder.children._replace(folders=[name for name in folders if name not in books]))
+
+
+def _layout_of(folder: ClassFolder) -> str:
+    """Return the layout that the names prove, else `teams`, which may be plain folders."""
+    for layout, share in (("moodle", 1), ("canvas", 3)):
+        read = {name: readings_of(name, layout) for name in folder.names}
+        fitting = {name for name, found in read.items() if any(one.is_written_by(layout) for one in found)}
+        if fitting and len(fitting) >= share * sum(name not in fitting for name in folder.entries):
+            return layout
+    is_course = "submitted" in folder.children.folders and folder.inside("submitted").children.folders
+    return "nbgrader" if is_course else "teams"
+
+
+def _inner_class(folder: ClassFolder) -> ClassFolder:
+    """Return the folder that contains the submissions.
+
+    A download may be in folders that contain nothing else. In a zip, it can be any folder that contains all
+    submissions, unless it is itself one.
+    """
+    around, is_zip = [folder], isinstance(folder.listing, ClassZip)
+    while len(around) <= MAX_WRAPPERS and (name := _only_folder(around[-1])):
+        around.append(around[-1].inside(name))
+        if _layout_of(around[-1]) in (["canvas", "moodle", "nbgrader"] if is_zip else ["canvas", "moodle"]):
+            return around[-1]
+    if len(around) == 1 or folder.children.files or not is_zip:
+        return folder
+    folders, files, _ = around[1].children
+    is_package = not PACKAGE_FILES.isdisjoint(files) or any(map(is_part, folders))
+    return folder if is_package or len(around[1].entries) <= 1 else around[1]
+
+
+def _only_folder(folder: ClassFolder) -> str:
+    """Return the only folder in a folder without other submissions; empty if there is none, or it is a student's."""
+    name, *others = folder.entries or [""]
+    is_student = name not in folder.children.folders or name == "submitted" or folder.people.knows(name)
+    return "" if others or is_student else name
 
 
 def _submissions_in(folder: ClassFolder, entries: Iterable[NamedPath], root: int) -> Iterator[ClassSubmission]:
@@ -66,7 +178,7 @@ def _submissions_in(folder: ClassFolder, entries: Iterable[NamedPath], root: int
         (student, _), own = of_student.popitem()
         kept = _last_versions(folder, own)
         is_late, submitted = any(one.is_late for one in kept), kept[0].submitted
-        yield ClassSubmission(student, root, *_files(folder, kept, folders), is_late, submitted)
+        yield ClassSubmission(student, root, *_paths_and_names(folder, kept, folders), is_late, submitted)
 
 
 def _last_versions(folder: ClassFolder, entries: Sequence[NamedPath]) -> list[NamedPath]:
@@ -85,7 +197,7 @@ def _last_versions(folder: ClassFolder, entries: Sequence[NamedPath]) -> list[Na
     return kept
 
 
-def _files(
+def _paths_and_names(
     folder: ClassFolder, kept: Sequence[NamedPath], folders: frozenset[str]
 ) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return the paths of a student's files, or of the folder, and the own names of files.
@@ -124,22 +236,6 @@ def _files_below(listing: ClassListing, top: str) -> list[str]:
         found += [f"{here}/{name}" for name in children.files]
         folders += [f"{here}/{name}" for name in children.folders]
     return sorted(found)
-
-
-class Intake(NamedTuple):
-    """The submissions of a class in the order of their keys, and lines for the user.
-
-    `unclear` are the keys of students with possible submissions of which none counts. `unmatched` says which
-    submissions match no student for certain, and which row of the roster assigns them; `notes` says what was chosen,
-    `ignored` what in the folders is no submission.
-    """
-
-    layout: str
-    submissions: list[ClassSubmission]
-    unclear: frozenset[str]
-    unmatched: tuple[str, ...]
-    notes: tuple[str, ...]
-    ignored: tuple[str, ...]
 
 
 class _Owners:
@@ -283,97 +379,3 @@ def _csv_cell(text: str) -> str:
 def _path_key(path: str) -> str:
     """Return the key of a submission whose name cannot be one: `./` begins no name that a student can give a folder."""
     return f"./{path}" if path.isprintable() else f"./{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"
-
-
-def read_class(
-    paths: Sequence[Path],
-    roster: Roster | None,
-    layout: str = "auto",
-    assignment: str = "",
-    rubric_id: str = "",
-    folders: tuple[str, ...] = (),
-) -> Intake:
-    """Return the submissions in class folders or zips, the sections of one class; raises InputError if there are none.
-
-    `assignment` is the one to grade in nbgrader; `rubric_id` is the name of the lab in names of folders, and `folders`
-    are the names of its own (default: its id).
-    """
-    if layout not in ("auto", *_LAYOUTS):
-        raise InputError(f"there is no layout {layout!r}; the layouts are: auto, {', '.join(_LAYOUTS)}")
-    ways = (["/".join(path.resolve().parts[-count:]) for path in paths] for count in (1, 2))
-    names = next((way for way in ways if len(set(way)) == len(way)), [])
-    if not names:
-        raise InputError("the class folders have the same names: rename one, so that the roster can name them")
-    roots = list(zip(map(listing_of, paths), names, strict=True))
-    owners = _Owners(roster, roots)
-    if not folders and rubric_id:
-        folders = (rubric_id,)
-    labs = LabFolders(folders)
-    found: list[ClassSubmission] = []
-    layouts: dict[str, None] = {}
-    for root, (path, (listing, _)) in enumerate(zip(paths, roots, strict=True)):
-        lab, is_explicit = assignment or rubric_id, layout != "auto"
-        top = ClassFolder(listing, listing.children(""), "", owners.people, labs, lab, is_explicit, owners.ignored)
-        folder = _inner_class(_without_gradebooks(top))
-        chosen = layout
-        if not is_explicit:
-            chosen = "nbgrader" if assignment else _layout_of(folder)
-        if chosen == "teams" and not is_explicit and "package.xml" in folder.children.files:
-            what = f"{printable_path(path)} is one submission and not a class: it contains a package.xml"
-            raise InputError(f"{what} (grade it with `grader grade {shell_quoted(path)}`)")
-        ways_to_read = {"teams": teams, "nbgrader": nbgrader}
-        entries = ways_to_read[chosen](folder) if chosen in ways_to_read else entries_of(folder, chosen)
-        some = list(_submissions_in(folder, entries, root))
-        if not some:
-            example = "".join(f": {line}" for line in sorted(owners.ignored)[:1])
-            raise InputError(f"there is no submission in {printable_path(path)}{example}")
-        has_teams = is_explicit or chosen != "teams" or any(one.student.group for one in some)
-        layouts[chosen if has_teams else "folders"] = None
-        found += some
-    owners.find(found)
-    return owners.intake(" and ".join(layouts))
-
-
-def _without_gradebooks(folder: ClassFolder) -> ClassFolder:
-    """Return a folder without the gradebooks in it."""
-    has, folders = folder.listing.has, folder.children.folders
-    found = {name for name in folders if has(f"{name}/class.toml")}
-    books = {name for name in found if has(f"{name}/results.jsonl") or has(f"{name}/marks")}
-    folder.ignore(books, "is a gradebook")
-    return replace(folder, children=folder.children._replace(folders=[name for name in folders if name not in books]))
-
-
-def _layout_of(folder: ClassFolder) -> str:
-    """Return the layout that the names prove, else `teams`, which may be plain folders."""
-    for layout, share in (("moodle", 1), ("canvas", 3)):
-        read = {name: readings_of(name, layout) for name in folder.names}
-        fitting = {name for name, found in read.items() if any(one.is_written_by(layout) for one in found)}
-        if fitting and len(fitting) >= share * sum(name not in fitting for name in folder.entries):
-            return layout
-    is_course = "submitted" in folder.children.folders and folder.inside("submitted").children.folders
-    return "nbgrader" if is_course else "teams"
-
-
-def _inner_class(folder: ClassFolder) -> ClassFolder:
-    """Return the folder that contains the submissions.
-
-    A download may be in folders that contain nothing else. In a zip, it can be any folder that contains all
-    submissions, unless it is itself one.
-    """
-    around, is_zip = [folder], isinstance(folder.listing, ClassZip)
-    while len(around) <= MAX_WRAPPERS and (name := _only_folder(around[-1])):
-        around.append(around[-1].inside(name))
-        if _layout_of(around[-1]) in (["canvas", "moodle", "nbgrader"] if is_zip else ["canvas", "moodle"]):
-            return around[-1]
-    if len(around) == 1 or folder.children.files or not is_zip:
-        return folder
-    folders, files, _ = around[1].children
-    is_package = not PACKAGE_FILES.isdisjoint(files) or any(map(is_part, folders))
-    return folder if is_package or len(around[1].entries) <= 1 else around[1]
-
-
-def _only_folder(folder: ClassFolder) -> str:
-    """Return the only folder in a folder without other submissions; empty if there is none, or it is a student's."""
-    name, *others = folder.entries or [""]
-    is_student = name not in folder.children.folders or name == "submitted" or folder.people.knows(name)
-    return "" if others or is_student else name

@@ -22,22 +22,16 @@ _COLUMNS = {  # those of Moodle as the language packs have them (assign.php), as
 
 
 class Form(NamedTuple):
-    """A grade file of an LMS: `columns` are the headers of each role in lower case, besides those of all files.
-
-    `needed` are the roles that a file must have, `kept` headers that stay beside those of roles if other columns go.
-    `grade` matches the header of an assignment, with the groups `title`, and perhaps `number` and `maximum`. With a
-    column `maximum`, the grade is in the column before it. A row keeps its grade if one of its cells is among the words
-    of `locked`, in lower case by role; `above` is what to do about points above the maximum, where these are refused.
-    """
+    """A grade file of an LMS. With a column `maximum`, the grade is in the column before it."""
 
     lms: str
-    columns: Mapping[str, str]
-    needed: tuple[str, ...]
-    grade: re.Pattern[str]
-    kept: tuple[str, ...] = ()
-    excuse: str = ""
-    locked: Mapping[str, str] = {}
-    above: str = ""
+    columns: Mapping[str, str]  # the headers of each role in lower case, besides those of all files
+    needed: tuple[str, ...]  # the roles that a file must have
+    grade: re.Pattern[str]  # the header of an assignment; groups: `title`, perhaps `number` and `maximum`
+    kept: tuple[str, ...] = ()  # headers that stay beside those of roles if other columns go
+    excuse: str = ""  # in place of points
+    locked: Mapping[str, str] = {}  # a row keeps its grade if the cell of a role is among these words, in lower case
+    above: str = ""  # what to do about points above the maximum, where these are refused
 
     def roles(self, titles: Sequence[str]) -> dict[str, int]:
         """Return the columns of a file by role; of several the first."""
