@@ -1,20 +1,24 @@
 """The files that a build installs by a package's setup.py, which is evaluated, never run.
 
-`data_files` is read in the order of setuptools' install_data.
+`data_files` is read in the order of setuptools' install_data. Whether the build succeeds at all also depends on the
+other arguments of setup(), on setup.cfg and on pyproject.toml.
 """
 
 import ast
 import posixpath
+import re
+import tomllib
 from collections import defaultdict
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from configparser import ConfigParser, Error
 from dataclasses import dataclass, field, replace
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
+from grader.errors import InputError
 from grader.files.limits import ignored_part
 from grader.files.tree import Tree
 from grader.names import did_you_mean
-from grader.package.build_settings import argument_findings, file_findings
 from grader.package.file_search import ORDERS, EmptyGlob, PackageListing, file_functions
 from grader.python.budget import Budget
 from grader.python.evaluation import Evaluation, PythonError
@@ -39,6 +43,38 @@ from grader.text import enumerated
 _MAX_GUESSES = 10
 _ROOT = f"/{PACKAGE_FOLDER}"
 _SETUPS = ("setuptools.setup", "distutils.core.setup", "?.setup")
+# The arguments that name the Python packages; without one, setuptools searches for packages, but not in the folders
+# below, those of `FlatLayoutPackageFinder.DEFAULT_EXCLUDE`.
+_PACKAGES = ("packages", "py_modules", "ext_modules", "package_dir")
+_NO_PACKAGES = frozenset(
+    {"ci", "bin", "debian", "doc", "docs", "documentation", "manpages", "news", "newsfragments", "changelog", "test",
+     "tests", "unit_test", "unit_tests", "example", "examples", "scripts", "tools", "util", "utils", "python", "build",
+     "benchmark", "benchmarks", "exercise", "exercises", "htmlcov", "tasks", "dist", "venv", "env", "requirements",
+     "fabfile", "site_scons"}
+)  # fmt: skip
+# PEP 440, as packaging.version has it; the name and value of an entry point, as importlib.metadata has them.
+_VERSION = re.compile(
+    r"\s*v?(?:\d+!)?\d+(?:\.\d+)*(?:[-_.]?(?:alpha|a|beta|b|preview|pre|c|rc)[-_.]?\d*)?"
+    r"(?:-\d+|[-_.]?(?:post|rev|r)[-_.]?\d*)?(?:[-_.]?dev[-_.]?\d*)?(?:\+[a-z0-9]+(?:[-_.][a-z0-9]+)*)?\s*",
+    re.IGNORECASE,
+)
+_ENTRY_POINT = re.compile(r"\s*[^=\s][^=]*=\s*[\w.]+\s*(?::\s*[\w.]+\s*)?(?:\[.*\]\s*)?")
+_REQUIREMENT = re.compile(
+    r"\s*[A-Za-z0-9](?:[\w.-]*[A-Za-z0-9])?(?:\[[\w, -]*\])?(?:\s*(?:[<>~!=]=?|===)\s*[\w.*+!-]+\s*,?)*\s*"
+)
+_TEXTS = ("name", "description", "long_description", "author", "author_email", "maintainer", "maintainer_email", "url",
+          "license", "download_url", "long_description_content_type", "python_requires", "test_suite")  # fmt: skip
+# The arguments whose faults are found below.
+_CHECKED = ("version", "packages", "py_modules", "data_files", "entry_points")
+_AT_HAND = frozenset({"setuptools", "wheel"})  # what setup_requires may name without a download
+# The sections of setup.cfg that concern a build: of these, the options that are known to be accepted.
+_SECTIONS = {"develop": {"script_dir", "install_scripts"}, "install": {"install_scripts", "install-scripts"}}
+_OF_TOOLS = re.compile(
+    r"flake8|pycodestyle|pydocstyle|pep8|pep257|mypy\b.*|isort|pylint|yapf|black|tool:.*|coverage:.*|bdist_wheel|sdist|test"
+)
+_MAX_SETTINGS = 64 * 1024  # bytes
+# A fault, or what is not evaluated.
+_Finding = str | Unknown
 
 
 class _InstalledFile(NamedTuple):
@@ -182,18 +218,14 @@ def _evaluate_setup(code: Code, listing: PackageListing, written: dict[str, Posi
 
 def _read_call(data_files: "_DataFiles", call: Call) -> None:
     """Read a call of setup(): the files that it installs, and whether a build succeeds with it."""
-
-    def unknown(reason: str) -> Unknown:
-        return Unknown(reason, call.at)
-
     if call.args:
         raise EvaluationFails("setup() takes arguments by name only: write name=...")
     entries = call.kwargs.get("data_files")
     if entries is not None:
         data_files.read(entries, call.at)
-    of_files = [*file_findings(data_files.listing, unknown)]
+    of_files = [*_file_findings(data_files.listing, call.at)]
     is_configured = any(isinstance(finding, Unknown) for finding in of_files)
-    for finding in (*argument_findings(call.kwargs, data_files.listing, unknown, is_configured), *of_files):
+    for finding in (*_argument_findings(call.kwargs, data_files.listing, call.at, is_configured), *of_files):
         if isinstance(finding, str):
             data_files.stop(finding, call.at)
         else:
@@ -348,3 +380,131 @@ class _DataFiles:
             return ""
         most_common = max(sorted(set(beside) - {""}), key=beside.count)
         return f": a pattern such as '*{most_common}' does not match it"
+
+
+def _argument_findings(
+    kwargs: Mapping[str, Value], listing: PackageListing, at: Position, is_configured: bool
+) -> Iterator[_Finding]:
+    """Yield what is wrong with the arguments of setup() besides data_files, and what of them is not evaluated."""
+    for name, value in kwargs.items():
+        if name not in _CHECKED and value is not None and not (name in _USUAL and _USUAL[name](value)):
+            yield unknown_in(value) or Unknown(f"this value of {name} in setup() is not evaluated", at)
+    yield from _version_findings(kwargs, at)
+    yield from _entry_point_findings(kwargs, at)
+    yield from _package_findings(kwargs, listing, at)
+    modules = kwargs.get("py_modules") or []
+    if not _is_list(modules) or any(f"{name.replace('.', '/')}.py" not in listing.files for name in modules):
+        yield Unknown("this value of py_modules is not evaluated", at)
+    if not is_configured and all(kwargs.get(name) is None for name in _PACKAGES) and "src" not in listing.folders:
+        yield from _discovery_findings(listing)
+
+
+def _is_list(value: Value) -> bool:
+    return isinstance(value, list | tuple) and all(isinstance(item, str) for item in value)
+
+
+def _are_requirements(value: Value) -> bool:
+    if isinstance(value, str):
+        value = [value] if value else []
+    return _is_list(value) and all(map(_REQUIREMENT.fullmatch, value))
+
+
+# Whether setuptools certainly accepts the value of an argument.
+_USUAL: Mapping[str, Callable[[Value], bool]] = {
+    **dict.fromkeys(_TEXTS, lambda it: isinstance(it, str | Unknown)),
+    **dict.fromkeys(("keywords", "classifiers", "platforms"), lambda it: isinstance(it, str) or _is_list(it)),
+    **dict.fromkeys(("zip_safe", "include_package_data"), lambda it: isinstance(it, bool)),
+    **dict.fromkeys(("install_requires", "tests_require"), _are_requirements),
+    "setup_requires": lambda it: _are_requirements(it) and _AT_HAND.issuperset([it] if isinstance(it, str) else it),
+    "extras_require": lambda it: isinstance(it, dict) and all(map(_are_requirements, it.values())),
+    "package_data": lambda it: isinstance(it, dict) and all(map(_is_list, it.values())) and _is_list([*it]),
+}
+
+
+def _version_findings(kwargs: Mapping[str, Value], at: Position) -> Iterator[_Finding]:
+    version = kwargs.get("version")
+    if isinstance(version, str):
+        if version and not _VERSION.fullmatch(version):
+            yield f"the version {version!r} is not valid: write numbers with dots, such as 0.1.0"
+    elif not isinstance(version, int | float | None):
+        yield unknown_in(version) or Unknown("this version is not evaluated", at)
+
+
+def _entry_point_findings(kwargs: Mapping[str, Value], at: Position) -> Iterator[_Finding]:
+    groups = kwargs.get("entry_points")
+    if groups is None:
+        return
+    is_plain = isinstance(groups, dict) and all(isinstance(group, list | tuple) for group in groups.values())
+    if not is_plain or unknown_in(groups) is not None:
+        yield unknown_in(groups) or Unknown("these entry points are not evaluated", at)
+        return
+    for line in (line for group in groups.values() for line in group):
+        if not isinstance(line, str):
+            yield Unknown("an entry point that is no string is not evaluated", at)
+        elif "=" not in line or not _ENTRY_POINT.fullmatch(line):
+            yield f"the entry point {line!r} is not valid: write name = package.module:function"
+
+
+def _package_findings(kwargs: Mapping[str, Value], listing: PackageListing, at: Position) -> Iterator[_Finding]:
+    packages = kwargs.get("packages")
+    if isinstance(packages, list | tuple) and all(isinstance(it, str) for it in packages):
+        for name in packages:
+            if name.replace(".", "/") not in listing.folders:
+                yield f"packages lists {name!r}, but there is no such folder"
+    elif packages is not None and not isinstance(packages, Unknown):
+        yield Unknown("this value of packages is not evaluated", at)
+
+
+def _discovery_findings(listing: PackageListing) -> Iterator[_Finding]:
+    """Yield the error of setuptools where it searches for packages and finds several."""
+    folders = [name for name in listing.names("") if name in listing.folders and name.isidentifier()]
+    found = sorted(name for name in folders if name not in _NO_PACKAGES and not name.startswith("_"))
+    if len(found) > 1:
+        yield f"packages=[...] is missing, and setuptools cannot choose between the folders {enumerated(found)}"
+
+
+def _file_findings(listing: PackageListing, at: Position) -> Iterator[_Finding]:
+    """Yield what is wrong with setup.cfg and pyproject.toml, and what of them is not evaluated."""
+    for name, read in (("setup.cfg", _cfg_findings), ("pyproject.toml", _toml_findings)):
+        if name in listing.files:
+            try:
+                yield from read(listing.files[name].read(_MAX_SETTINGS).decode(), at)
+            except (InputError, UnicodeDecodeError):
+                yield Unknown(f"{name} cannot be read", at)
+
+
+def _cfg_findings(text: str, at: Position) -> Iterator[_Finding]:
+    parser = ConfigParser()
+    parser.optionxform = str  # type: ignore[assignment,method-assign]
+    try:
+        parser.read_string(text)
+        options = {section: {*map(str, parser[section])} for section in parser.sections()}
+        for section, names in options.items():
+            for option in names:
+                parser.get(section, option)
+    except Error as error:
+        yield f"setup.cfg cannot be read: {' '.join(str(error).split())[:200]}"
+        return
+    for section, names in options.items():
+        if section in _SECTIONS:
+            yield from _option_findings(section, names - _SECTIONS[section], at)
+        elif names and not _OF_TOOLS.fullmatch(section):
+            yield Unknown(f"the section [{section}] of setup.cfg is not evaluated", at)
+
+
+def _option_findings(section: str, others: set[str], at: Position) -> Iterator[_Finding]:
+    if section == "install" and "script_dir" in others:
+        yield "setup.cfg sets script_dir in [install], where it is called install_scripts"
+    elif others:
+        yield Unknown(f"the option {min(others)} in [{section}] of setup.cfg is not evaluated", at)
+
+
+def _toml_findings(text: str, at: Position) -> Iterator[_Finding]:
+    try:
+        table = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        yield f"pyproject.toml cannot be read: {error}"
+        return
+    tools = table.get("tool", {})
+    if "project" in table or not isinstance(tools, dict) or "setuptools" in tools:
+        yield Unknown("[project] and [tool.setuptools] of pyproject.toml are not evaluated", at)
