@@ -14,7 +14,7 @@ from grader.commands.rubrics import DEFAULT_RUBRIC
 from grader.commands.writing import write_stdout
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
-from grader.grading.levels import HintLevel
+from grader.grading.hint_levels import HintLevel
 from grader.report.formats import Format, render
 
 _PATH = "A .urdf file, package, workspace, repository, .zip or .tar.gz, or - for standard input."

@@ -13,7 +13,7 @@ from grader.commands.rubrics import files_of, load
 from grader.commands.writing import CHECKOUTS, Warn, refuse_inputs, refuse_symlinks, remove_previous, save
 from grader.errors import GraderError, InputError
 from grader.files.limits import ROBOT_ENDINGS
-from grader.grading.levels import HintLevel
+from grader.grading.hint_levels import HintLevel
 from grader.report.formats import Format, inputs_of, render
 from grader.source import Base
 from grader.text import printable

@@ -7,7 +7,7 @@ from pathlib import Path
 from grader.commands.writing import Warn, make_folder, refuse_inputs, refuse_symlinks, save_bytes
 from grader.errors import InputError, MachineError, OutOfTime
 from grader.files.limits import ROBOT_ENDINGS
-from grader.grading.levels import LEVELS, HintLevel
+from grader.grading.hint_levels import LEVELS, HintLevel
 from grader.grading.report import INCOMPLETE_HINTS, Report
 from grader.hints.hinting import Fix, fixed, hinted
 from grader.submission.submission import Submission

@@ -11,7 +11,7 @@ from typing import Any, Literal
 from grader.checks.check import Check
 from grader.checks.registry import check_names, usable_check
 from grader.checks.toml_types import Constraint, TomlType, constrained, described, simple_type, toml_type
-from grader.grading.levels import HintLevel
+from grader.grading.hint_levels import HintLevel
 from grader.grading.toml_file import KeyTable
 
 MAX_POINTS = 1_000_000

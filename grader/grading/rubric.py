@@ -13,7 +13,7 @@ from grader.checks.manual import answered
 from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of, shipped_folder
 from grader.grading.criterion import Adjustment, Carried, Criterion, Evidence, Ignored, Late, Part
-from grader.grading.levels import HintLevel
+from grader.grading.hint_levels import HintLevel
 from grader.grading.toml_file import TomlRow, complain_of, key_lines, read_toml
 from grader.grading.validation import BoundCarried, BoundCheck, Validation
 from grader.names import did_you_mean

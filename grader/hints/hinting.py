@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader.errors import InputError
 from grader.grading.grade import grade
-from grader.grading.levels import HintLevel
+from grader.grading.hint_levels import HintLevel
 from grader.grading.report import Hint, Report, Result
 from grader.grading.rubric import ReferenceSolution
 from grader.hints.edits import FoundHint, content, edited_files, with_files

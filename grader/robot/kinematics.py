@@ -217,7 +217,7 @@ class Configuration:
     positions: Mapping[str, float] = field(default_factory=dict)  # radians or metres; the other joints are at 0
     is_guarded: bool = field(default=False, kw_only=True)  # reading what is open in `robot` raises NotDecided
     _relative: dict[tuple[str, str | None], Transform] = field(default_factory=dict, init=False)
-    _shared: "_Views | None" = field(default=None, kw_only=True)  # of a configuration that differs in positions only
+    _shared: _Views | None = field(default=None, kw_only=True)  # of a configuration that differs in positions only
 
     def __post_init__(self) -> None:
         if self._shared is None:
@@ -225,7 +225,7 @@ class Configuration:
                 _check_position(self.known.joint(name), position)
 
     @cached_property
-    def _views(self) -> "_Views":
+    def _views(self) -> _Views:
         return self._shared or _views_of(self.known, is_guarded=self.is_guarded)
 
     @cached_property

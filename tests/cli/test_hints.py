@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from grader.grading.levels import LEVELS
+from grader.grading.hint_levels import LEVELS
 from tests.command_line import run
 from tests.samples import ROOT
 
