@@ -24,7 +24,7 @@ from grader.text import printable_path, shell_quoted
 # In the order of the help, with the module of each: it holds a function, or a group of commands, of this name.
 COMMANDS = {
     "grade": "grade", "inspect": "inspect", "batch": "batch", "mark": "review", "review": "review",
-    "export": "gradebook", "diff": "gradebook", "stats": "gradebook", "bundle": "rubric", "explain": "explain",
+    "export": "class_grades", "diff": "class_grades", "stats": "class_grades", "bundle": "rubric", "explain": "explain",
     "schema": "explain", "rubric": "rubric",
 }  # fmt: skip
 _LIMITED = ("grade", "inspect")  # the commands that read one submission

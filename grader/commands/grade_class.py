@@ -16,7 +16,7 @@ from typing import Any
 
 from grader import __version__
 from grader.classroom import gradebook_folder as names
-from grader.classroom.batch import Batch
+from grader.classroom.batch_run import Batch
 from grader.classroom.batch_worker import ClassContext, reference_hashes
 from grader.classroom.equal_work import hashes_of
 from grader.classroom.gradebook import Gradebook, grade_table

@@ -28,7 +28,7 @@ from grader.commands.review_session import ReviewSession, open_item
 from grader.commands.writing import Terminal
 from grader.documents.pictures import PDF, EmbeddedPicture
 from grader.errors import GraderError, InputError
-from grader.report.pages import review as pages
+from grader.report.pages import review_pages as pages
 from grader.text import counted, printable, printable_path
 
 HOST = "127.0.0.1"

@@ -25,7 +25,7 @@ from grader.grading.grade import grade
 from grader.grading.model_answers import load_with_answers
 from grader.grading.report import Report
 from grader.report.criteria import answer_lines, counts_lines
-from grader.report.pages.review import NO_ANSWER, OpenedItem
+from grader.report.pages.review_pages import NO_ANSWER, OpenedItem
 from grader.submission.submission import Submission
 from grader.text import counted, cut, enumerated, format_points, printable, printable_path, shell_quoted
 

@@ -22,7 +22,7 @@ from grader.errors import GraderError, InputError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.rubric import Rubric
 from grader.package.package import MANIFEST
-from grader.report.rubric_test import render_rubric_test, render_rubric_test_json
+from grader.report.rubric_test_result import render_rubric_test, render_rubric_test_json
 from grader.robot.kinematics import Configuration
 from grader.submission.opening import STANDARD_INPUT, open_submission
 from grader.submission.packages import package_around

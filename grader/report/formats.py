@@ -70,7 +70,7 @@ class OutputFormat(StrEnum):
 _SCHEMAS = {
     "report": ("report", "as_json:REPORT"),
     "inspect": ("inspection", "inspection:INSPECTION"),
-    "rubric-test": ("rubric test", "rubric_test:RUBRIC_TEST"),
+    "rubric-test": ("rubric test", "rubric_test_result:RUBRIC_TEST"),
     "class": ("class", "class_json:CLASS"),
     "diff": ("diff", "class_json:DIFF"),
 }

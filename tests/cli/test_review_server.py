@@ -257,7 +257,7 @@ def test_faults_are_messages(review: Review, book: Path, monkeypatch: pytest.Mon
     assert 'href="end"' in review.get(str(ITEMS)).text
     (book / "marks" / "lee.csv").unlink()
     with monkeypatch.context() as patched:
-        patched.setattr("grader.report.pages.review.item_page", lambda *_: 1 / 0)
+        patched.setattr("grader.report.pages.review_pages.item_page", lambda *_: 1 / 0)
         found = review.get("1")
     assert (found.status, found.headers["content-type"]) == (500, "text/plain; charset=utf-8")
     assert found.text == "the grader failed on this request: ZeroDivisionError: division by zero\n"
