@@ -55,17 +55,13 @@ class _TextEdit(NamedTuple):
 
 
 class _Repair(NamedTuple):
-    """The changes that repair a text, in order; none overlaps another one. `assumed` says what they assume.
-
-    `xml` is the robot that is read after them, with the offset of each of its start tags in the text as it is; both are
-    empty if no link can be read. With `is_lossy`, something that the student wrote has no place in the repaired text.
-    """
+    """The robot that is read of a text after the changes that repair it; no robot if no link can be read."""
 
     xml: bytes
-    offsets: list[int]
-    changes: list[_TextEdit]
-    assumed: list[Difference]
-    is_lossy: bool
+    offsets: list[int]  # of its start tags, in the text as the student wrote it
+    changes: list[_TextEdit]  # in order; none overlaps another one
+    assumed: list[Difference]  # what the changes assume
+    is_lossy: bool  # whether something that the student wrote has no place in the repaired text
 
 
 def repair(text: str) -> _Repair:
@@ -114,19 +110,27 @@ class _Repairer:
                 position = other.end()
                 self._repair_declaration(other)
                 continue
-            tag, position = self._tag(start)
-            if tag is None or (not self._open and tag.name != "robot"):
-                continue
-            if tag.form == "close":
-                self._close(tag, position)
-            else:
-                self._start(tag)
+            position = self._read_tag(start)
             if self._robot is not None and not self._open:
                 rest = text[position:].strip()
                 if rest and "<" not in rest:
                     self._replace(position, len(text), "")
                 return position
         return position
+
+    def _read_tag(self, start: int) -> int:
+        """Read the tag at an offset; return the offset after it."""
+        tag, end = self._tag(start)
+        if tag is None:
+            return end
+        if not self._open and tag.name != "robot":
+            if tag.form == "close":  # TinyXML2 reads no further
+                self._replace(start, end, "")
+        elif tag.form == "close":
+            self._close(tag, end)
+        else:
+            self._start(tag)
+        return end
 
     def _repair_declaration(self, found: re.Match[str]) -> None:
         """Remove a declaration that is not at the top, and end one that has no end."""

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable, Iterator, Mapping
 
-from tests.grading.broken_urdfs import BROKEN
+from tests.hints.broken_urdfs import BROKEN
 from tests.robot.edge_cases import EDGE_CASES
 from tests.robot.problem_samples import SAMPLES
 from tests.xacro.documents import GROUPS

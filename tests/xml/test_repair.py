@@ -8,7 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
+from grader.hints.edits import edited
+from grader.source import Source
 from grader.xml.repair import repair
+from grader.xml.tinyxml2 import scan
 from tests.command_line import ROOT, run
 from tests.examples import examples
 from tests.work import limited_work
@@ -45,7 +48,10 @@ def test_a_path_without_quotes_is_read_whole() -> None:
 @examples(40)
 @given(st.data())
 def test_any_damage_is_read_with_its_places(data: st.DataObject) -> None:
-    """Whatever is cut out of a URDF or put into it, what is read is XML whose tags are where they are in the text."""
+    """Whatever is cut out of a URDF or put into it, what is read is XML whose tags are where they are in the text.
+
+    It is what is read of the edited text, if the edits repair all of it.
+    """
     start = data.draw(st.integers(0, len(TEXT)))
     end = data.draw(st.integers(start, min(len(TEXT), start + 40)))
     inserted = data.draw(
@@ -59,3 +65,9 @@ def test_any_damage_is_read_with_its_places(data: st.DataObject) -> None:
         assert len(elements) == len(found.offsets)
         assert all(text[offset] == "<" for offset in found.offsets)
         assert found.offsets == sorted(found.offsets)
+    source = Source("a.urdf", text)
+    after = edited(text, "a.urdf", [source.edit(*change) for change in found.changes])
+    assert after is not None
+    fixed = scan(after)
+    if found.xml and scan(text).is_refused and not fixed.is_refused:
+        assert fixed.xml == found.xml

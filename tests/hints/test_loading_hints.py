@@ -10,7 +10,7 @@ from grader.hints.search import HintSearch
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
-from tests.grading.broken_urdfs import BROKEN, REFERENCE, Broken
+from tests.hints.broken_urdfs import BROKEN, REFERENCE, Broken
 from tests.hints.trials import graded, search_for
 from tests.samples import LAB6_SAMPLES, SAMPLES, opened
 
