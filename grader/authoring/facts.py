@@ -59,17 +59,14 @@ class Solution(NamedTuple):
 
 
 class Fact(NamedTuple):
-    """A check with arguments that the reference may pass: `about` is the heading, `words` are those of the id.
+    """A check with arguments that the reference may pass."""
 
-    `otherwise` are tried in its place if the reference does not pass it. `title` is by default what the check says.
-    """
-
-    about: str
+    about: str  # the heading
     check: str
     arguments: Mapping[str, Any]
-    words: str
-    otherwise: "Sequence[Fact]" = ()
-    title: str = ""
+    words: str  # of the id
+    otherwise: "Sequence[Fact]" = ()  # tried in its place if the reference does not pass it
+    title: str = ""  # default: what the check says
 
 
 class Omission(NamedTuple):

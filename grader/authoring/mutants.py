@@ -26,20 +26,16 @@ _BOX = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
 
 
 class Mutant(NamedTuple):
-    """One file of a solution with one mistake.
+    """One file of a solution with one mistake."""
 
-    `id` is stable: the family and the place by names, `number x10: joint base_lidar_joint/origin xyz.z`. From `start`
-    to `end` the text becomes `new`; a file that `is_deleted` is gone, or is at the path `renamed`.
-    """
-
-    id: str
+    id: str  # stable: the family and the place by names, `number x10: joint base_lidar_joint/origin xyz.z`
     family: str
     path: str
     line: int
-    start: int = 0
+    start: int = 0  # from here to `end`, the text becomes `new`
     end: int = 0
     new: str = ""
-    is_deleted: bool = False
+    is_deleted: bool = False  # whether the file is gone, or is at the path `renamed`
     renamed: str = ""
 
     def applied(self, text: str) -> str:

@@ -252,10 +252,7 @@ def _grade(
     folder, rubric, settings = inputs.folder, inputs.rubric, inputs.settings
     roots, arguments = tuple(map(str, inputs.roots)), dict(settings.arguments)
     shared = ClassContext(roots, rubric.data, str(rubric.path.resolve()), settings.max_size, settings.parts, arguments)
-    copies = sorted(path for path in (folder / names.RUBRIC).rglob("*") if path.is_file())  # with the reference
-    reference = sha256_of(repr([(path.relative_to(folder).as_posix(), path.read_bytes()) for path in copies]).encode())
-    options = settings.parts, sorted(arguments.items()), settings.max_size
-    context = digest_of(rubric.sha256, reference, *options, __version__)
+    context = _context(inputs)
     present = dict.fromkeys(one.student.key for one in intake.submissions)
     with ResultsWriter(folder / names.RESULTS, results.end) as writer:
         done = _batch(request, inputs, Batch(results, writer, shared, context), intake, terminal)
@@ -280,6 +277,15 @@ def _grade(
         writer.sync()
     warn_of_ignored(book, terminal.warn)
     return table, done
+
+
+def _context(inputs: _ClassInputs) -> str:
+    """Return the hash of all that results depend on besides the submissions."""
+    folder, settings = inputs.folder, inputs.settings
+    copies = sorted(path for path in (folder / names.RUBRIC).rglob("*") if path.is_file())  # with the reference
+    reference = sha256_of(repr([(path.relative_to(folder).as_posix(), path.read_bytes()) for path in copies]).encode())
+    options = settings.parts, sorted(settings.arguments.items()), settings.max_size
+    return digest_of(inputs.rubric.sha256, reference, *options, __version__)
 
 
 def _batch(request: ClassRequest, inputs: _ClassInputs, batch: Batch, intake: Intake, terminal: Terminal) -> Progress:

@@ -42,16 +42,12 @@ _STATUSES = ("passed", "failed", "skipped", "pending", "errored", "adjusted", "m
 
 
 class ReportSections(NamedTuple):
-    """The criteria of a report, except those that passed and have no remark.
-
-    `skipped` says what is skipped although nothing failed: a mark or an adjustment overrides its cause, or nothing was
-    submitted. `remarks` have a mark, an adjustment or a comment and did not fail; one may be in two of their sections.
-    """
+    """The criteria of a report, except those that passed and have no remark."""
 
     failures: tuple[Entry, ...]
-    skipped: tuple[Line, ...]
-    pending: tuple[Entry, ...]
-    remarks: tuple[Section, ...]
+    skipped: tuple[Line, ...]  # although nothing failed: a mark overrides the cause, or nothing was submitted
+    pending: tuple[Entry, ...]  # what needs manual grading
+    remarks: tuple[Section, ...]  # what did not fail and has a mark, an adjustment or a comment; some in two of them
 
     @property
     def sections(self) -> Iterator[Section]:

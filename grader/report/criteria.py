@@ -109,17 +109,13 @@ Block = Line | Location | Answer | Diff  # a location is a place and its source 
 
 
 class Entry(NamedTuple):
-    """A criterion with what is said about it, and the criteria that are skipped because it failed.
-
-    `also` are the criteria that the same edit fixes, each of which names this one as `first`, or about which the same
-    is said.
-    """
+    """A criterion with what is said about it."""
 
     result: Result
-    skipped: tuple[Result, ...] = ()
-    also: tuple["Entry", ...] = ()
-    first: str = ""
-    blocks: tuple[Block, ...] = ()
+    skipped: tuple[Result, ...] = ()  # the criteria that are skipped because it failed
+    also: tuple["Entry", ...] = ()  # the criteria that the same edit fixes, or about which the same is said
+    first: str = ""  # the criterion whose entry has this one in `also`, and shows the edit
+    blocks: tuple[Block, ...] = ()  # what is said about it
 
     @property
     def id(self) -> str:

@@ -68,16 +68,13 @@ _MAX_NAMES, _MAX_PROBLEMS, _MAX_FILES = 3, 3, 2
 
 
 class Page(NamedTuple):
-    """The rows of a report for a console. All texts are printable.
-
-    A page that is not `is_whole` is a short report; without empty rows if `is_tight`, with short texts if `is_cut`.
-    """
+    """The rows of a report for a console. All texts are printable."""
 
     console: Console
     rows: list[Text]
-    is_whole: bool = True
-    is_tight: bool = False
-    is_cut: bool = False
+    is_whole: bool = True  # else it is a short report
+    is_tight: bool = False  # without empty rows
+    is_cut: bool = False  # with short texts
 
     @property
     def height(self) -> int:

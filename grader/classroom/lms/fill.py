@@ -31,36 +31,33 @@ _MAX_CHANGES, _MAX_REASONS, _MAX_NAMED, _MAX_COLUMNS = 40, 50, 3, 20
 
 
 class PublishedGrade(NamedTuple):
-    """A student's grade: without a total `why_open` says why; `comment` is HTML from `comment_html`."""
+    """A student's grade as an LMS gets it."""
 
     student: Student
     total: Decimal | None = None
     is_excused: bool = False
-    why_open: str = ""
-    comment: str = ""
+    why_open: str = ""  # why there is no total
+    comment: str = ""  # HTML from `comment_html`
 
 
 class FillOptions(NamedTuple):
-    """How a file is filled: `names` are the lab's, the best first (title, id), `shown` is the file's in messages."""
+    """How a file is filled."""
 
-    out_of: Decimal
-    names: Sequence[str]
-    column: str = ""
-    any_maximum: bool = False
-    only: bool = False
-    shown: str = "the file"
+    out_of: Decimal  # the maximum of the rubric
+    names: Sequence[str]  # the lab's, the best first: title, id
+    column: str = ""  # the title of the grade's column
+    any_maximum: bool = False  # whether the file may have another maximum
+    only: bool = False  # whether the columns of other assignments are omitted
+    shown: str = "the file"  # its name in messages
 
 
 class Filled(NamedTuple):
-    """A filled file and what importing it does; it is complete if each row has its student, and each grade its row.
-
-    `numbers` are the ids of students in Moodle as the file has them, by the key of the student of the class.
-    """
+    """A filled file."""
 
     data: bytes = b""
-    lines: Sequence[str] = ()
-    is_complete: bool = True
-    numbers: Mapping[str, str] = {}
+    lines: Sequence[str] = ()  # what importing it does
+    is_complete: bool = True  # whether each row has its student, and each grade its row
+    numbers: Mapping[str, str] = {}  # the ids of students in Moodle as the file has them, by the key of the student
 
 
 class _GradeFile(NamedTuple):

@@ -53,18 +53,14 @@ class Wheel(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """The content of a picture of a robot, in the frame of the link `frame`, whose z axis points up.
-
-    `poses` are the T_frame_link of the links that have one, and `bodies` the different shapes of these links.
-    `missing` are sentences that say what is not shown, and why.
-    """
+    """The content of a picture of a robot."""
 
     robot: Configuration
-    frame: str
-    poses: Mapping[str, Transform]
-    bodies: tuple[Body, ...]
+    frame: str  # the link in whose frame it is drawn; its z axis points up
+    poses: Mapping[str, Transform]  # the T_frame_link of the links that have one
+    bodies: tuple[Body, ...]  # the different shapes of these links
     wheels: tuple[Wheel, ...]
-    missing: tuple[str, ...]
+    missing: tuple[str, ...]  # sentences that say what is not shown, and why
 
     def centre(self, link: str) -> Vector | None:
         """Return the centre of the first shape of a link, else the origin of its frame; None without a pose."""

@@ -19,16 +19,12 @@ _UNSAFE = str.maketrans({character: f"\\u{ord(character):04x}" for character in 
 
 
 class Assets(NamedTuple):
-    """The styles besides base.css and the scripts of a page, names between spaces.
+    """The styles and scripts of a page."""
 
-    `rules` are more CSS rules, from the grader only. `sources` are directives for the policy of a page that is served:
-    "img-src 'self'".
-    """
-
-    styles: str = ""
-    scripts: str = ""
-    rules: str = ""
-    sources: str = ""
+    styles: str = ""  # besides base.css; names between spaces
+    scripts: str = ""  # names between spaces
+    rules: str = ""  # more CSS rules, from the grader only
+    sources: str = ""  # directives for the policy of a page that is served: "img-src 'self'"
 
 
 def render_page(template: str, values: Mapping[str, object], data: Mapping[str, Any], assets: Assets) -> str:
