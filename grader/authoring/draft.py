@@ -43,17 +43,14 @@ _MAX_FACTS = 2000  # more than the largest robots have; criteria cost the square
 
 
 class Head(NamedTuple):
-    """What a rubric says of the lab. `reference` is a path relative to the rubric.
-
-    `package` is empty without one, and so is `schema`, the path of a JSON Schema for editors.
-    """
+    """What a rubric says of the lab."""
 
     id: str
     title: str
-    reference: str
-    urdf: str
-    package: str
-    schema: str = ""
+    reference: str  # the path of the solution, relative to the rubric
+    urdf: str  # its path in the package
+    package: str  # its name; empty without one
+    schema: str = ""  # the path of a JSON Schema for editors
 
 
 class _DraftCriterion(NamedTuple):

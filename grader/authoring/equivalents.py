@@ -47,10 +47,10 @@ class Equivalent(NamedTuple):
 
 
 class RewritingRules(NamedTuple):
-    """What a rewriting must leave as it is: the names `named`, and, with `placed`, the frames of links that move."""
+    """What a rewriting must leave as it is."""
 
-    named: Collection[str]
-    placed: bool = False
+    named: Collection[str]  # names
+    placed: bool = False  # whether the frames of links that move stay
 
 
 _Rewriting = Callable[[Element, RewritingRules], bool]  # returns whether it changed anything

@@ -54,18 +54,14 @@ def listing_of(path: Path) -> ClassListing:
 
 
 class _OpenedSubmission(NamedTuple):
-    """A submission before it is graded: its digest, and either the bytes of a single URDF or a file tree.
-
-    The digest is the same whether the class is a folder or a zip. `shown` is the path in messages, `max_size` the bytes
-    of a URDF.
-    """
+    """A submission before it is graded."""
 
     name: str
-    shown: str
-    digest: str
-    data: bytes | None
-    tree: Tree | None
-    max_size: int = URDF_LIMIT
+    shown: str  # the path in messages
+    digest: str  # the same whether the class is a folder or a zip
+    data: bytes | None  # of a single URDF
+    tree: Tree | None  # else
+    max_size: int = URDF_LIMIT  # of a URDF, in bytes
 
     def submission(self, rubric: Rubric, opening: Opening = DEFAULTS) -> Submission:
         """Return the submission; raises InputError if it is empty."""

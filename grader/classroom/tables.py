@@ -42,15 +42,12 @@ CellValue = str | int | Decimal | None
 
 
 class TableRow(NamedTuple):
-    """One row: `number` counts from 1, `line` is the line where it begins, `end` is the line break after it.
+    """One row of a file."""
 
-    The cells are as in the file. A blank line has none.
-    """
-
-    number: int
-    line: int
-    cells: tuple[str, ...]
-    end: str
+    number: int  # from 1
+    line: int  # where it begins
+    cells: tuple[str, ...]  # as in the file; a blank line has none
+    end: str  # the line break after it
 
     @property
     def values(self) -> list[str]:

@@ -157,14 +157,11 @@ def _wheel(scene: Scene, link: str) -> Wheel | None:
 
 
 class _Callout(NamedTuple):
-    """The criteria that failed on a link, and the point that marks it in the picture, in metres in the scene's frame.
-
-    `point` is None if the link has no pose in the picture; `link` is empty for criteria on the whole robot.
-    """
+    """The criteria that failed on a link."""
 
     number: int
-    link: str
-    point: Vector | None
+    link: str  # empty for criteria on the whole robot
+    point: Vector | None  # what marks it, in metres in the scene's frame; None if the link has no pose there
     results: tuple[Result, ...]
 
     @property
