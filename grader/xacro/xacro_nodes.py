@@ -9,7 +9,6 @@ from grader.reuse import reuse
 from grader.source import Source
 from grader.xacro.scopes import ScopePlace
 from grader.xml.parsing import Element, parse_xml
-from grader.xml.repair import repair
 
 _Children = list["XacroNode | str"]
 _OF_TAG, _OF_ATTRIBUTE = 4, 2  # what reading one is charged
@@ -81,6 +80,8 @@ def _read(data: bytes, path: str, is_repaired: bool) -> tuple[XacroNode, int]:
 
 def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[XacroNode | None, list[Problem]]:
     """Return what can be read of a file with broken tags, None if no link can, and what was assumed."""
+    from grader.xml.repair import repair  # late: few files are broken
+
     text = _decode(data, budget)
     repaired = repair(text)
     source = Source(path, text, repaired.offsets)
