@@ -75,6 +75,7 @@ class _Repairer:
     def __init__(self, text: str) -> None:
         self._text = text.partition("\0")[0]  # TinyXML2 reads no further
         self._replaced: dict[int, tuple[int, str]] = {}  # by the offset of a tag: where it ends, what it becomes
+        self._last = -1  # the offset of the tag that was replaced last
         self._inserted: dict[int, str] = {}  # end tags, by the offset before which they are missing
         self._assumed: list[Difference] = []
         self._is_lossy = False
@@ -220,9 +221,9 @@ class _Repairer:
     def _close_last(self, offset: int) -> None:
         """Close the innermost open tag before an offset, in a line of its own if it has one."""
         opened = self._open.pop()
-        start, (end, new) = next(reversed(self._replaced.items()), (0, (0, " ")))
+        end, new = self._replaced.get(self._last, (0, " "))
         if not new and not _OTHER.sub("", self._text[end:offset]).strip():  # a wrong end tag is there
-            self._replaced[start] = end, f"</{opened.name}>"
+            self._replaced[self._last] = end, f"</{opened.name}>"
             return
         at = len(self._text[:offset].rstrip())
         before = ""
@@ -233,8 +234,8 @@ class _Repairer:
 
     def _replace(self, start: int, end: int, new: str) -> None:
         """Note what a tag becomes; white space at its end stays."""
-        self._replaced.pop(start, None)  # so that the last one noted is the last of the dictionary
         self._replaced[start] = start + len(self._text[start:end].rstrip()), new
+        self._last = start
 
     def _rename(self, opened: Tag, name: str) -> None:
         start = opened.offset
