@@ -42,10 +42,10 @@ def everything(arguments: Mapping[str, Any]) -> Collection[str]:
 class About(NamedTuple):
     """What a check declares, in the table `ABOUT` of its module by the name of its function.
 
-    `looks_at`: the files of a package (`setup.py`, `package.xml`, `launch`, `rviz`) on which the result depends,
-    where hints propose edits, or the tags of a URDF (`limit`, `visual/origin`, `joint@type`).
-    `breaks_under` are the equivalents of a robot under which a criterion with such arguments may fail. `picture` is
-    what a failure shows of the reference: the outline of the link or its frame; a `wheel` shows how it rolls.
+    `looks_at` are the files of a package (`setup.py`, `package.xml`, `launch`, `rviz`) or the tags of a URDF (`limit`,
+    `visual/origin`, `joint@type`) on which the result depends, where hints propose edits. `breaks_under` are the
+    equivalents of a robot under which a criterion with such arguments may fail. `picture` is what a failure shows of
+    the reference: the outline of the link or its frame; a `wheel` shows how it rolls.
     """
 
     looks_at: tuple[str, ...] = ()
@@ -76,19 +76,14 @@ class _CheckParameter(NamedTuple):
 
 
 class Check(NamedTuple):
-    """A check, as a rubric names it.
-
-    `examined` are the objects that it gets, the main one first: the URDF as it was read, its robot, the package, the
-    whole submission, or the robot of the reference solution. `distribution` is the installed package that the check
-    comes from; empty for the grader's own. `about` is what its module declares of it.
-    """
+    """A check, as a rubric names it."""
 
     name: str
     function: Callable[..., Outcome]
-    examined: tuple[Subject, ...]
-    parameters: Mapping[str, _CheckParameter]
-    distribution: str = ""
-    about: About = About()
+    examined: tuple[Subject, ...]  # the objects that it gets, the main one first
+    parameters: Mapping[str, _CheckParameter]  # what the rubric's `with` table gives
+    distribution: str = ""  # the installed package that it comes from; empty for the grader's own
+    about: About = About()  # what its module declares of it
 
     @property
     def subject(self) -> Subject:

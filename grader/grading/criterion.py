@@ -36,34 +36,25 @@ class Adjustment(NamedTuple):
 
 
 class Criterion(NamedTuple):
-    """A row of a rubric: a check with its arguments, and the exact points for passing it. `position` counts from 0.
-
-    The points of a `bonus` are extra credit, not part of the maximum. A dropped criterion has 0 points; manual marks of
-    adjusted criteria do not count.
-
-    `answer` is the model answer; empty unless the rubric was loaded with its answers. `at` has the positions of joints,
-    in degrees or metres, in which the robot is examined; the others are at 0. `has_selectors` says whether arguments
-    name links by their place in the tree. `choices` are usual deductions for manual grading: comments with the points,
-    below 0, that each costs.
-    """
+    """A row of a rubric: a check with its arguments, and the exact points for passing it."""
 
     id: str
-    title: str
-    part: str
-    points: Decimal
+    title: str  # what should be true, in one sentence
+    part: str  # the id of the part that it belongs to
+    points: Decimal  # 0 if it is dropped
     check: Check
     arguments: Mapping[str, Any]
-    requires: tuple[str, ...] = ()
-    feedback: str = ""
-    about: str = ""
-    position: int = 0
-    answer: str = ""
+    requires: tuple[str, ...] = ()  # ids of criteria above it: it is skipped unless they passed
+    feedback: str = ""  # for students whose submission fails it
+    about: str = ""  # a heading that consecutive criteria share
+    position: int = 0  # in the rubric, from 0
+    answer: str = ""  # the model answer; empty unless the rubric was loaded with its answers
     carried: tuple[Carried, ...] = ()
-    at: Mapping[str, float] = {}
-    has_selectors: bool = False
-    bonus: bool = False
-    adjustment: Adjustment | None = None
-    choices: Mapping[str, Decimal] = {}
+    at: Mapping[str, float] = {}  # the positions of joints in which the robot is examined, degrees or metres; else 0
+    has_selectors: bool = False  # whether arguments name links by their place in the tree
+    bonus: bool = False  # whether the points are extra credit, not part of the maximum
+    adjustment: Adjustment | None = None  # after grading; then manual marks do not count
+    choices: Mapping[str, Decimal] = {}  # usual deductions for manual grading: comments, and points below 0
 
     @property
     def maximum(self) -> Decimal:

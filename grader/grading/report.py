@@ -36,39 +36,29 @@ class ManualComment(NamedTuple):
 
 
 class Hint(NamedTuple):
-    """A change of the submission that was tried: with it the criteria in `gains` pass, and nothing that passed fails.
+    """A change of the submission that was tried: with it the criteria in `gains` pass, and nothing passed fails then."""
 
-    `message` says it in a sentence, and `at` is where it is. `edits` and `cause` are empty where the rubric does not
-    want to show them. `cause` is what is wrong: "the sign of the roll of the joint origin of 'right_wheel'".
-    `shown_by` is the criterion that shows the hint; the others that it fixes name that one. `certainty` says whether
-    other edits were proven. `after` are the criteria whose hints have to be followed first.
-    """
-
-    message: str
+    message: str  # the change, in a sentence
     at: Location
     gains: Mapping[str, Decimal]  # criteria with their points
-    edits: Edits = ()
-    cause: str = ""
-    shown_by: str = ""
-    certainty: Certainty = "preferred"
-    after: tuple[str, ...] = ()
+    edits: Edits = ()  # empty where the rubric does not want to show them, as is the cause
+    cause: str = ""  # what is wrong: "the sign of the roll of the joint origin of 'right_wheel'"
+    shown_by: str = ""  # the criterion that shows the hint; the others that it fixes name that one
+    certainty: Certainty = "preferred"  # whether other edits were proven
+    after: tuple[str, ...] = ()  # the criteria whose hints have to be followed first
 
 
 class Result(NamedTuple):
-    """The outcome of a criterion. `because` is the criterion that a skip is due to; `traceback` is for the maintainers.
-
-    `carried` is the criterion whose mistake alone makes this one fail, empty if there is none: its points are given.
-    Criteria that one edit makes pass have the same hint. `comment` is a grader's comment without points.
-    """
+    """The outcome of a criterion, and what decides its points besides."""
 
     criterion: Criterion
     outcome: Outcome
-    because: str | None = None
-    traceback: str = ""
+    because: str | None = None  # the criterion that a skip is due to
+    traceback: str = ""  # of a fault, for the maintainers
     manual_mark: ManualMark | None = None
-    carried: str = ""
-    hint: Hint | None = None
-    comment: ManualComment | None = None
+    carried: str = ""  # the criterion whose mistake alone makes this one fail, so that its points are given
+    hint: Hint | None = None  # criteria that one edit makes pass have the same
+    comment: ManualComment | None = None  # of a grader, without points
 
     @property
     def points(self) -> Decimal:
