@@ -58,13 +58,13 @@ def grade(
 
         problems += package_problems(submission.package)
     evidence, other_pictures = _find_evidence(rubric, submission, chosen if is_whole else ())
-    notes += _note_on_unread(submission, evidence)
-    convention, by_convention = (
-        _explain_by_convention(rubric, submission, results) if is_explained else ((), frozenset[str]())
-    )
-    notes += convention
+    notes.append(_note_on_unread(submission, evidence))
+    by_convention: frozenset[str] = frozenset()
+    if is_explained:
+        note, by_convention = _explain_by_convention(rubric, submission, results)
+        notes.append(note)
     if submission.is_costly and rubric.hints != "none" and any(result.is_lost for result in results):
-        notes += (_NO_HINTS,)
+        notes.append(_NO_HINTS)
     return Report(
         submission=submission,
         rubric=rubric,
@@ -73,7 +73,7 @@ def grade(
         problems=problems,
         evidence=evidence,
         other_pictures=other_pictures,
-        notes=notes,
+        notes=tuple(filter(None, notes)),
         another_robot=another.mistake if another is not None else "",
         by_convention=by_convention,
     )
@@ -81,7 +81,7 @@ def grade(
 
 def _choose_parts(
     rubric: Rubric, submission: Submission, named: Sequence[str], *, is_whole: bool
-) -> tuple[tuple[str, ...], tuple[str, ...]]:
+) -> tuple[tuple[str, ...], list[str]]:
     """Return the graded parts, and notes for the report: what is not whole is graded only on parts that need a URDF."""
     for name in named:
         if rubric.part(name).needs != "urdf" and not is_whole:
@@ -96,7 +96,7 @@ def _choose_parts(
     if skipped:
         only, verb = enumerated(chosen) or "nothing", "need" if len(skipped) > 1 else "needs"
         notes.append(f"only {only} is graded: {enumerated(skipped)} {verb} the whole folder")
-    return chosen, tuple(notes)
+    return chosen, notes
 
 
 def _find_evidence(
@@ -129,41 +129,38 @@ def _names_in_criteria(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
     return tuple(chain.from_iterable(names for names in shown if set(names) & set(evidence.names)))
 
 
-def _note_on_unread(submission: Submission, evidence: Sequence[EvidenceResult]) -> tuple[str, ...]:
-    """Return a note on the documents that may have evidence, but were not read."""
-    if all(found.files for found in evidence):
-        return ()
-    documents = submission.readable_documents
-    if documents is None:
-        return ()
+def _note_on_unread(submission: Submission, evidence: Sequence[EvidenceResult]) -> str:
+    """Return a note on the documents that may have evidence, but were not read; empty if there are none."""
+    if all(found.files for found in evidence) or (documents := submission.readable_documents) is None:
+        return ""
     from grader.documents.evidence import DOCUMENTS
 
     unread = documents.named(DOCUMENTS)[1]
-    return (f"not searched for evidence: {enumerated(list(map(str, unread)), _MAX_UNREAD)}",) if unread else ()
+    return f"not searched for evidence: {enumerated(list(map(str, unread)), _MAX_UNREAD)}" if unread else ""
 
 
 def _explain_by_convention(
     rubric: Rubric, submission: Submission, results: Sequence[Result]
-) -> tuple[tuple[str, ...], frozenset[str]]:
+) -> tuple[str, frozenset[str]]:
     """Return a note on frames of the whole robot that are rotated or moved alike, and the criteria that it explains.
 
-    The points stay: the lab says where its frames are. The note says that they are lost by one decision, not by many
-    mistakes.
+    Both are empty if there is nothing to explain. The points stay: the lab says where its frames are. The note says
+    that they are lost by one decision, not by many mistakes.
     """
     lost = {result.criterion.id for result in results if result.is_lost and result.criterion.check.subject == "robot"}
     found = _find_convention(rubric, submission) if len(lost) >= _MIN_OF_CONVENTION else None
     if found is None or not isinstance(submission.urdf, Read):
-        return (), frozenset()
+        return "", frozenset()
     reading = submission.urdf.reading._replace(robot=found.robot)
     other = replace(submission, urdf=submission.urdf._replace(reading=reading))
     decided = [result for result in results if result.criterion.check.subject in ("urdf", "robot")]
     after = {result.criterion.id: result for result in decide(rubric, other, {it.criterion.id for it in decided})}
     before = {result.criterion.id for result in decided if result.outcome.status == "passed"}
     gained = frozenset(name for name in lost if after[name].outcome.status == "passed")
-    is_one = len(gained) >= _MIN_OF_CONVENTION and all(after[name].outcome.status == "passed" for name in before)
+    if len(gained) < _MIN_OF_CONVENTION or any(after[name].outcome.status != "passed" for name in before):
+        return "", frozenset()
     points = counted_points(sum((after[name].criterion.points for name in gained), Decimal(0)))
-    note = f"everything is {found.description} relative to the handout: one decision, {points}"
-    return ((note,), gained) if is_one else ((), frozenset())
+    return f"everything is {found.description} relative to the handout: one decision, {points}", gained
 
 
 def _find_convention(rubric: Rubric, submission: Submission) -> "Convention | None":

@@ -36,7 +36,7 @@ class ManualComment(NamedTuple):
 
 
 class Hint(NamedTuple):
-    """A change of the submission that was tried: with it the criteria in `gains` pass, and nothing passed fails then."""
+    """A change of the submission that was tried: with it the criteria in `gains` pass, and none that passed fails."""
 
     message: str  # the change, in a sentence
     at: Location

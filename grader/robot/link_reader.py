@@ -25,6 +25,11 @@ from grader.text import quoted
 from grader.xml.parsing import Element
 
 _BLACK = (0.0, 0.0, 0.0, 1.0)
+_SHAPES = ("box", "cylinder", "sphere", "mesh")
+# What is lost with an element that has a defect.
+_INERTIAL_LOST = "ROS 2 drops all visuals and collisions of link {}"
+_VISUAL_LOST = "ROS 2 drops this visual of link {}, the visuals after it and all collisions"
+_COLLISION_LOST = "ROS 2 drops this collision of link {} and the collisions after it"
 
 
 class Materials:
@@ -120,13 +125,6 @@ class Materials:
             hint = f", which is not defined{problems.did_you_mean(name, self._defined)}"
         message = f"link {quoted(link)} uses material {quoted(name)}{hint}; ROS 2 shows it without the colour"
         problems.add(urdf_problems.UNDEFINED_MATERIAL, message, element, "name")
-
-
-_SHAPES = ("box", "cylinder", "sphere", "mesh")
-# What is lost with an element that has a defect.
-_INERTIAL_LOST = "ROS 2 drops all visuals and collisions of link {}"
-_VISUAL_LOST = "ROS 2 drops this visual of link {}, the visuals after it and all collisions"
-_COLLISION_LOST = "ROS 2 drops this collision of link {} and the collisions after it"
 
 
 def read_link(element: Element, problems: Problems, materials: Materials) -> Link:
