@@ -45,21 +45,16 @@ class SampleResults(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """A folder with an expected.toml; the submission is this folder, or the path in it.
-
-    `lost`, `carried` and `pending` are criteria: those that lose their points, those that keep them because an earlier
-    mistake makes them fail, and those that need manual grading. All others pass. Without `rubric` it is for any rubric,
-    and without `verdict` ROS 2's verdict does not matter.
-    """
+    """A folder with an expected.toml. All criteria that it does not name pass."""
 
     folder: Path
     about: str = ""
-    path: str = ""
-    rubric: str = ""
-    verdict: str = ""
-    lost: tuple[str, ...] = ()
-    carried: tuple[str, ...] = ()
-    pending: tuple[str, ...] = ()
+    path: str = ""  # of the submission in it; default: the folder
+    rubric: str = ""  # the id of the only rubric that it is for
+    verdict: str = ""  # that of ROS 2, if it matters
+    lost: tuple[str, ...] = ()  # criteria that lose their points
+    carried: tuple[str, ...] = ()  # criteria that keep them, because an earlier mistake makes them fail
+    pending: tuple[str, ...] = ()  # criteria that need manual grading
 
 
 def read_samples(folder: Path) -> list[Sample]:

@@ -74,7 +74,9 @@ def _case(suite: Any, entry: Entry, report: Report, base: Base) -> None:
         case.set("file", printable(base.folder + where.path))
         case.set("line", str(where.line))
     _properties(case, {"points": earned_text(result)})
-    why = {"type": "manual mark" if result.manual_mark else result.outcome.status, "message": lines[0]} if kind else {}
+    why = {}
+    if kind:
+        why = {"type": "manual mark" if result.manual_mark else result.outcome.status, "message": lines[0]}
     _put(case, kind or "system-out", lines, why)
 
 

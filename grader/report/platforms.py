@@ -137,11 +137,13 @@ def _scale(report: Report) -> int:
 
 def _classroom50_test(entry: Entry, report: Report, scale: int) -> dict[str, Any]:
     result = entry.result
-    bonus = [f"Extra credit: {earned_text(result)}. It is not part of the maximum."] if result.criterion.bonus else []
+    lines = plain_lines(entry, report.submission.source)
+    if result.criterion.bonus:
+        lines = [f"Extra credit: {earned_text(result)}. It is not part of the maximum.", *lines]
     return {
         "test-name": printable(f"{result.criterion.title} ({result.criterion.id})"),
         "passed": entry.status in ("passed", "adjusted"),
         "score": int(min(result.points, result.criterion.points) * scale),
         "max-score": int(result.criterion.points * scale),
-        "message": "\n".join((*bonus, *plain_lines(entry, report.submission.source))),
+        "message": "\n".join(lines),
     }

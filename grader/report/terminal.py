@@ -370,10 +370,13 @@ def _show_end(report: Report, page: Page) -> None:
     """Add whether ROS 2 loads the URDF, the next command, and the score."""
     command, verdict = content.next_command(report), content.verdict_and_counts(report)
     following = f"Next: {command}" if command else content.what_is_left(report)
-    lines = [f"{verdict}. {following}"] if page.is_tight else [verdict, following]
-    lines += [content.bonus_line(report), content.grade_line(report)]
-    for line in [following] if page.is_whole else filter(None, lines):
-        page.line(line)
+    lines = [following]
+    if not page.is_whole:
+        lines = [f"{verdict}. {following}"] if page.is_tight else [verdict, following]
+        lines += [content.bonus_line(report), content.grade_line(report)]
+    for line in lines:
+        if line:
+            page.line(line)
     counting = report.counting
     is_full = counting is not None and counting + report.open_points >= report.max_score
     score = content.score_text(report).replace(" / ", "/").removesuffix(" points")

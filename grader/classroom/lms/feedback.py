@@ -47,8 +47,9 @@ def lost_points(results: Iterable[Result]) -> Iterator[str]:
             extra = " (extra credit)" if criterion.bonus else ""
             about = f"{criterion.title}{extra}: {points} of {format_points(criterion.points)}"
             message = "" if is_hidden else result.outcome.message
-            about += f": {message}" if message else ""
-            yield ". ".join(filter(None, (about, result.why_given, comment)))
+            if message:
+                about += f": {message}"
+            yield ". ".join(text for text in (about, result.why_given, comment) if text)
 
 
 def comment_html(opening: str, lines: Sequence[str]) -> str:

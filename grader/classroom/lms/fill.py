@@ -240,9 +240,11 @@ def _clues(student: Student, lms: str) -> list[set[str]]:
 
     Of a student who is not on the roster it is the id in the LMS alone, for who submits chooses the names.
     """
-    words = (student.key, student.login, student.sis, student.email), (student.name,)
-    kinds = [(getattr(student, lms.lower(), ""),), *(words if student.is_on_roster else ((), ()))]
-    return [{*map(plain, kind)} - {""} for kind in kinds]
+    lms_id = {"Canvas": student.canvas, "Moodle": student.moodle}.get(lms, "")
+    ids, name = [student.key, student.login, student.sis, student.email], student.name
+    if not student.is_on_roster:
+        ids, name = [], ""
+    return [{*map(plain, kind)} - {""} for kind in ([lms_id], ids, [name])]
 
 
 def _fitting(some: Sequence[list[set[str]]], others: Sequence[list[set[str]]]) -> list[list[int]]:
