@@ -54,7 +54,7 @@ class UrdfChoice(NamedTuple):
     path: str | None
     others: tuple[OtherCandidate, ...]
     fitting: tuple[str, ...] = ()
-    reading: "_Reading | None" = None  # among several candidates
+    reading: "_ReadCandidate | None" = None  # among several candidates
 
     def read_in(self, surroundings: Surroundings) -> tuple[Read, Budget] | None:
         """Return the URDF as it was read among several candidates, if it is read alike in these surroundings."""
@@ -68,7 +68,7 @@ class UrdfChoice(NamedTuple):
         return read, before.budget
 
 
-class _Reading(NamedTuple):
+class _ReadCandidate(NamedTuple):
     """A candidate as it was read. Its links are those that the lab names; all if it `is_another` or there are none."""
 
     surroundings: Surroundings
@@ -228,7 +228,7 @@ class _Candidate(NamedTuple):
     depth: int
     path: str
     is_loose: bool  # in no package
-    reading: _Reading
+    reading: _ReadCandidate
 
 
 class UrdfSearch(NamedTuple):
@@ -276,11 +276,11 @@ class UrdfSearch(NamedTuple):
                 reading=readings[path],
             )
 
-    def _readings(self, robots: Sequence[RobotFile]) -> dict[str, _Reading]:
+    def _readings(self, robots: Sequence[RobotFile]) -> dict[str, _ReadCandidate]:
         """Return each robot as it is read, expanded by xacro, by its path; of very many only the first are read."""
         lab, opening = self.lab, self.opening
         bytes_left, parts_left = _MAX_READ, READING
-        found: dict[str, _Reading] = {}
+        found: dict[str, _ReadCandidate] = {}
         for robot in robots:
             bytes_left -= min(robot.size, opening.max_size) + _COST_OF_FILE
             around = package_around(self.packages, robot.path)
@@ -289,13 +289,13 @@ class UrdfSearch(NamedTuple):
                 known = (around, *self.packages)
             surroundings = Surroundings(Budget(parts_left), self.tree, around, known, opening.arguments)
             if bytes_left < 0:
-                found[robot.path] = _Reading(surroundings, is_another=bool(lab.links))
+                found[robot.path] = _ReadCandidate(surroundings, is_another=bool(lab.links))
                 continue
             try:
                 read = read_as_ros(self.tree.files[robot.path].read(opening.max_size), robot.path, surroundings)
                 found[robot.path] = _count_links(read, surroundings, robot.robot, lab)
             except (InputError, NotDecided):  # it may be the robot of the lab
-                found[robot.path] = _Reading(surroundings)
+                found[robot.path] = _ReadCandidate(surroundings)
             parts_left = surroundings.budget.left
         return found
 
@@ -313,15 +313,15 @@ class UrdfSearch(NamedTuple):
         return found
 
 
-def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) -> _Reading:
+def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) -> _ReadCandidate:
     robot = read.reading.robot
     if robot is None and read.reading.undetermined:
-        return _Reading(surroundings, read=read)
+        return _ReadCandidate(surroundings, read=read)
     if robot is None:
-        return _Reading(surroundings, bool(lab.links), 0, not name, read)
+        return _ReadCandidate(surroundings, bool(lab.links), 0, not name, read)
     is_another = is_another_robot(robot, lab.links)
     counted = len(robot.links) if is_another or not lab.links else known_links(robot, lab.links)
-    return _Reading(surroundings, is_another, counted, not robot.name, read)
+    return _ReadCandidate(surroundings, is_another, counted, not robot.name, read)
 
 
 def _may_be_meant(best: _Candidate, other: _Candidate, lab: Lab) -> bool:
