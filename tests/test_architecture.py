@@ -116,3 +116,54 @@ def test_every_package_has_a_layer() -> None:
     assert sorted(named) == sorted(
         {path.relative_to(ROOT).with_suffix("").parts[0] for path in MODULES.values()} - {"__init__"}
     )
+
+
+# What names its functions itself: the registry of checks, the commands of typer, the Python API.
+NAMED_BY_OTHERS = ("grader.checks.", "grader.cli.", "grader.api", "grader.__main__")
+
+
+def test_names_of_one_module_are_private() -> None:
+    """A function, class or constant that no other module imports, of the grader or of its tests, starts with an underscore."""
+    others = chain.from_iterable((ROOT.parent / folder).rglob("*.py") for folder in ("tests", "benchmarks", "docs"))
+    readable = [path for path in others if "setup_samples" not in path.parts]
+    used = {name for path in (*MODULES.values(), *readable) for name in used_names(path)}
+    own = [(module, name) for module in MODULES for name in defined_names(module) if not name.startswith("_")]
+    assert [f"{module}.{name}" for module, name in own if f"{module}.{name}" not in used] == []
+
+
+def defined_names(module: str) -> Iterator[str]:
+    """Yield the functions, classes and constants that a module defines at its top, of those that only modules import."""
+    for node in (
+        ast.parse(MODULES[module].read_text(encoding="utf-8")).body if not module.startswith(NAMED_BY_OTHERS) else ()
+    ):
+        match node:
+            case ast.FunctionDef() | ast.ClassDef():
+                yield node.name
+            case ast.Assign(targets=targets):
+                yield from (
+                    name.id
+                    for target in targets
+                    for name in ast.walk(target)
+                    if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store)
+                )
+            case ast.AnnAssign(target=ast.Name(id=name)):
+                yield name
+
+
+def used_names(path: Path) -> Iterator[str]:
+    """Yield the names that a module takes from others, `grader.names.near`: imported, or by way of an imported module."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    modules: dict[str, str] = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom):
+            for alias in node.names:
+                full = f"{node.module}.{alias.name}"
+                if full in MODULES:
+                    modules[alias.asname or alias.name] = full
+                yield full
+    for node in ast.walk(tree):
+        match node:
+            case ast.Attribute(value=ast.Name(id=name), attr=attribute) if name in modules:
+                yield f"{modules[name]}.{attribute}"
+            case ast.Constant(value=str(text)) if ":" in text:  # "module:function", which is imported late
+                yield from (f"{package}.{text.replace(':', '.')}" for package in ("grader", "grader.report"))

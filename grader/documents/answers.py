@@ -35,7 +35,7 @@ _COPIED = frozenset(
 )  # words of a question, besides its own
 
 
-class FoundAnswer(NamedTuple):
+class _FoundAnswer(NamedTuple):
     """The result of a search for an answer: the passage, the documents that were read, and why others were not."""
 
     passage: Passage | None
@@ -45,7 +45,7 @@ class FoundAnswer(NamedTuple):
 
 def find_answer(
     documents: DocumentCollection, files: Sequence[str], places: Sequence[str], question: str = ""
-) -> FoundAnswer:
+) -> _FoundAnswer:
     """Search for the passage about one of `places`, such as `task 1 step 15`, in the documents with names like `files`.
 
     A passage with a text wins over a heading without one, a certain one over another, and then an earlier place over a
@@ -54,7 +54,7 @@ def find_answer(
     read, unread = documents.named(files)
     search = _AnswerSearch(documents, read, [_read_ordinal(place) or read_label(place) for place in places], question)
     found = sorted(filter(None, search.passages()), key=lambda passage: (passage.is_empty, not passage.is_certain))
-    return FoundAnswer(
+    return _FoundAnswer(
         found[0] if found else None, tuple(document.file.path for document in read), tuple(map(str, unread))
     )
 

@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
 _NOT_REPORTED = LITTER | (IGNORED_FOLDERS - BUILD_FOLDERS)
 _CHUNK = 1024 * 1024
-MAX_FOLDERS = 200_000
+_MAX_FOLDERS = 200_000
 _MAX_MEMBERS = 200_000
 _MAX_DEPTH = 20  # folders: names below do not tell whose a file is
 _IN_MEMORY = 16 * 1024 * 1024
@@ -186,8 +186,8 @@ class ClassZip:
         folders: dict[str, dict[str, str]] = {"": dict.fromkeys(self.outside, outside)}
         for path, member in self.members.items():
             _add_member(path.split("/"), member.kind, folders)
-            if len(folders) > MAX_FOLDERS:
-                raise InputError(f"{self._shown} contains more than {MAX_FOLDERS} folders, the limit")
+            if len(folders) > _MAX_FOLDERS:
+                raise InputError(f"{self._shown} contains more than {_MAX_FOLDERS} folders, the limit")
         return folders
 
     def folder(self, path: str) -> Tree:

@@ -171,7 +171,7 @@ def test_symlinks_in_a_zip_are_not_followed(tmp_path: Path) -> None:
     assert [line.split()[0] for line in found.ignored] == ["../cal.zip", "ann.zip"]
 
 
-@pytest.mark.parametrize("limit", ["grader.files.class_source._MAX_MEMBERS", "grader.files.class_source.MAX_FOLDERS"])
+@pytest.mark.parametrize("limit", ["grader.files.class_source._MAX_MEMBERS", "grader.files.class_source._MAX_FOLDERS"])
 def test_a_zip_of_too_many_members_is_refused(limit: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The numbers of members and of folders are bounded."""
     monkeypatch.setattr(limit, 3)
