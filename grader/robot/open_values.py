@@ -86,26 +86,21 @@ def _copy_fields(view: object, known: object, *names: str) -> None:
 class _MaterialView(Material):
     """A material of which something is open, so that neither its colour nor its texture can be read."""
 
-    __slots__ = ("_known",)
-    _known: Material
+    __slots__ = ()
 
     def __init__(self, known: Material) -> None:
-        object.__setattr__(self, "_known", known)
         _copy_fields(self, known, "name", "location", "unresolved")
 
     @property
     def rgba(self) -> tuple[float, float, float, float]:
-        self._check()
-        return self._known.rgba
+        raise self._undecided()
 
     @property
     def texture(self) -> str:
-        self._check()
-        return self._known.texture
+        raise self._undecided()
 
-    def _check(self) -> None:
-        for part in self.unresolved.values():
-            part.check()
+    def _undecided(self) -> NotDecided:
+        return NotDecided(next(part.reason for part in self.unresolved.values() if part.reason))
 
 
 class _LinkView(Link):
