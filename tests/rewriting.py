@@ -204,8 +204,8 @@ def shade(draw: st.DrawFn, tree: Element) -> None:
         *channels, alpha = attribute_numbers(colour, "rgba")
         if alpha < 0.02:  # what is not seen stays unseen
             continue
-        if material.get("name") == "white" and min(channels) == max(channels) >= 0.75:
-            channels = [draw(st.floats(0.755, 0.995))] * 3
+        if material.get("name") == "white" and min(channels) == max(channels) >= 0.71:
+            channels = [draw(st.floats(0.715, 0.995))] * 3
         if material.get("name") == "gray":
             alpha = draw(st.floats(0.1, 1))
         changed = [value + draw(st.floats(-0.005, 0.005)) for value in (*channels, alpha)]

@@ -100,7 +100,8 @@ box-high | BOX/geometry/box | size | 0.6 0.4 0.21 | base-box | base-on-ground li
 box-long | BOX/geometry/box | size | 0.61 0.4 0.2 | base-box
 box-sunk | BOX/origin | xyz | 0 0 0 | base-on-ground | lidar-on-top
 box-raised | BOX/origin | xyz | 0 0 0.11 | base-on-ground | lidar-on-top
-box-over-a-wheel | BOX/origin | xyz | 0 0.01 0.1 | left-wheel-clear
+box-over-a-wheel | BOX/origin | xyz | 0 0.01 0.1 | base-box | left-wheel-clear
+box-ahead | BOX/origin | xyz | -0.15 0 0.1 | base-box | lidar-on-top
 left-mirrored | LEFT/origin | rpy | 1.57 0 0 | left-wheel-placed,forward,axis,clear
 right-mirrored | RIGHT/origin | rpy | 1.57 0 0 | right-wheel-placed,forward,axis,clear
 left-in-degrees | LEFT/origin | rpy | -180 0 0 | left-wheel-placed,forward,axis,clear | GROUND

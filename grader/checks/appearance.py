@@ -6,9 +6,21 @@ from math import cos, radians
 from typing import TypeVar
 
 from grader.checks.check import About
-from grader.checks.outcome import SLACK, Outcome, failed, judged, measured, other_unit, passed, place, point, within
+from grader.checks.outcome import (
+    SLACK,
+    Outcome,
+    difference,
+    failed,
+    judged,
+    measured,
+    other_unit,
+    passed,
+    place,
+    point,
+    within,
+)
 from grader.checks.toml_types import Colour, NonNegative, Size
-from grader.checks.visuals import VISIBLE, ShapeName, all_within, main_visual, shape_name, visuals
+from grader.checks.visuals import VISIBLE, ShapeName, all_within, main_visual, shape_name, visible, visuals
 from grader.errors import MissingElement, NotDecided
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Material, Sphere, Visual
@@ -28,7 +40,7 @@ _ALIGNED = cos(radians(1.0))
 _Shown = TypeVar("_Shown", Box, Cylinder, Sphere)
 
 
-def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNegative) -> Outcome:
+def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNegative, centred: bool = False) -> Outcome:
     """A link shows a box whose edges along the link's x, y and z axes have the given lengths in metres.
 
     A negative length is wrong in every shape: ROS 2 loads it, and each program shows something else.
@@ -37,9 +49,10 @@ def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNega
         link: The link that is examined.
         size: The lengths of the edges along the link's x, y and z axes, in metres.
         tolerance: How far each length may be off, in metres.
+        centred: Whether the middle of the box must be straight above or below the link's frame, at x and y 0.
     """
     edges = [(_edges_along_link(visual, box), visual) for visual, box in _visuals_of_kind(robot, link, Box)]
-    actual, visual = min(edges, key=lambda pair: _largest_difference(pair[0], size))
+    actual, visual = min(edges, key=lambda pair: (_largest_difference(pair[0], size), centred and _off_centre(pair[1])))
     is_turned = actual is None or all_within(sorted(actual), sorted(size), tolerance)
     is_turned = is_turned and any(visual.origin.rpy)
     at = place(visual.origin.location, "rpy") if is_turned else place(visual.geometry.location, "size")
@@ -49,6 +62,8 @@ def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNega
     message = f"{link!r} shows a box {point(actual)} m"
     if not fine:
         message += f"; it should be {point(size)} m ({other_unit(actual, size) or 'x, y, z'})"
+    elif centred and not within(_off_centre(visual), 0.0, tolerance):
+        return _off_centre_failure(link, visual, tolerance)
     return judged(fine, message, actual, size, tolerance, "m", at=at)
 
 
@@ -153,13 +168,7 @@ def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
     Args:
         link: The link that is examined.
     """
-    robot.link(link)
-    try:
-        shown = [
-            visual for visual in visuals(robot, link) if visual.material is None or visual.material.rgba[3] >= VISIBLE
-        ]
-    except MissingElement:
-        shown = []
+    shown = visible(robot, link)
     if not shown:
         return passed(f"{link!r} shows nothing")
     message = f"{link!r} shows {shape_name(shown[0].geometry)}; it should have no visual"
@@ -187,6 +196,19 @@ def _edges_along_link(visual: Visual, box: Box) -> Vector | None:
         if all(abs(rotation[3 * row + column]) >= _ALIGNED for row, column in enumerate(order)):
             return (size[order[0]], size[order[1]], size[order[2]])
     return None
+
+
+def _off_centre(visual: Visual) -> float:
+    return max(map(abs, visual.origin.xyz[:2]))
+
+
+def _off_centre_failure(link: str, visual: Visual, tolerance: float) -> Outcome:
+    actual = visual.origin.xyz[:2]
+    off = [f"{axis} {difference(value)}" for axis, value in zip("xy", actual, strict=True) if abs(value) > tolerance]
+    message = f"the middle of the box of {link!r} is at x {point(actual[:1])} and y {point(actual[1:])} m in its frame"
+    message += f"; it should be above the frame's origin, at 0 0 ({', '.join(off)})"
+    at = place(visual.origin.location, "xyz") or place(visual.location)
+    return judged(False, message, actual, (0.0, 0.0), tolerance, "m", at=at)
 
 
 def _largest_difference(actual: Sequence[float] | None, expected: Sequence[float]) -> float:

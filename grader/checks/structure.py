@@ -7,11 +7,13 @@ from typing import Any
 from grader.checks.check import About
 from grader.checks.outcome import Outcome, failed, judged, number_text, passed, place
 from grader.checks.toml_types import Count
+from grader.checks.visuals import visible
 from grader.errors import MissingElement
 from grader.names import did_you_mean
 from grader.robot.joint_reader import MOVING_TYPES
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
+from grader.robot.shapes import is_empty
 from grader.text import counted, enumerated
 from grader.xml.urdf_format import JOINT_TYPES, JointType
 
@@ -100,18 +102,21 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
     return failed(message, at)._replace(mistake="; ".join(mistake for mistake, _ in wrong))
 
 
-def root_of_tree(robot: Configuration, *, link: str, holds: str) -> Outcome:
+def root_of_tree(robot: Configuration, *, link: str, holds: str, links: list[str] | None = None) -> Outcome:
     """A link is the root of the tree, and fixed joints lead from it to another link.
 
     Args:
         link: The link that should be the root.
         holds: The link that should be fixed to it.
+        links: All links of the robot. If they are named, others that show and collide with nothing, such as `odom`, may
+            be above the root, connected by fixed joints.
     """
     robot.link(link)
     chain = robot.chain(holds, above=link)
-    joint = robot.parent_joints.get(link)
+    joint = _joint_above_root(robot, link, links)
     if joint is not None:
-        message, detail = f"{link!r} is not the root: it is a child of {joint.parent!r}", f" (joint {joint.name!r})"
+        message, detail = f"{link!r} is not the root: it is below {joint.parent!r}", f" (joint {joint.name!r})"
+        message += "; only frames without a shape, connected by fixed joints, may be above it" if links else ""
         return failed(message, place(joint.location), detail=detail)
     if chain is None:
         return _not_below(robot, holds, link)
@@ -119,7 +124,8 @@ def root_of_tree(robot: Configuration, *, link: str, holds: str) -> Outcome:
     if loose:
         message = f"a joint between {link!r} and {holds!r} is {loose[0].type}; it should be fixed"
         return failed(message, place(loose[0].location, "type"), detail=f" (joint {loose[0].name!r})")
-    return passed(f"{link!r} is the root, and {holds!r} is fixed to it")
+    place_in_tree = f"only frames are above {link!r}" if link in robot.parent_joints else f"{link!r} is the root"
+    return passed(f"{place_in_tree}, and {holds!r} is fixed to it")
 
 
 def counts(
@@ -166,6 +172,22 @@ def counts(
     verbs = {noun: "is" if found[noun] == 1 else "are" for noun in wrong}
     faults = (f"there {verbs[noun]} {shown[noun]}; there should be {expected[noun]}" for noun in wrong)
     return judged(False, "; ".join(faults), *numbers)
+
+
+def _joint_above_root(robot: Configuration, link: str, links: Collection[str] | None) -> Joint | None:
+    """Return the nearest joint that should not be above a link; of a frame, one may be if the links are named."""
+    own = robot.parent_joints.get(link)
+    if own is None or not links:
+        return own
+    robot.root_of(link)  # raises for a loop of joints
+    wrong = (joint for joint in reversed(robot.chain(link) or ()) if not _is_of_frame(robot, joint, links))
+    return next(wrong, None)
+
+
+def _is_of_frame(robot: Configuration, joint: Joint, links: Collection[str]) -> bool:
+    if joint.type != "fixed" or joint.parent in links or visible(robot, joint.parent):
+        return False
+    return all(is_empty(collision.geometry) for collision in robot.link(joint.parent).collisions)
 
 
 def _driven_or_blocked(joint: Joint, link: str) -> Outcome | None:

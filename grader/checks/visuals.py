@@ -30,6 +30,12 @@ def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
     return shown
 
 
+def visible(robot: Configuration, link: str) -> list[Visual]:
+    """Return the visuals of a link that have a size and are not transparent; raise MissingElement without the link."""
+    shown = (visual for visual in robot.link(link).visuals if not is_empty(visual.geometry))
+    return [visual for visual in shown if visual.material is None or visual.material.rgba[3] >= VISIBLE]
+
+
 def main_visual(robot: Configuration, link: str, shape: ShapeName = "any") -> Visual:
     """Return the visual that counts for a link: its only one, else the first mesh, of unknown size, else the largest.
 

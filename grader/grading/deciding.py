@@ -115,15 +115,17 @@ class _Grading:
         return other if other.outcome.status == "errored" else result
 
     def _cause_of(self, result: Result, causes: Sequence[str]) -> Result | None:
-        """Return the first of these criteria that failed, if the result is a failure or a skip because of one.
+        """Return the failure that made the first of these criteria fail or be skipped, if it made the result so, too.
 
-        A skip because of a criterion that is itself carried from one of these counts, too.
+        A skip because of a criterion that is itself carried from that failure counts, too.
         """
         because = result.because
-        origins = (because, self.results[because].carried) if because else causes
-        names = [name for name in causes if name in origins]
-        before = (self.results[name] for name in names if name in self.results)
-        return next((found for found in before if found.outcome.status == "failed"), None)
+        origins = (because, self.results[because].carried) if because else None
+        for before in (self.results[name] for name in causes if name in self.results):
+            mistake = self.results[before.because or before.criterion.id]
+            if mistake.outcome.status == "failed" and (origins is None or mistake.criterion.id in origins):
+                return mistake
+        return None
 
     def _run_check(self, criterion: Criterion, check: Check, arguments: Mapping[str, Any]) -> Result:
         """Return the result of a check; raise MissingElement, or RubricError for a mistake of the rubric."""

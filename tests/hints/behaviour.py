@@ -44,7 +44,7 @@ def behaviour(submission: Submission) -> Behaviour:
 
 def _colour(visual: Visual) -> tuple[object, ...]:
     rgba = visual.material.rgba if visual.material is not None else (1.0, 0.0, 0.0, 1.0)
-    return ("white", rgba[3]) if rgba[0] == rgba[1] == rgba[2] >= 0.75 else rgba
+    return ("white", rgba[3]) if rgba[0] == rgba[1] == rgba[2] >= 0.71 else rgba
 
 
 def differences(one: Behaviour, other: Behaviour) -> list[str]:

@@ -6,7 +6,7 @@ from math import cos, radians
 
 import numpy as np
 
-from tests.second_opinion.elements import Shape
+from tests.second_opinion.elements import Link, Shape
 from tests.second_opinion.geometry import inertia, is_same_solid, overlap
 from tests.second_opinion.posed import SLACK, Fact, Missing, Posed, Undecided, near
 
@@ -14,17 +14,20 @@ _VISIBLE = 0.01  # alpha
 _SIDE_BY_SIDE = 0.001  # metres: shapes that overlap by no more share no solid
 
 
-def shows_box(posed: Posed, link: str, size: Sequence[float], tolerance: float) -> Fact:
+def shows_box(posed: Posed, link: str, size: Sequence[float], tolerance: float, centred: bool = False) -> Fact:
     edges = []
     for shape in _of_kind(posed, link, "box"):
         turned = np.abs(shape.pose[:3, :3])
         order = turned.argmax(axis=1)
         if sorted(order) == [0, 1, 2] and turned[range(3), order].min() >= cos(radians(1.0)):
-            edges.append(np.array(shape.size)[order])
+            edges.append((np.array(shape.size)[order], shape.pose[:2, 3]))
     if not edges:
         return False, None
-    best = min(edges, key=lambda found: np.abs(found - size).max())
-    return near(best, size, tolerance) and bool(best.min() >= 0), best
+    best, middle = min(edges, key=lambda found: (np.abs(found[0] - size).max(), np.abs(found[1]).max()))
+    fine = near(best, size, tolerance) and bool(best.min() >= 0)
+    if fine and centred and not near(middle, (0, 0), tolerance):
+        return False, middle
+    return fine, best
 
 
 def shows_cylinder(posed: Posed, link: str, radius: float, length: float, tolerance: float) -> Fact:
@@ -66,10 +69,12 @@ def shows_grey(posed: Posed, link: str, at_least: float, tolerance: float) -> Fa
 
 
 def shows_nothing(posed: Posed, link: str) -> Fact:
-    shown = [
-        one for one in posed.link(link).visuals if one.has_size and (one.colour is None or one.colour[3] >= _VISIBLE)
-    ]
-    return not shown, None
+    return not is_shown(posed.link(link)), None
+
+
+def is_shown(link: Link) -> bool:
+    """Return whether a link shows anything: a visual that has a size and is not transparent."""
+    return any(one.has_size and (one.colour is None or one.colour[3] >= _VISIBLE) for one in link.visuals)
 
 
 def mass_is(posed: Posed, link: str, mass: float, tolerance: float) -> Fact:

@@ -54,10 +54,9 @@ class Rubric:
             for carried in [given] if isinstance(given, dict) else given:
                 if opinion.status not in ("failed", "skipped"):
                     break
-                reasons = {opinion.because, found[opinion.because].cause} if opinion.because else set(carried["from"])
-                causes = [
-                    name for name in carried["from"] if name in reasons and found[name].status in ("failed", "carried")
-                ]
+                mistakes = [found[name].because or name for name in carried["from"]]
+                reasons = {opinion.because, found[opinion.because].cause} if opinion.because else set(mistakes)
+                causes = [name for name in mistakes if name in reasons and found[name].status in ("failed", "carried")]
                 opinion = self._carried(robot, row, carried, opinion, causes[0]) if causes else opinion
             found[row["id"]] = opinion
         return found

@@ -1,7 +1,8 @@
 """Facts about the tree of links: whether it loads, names and types of joints."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
+from tests.second_opinion.body_facts import is_shown
 from tests.second_opinion.posed import Fact, Missing, Posed, below
 
 
@@ -35,11 +36,15 @@ def joints_named(posed: Posed, parent: str, joints: Mapping[str, str]) -> Fact:
     return True, None
 
 
-def root_of_tree(posed: Posed, link: str, holds: str) -> Fact:
+def root_of_tree(posed: Posed, link: str, holds: str, links: Sequence[str] = ()) -> Fact:
     posed.link(link), posed.link(holds)
-    posed.link(link), posed.link(holds)
-    if link in posed.robot.parents:
+    if link in posed.robot.parents and not links:
         return False, None
+    for joint in posed.way_up(link):
+        above = posed.link(joint.parent)
+        has_shape = is_shown(above) or any(shape.has_size for shape in above.collisions)
+        if joint.type != "fixed" or joint.parent in links or has_shape:
+            return False, None
     way = below(posed, holds, link)
     return way is not None and all(joint.type == "fixed" for joint in way), None
 
