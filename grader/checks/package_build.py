@@ -38,10 +38,11 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
     """
     package = submission.needed_package()
     manifest = _readable_manifest(package)
-    if manifest.name is None:
-        problem = manifest.problems[0]
-        return failed(problem.message, problem.location)
     fine = manifest.name == name
+    if manifest.refusals and (fine or manifest.name is None):
+        problem, count = manifest.refusals[0], len(manifest.refusals)
+        more = f" (and {count - 1} more)" if count > 1 else ""
+        return failed(problem.message + more, problem.location, problem=problem.message)
     message = f"the package is named {manifest.name!r}{'' if fine else f'; it should be named {name!r}'}"
     setup, registered = package.setup, package.registered
     if fine and setup is not None and registered and name not in registered:
@@ -106,17 +107,16 @@ def setup_imports(package: Package) -> Outcome:
 
 
 def _readable_manifest(package: Package) -> "Manifest":
+    """Return the package's package.xml, also of one that is broken if its build type can be read."""
     manifest = package.manifest
     if manifest is not None and manifest.unread:
         raise NotDecided(manifest.unread, "package.xml cannot be read")
-    from grader.package.package_problems import BAD_MANIFEST
-
     if manifest is None:
         where = f"the folder {package.folder!r}" if package.folder else "the submission"
         message = f"{where} has a setup.py, but no package.xml, so it is not a ROS 2 package"
         raise MissingElement(MANIFEST, package.folder, message=message)
-    if any(problem.kind is BAD_MANIFEST for problem in manifest.problems):
-        problem = manifest.problems[0]
+    if not manifest.build_type and manifest.refusals:
+        problem = manifest.refusals[0]
         raise MissingElement(MANIFEST, package.folder, message=problem.message, location=problem.location)
     return manifest
 

@@ -8,10 +8,11 @@ def _kind(code: str, severity: Severity, title: str) -> Kind:
 
 
 BAD_MANIFEST = _kind("PKG001", "error", "Unreadable package.xml")
-INCOMPLETE_MANIFEST = _kind("PKG002", "warning", "package.xml without a required element")
+REFUSED_MANIFEST = _kind("PKG002", "error", "package.xml that the tools of ROS 2 refuse")
 STILL_TO_DO = _kind("PKG003", "note", "License, maintainer or description is still TODO")
 OLD_FORMAT = _kind("PKG004", "note", "Old format of package.xml")
 OTHER_NAME = _kind("PKG005", "warning", "Different package names in package.xml and setup.py")
+QUOTED_EMAIL = _kind("PKG006", "warning", "Email in quotes in package.xml")
 SETUP_SYNTAX = _kind("PKG010", "error", "Syntax error in setup.py")
 SETUP_NAME = _kind("PKG011", "error", "Error that stops setup.py")
 SETUP_STOPS = _kind("PKG012", "error", "Something in setup.py that a build does not accept")

@@ -67,8 +67,9 @@ _TEXTS = ("name", "description", "long_description", "author", "author_email", "
 # The arguments whose faults are found below.
 _CHECKED = ("version", "packages", "py_modules", "data_files", "entry_points")
 _AT_HAND = frozenset({"setuptools", "wheel"})  # what setup_requires may name without a download
-# The sections of setup.cfg that concern a build: of these, the options that are known to be accepted.
-_SECTIONS = {"develop": {"script_dir", "install_scripts"}, "install": {"install_scripts", "install-scripts"}}
+# The sections of setup.cfg that concern a build: of these, the options that are known to be accepted. setuptools 68
+# takes a dash for an underscore, with a warning (dist.py, `warn_dash_deprecation`).
+_SECTIONS = {"develop": {"script_dir", "install_scripts"}, "install": {"install_scripts"}}
 _OF_TOOLS = re.compile(
     r"flake8|pycodestyle|pydocstyle|pep8|pep257|mypy\b.*|isort|pylint|yapf|black|tool:.*|coverage:.*|bdist_wheel|sdist|test"
 )
@@ -487,7 +488,8 @@ def _cfg_findings(text: str, at: Position) -> Iterator[_Finding]:
         return
     for section, names in options.items():
         if section in _SECTIONS:
-            yield from _option_findings(section, names - _SECTIONS[section], at)
+            options_of_section = {name.replace("-", "_") for name in names}
+            yield from _option_findings(section, options_of_section - _SECTIONS[section], at)
         elif names and not _OF_TOOLS.fullmatch(section):
             yield Unknown(f"the section [{section}] of setup.cfg is not evaluated", at)
 

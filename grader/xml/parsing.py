@@ -63,6 +63,17 @@ class XmlDocument(NamedTuple):
     is_meant: bool = True  # whether the text means these elements although it is refused
 
 
+def recover_xml(data: bytes) -> Element | None:
+    """Return the root of what libxml2 can read of a text that is not XML; None if that is nothing."""
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True, recover=True
+    )
+    try:
+        return etree.fromstring(data, parser)
+    except (XMLSyntaxError, ValueError):
+        return None
+
+
 def parse_xml(data: bytes) -> Element:
     """Return the root element of an XML text; raises XMLSyntaxError."""
     return etree.fromstring(data, _PARSER)

@@ -52,6 +52,9 @@ INSTEAD = {
     "own_module_named_glob": {"glob.py": "def glob(pattern):\n    return []\n"},
     "pyproject_that_is_no_toml": {"pyproject.toml": "name = \n"},
     "script_dir_in_install": {"setup.cfg": "[install]\nscript_dir=$base/lib/my_robot\n"},
+    "setup_cfg_with_dashes": {
+        "setup.cfg": "[develop]\nscript-dir=$base/lib/my_robot\n[install]\ninstall-scripts=$base/lib/my_robot\n"
+    },
     "setup_cfg_without_a_section": {"setup.cfg": "script_dir=$base/lib/my_robot\n"},
     "packages_in_setup_cfg": {
         "setup.cfg": "[options]\npackages = find:\n[options.packages.find]\ninclude = my_robot\n"
