@@ -77,6 +77,7 @@ class MissingElement(LookupError):
     work that a submission lacks, where evidence may take its place. `known` lists the names that exist; `location`
     is a Location or LazyLocation in the file, or None. The text is the message and the detail, which is what differs
     between students who made the same mistake; `mistake` is the message alone. `problem` is that of an Outcome.
+    What fails for the same reason later is skipped, or with `costs_once` not deducted.
     """
 
     def __init__(
@@ -89,12 +90,14 @@ class MissingElement(LookupError):
         detail: str = "",
         location: object = None,
         problem: str = "",
+        costs_once: bool = False,
     ) -> None:
         self.kind = kind
         self.name = name
         self.known = known
         self.location = location
         self.problem = problem
+        self.costs_once = costs_once
         self.mistake = message or f"there is no {kind} {name!r}"
         if not message:
             detail = f"; the file has: {', '.join(map(repr, known[:20])) or 'none'}"

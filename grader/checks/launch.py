@@ -221,6 +221,8 @@ def _no_files(launch: "Launch") -> NotDecided | MissingElement:
 def _missing_file(package: Package, place: _FilePlace) -> MissingElement:
     """Return what the package is missing for a named file, by the kinds and names that the checks of packages use."""
     setup, purpose, name = package.setup, place.file.purpose, package.folder
+    if setup is not None and setup.misspelt is not None:
+        return package.without_data_files(setup.misspelt.message)
     kind = f"installed {purpose}"
     if setup is None or setup.fault is not None:
         kind = "setup.py"
@@ -294,6 +296,8 @@ def _place_in_package(owner: Package, target: str, file: "NamedFile") -> _FilePl
     if setup is None or setup.fault is not None:
         return _FilePlace(file, "missing", f"a build installs no {what}: there is no setup.py that Python can read")
     installed = setup.installed()
+    if target in installed and setup.misspelt is not None:
+        return _FilePlace(file, "missing", f"a build does not install the {what}: {setup.misspelt.message}")
     if target in installed:
         return _place_not_utf8(owner, installed[target], file) or _FilePlace(file, "found", target)
     if setup.unknown:
@@ -321,7 +325,11 @@ def _place_not_there(owner: Package, installed: Iterable[str], target: str, file
     name, looks = posixpath.basename(target), f"the launch file looks for the {_WORDS[file.purpose]} at {target}"
     others = [path for path in installed if posixpath.basename(path) == name]
     if others:
-        return _FilePlace(file, "wrong", f"{looks}, but a build installs it as {others[0]}")
+        rest = target.removeprefix(owner.share)
+        is_elsewhere = not others[0].startswith(owner.share) and f"/{others[0]}".endswith(f"/{rest}")
+        # Outside of the package's folder, at the path where the launch file looks in it: that is the fault of setup.py.
+        message = f"{looks}, but a build installs it as {others[0]}"
+        return _FilePlace(file, "missing" if is_elsewhere else "wrong", message)
     names = set(map(posixpath.basename, owner.tree.files))
     if name in names:
         return _FilePlace(file, "missing", f"{looks}, but a build does not install {name}")

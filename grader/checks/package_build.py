@@ -194,6 +194,8 @@ def _require_installed(
     if kind == "launch" and len(twice) > 1:
         message = f"a build installs {files[0]} as {' and as '.join(twice)}; ros2 launch needs exactly one"
         return failed(message, setup.location(inside[-1].at), mistake="a build installs the launch file twice")
+    if inside and setup.misspelt is not None:
+        raise package.without_data_files(setup.misspelt.message)
     if inside:
         return passed(f"a build installs {inside[0].source} as {inside[0].target}")
     if setup.unknown:

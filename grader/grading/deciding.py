@@ -160,12 +160,14 @@ class _Grading:
         if missing.kind == "link":
             missing = another_robot(self._rubric, self.submission.robot, missing.name) or missing
         first = self._first_miss(criterion, (missing.kind, missing.name))
-        if first != criterion.id:
+        if first != criterion.id and not missing.costs_once:
             return Result(criterion, _skip_outcome(first), first)
         at = missing.location if isinstance(missing.location, Location | LazyLocation) else None
         outcome = Outcome(
             "failed", str(missing), location=location_of(at), mistake=missing.mistake, problem=missing.problem
         )
+        if first != criterion.id:
+            return Result(criterion, outcome, carried=first)
         return Result(criterion, self._explain(outcome, missing.kind, missing.name))
 
     def _first_miss(self, criterion: Criterion, thing: tuple[str, str]) -> str:

@@ -48,9 +48,16 @@ def _setup_problems(package: Package, setup: Setup) -> Iterator[Problem]:
     for empty in setup.empty:
         message = f"the pattern {empty.pattern!r} in setup.py matches no file{why_no_match(package, empty.pattern)}"
         yield Problem(kinds.EMPTY_GLOB, message, setup.location(empty.at))
+    for argument in setup.ignored:
+        yield Problem(kinds.IGNORED_ARGUMENT, argument.message, setup.location(setup.called_at))
     for unknown in setup.unknown:
         message = f"cannot be determined statically: {unknown.reason}"
         yield Problem(kinds.SETUP_UNKNOWN, message, setup.location(unknown.at))
+    yield from _naming_problems(package, setup)
+
+
+def _naming_problems(package: Package, setup: Setup) -> Iterator[Problem]:
+    """Yield what is wrong with the package's name in setup.py, and with the entries that register the package."""
     start, targets = setup.location(setup.called_at), setup.installed()
     declared = package.manifest.name if package.manifest is not None else None
     is_known = not (setup.unknown or setup.stops)

@@ -154,6 +154,12 @@ class Package:
         message = f"the package has no {word}: no file ends in {enumerated(endings[:3], word='or')}{folder}"
         return MissingElement(f"{word} in the package", "", message=message, detail=self.built(kind))
 
+    def without_data_files(self, message: str) -> MissingElement:
+        """Return the error for a setup.py that gives setup() no data_files, because of this mistake."""
+        setup = self.setup
+        at = setup.location(setup.called_at) if setup is not None else None
+        return MissingElement("data_files", self.folder, message=message, location=at, problem=message, costs_once=True)
+
     def launch_file(self, name: str) -> str | None:
         """Return the launch file of this name, if need be in another language; else the closest name's; else any."""
         files = sorted(self.launch_files, key=lambda path: (path.rpartition("/")[2] != name, path.count("/"), path))

@@ -20,6 +20,7 @@ EMPTY_GLOB = _kind("PKG013", "warning", "Pattern in setup.py that matches no fil
 NO_MARKER = _kind("PKG014", "warning", "No entry for the resource index")
 NO_MANIFEST_ENTRY = _kind("PKG015", "warning", "package.xml is not installed")
 SETUP_UNKNOWN = _kind("PKG016", "note", "Cannot be determined statically in setup.py")
+IGNORED_ARGUMENT = _kind("PKG017", "warning", "Argument that setup() does not have")
 LAUNCH_SYNTAX = _kind("LCH001", "error", "Unreadable launch file")
 LAUNCH_FAULT = _kind("LCH002", "error", "Error that stops a launch file")
 HARD_CODED = _kind("LCH003", "warning", "Path that exists on one machine only")

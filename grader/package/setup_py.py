@@ -18,7 +18,7 @@ from typing import NamedTuple
 from grader.errors import InputError
 from grader.files.limits import ignored_part
 from grader.files.tree import Tree
-from grader.names import did_you_mean
+from grader.names import closest, did_you_mean
 from grader.package.file_search import ORDERS, EmptyGlob, PackageListing, file_functions
 from grader.python.budget import Budget
 from grader.python.evaluation import Evaluation, PythonError
@@ -35,6 +35,7 @@ from grader.python.values import (
     Undetermined,
     Unknown,
     Value,
+    iterate,
     unknown_in,
 )
 from grader.source import Location, Source
@@ -66,6 +67,16 @@ _TEXTS = ("name", "description", "long_description", "author", "author_email", "
           "license", "download_url", "long_description_content_type", "python_requires", "test_suite")  # fmt: skip
 # The arguments whose faults are found below.
 _CHECKED = ("version", "packages", "py_modules", "data_files", "entry_points")
+# The other arguments that setuptools 68 knows, and those that well-known plug-ins add.
+_OTHERS = (
+    "package_dir", "ext_modules", "ext_package", "scripts", "script_name", "script_args", "cmdclass", "command_options",
+    "options", "libraries", "include_dirs", "headers", "provides", "requires", "obsoletes", "license_file",
+    "license_files", "project_urls", "namespace_packages", "exclude_package_data", "eager_resources",
+    "dependency_links", "features", "test_loader", "test_runner", "use_2to3", "convert_2to3_doctests", "distclass",
+    "licence", "provides_extras", "contact", "contact_email", "fullname", "password", "verbose", "dry_run", "help",
+    "src_root", "use_scm_version", "cffi_modules", "pbr", "rust_extensions", "use_incremental", "cmake_args",
+    "cmake_install_dir",
+)  # fmt: skip
 _AT_HAND = frozenset({"setuptools", "wheel"})  # what setup_requires may name without a download
 # The sections of setup.cfg that concern a build: of these, the options that are known to be accepted. setuptools 68
 # takes a dash for an underscore, with a warning (dist.py, `warn_dash_deprecation`).
@@ -100,9 +111,25 @@ class _InstallError(NamedTuple):
         return f"data_files lists {self.path!r}, but {self.reason}" if self.path else self.reason
 
 
+class _IgnoredArgument(NamedTuple):
+    """An argument that setup() does not have: setuptools ignores it, with a warning."""
+
+    name: str
+    meant: str | None  # the argument with a similar name
+
+    @property
+    def message(self) -> str:
+        """What is wrong with it, as a sentence."""
+        return f"setup() has no argument {self.name}" + (f"; did you mean {self.meant}?" if self.meant else "")
+
+
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """The result of a setup.py. `fault` is set where Python cannot read it: nothing else is known then."""
+    """The result of a setup.py. `fault` is set where Python cannot read it: nothing else is known then.
+
+    What certainly raises an error is read as if it was fixed, and a misspelt data_files as what it means: `copies` are
+    the files that are installed then.
+    """
 
     source: Source
     fault: SyntaxFault | None = None
@@ -116,6 +143,7 @@ class Setup:
     is_called: bool = True
     called_at: Position = START
     entry_points: Value = None  # what setup() is given
+    ignored: tuple[_IgnoredArgument, ...] = ()  # arguments that setup() does not have
 
     def has_program(self, name: str) -> bool | None:
         """Return whether a build installs a program for `ros2 run`; None where this is not known."""
@@ -131,6 +159,11 @@ class Setup:
     def location(self, position: Position) -> Location:
         """Return the location of a position in the file."""
         return location_in(self.source, position)
+
+    @property
+    def misspelt(self) -> _IgnoredArgument | None:
+        """The argument that stands for data_files, so that a build installs none of its files."""
+        return next((argument for argument in self.ignored if argument.meant == "data_files"), None)
 
     def installed(self) -> dict[str, str]:
         """Return each installed file's source by its path below the prefix."""
@@ -214,6 +247,7 @@ def _evaluate_setup(code: Code, listing: PackageListing, written: dict[str, Posi
         is_called=bool(calls) or interpreter.doubt is not None,
         called_at=calls[0].at if calls else START,
         entry_points=calls[0].kwargs.get("entry_points") if calls else None,
+        ignored=tuple(data_files.ignored),
     )
 
 
@@ -221,6 +255,12 @@ def _read_call(data_files: "_DataFiles", call: Call) -> None:
     """Read a call of setup(): the files that it installs, and whether a build succeeds with it."""
     if call.args:
         raise EvaluationFails("setup() takes arguments by name only: write name=...")
+    for ignored in _ignored_arguments(call.kwargs):
+        data_files.ignored.append(ignored)
+        value = call.kwargs.pop(ignored.name)
+        if ignored.meant == "data_files":
+            data_files.read(value, call.at)
+            data_files.stops.clear()  # setuptools does not read them
     entries = call.kwargs.get("data_files")
     if entries is not None:
         data_files.read(entries, call.at)
@@ -245,6 +285,7 @@ class _DataFiles:
     stops: list[_InstallError] = field(default_factory=list)
     unknown: list[Unknown] = field(default_factory=list)  # what is installed as well, or elsewhere
     doubts: list[Unknown] = field(default_factory=list)  # with these, whether the build succeeds is not known either
+    ignored: list[_IgnoredArgument] = field(default_factory=list)
 
     def read(self, entries: Value, at: Position) -> None:
         """Add the files of the argument data_files."""
@@ -288,27 +329,46 @@ class _DataFiles:
                 self._give_up(entry, "an entry of data_files is not evaluated", at)
             case [str() as path, *_] if len(entry) == 1:
                 self.stop("an entry is a folder and a list of files; the list is missing", at, path)
+            case [folder, files]:
+                self.stop("an entry of data_files is not a tuple: write (folder, [files])", at)
+                self._folder(folder, files, at)
             case list() | dict() | set():
                 self.stop("an entry of data_files is not a tuple: write (folder, [files])", at)
+            case (*folders, list() as files) if all(isinstance(it, str) for it in folders):
+                self.stop("an entry of data_files is not a tuple of a folder and a list of files", at)
+                self._folder(posixpath.join("", *folders), files, at)
             case _:
                 self.stop("an entry of data_files is not a tuple of a folder and a list of files", at)
 
     def _folder(self, folder: Value, files: Value, at: Position) -> None:
+        if isinstance(folder, PurePosixPath):
+            self._not_text(folder, "the folder of an entry", at)
+            folder = str(folder)
         if not isinstance(folder, str):
             self._not_text(folder, "the folder of an entry", at)
         elif folder.startswith(self.root):
             self._give_up(None, "a target in the package itself is not supported", at)
         elif folder.startswith("/"):
             self.stop(f"the folder {folder!r} is absolute; colcon takes one below the prefix, such as share/...", at)
+            self._files(files, folder.strip("/"), at)
         elif ".." in folder.split("/") or len(folder) > MAX_PATH:
-            self.unknown.append(Unknown(f"the target {folder[:MAX_PATH]} is not supported", at))
-        elif isinstance(files, str) and files:
-            self.stop("the files of an entry are a string, not a list: write [...] around it", at, files)
-        elif isinstance(files, list):
-            for file in files:
-                self._file(file, folder, at)
+            self._give_up(None, f"the target {folder[:MAX_PATH]} is not supported", at)
         else:
+            self._files(files, folder, at)
+
+    def _files(self, files: Value, folder: str, at: Position) -> None:
+        """Add the files of an entry; what is no list stops the build, and is read as the list that is meant."""
+        if isinstance(files, str) and files:
+            self.stop("the files of an entry are a string, not a list: write [...] around it", at, files)
+            files = [files] if files in self.listing.files else []
+        elif isinstance(files, Items | tuple):
             self._not_list(files, at)
+            files = list(iterate(files))
+        if not isinstance(files, list):
+            self._not_list(files, at)
+            return
+        for file in files:
+            self._file(file, folder, at)
 
     def _not_list(self, files: Value, at: Position) -> None:
         if isinstance(files, Items):
@@ -329,6 +389,9 @@ class _DataFiles:
 
     def _file(self, file: Value, folder: str, at: Position) -> None:
         self.listing.budget.charge(5)
+        if isinstance(file, PurePosixPath):
+            self._not_text(file, "a file of an entry", at)
+            file = str(file)
         if isinstance(file, str):
             self._path(file, folder, self._origin(file, at))
         else:
@@ -398,6 +461,12 @@ def _argument_findings(
         yield Unknown("this value of py_modules is not evaluated", at)
     if not is_configured and all(kwargs.get(name) is None for name in _PACKAGES) and "src" not in listing.folders:
         yield from _discovery_findings(listing)
+
+
+def _ignored_arguments(kwargs: Mapping[str, Value]) -> list[_IgnoredArgument]:
+    """Return the arguments that setuptools does not know, each with the missing one that it may mean."""
+    known = {*_USUAL, *_CHECKED, *_OTHERS}
+    return [_IgnoredArgument(name, closest(name, known - kwargs.keys())) for name in kwargs if name not in known]
 
 
 def _is_list(value: Value) -> bool:

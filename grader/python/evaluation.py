@@ -25,7 +25,8 @@ class PythonError(NamedTuple):
 
 
 NOT_EVALUATED = "is not evaluated"
-_FAILED = "Python raises an error before"  # the reason of a value that would follow
+MISSING_COMMA = "a {} cannot be called: is there a comma missing before it?"
+FAILED = "Python raises an error before"  # the reason of a value that would follow
 # All parts of such an expression are evaluated before the expression itself; such a part may change something.
 _WHOLE = (ast.Name, ast.Call, ast.BinOp, ast.UnaryOp, ast.Attribute, ast.Subscript, ast.JoinedStr, ast.FormattedValue)
 _CHANGING = (ast.Call, ast.NamedExpr, ast.Await, ast.Yield, ast.YieldFrom)
@@ -82,10 +83,10 @@ class Evaluation(Expressions):
             may_change = not isinstance(node, _WHOLE) and any(isinstance(part, _CHANGING) for part in ast.walk(node))
             if error.is_final or may_change:
                 raise py.Undetermined(unknown.reason, unknown.at, is_final=True) from None
-            return self.doubted(unknown)
+            return unknown if unknown.reason == FAILED else self.doubted(unknown)
         except py.EvaluationFails as error:
             self.error(str(error), position_of(node))
-            return py.Unknown(_FAILED, position_of(node))
+            return py.Unknown(FAILED, position_of(node))
 
     def _name(self, node: ast.Name, scope: py.Scope) -> py.Value:
         """Return the value of a name. An undefined name is an error; its value is the most likely intended one."""
@@ -162,11 +163,11 @@ class Evaluation(Expressions):
                 found = self._method(owner, name, made)
             case py.PlainFunction():
                 found = self._plain(function, made)
-            case py.Unknown(reason=reason) if reason == _FAILED:
+            case py.Unknown(reason=reason) if reason == FAILED:
                 found = function
             case _ if isinstance(function, py.PLAIN):
                 kind = type(function).__name__
-                raise py.EvaluationFails(f"a {kind} cannot be called: is there a comma missing before it?")
+                raise py.EvaluationFails(MISSING_COMMA.format(kind))
             case _:
                 reason = f"this call {NOT_EVALUATED}: {reason_of(function)}".rstrip(": ")
                 raise py.Undetermined(reason, made.at, is_final=True)
@@ -189,7 +190,7 @@ class Evaluation(Expressions):
         """Return the value of a call of something outside of the file, by the table."""
         function = self.functions.get(made.name)
         if function is None and made.name.startswith("?."):  # an undefined name, which is an error already
-            return py.Unknown(_FAILED, made.at)
+            return py.Unknown(FAILED, made.at)
         if function is None:
             reason = f"{made.name.removeprefix('builtins.')} {NOT_EVALUATED}"
             raise py.Undetermined(reason, made.at, is_final=True)
@@ -205,7 +206,7 @@ class Evaluation(Expressions):
         found = method(owner, name, self.budget)
         if found is not None:
             return self.call_value(found, made)
-        if isinstance(owner, py.Unknown) and (name in _TEXT_METHODS or owner.reason == _FAILED):
+        if isinstance(owner, py.Unknown) and (name in _TEXT_METHODS or owner.reason == FAILED):
             raise py.Undetermined(owner.reason, owner.at)
         raise py.Undetermined(f"the method {name} of this value {NOT_EVALUATED}", made.at, is_final=True)
 

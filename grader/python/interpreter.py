@@ -9,6 +9,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from copy import copy
 from functools import partial
 from io import StringIO
+from itertools import chain
 from operator import setitem
 from pathlib import PurePosixPath
 from typing import Any, ClassVar
@@ -16,7 +17,7 @@ from typing import Any, ClassVar
 from grader.python import values as py
 from grader.python.budget import Budget
 from grader.python.builtins import truth
-from grader.python.evaluation import NOT_EVALUATED, Evaluation
+from grader.python.evaluation import FAILED, MISSING_COMMA, NOT_EVALUATED, Evaluation
 from grader.python.library import CONSTANTS, UNCERTAIN, USUAL_NAMES, attribute_error, import_error, imported_names
 from grader.python.operators import has_attribute, operate
 from grader.python.parse import Code, Position, bound_in, own_nodes, position_of
@@ -153,9 +154,10 @@ class Interpreter(Evaluation):
 
     def _with(self, node: ast.With, scope: py.Scope) -> None:
         value, target = self.evaluate(node.items[0].context_expr, scope), node.items[0].optional_vars
+        has_failed = isinstance(value, py.Unknown) and value.reason == FAILED  # of a file that does not exist
         if isinstance(value, py.Call):
             self.call_value(py.BoundMethod(value, "__enter__"), py.Call("", [], {}, self.at))
-        if len(node.items) > 1 or not isinstance(value, py.Call | StringIO):
+        if len(node.items) > 1 or not (isinstance(value, py.Call | StringIO) or has_failed):
             raise py.Undetermined("this use of with is not evaluated", self.at, is_final=True)
         if target is not None:
             self.bind(target, value, scope)
@@ -164,7 +166,7 @@ class Interpreter(Evaluation):
         finally:
             if isinstance(value, StringIO):
                 value.close()
-            else:
+            elif isinstance(value, py.Call):
                 value.method_calls.append(py.Call(f"{value.name}.__exit__", [], {}, self.at, value))
 
     def _annassign(self, node: ast.AnnAssign, scope: py.Scope) -> None:
@@ -246,7 +248,7 @@ class Interpreter(Evaluation):
     def elements(self, nodes: Sequence[ast.expr], scope: py.Scope) -> list[py.Value]:
         """Return the values of the elements of a list, or of the arguments of a call."""
         values: list[py.Value] = []
-        for node in nodes:
+        for node in chain.from_iterable(map(self._separated, nodes)):
             if not isinstance(node, ast.Starred):
                 values.append(self.evaluate(node, scope))
                 continue
@@ -255,6 +257,17 @@ class Interpreter(Evaluation):
             except py.Undetermined as error:
                 raise py.Undetermined(str(error), error.at or position_of(node), is_final=True) from None
         return values
+
+    def _separated(self, node: ast.expr) -> list[ast.expr]:
+        """Return an element; the two elements that a call of a tuple or list means, where a comma is missing."""
+        match node:
+            case ast.Call(func=ast.Tuple() | ast.List() | ast.Call() as first, args=[start, *_] as args, keywords=[]):
+                before = self._separated(first)
+                if isinstance(before[-1], ast.Tuple | ast.List):
+                    kind = type(before[-1]).__name__.lower()
+                    self.error(MISSING_COMMA.format(kind), position_of(node))
+                    return [*before, ast.copy_location(ast.Tuple(elts=args, ctx=ast.Load()), start)]
+        return [node]
 
     def _dict(self, node: ast.Dict, scope: py.Scope) -> py.Value:
         table: dict[Any, py.Value] = {}
