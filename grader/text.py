@@ -8,8 +8,9 @@ from functools import lru_cache
 from pathlib import Path
 
 # The runner of GitHub Actions treats a line as a command if it begins with `::`, after white space as well, or contains
-# `##[`.
+# `##[`; the agent of Azure Pipelines, if it contains `##vso[`.
 _LINE_COMMAND = re.compile(r"^(\s*):(?=:)", re.MULTILINE)
+_TAG_COMMAND = re.compile(r"##(vso)?\[", re.IGNORECASE)
 _MAX_NAME = 60  # characters of a name that are shown
 
 
@@ -25,7 +26,12 @@ def printable(text: str) -> str:
 
 def without_commands(text: str) -> str:
     """Return a text with a space wherever the runner of a CI system would treat a line as a command."""
-    return _LINE_COMMAND.sub(r"\1: ", text).replace("##[", "## [")
+    return without_tag_commands(_LINE_COMMAND.sub(r"\1: ", text))
+
+
+def without_tag_commands(text: str, bracket: str = " [") -> str:
+    """Return a text with another bracket in the commands that may be anywhere in a line, such as ##vso[."""
+    return _TAG_COMMAND.sub(lambda found: found[0][:-1] + bracket, text)
 
 
 def _escape(character: str) -> str:

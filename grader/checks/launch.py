@@ -223,12 +223,15 @@ def _missing_file(package: Package, place: _FilePlace) -> MissingElement:
     setup, purpose, name = package.setup, place.file.purpose, package.folder
     if setup is not None and setup.misspelt is not None:
         return package.without_data_files(setup.misspelt.message)
-    kind = f"installed {purpose}"
+    kind, looked_for = f"installed {purpose}", posixpath.basename(place.file.path or "")
     if setup is None or setup.fault is not None:
         kind = "setup.py"
     elif not setup.is_called:
         kind = "call of setup"
-    elif not any(path.lower().endswith(_ENDINGS[purpose]) for path in package.tree.files):
+    elif not any(
+        path.lower().endswith(_ENDINGS[purpose]) or posixpath.basename(path) == looked_for
+        for path in package.tree.files
+    ):
         kind, name = f"{_WORDS[purpose]} in the package", ""
     return MissingElement(kind, name, message=place.text, location=place.file.location)
 

@@ -55,7 +55,12 @@ def answered(
     else:
         problem = "perhaps"
         message = f"Perhaps the answer {passage.where}{how}; needs manual grading"
-    outcome = Outcome("pending", f"{question} {message}{unread}", passage.text, location=passage.location)
+    text = passage.text
+    for other in found.others:
+        text += f"\n\n[Also {other.where}]\n{other.text}"
+    if found.others:
+        message += f"; {enumerated([f'another passage is {other.where}' for other in found.others])}"
+    outcome = Outcome("pending", f"{question} {message}{unread}", text, location=passage.location)
     return outcome._replace(problem=", but ".join([problem, *doubts] if problem else doubts))
 
 

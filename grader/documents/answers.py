@@ -30,6 +30,7 @@ _MAX_TEXT = 32_000  # characters, which no written answer has
 _MAX_QUESTION = 4000  # characters of a question
 _MAX_HEADING_WORDS = 6  # a passage of so few words is a heading without a text
 _MAX_MATCHES = 50  # headings of one document that are compared
+_MAX_OTHERS = 3  # passages besides the best one
 _COPIED = frozenset(
     {"required", "optional", "question", "answer", "task", "step"}
 )  # words of a question, besides its own
@@ -39,6 +40,7 @@ class _FoundAnswer(NamedTuple):
     """The result of a search for an answer: the passage, the documents that were read, and why others were not."""
 
     passage: Passage | None
+    others: tuple[Passage, ...]  # further passages for the same place
     read: tuple[str, ...]
     unread: tuple[str, ...]
 
@@ -53,9 +55,13 @@ def find_answer(
     """
     read, unread = documents.named(files)
     search = _AnswerSearch(documents, read, [_read_ordinal(place) or read_label(place) for place in places], question)
-    found = sorted(filter(None, search.passages()), key=lambda passage: (passage.is_empty, not passage.is_certain))
+    found = sorted(filter(None, search.passages()), key=lambda it: (it[0].is_empty, not it[0].is_certain))
+    first, *others = found[0] if found else [None]
     return _FoundAnswer(
-        found[0] if found else None, tuple(document.file.path for document in read), tuple(map(str, unread))
+        first,
+        tuple(it for it in others if it is not None)[:_MAX_OTHERS],
+        tuple(document.file.path for document in read),
+        tuple(map(str, unread)),
     )
 
 
@@ -154,18 +160,20 @@ class _AnswerSearch:
         ordinals = [place for place in wanted if isinstance(place, _Ordinal)]
         self._patterns = {place.pattern for place in ordinals} | {label.words for label in plain if label.words}
 
-    def passages(self) -> Iterator[Passage | None]:
-        """Yield the best passage for each place."""
+    def passages(self) -> Iterator[list[Passage]]:
+        """Yield the passages for each place: the best one, then others that certainly answer the question as well."""
         for wanted in self._wanted:
-            yield self._in_order(wanted) if isinstance(wanted, _Ordinal) else self._passage_below(wanted)
+            found = self._in_order(wanted) if isinstance(wanted, _Ordinal) else self._passages_below(wanted)
+            first = [it.text for it in found[:1]]
+            others = (it for it in found[1:] if it.is_certain and not it.is_empty and it.text not in first)
+            yield [*found[:1], *others]
 
     def _headings(self, document: TextDocument) -> tuple[Heading, ...]:
         return self._documents.headings(document, self._patterns)
 
-    def _passage_below(self, wanted: Label) -> Passage | None:
-        """Return the passage whose heading, or whose file, is labelled so."""
-        best: Passage | None = None
-        rank = (True, True, True, True)
+    def _passages_below(self, wanted: Label) -> list[Passage]:
+        """Return the passages whose heading, or whose file, is labelled so; items of lists and mentions only first."""
+        found: list[tuple[tuple[bool, ...], Passage]] = []
         for document in self._read:
             if matches(wanted, read_label(stem(document.file.name))):  # the file is named for the place
                 spans = [Heading(0, len(document.lines), "", wanted)]
@@ -176,10 +184,11 @@ class _AnswerSearch:
                 if passage is None:
                     continue
                 is_short = len(passage.text.split(maxsplit=_MAX_HEADING_WORDS)) <= _MAX_HEADING_WORDS
-                found = (passage.is_empty, is_short, head.is_item, head.is_mention)
-                if best is None or found < rank:
-                    best, rank = self._explained_passage(passage, document, head, wanted), found
-        return best
+                rank = (passage.is_empty, is_short, head.is_item, head.is_mention)
+                found.append((rank, self._explained_passage(passage, document, head, wanted)))
+        found.sort(key=lambda it: it[0])
+        passages = [passage for _, passage in found]
+        return passages[:1] + [it for it in passages[1:] if not (it.head.is_item or it.head.is_mention)]
 
     def _explained_passage(self, passage: Passage, document: TextDocument, head: Heading, wanted: Label) -> Passage:
         """Return a passage with what makes its heading less than certain."""
@@ -194,8 +203,8 @@ class _AnswerSearch:
         how = f"below a heading of task {head.task}: it may answer another question"
         return passage._replace(how=how, is_certain=False) if is_other else passage
 
-    def _in_order(self, wanted: _Ordinal) -> Passage | None:
-        """Return the passage below a heading that questions share, or in a file of that name, if this is clear."""
+    def _in_order(self, wanted: _Ordinal) -> list[Passage]:
+        """Return the passages below headings that questions share, or in files of that name, if this is clear."""
         found: list[Passage] = []
         headings = [[(document, head) for head in self._headings(document)] for document in self._read]
         for group in (*headings, [(document, _heading_of_file(document, wanted.pattern)) for document in self._read]):
@@ -205,8 +214,7 @@ class _AnswerSearch:
             match = _match_answer(wanted, self._task, answers)
             if match is not None:
                 found.append(_joined_passage(match, [answers[index] for index in match.indices]))
-        found.sort(key=lambda passage: (passage.is_empty, not passage.is_certain))
-        return found[0] if found else None
+        return sorted(found, key=lambda passage: (passage.is_empty, not passage.is_certain))
 
     def _passage_of(self, document: TextDocument, head: Heading) -> Passage | None:
         lines, start, end = document.lines, head.start, head.end

@@ -202,7 +202,8 @@ def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None)
     doubt = Unknown("the result depends on the order of the files in a folder, or on __file__", START)
     if doubts:
         doubt = doubts[0]
-    return replace(setups[0], name=None, copies=(), stops=(), unknown=(*setups[0].unknown, doubt), doubt=doubt)
+    unknown = tuple(dict.fromkeys([*setups[0].unknown, doubt]))
+    return replace(setups[0], name=None, copies=(), stops=(), unknown=unknown, doubt=doubt)
 
 
 def _evaluate_setup(code: Code, listing: PackageListing, written: dict[str, Position], file: str) -> Setup:

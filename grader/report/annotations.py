@@ -16,7 +16,7 @@ from grader.report.content import closing_lines, head, other_problems, report_se
 from grader.report.criteria import Entry, earned_text, is_failure, is_manual, points_of, remarks_on
 from grader.report.locations import SourceOf, archive_around, location_text, width_of
 from grader.source import Base, Location
-from grader.text import counted_points, printable
+from grader.text import counted_points, printable, without_tag_commands
 
 _MAX_ANNOTATIONS = 10  # of each type
 _MAX_MESSAGE = 4000  # characters
@@ -126,7 +126,7 @@ def command(name: str, place: Mapping[str, str], title: str, text: str) -> str:
     properties = [*place.items(), ("title", title)]
     listed = ",".join(f"{key}={_data(value).replace(':', '%3A').replace(',', '%2C')}" for key, value in properties)
     message = text if len(text) <= _MAX_MESSAGE else f"{text[:_MAX_MESSAGE]}..."
-    return f"::{name} {listed}::{_data(message)}\n"
+    return without_tag_commands(f"::{name} {listed}::{_data(message)}\n")
 
 
 def _data(text: str) -> str:

@@ -9,6 +9,8 @@ from functools import cached_property
 from operator import attrgetter
 from typing import Any, TypeVar
 
+from grader.text import without_tag_commands
+
 _ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
 _UNPRINTABLE = re.compile(r"[^\n -~]")  # or any other character that is not ASCII
 
@@ -23,10 +25,10 @@ def to_json(data: Mapping[str, Any]) -> str:
 
 
 def _harmless(text: str) -> str:
-    """Return JSON with escapes for unprintable characters, and for what GitHub's runner takes for a command."""
+    """Return JSON with escapes for unprintable characters, and for what a CI system takes for a command."""
     if not text.isascii() or "\x7f" in text:
         text = _UNPRINTABLE.sub(lambda found: found[0] if found[0].isprintable() else json.dumps(found[0])[1:-1], text)
-    return text.replace("##[", "##\\u005b")
+    return without_tag_commands(text, "\\u005b")
 
 
 def _laid_out(value: Any) -> str:

@@ -1,8 +1,10 @@
 """The folder of a lab in a repository that holds several labs."""
 
 import re
-from collections.abc import Collection, Iterable, Sequence
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from enum import IntEnum
+from functools import cached_property
 
 from grader.files.limits import ARCHIVES, PACKAGE_FILES
 from grader.files.tree import parents
@@ -52,11 +54,13 @@ class LabFolders:
         self._shapes = {_NUMBER.sub("#", own) for own in self._own if _NUMBER.search(own)}
         self._known: dict[str, Belonging] = {}
         self._packages: set[str] = set()
+        self._folders: set[str] = set()
         names_of_folders: set[str] = set()
         if not self._own:
             paths = ()
         for path in paths:
             folder, _, name = path.rpartition("/")
+            self._folders.add(folder)
             names_of_folders.update(folder.split("/"))
             if name in PACKAGE_FILES:
                 self._packages.add(folder)
@@ -75,6 +79,23 @@ class LabFolders:
         if not self._own:
             return Belonging.NO_LAB
         return self._of_folder(path.rpartition("/")[0])
+
+    @cached_property
+    def _labs_by_folder(self) -> Mapping[str, Sequence[str]]:
+        """The folders and archives that name a lab, by the folder that they are in."""
+        found: dict[str, list[str]] = defaultdict(list)
+        for folder in {above for path in self._folders for above in (path, *parents(path))}:
+            if folder and self._own_belonging(folder) is not Belonging.NO_LAB:
+                found[folder.rpartition("/")[0]].append(folder)
+        return found
+
+    def is_beside_archive(self, path: str) -> bool:
+        """Return whether a file of no lab, or a folder around it, is beside an archive of this lab and no other lab."""
+        if self.belonging(path) is not Belonging.NO_LAB:
+            return False
+        labs = next((self._labs_by_folder[it] for it in (*parents(path), "") if it in self._labs_by_folder), ())
+        own = (self._own_belonging(it) is Belonging.THIS_LAB and it.endswith(ARCHIVES) for it in map(str.lower, labs))
+        return bool(labs) and all(own)
 
     def around(self, path: str) -> str:
         """Return the outermost folder around a file that names a lab; empty if there is none."""

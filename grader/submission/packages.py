@@ -88,6 +88,10 @@ def why_none(packages: tuple[Package, ...], elsewhere: tuple[Package, ...], name
     names = [f"{quoted(package.name)} in {package.folder or 'the submission'}" for package in packages or elsewhere]
     there = f"; there {'are' if len(names) > 1 else 'is'} {enumerated(names, _MAX_NAMED)}"
     if packages:
+        broken = (it.manifest.refusals for it in packages if it.manifest is not None and it.manifest.refusals)
+        for problem, *_ in broken:
+            there += f"; {problem.message} (line {problem.location.line} of {problem.location.path})"
+            break
         return f"no package is named {name!r}, and none contains the graded URDF", there
     return ("no package was submitted for this lab", there) if names else (NO_PACKAGE, "")
 

@@ -1,6 +1,6 @@
 """What of a submission is graded: where its lab is searched, and which URDF and package of these files, and why."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -136,9 +136,15 @@ class _Places(NamedTuple):
 
     def only(self, tree: Tree, places: Collection[Belonging]) -> Tree:
         """Return the files that are in these places."""
-        if all(self.of(path) in places for path in (*tree.files, *tree.generated)):
-            return tree
-        return tree.only(lambda path: self.of(path) in places)
+        return _part_of(tree, lambda path: self.of(path) in places)
+
+    def own(self, tree: Tree) -> Tree:
+        """Return the files in the folders of this lab, and those beside its archives: documents may be there."""
+        return _part_of(tree, lambda path: self.of(path) is Belonging.THIS_LAB or self.labs.is_beside_archive(path))
+
+
+def _part_of(tree: Tree, belongs: Callable[[str], bool]) -> Tree:
+    return tree if all(map(belongs, (*tree.files, *tree.generated))) else tree.only(belongs)
 
 
 def _searched(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
@@ -158,7 +164,7 @@ def _searched(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     choice = UrdfSearch(tree, lab, labs, opening, every_package).choose(robots)
     places = _Places(labs, _other_lab(tree, labs, choice.path, () if has_own else roots))
     search_tree = places.only(tree, tuple(Belonging))
-    own_tree = places.only(tree, (Belonging.THIS_LAB,)) if has_own else search_tree
+    own_tree = places.own(tree) if has_own else search_tree
     of_packages = min((place for place in map(places.of, roots) if place is not None), default=None)
     packages: tuple[Package, ...] = ()
     if of_packages is not None:

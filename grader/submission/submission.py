@@ -85,13 +85,17 @@ class Submission:
     neighbours: tuple[Package, ...] = ()  # those around a URDF on its own
     besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
     reopen: "Callable[[Tree], Submission] | None" = None  # opens other files in the same way
+    # Those of its documents that were read, by the files that they are among: copies of it have them as well.
+    _documents: "dict[Tree, DocumentCollection]" = field(default_factory=dict, repr=False)
 
-    @cached_property
+    @property
     def documents(self) -> "DocumentCollection":
-        """The documents in it, each of which is read once."""
+        """The documents in it, each of which is read once, also for copies of it that lack work."""
         from grader.documents.collection import DocumentCollection  # a URDF on its own has none
 
-        return DocumentCollection(self.tree, self.opening.converted)
+        if self.tree not in self._documents:
+            self._documents[self.tree] = DocumentCollection(self.tree, self.opening.converted)
+        return self._documents[self.tree]
 
     @property
     def readable_documents(self) -> "DocumentCollection | None":

@@ -136,7 +136,9 @@ def test_a_package_is_changed_as_far_as_criteria_look(tmp_path: Path, check: str
     package = tmp_path / "ash"
     package.mkdir()
     (package / "robot.urdf").write_text(SMALL)
-    (package / "package.xml").write_text('<package format="3"><name>ash</name></package>')
+    texts = "<name>ash</name><version>0.1.0</version><description>An arm</description><license>MIT</license>"
+    person = '<maintainer email="me@example.org">Me</maintainer>'
+    (package / "package.xml").write_text(f'<package format="3">{texts}{person}</package>')
     (package / "setup.py").write_text("from setuptools import setup\nsetup(name='ash')\n")
     top = TOP.replace("birch.urdf", "ash").replace(
         'title = "An arm"', 'title = "An arm"\npackage = "ash"\nurdf = "robot.urdf"'
