@@ -20,7 +20,7 @@ from grader.xacro.expander import Refusal
 from grader.xacro.expansion import ExpandedSource
 from grader.xacro.scopes import Definition, Key, ScopePlace, UnknownName, XacroScope
 from grader.xacro.texts import Texts
-from grader.xacro.xacro_nodes import XacroNode
+from grader.xacro.xacro_nodes import XacroNode, walk
 
 _MAX_LENGTH = 2_000  # of a text that is edited in parts
 _MAX_NAMES, _MAX_NODES = 8, 2000
@@ -364,7 +364,7 @@ def _corrections(document: Source, files: Mapping[str, XacroNode], refusals: Seq
         end = markup.name_end(text, start)
         edit = document.edit(start, end, text[start:end] + _NAMESPACE)
         yield Proposal((edit,), "the prefix xacro, which is not declared")
-    nodes = [node for file in files.values() for node in islice(_walk(file), _MAX_NODES)]
+    nodes = [node for file in files.values() for node in islice(walk(file), 1, _MAX_NODES)]
     macros = {node.attributes.get("name", "") for node in nodes if node.tag == "xacro:macro"}
     for node in nodes:
         if node.tag in _PREFIXED or node.tag in macros:
@@ -388,12 +388,6 @@ def _values_of_other_calls(
         if own is not None and other is not own and other.tag == own.tag and set(lacking) <= given.keys():
             for values in ({name: given[name] for name in lacking}, _negated(given, lacking)):
                 yield Proposal(_give(place, values), f"this call gives no value for {' and '.join(values)}")
-
-
-def _walk(node: XacroNode) -> Iterator[XacroNode]:
-    for child in node.elements:
-        yield child
-        yield from _walk(child)
 
 
 def _respell(place: ScopePlace, attribute: str | None, unknown: UnknownName) -> Iterator[Edits]:

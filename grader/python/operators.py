@@ -194,10 +194,21 @@ def subscript(owner: py.Value, key: py.Value, budget: Budget) -> py.Value:
     return budget.checked(call_plain(operator.getitem, owner, key))
 
 
+def _exclusive_or(left: py.Value, right: py.Value) -> py.Value:
+    """Return left ^ right, which Python has for integers only."""
+    if isinstance(left, int) and isinstance(right, int):
+        return left ^ right
+    if isinstance(left, (*_NUMBERS, str)) and isinstance(right, (*_NUMBERS, str)):
+        kinds = f"{type(left).__name__} and {type(right).__name__}"
+        raise py.EvaluationFails(f"TypeError: no exclusive or (^) of {kinds}; power is **")
+    raise py.Undetermined("this operation is not supported")
+
+
 _CONTAINERS = (list, tuple, dict)
 _OPERATORS: dict[type[ast.operator], Callable[[py.Value, py.Value], py.Value]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
     ast.FloorDiv: operator.floordiv, ast.Mod: operator.mod, ast.Pow: operator.pow, ast.BitOr: operator.or_,
+    ast.BitXor: _exclusive_or,
 }  # fmt: skip
 _COMPARISONS: dict[type[ast.cmpop], Callable[[py.Value, py.Value], py.Value]] = {
     ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Is: operator.is_, ast.IsNot: operator.is_not,

@@ -1,20 +1,21 @@
 """Walks the elements of a xacro file and writes the expanded ones, in the order of xacro."""
 
 from collections.abc import Callable, Iterable, Mapping
+from itertools import chain
 from typing import NamedTuple
 
 from grader.problems import Kind, Problem
 from grader.python.budget import CHARACTERS, Budget, OutOfBudget
 from grader.python.values import EvaluationFails, Undetermined, Value
 from grader.source import Location
-from grader.text import quoted
+from grader.text import enumerated, quoted
 from grader.xacro import xacro_problems
 from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions, read_yaml_values
 from grader.xacro.macros import MacroError
 from grader.xacro.scopes import Reported, ScopePlace, UnknownName, XacroFails, XacroScope
 from grader.xacro.texts import Texts
-from grader.xacro.xacro_nodes import XacroNode
+from grader.xacro.xacro_nodes import XacroNode, walk
 
 
 class Misspelt(NamedTuple):
@@ -93,6 +94,18 @@ _KINDS: Mapping[type[EvaluationFails], Kind] = {
 }
 
 
+# The attributes that xacro knows of each tag; of others it warns.
+_ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
+    "xacro:property": ("name", "value", "default", "remove", "scope", "lazy_eval"),
+    "xacro:macro": ("name", "params"),
+    "xacro:insert_block": ("name",),
+    "xacro:if": ("value",),
+    "xacro:unless": ("value",),
+    "xacro:arg": ("name", "default"),
+    "xacro:include": ("filename", "ns", "optional"),
+}
+
+
 class Expander:
     """The state of one expansion. `calls` are the macro calls around the current place."""
 
@@ -109,11 +122,16 @@ class Expander:
         self.files = files
         self.budget = budget
         # `texts` is set below, so that the lambda is needed.
-        own = document_functions(self._load_yaml, lambda name: self.texts.argument(name))  # noqa: PLW0108
+        own = document_functions(
+            self._load_yaml,
+            lambda name: self.texts.argument(name),  # noqa: PLW0108
+            lambda name: self.texts.note(name),  # noqa: PLW0108
+        )
         self.texts = Texts(dict(arguments), self.budget, self.report, own, files.has_package)
         self.texts.respelt, self._respelling = respelling.names, respelling
         self.own_tags = [tag.removeprefix("xacro:") for tag in handlers]
         self.problems: list[Problem] = []
+        self.warnings: list[Problem] = []  # what xacro writes to stderr, and notes
         self.misspelt: list[Misspelt] = []
         self.undetermined: list[Open] = []
         self.refused: list[Refusal] = []  # what may be corrected, and where
@@ -135,6 +153,7 @@ class Expander:
         except OutOfBudget as error:
             out.open = self.report(error, self._stopped or source.place)
         self._is_expanded = True
+        self._warn_of_names()
         return out
 
     def content(self, source: XacroNode, out: XacroNode, scopes: Scopes) -> None:
@@ -209,6 +228,37 @@ class Expander:
                 self.misspelt.append(Misspelt(error.unknown, place, location))
         return ""
 
+    def warn(self, kind: Kind, message: str, place: ScopePlace, attribute: str | None = None) -> None:
+        """List something that xacro expands, and warns of."""
+        if self._is_new(message, place, attribute):
+            self.warnings.append(Problem(kind, message, self._place(place).at(attribute)))
+
+    def _warn_of_names(self) -> None:
+        """List the functions that wrote to stderr, the names of xacro that got other values, and each use of ^."""
+        for name, place, attribute in self.texts.redefined.values():
+            message = f"{quoted(name)} is a name of xacro's own, which warns of another value: choose another name"
+            self.warn(xacro_problems.XACRO_REDEFINED, message, place, attribute)
+        for name, expression in self.texts.noted:
+            at = self._where(expression)
+            if name == "^":
+                kind, message = xacro_problems.XACRO_CARET, "^ is exclusive or in Python; power is **"
+            elif name.startswith("xacro."):
+                kind, message = xacro_problems.XACRO_MESSAGE, f"{name}() writes a message to stderr"
+            else:
+                full = f"{'python' if name in ('sorted', 'range') else 'xacro'}.{name}"
+                kind, message = xacro_problems.XACRO_DEPRECATED, f"xacro warns of {name}(): write {full}()"
+            self.warn(kind, message, *at)
+
+    def _where(self, expression: str) -> tuple[ScopePlace, str | None]:
+        """Return the first element that has an expression, and the attribute that it is in."""
+        for node in chain.from_iterable(map(walk, self.files.documents.values())):
+            for attribute, text in node.attributes.items():
+                if expression in text:
+                    return node.place, attribute
+            if any(isinstance(child, str) and expression in child for child in node.children):
+                return node.place, None
+        return next(iter(self.files.documents.values())).place, None
+
     def _is_new(self, message: str, place: ScopePlace, attribute: str | None) -> bool:
         """Return whether something is to be listed: once for each place in the source, for all calls of a macro."""
         known = len(self._listed)
@@ -224,7 +274,12 @@ class Expander:
         if node.tag.startswith("xacro:"):
             node = self._respelling.element(node)
             self.budget.charge(len(node.attributes), sum(map(len, node.attributes.values())))
+            unknown = node.attributes.keys() - _ATTRIBUTES.get(node.tag, node.attributes.keys())
             self._handlers.get(node.tag, self._other)(self, node, out, scopes)
+            if unknown:
+                named = enumerated([quoted(name) for name in node.attributes if name in unknown], 3)
+                message = f"<{node.tag}> has no attribute {named}; xacro warns of it"
+                self.warn(xacro_problems.XACRO_ATTRIBUTE, message, node.place, min(unknown))
         else:
             new = self.start(node, scopes)
             out.children.append(new)

@@ -108,6 +108,7 @@ class _Expansion(NamedTuple):
     is_meant: bool = False
     assumed: tuple[Problem, ...] = ()
     meant: "_Expansion | None" = None
+    warnings: tuple[Problem, ...] = ()  # what xacro writes to stderr, and notes
 
     @property
     def document(self) -> XmlDocument:
@@ -115,7 +116,7 @@ class _Expansion(NamedTuple):
         undetermined = [
             Problem(xacro_problems.XACRO_UNDETERMINED, found.reason, found.location) for found in self.undetermined
         ]
-        problems = [*self.problems, *undetermined]
+        problems = [*self.problems, *undetermined, *self.warnings]
         found = XmlDocument(self.root, self.source, problems, 0, self.unresolved, is_expanded=True)
         return found._replace(recovered=self.recovered, is_meant=self.is_meant)
 
@@ -167,6 +168,7 @@ def _expand(
         unresolved,
         element if is_recovered else None,
         is_meant=not expander.problems,
+        warnings=tuple(expander.warnings),
     )
     return expansion, expander
 

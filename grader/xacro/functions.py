@@ -21,7 +21,7 @@ from grader.python.values import (
     str_of,
 )
 
-_OLD_BUILTINS = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")
+_OLD_BUILTINS = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round")
 _NOT_IN_XACRO = ("iter", "next")
 _PLAIN_SEPARATORS = re.compile(r"[^\]\[\\^-]+")
 _OF_EVENT = 10  # what a part of the file is charged
@@ -58,11 +58,28 @@ def _dot(value: Value) -> Value:
     return [_dot(item) for item in value] if isinstance(value, list) else value
 
 
-def document_functions(load_yaml: Callable[[Value], Value], argument: Callable[[str], str]) -> dict[str, Value]:
-    """Return the functions that need the document: those of the namespace xacro, and the old ones outside of it."""
-    load = PlainFunction("load_yaml", load_yaml)
-    own = {**_XACRO, "load_yaml": load, "arg": PlainFunction("arg", argument)}
-    return {"xacro": namespace("xacro", own), "load_yaml": load}
+def document_functions(
+    load_yaml: Callable[[Value], Value], argument: Callable[[str], str], note: Callable[[str], object]
+) -> dict[str, Value]:
+    """Return the functions that need the document: those of the namespace xacro, and the old ones outside of it.
+
+    `note` is called with the full name of each function that writes to stderr when it is called.
+    """
+    own = {**_XACRO, "load_yaml": PlainFunction("load_yaml", load_yaml), "arg": PlainFunction("arg", argument)}
+    old = {name: own[name] for name in ("load_yaml", "abs_filename", "dotify")}
+    old |= {name: BUILTINS[name] for name in ("sorted", "range")}
+    own |= {name: _noted(f"xacro.{name}", own[name], note) for name in _MESSAGES}
+    return {"xacro": namespace("xacro", own), **{name: _noted(name, it, note) for name, it in old.items()}}
+
+
+def _noted(name: str, function: PlainFunction, note: Callable[[str], object]) -> PlainFunction:
+    """Return a function that notes each call of itself."""
+
+    def run(*args: Value, **kwargs: Value) -> Value:
+        note(name)
+        return function.run(*args, **kwargs)
+
+    return PlainFunction(function.name, run, function.kind, function.own)
 
 
 def _tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
@@ -80,8 +97,9 @@ def _no_path(*_: Value) -> Value:
     raise Undetermined("an absolute path is known only at run time")
 
 
-_XACRO: dict[str, Value] = {
-    **{name: PlainFunction(name, lambda *_, **__: "") for name in ("message", "warning", "error", "print_location")},
+_MESSAGES = ("message", "warning", "error", "print_location")
+_XACRO: dict[str, PlainFunction] = {
+    **{name: PlainFunction(name, lambda *_, **__: "") for name in _MESSAGES},
     "fatal": PlainFunction("fatal", _fatal),
     "tokenize": PlainFunction("tokenize", _tokenize),
     "dotify": PlainFunction("dotify", _dotify),
@@ -92,8 +110,6 @@ GLOBALS: Mapping[str, Value] = {
     **{name: BUILTINS[name] for name in _OLD_BUILTINS},
     "python": namespace("python", {name: it for name, it in BUILTINS.items() if name not in _NOT_IN_XACRO}),
     "math": namespace("math", MATH),
-    "dotify": _XACRO["dotify"],
-    "abs_filename": _XACRO["abs_filename"],
 }
 
 

@@ -9,10 +9,9 @@ from grader.python.values import EvaluationFails, Undetermined
 from grader.xacro.macros import read_parameters
 from grader.xacro.scopes import ScopePlace
 from grader.xacro.tags import HANDLERS
-from grader.xacro.texts import PIECE
-from grader.xacro.xacro_nodes import XacroNode
+from grader.xacro.texts import PIECE, TEXT_IN_QUOTES
+from grader.xacro.xacro_nodes import XacroNode, walk
 
-_STRING = re.compile(r"'[^']*'|\"[^\"]*\"")
 _NAME = re.compile(r"(?<![\w.])[^\W\d]\w*+(?:\.[^\W\d]\w*+)*+(?!\s*=[^=])")
 
 Definitions = dict[str, list[ScopePlace]]
@@ -39,13 +38,15 @@ class Inventory:
 
 def take_inventory(documents: Iterable[XacroNode], budget: Budget) -> Inventory:
     """Return what files define and use; a macro's parameter is no use of a property of its name. Raises OutOfBudget."""
-    found = Inventory()
-    waiting = [(root, frozenset[str]()) for root in reversed([*documents])]
+    found, roots = Inventory(), [*documents]
+    namespaces = {node.attributes.get("ns") for root in roots for node in walk(root) if node.tag == "xacro:include"}
+    waiting = [(root, frozenset[str]()) for root in reversed(roots)]
     while waiting:
         node, hidden = waiting.pop()
         own = _note_tag(node, found)
         texts = [*node.attributes.values(), *(child for child in node.children if isinstance(child, str))]
-        names = {name for text in texts for name in _names_in(text)}
+        dotted = {name.partition(".") for text in texts for name in _names_in(text)}
+        names = {other if first in namespaces else first for first, _, other in dotted}
         found.used.update(names - hidden - {own})
         if node.tag == "xacro:macro":
             hidden |= _parameters(node, found, budget)
@@ -88,11 +89,11 @@ def _parameters(node: XacroNode, found: Inventory, budget: Budget) -> frozenset[
 
 
 def _names_in(text: str) -> Iterator[str]:
-    """Yield the names in the expressions of a text: the first of a dotted name."""
+    """Yield the names in the expressions of a text, with dots."""
     position = text.find("$")
     while position >= 0 and (piece := PIECE.match(text, position)) is not None:
         position = piece.end()
         if piece["substitution"] is not None:
             yield from _names_in(piece["substitution"])
-        for found in _NAME.finditer(_STRING.sub("''", piece["expression"] or "")):
-            yield found[0].partition(".")[0]
+        for found in _NAME.finditer(TEXT_IN_QUOTES.sub("''", piece["expression"] or "")):
+            yield found[0]

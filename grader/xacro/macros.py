@@ -75,13 +75,6 @@ def read_parameters(text: str, budget: Budget) -> tuple[_MacroParameter, ...]:
     return tuple(defaults.get(parameter.name, parameter) for parameter in parameters)
 
 
-def find_macro(name: str, macros: XacroScope) -> Macro | None:
-    """Return the macro of a name."""
-    holder = macros.holder(name)
-    macro = holder.properties[name].value if holder is not None else None
-    return macro if isinstance(macro, Macro) else None
-
-
 def bind_values(
     macro: Macro, call: XacroNode, caller: XacroScope, inner: XacroScope, texts: Texts
 ) -> list[_MacroParameter]:
@@ -95,6 +88,7 @@ def bind_values(
             meant = near(name, known.keys() - call.attributes.keys())
             raise MacroError(message, UnknownName(name, known, "parameter", meant))
         del left[first[name]]
+        texts.check_name(name, macro.body.place, "params")
         texts.bind(inner, name, text, caller, call.place, name)
     return list(left.values())
 
@@ -126,8 +120,10 @@ def bind_defaults(
         if parameter.is_forwarded and texts.is_bound(parameter.name, caller):
             holder = caller.holder(parameter.name)
             definition = holder.properties[parameter.name].definition if holder is not None else None
+            texts.check_name(parameter.name, macro.body.place, "params")
             inner.bind(parameter.name, texts.find(parameter.name, caller), definition=definition)
         elif parameter.default is not None:
+            texts.check_name(parameter.name, macro.body.place, "params")
             texts.bind(inner, parameter.name, parameter.default, caller, macro.body.place, "params")
         else:
             missing.append(parameter.name)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 from grader.names import MAX_LENGTH
-from grader.python.values import EvaluationFails, Undetermined, Value
+from grader.python.values import EvaluationFails, Namespace, Undetermined, Value
 from grader.source import Location, Source
 
 # What a scope needs to evaluate a text in it, and to report that xacro refuses one, or that it cannot be determined.
@@ -94,12 +94,36 @@ class _Property:
         self.failure: EvaluationFails | Undetermined | None = None
 
 
+class IncludedNames(Namespace):
+    """The properties of an included file with a namespace."""
+
+    __slots__ = ("scope",)
+
+    def __init__(self, name: str, find: Callable[[str], Value], scope: "XacroScope") -> None:
+        super().__init__(name, find)
+        self.scope = scope
+
+
 class XacroScope:
     """The names of one macro call or the whole document."""
 
-    def __init__(self, parent: "XacroScope | None" = None) -> None:
-        self.parent = parent
+    def __init__(self, parent: "XacroScope | None" = None, *, is_namespace: bool = False) -> None:
+        """`is_namespace`: whether they are those of an included file with a namespace."""
+        self.parent, self.is_namespace = parent, is_namespace
         self.properties: dict[str, _Property] = {}
+
+    @property
+    def caller(self) -> "XacroScope | None":
+        """The scope that the scope parent means: around a macro, the namespace that it is defined in does not count."""
+        scope = self.parent
+        while not self.is_namespace and scope is not None and scope.is_namespace:
+            scope = scope.parent
+        return scope
+
+    def bound(self, name: str) -> Value | None:
+        """Return what a name stands for without evaluating it; None if nothing binds it."""
+        holder = self.holder(name)
+        return holder.properties[name].value if holder is not None else None
 
     @property
     def top(self) -> "XacroScope":

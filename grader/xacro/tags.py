@@ -6,6 +6,7 @@ from keyword import iskeyword
 
 from grader.names import near
 from grader.python.values import Undetermined, Value
+from grader.xacro import xacro_problems
 from grader.xacro.expander import Expander, Handler, Scopes, TagFails
 from grader.xacro.files import FileFails
 from grader.xacro.macros import (
@@ -14,10 +15,9 @@ from grader.xacro.macros import (
     bind_blocks,
     bind_defaults,
     bind_values,
-    find_macro,
     read_parameters,
 )
-from grader.xacro.scopes import BOOLEANS, Definition, Reported, UnknownName, XacroScope
+from grader.xacro.scopes import BOOLEANS, Definition, IncludedNames, Reported, UnknownName, XacroScope
 from grader.xacro.xacro_nodes import XacroNode
 
 _MAX_CALLS = 100  # macros that call each other
@@ -41,9 +41,13 @@ def _renamed(node: XacroNode, tag: str, without: str) -> XacroNode:
 
 def _define_macro(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes) -> None:
     """Bind a macro to its name; <xacro:macro> itself writes nothing."""
-    name = _needed(node, "name").removeprefix("xacro:")
+    written = _needed(node, "name")
+    name = written.removeprefix("xacro:")
     if name == "call" or "." in name:
         raise TagFails(f"a macro cannot have the name {name}")
+    if name != written:
+        message = f"the macro is called {name}: write its name without xacro:"
+        expander.warn(xacro_problems.XACRO_PREFIXED, message, node.place, "name")
     macro = Macro(name, node, read_parameters(node.attributes.get("params", ""), expander.budget))
     scopes.macros.bind(name, macro, definition=Definition(name, "", node.place, "name", scopes.symbols))
 
@@ -61,7 +65,7 @@ def _call_dynamically(expander: Expander, node: XacroNode, out: XacroNode, scope
 
 
 def _call_by_name(expander: Expander, name: str, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
-    macro = find_macro(name, scopes.macros)
+    macro, around = _find_macro(name, scopes)
     if macro is None:
         if expander.texts.names_open is not None:
             raise expander.texts.names_open.with_traceback(None)
@@ -69,7 +73,7 @@ def _call_by_name(expander: Expander, name: str, node: XacroNode, out: XacroNode
     if len(expander.calls) >= _MAX_CALLS:
         raise Undetermined(f"macros call each other more than {_MAX_CALLS} deep")
     expander.budget.charge(len(macro.parameters))
-    inner = Scopes(XacroScope(scopes.macros), XacroScope(scopes.symbols))
+    inner = Scopes(XacroScope(around.macros), XacroScope(around.symbols))
     left = bind_values(macro, node, scopes.symbols, inner.symbols, expander.texts)
     given = XacroNode(node.tag, node.place)
     expander.content(node, given, scopes)
@@ -85,6 +89,20 @@ def _call_by_name(expander: Expander, name: str, node: XacroNode, out: XacroNode
         expander.insert(macro.body, out, inner)
     finally:
         expander.calls = before
+
+
+def _find_macro(name: str, scopes: Scopes) -> tuple[Macro | None, Scopes]:
+    """Return the macro of a name, perhaps in namespaces (arms.left), and the scopes that its body is evaluated in."""
+    macro = scopes.macros.bound(name)
+    if macro is None:
+        *namespaces, name = name.split(".")
+        for namespace in namespaces:
+            macros, names = scopes.macros.bound(namespace), scopes.symbols.bound(namespace)
+            if not isinstance(macros, XacroScope) or not isinstance(names, IncludedNames):
+                return None, scopes
+            scopes = Scopes(macros, names.scope)
+        macro = scopes.macros.bound(name)
+    return macro if isinstance(macro, Macro) else None, scopes
 
 
 def _insert_block(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
@@ -134,10 +152,14 @@ def _property(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes)
     symbols, texts, given = scopes.symbols, expander.texts, node.attributes
     name = _property_name(texts.text(_needed(node, "name"), symbols))
     is_removed = _flag(node, "remove", "false", expander, scopes)
+    if "default" in given and "scope" in given:
+        message = "xacro warns that a property with default has the scope local only"
+        expander.warn(xacro_problems.XACRO_ATTRIBUTE, message, node.place, "scope")
     ways = [key for key in ("value", "default") if key in given]
     if len(ways) > 1 or (ways and is_removed):
         raise TagFails(f"the property {name} has more than one of value, default and remove")
     if is_removed and texts.is_bound(name, symbols):
+        texts.check_name(name, node.place)
         symbols.remove(name)
         return
     if "default" in given and texts.is_bound(name, symbols):
@@ -149,6 +171,7 @@ def _property(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes)
         name, value = f"**{name}", node
     is_lazy = _flag(node, "lazy_eval", "true", expander, scopes) and given.get("scope") not in ("global", "parent")
     target = _target(given.get("scope"), name, symbols)
+    texts.check_name(name, node.place)
     if is_lazy or text is None:
         definition = Definition(name, text, node.place, attribute, target) if text is not None else None
         target.bind(name, value, is_lazy=True, definition=definition)
@@ -170,9 +193,9 @@ def _target(scope: str | None, name: str, symbols: XacroScope) -> XacroScope:
         return symbols.top
     if scope != "parent":
         return symbols
-    if symbols.parent is None:
+    if symbols.caller is None:
         raise TagFails(f"the property {name} has the scope parent, but is outside of every macro")
-    return symbols.parent
+    return symbols.caller
 
 
 def _if(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
@@ -208,14 +231,18 @@ def _check_name(name: Value, node: XacroNode, expander: Expander) -> None:
 
 def _include(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
     texts = expander.texts
+    if node.elements:
+        message = "xacro ignores the elements inside <xacro:include>"
+        expander.warn(xacro_problems.XACRO_CHILDREN, message, node.place)
     if node.attributes.get("ns"):
-        texts.names_open = Undetermined("an included file with a namespace is not supported")
-        raise texts.names_open
+        inner = _namespace(expander, texts.text(node.attributes["ns"], scopes.symbols), scopes, node)
+    else:
+        inner = scopes
     optional = node.attributes.get("optional")
     is_optional = optional is not None and _boolean(optional, optional)
     try:
         path = expander.files.path(texts.text(_needed(node, "filename"), scopes.symbols))
-        _insert_file(expander, path, out, scopes)
+        _insert_file(expander, path, out, inner)
         expander.files.followed.setdefault((node.place.source.path, node.place.tag), []).append(path)
     except FileFails as error:
         if is_optional:
@@ -226,6 +253,24 @@ def _include(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes
         if not isinstance(texts.names_open, Undetermined):
             texts.names_open = error
         raise
+
+
+_OF_XACRO = frozenset(("parent", "root", "depth", "unevaluated", "recursive", "top"))  # attributes of its scopes
+
+
+def _namespace(expander: Expander, name: str, scopes: Scopes, node: XacroNode) -> Scopes:
+    """Return the scopes of an included file with a namespace, which `name` stands for: it sees no macros around."""
+
+    def find(wanted: str) -> Value:
+        if wanted in _OF_XACRO:
+            raise Undetermined(f"{name}.{wanted} is not supported")
+        return expander.texts.find(wanted, inner.symbols)
+
+    inner = Scopes(XacroScope(is_namespace=True), XacroScope(scopes.symbols, is_namespace=True))
+    scopes.macros.bind(name, inner.macros)
+    expander.texts.check_name(name, node.place)
+    scopes.symbols.bind(name, IncludedNames(name, find, inner.symbols))
+    return inner
 
 
 def _insert_file(expander: Expander, path: str, out: XacroNode, scopes: Scopes) -> None:

@@ -30,6 +30,7 @@ PIECE = re.compile(
     """,
     re.VERBOSE,
 )
+TEXT_IN_QUOTES = re.compile(r"'[^']*'|\"[^\"]*\"")
 _NESTED_FIND = re.compile(r"\$\(find +([^\s()$]+) *\)")
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _OF_PIECE, _OF_NAME = 2, 20  # what a part of a text, and comparing a name with another one, are charged
@@ -56,6 +57,9 @@ class Texts:
         self._is_own = is_own
         self._report = report
         self._globals = {**GLOBALS, **own}
+        self.noted: dict[tuple[str, str], None] = {}  # functions that write to stderr, and ^, each with the expression
+        self.redefined: dict[object, tuple[str, ScopePlace, str]] = {}  # names of xacro's own that get another value
+        self._expression = ""  # that is evaluated
         self.respelt: Mapping[str, str] = {}  # names in expressions, and the names that they are read as
         # What is said of a name, and the name that it stands for, by this name and those that are known.
         self._similar: dict[tuple[str, ...], tuple[str, str | None]] = {}
@@ -117,6 +121,15 @@ class Texts:
         guess, meant = self._similar[key]
         return f"there is no {kind} {name[:_MAX_SHOWN]} at this place{guess}", UnknownName(name, known, kind, meant)
 
+    def note(self, name: str) -> None:
+        """Note that the expression that is evaluated calls a function that writes to stderr."""
+        self.noted[name, self._expression] = None
+
+    def check_name(self, name: str, place: ScopePlace, attribute: str = "name") -> None:
+        """Note that a name gets a value, of which xacro warns if it has one of its own."""
+        if name in self._globals:
+            self.redefined[name, place.source.path, place.tag] = name, place, attribute
+
     def is_bound(self, name: str, scope: XacroScope) -> bool:
         """Return whether a name has a value in a scope."""
         return scope.holder(name) is not None or name in self._globals
@@ -151,7 +164,14 @@ class Texts:
         expression = self.text(piece["expression"], scope).strip()
         if expression.isidentifier() and not iskeyword(expression) and not expression.startswith("__"):
             return self.find(expression, scope)
-        return evaluate(expression, lambda name: self.find(name, scope), self._budget)
+        around, self._expression = self._expression, expression
+        try:
+            value = evaluate(expression, lambda name: self.find(name, scope), self._budget)
+        finally:
+            self._expression = around
+        if "^" in expression and "^" in TEXT_IN_QUOTES.sub("", expression):
+            self.noted["^", expression] = None
+        return value
 
     def _substitution(self, text: str) -> str:
         """Return what $(...) gives."""

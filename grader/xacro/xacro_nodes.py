@@ -1,6 +1,7 @@
 """The elements of a xacro file before and after expansion, each with the place in the source that it came from."""
 
 import re
+from collections.abc import Iterator
 
 from grader.problems import Problem
 from grader.python.budget import Budget
@@ -47,6 +48,15 @@ class XacroNode:
     def elements(self) -> "list[XacroNode]":
         """The children that are elements."""
         return [child for child in self.children if isinstance(child, XacroNode)]
+
+
+def walk(node: XacroNode) -> Iterator[XacroNode]:
+    """Yield an element and all in it, in the order of the text."""
+    waiting = [node]
+    while waiting:
+        found = waiting.pop()
+        yield found
+        waiting += reversed(found.elements)
 
 
 def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = False) -> XacroNode:

@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from grader.problems import Kind, kinds_in, rejects
+from grader.problems import Kind, kinds_in, notes, rejects, warns
 
 _stops = partial(rejects, is_before_ros=True)
 
@@ -14,5 +14,16 @@ XACRO_TAG = _stops("XACRO005", "A xacro tag that xacro refuses")
 XACRO_UNDETERMINED = Kind(
     "XACRO006", "xacro that cannot be determined statically", severity="warning", effect="undetermined"
 )
+# xacro writes these to stderr, and expands the file all the same.
+XACRO_REDEFINED = warns("XACRO007", "A name of xacro's own that gets another value")
+XACRO_DEPRECATED = warns("XACRO008", "A function that is called without its namespace")
+XACRO_PREFIXED = warns("XACRO009", "A macro whose name begins with xacro:")
+XACRO_ATTRIBUTE = warns("XACRO010", "An attribute that a xacro tag does not have")
+XACRO_CHILDREN = warns("XACRO011", "Elements inside an include")
+XACRO_MESSAGE = warns("XACRO012", "A message that the file lets xacro write")
+WRITTEN_TO_STDERR = frozenset(
+    {XACRO_REDEFINED, XACRO_DEPRECATED, XACRO_PREFIXED, XACRO_ATTRIBUTE, XACRO_CHILDREN, XACRO_MESSAGE}
+)
+XACRO_CARET = notes("XACRO013", "An exclusive or where a power may be meant")
 
 XACRO_CATALOGUE = kinds_in(globals().values())

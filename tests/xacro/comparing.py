@@ -10,6 +10,7 @@ from lxml import etree
 from grader.errors import InputError
 from grader.python.budget import READING, Budget
 from grader.robot.reader import read_urdf
+from grader.xacro.xacro_problems import WRITTEN_TO_STDERR
 from grader.xml.xml_problems import MISPLACED_DECLARATION
 from tests.xacro import oracle
 from tests.xacro.documents.document import PACKAGES, Document
@@ -70,6 +71,9 @@ def difference(document: Document, expected: oracle.Accepted | oracle.Refused) -
         return None if refusals else f"xacro refuses it, the grader does not: {expected.message}"
     if reasons:
         return f"xacro accepts it, the grader cannot determine it: {reasons[0]}"
+    warned = [problem.message for problem in found.warnings if problem.kind in WRITTEN_TO_STDERR]
+    if bool(warned) != expected.has_warned:
+        return f"xacro writes to stderr: {expected.has_warned}, the grader says: {warned}"
     text = etree.tostring(found.root, encoding="utf-8", with_tail=False)
     for name, folder in PACKAGES.items():
         text = text.replace(f"/install/{name}/share/{name}".encode(), f"/{folder}".rstrip("/").encode())

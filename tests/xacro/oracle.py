@@ -19,9 +19,10 @@ from tests.xacro.documents.document import PACKAGES, Document
 
 
 class Accepted(NamedTuple):
-    """The text that xacro writes."""
+    """The text that xacro writes, and whether it writes something to stderr, at which a launch file stops."""
 
     text: str
+    has_warned: bool = False
 
 
 class Refused(NamedTuple):
@@ -42,21 +43,25 @@ def expand(document: Document) -> Accepted | Refused:
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(content if isinstance(content, bytes) else content.encode())
         try:
-            text = _process(folder, document)
+            text, has_warned = _process(folder, document)
             etree.fromstring(text.encode())
         except Exception as error:  # noqa: BLE001 - `ros2 run xacro` ends with an error whatever it is
             return Refused(f"{type(error).__name__}: {error}".replace(str(folder), ""))
-        return Accepted(text.replace(str(folder), ""))
+        return Accepted(text.replace(str(folder), ""), has_warned)
 
 
-def _process(folder: Path, document: Document) -> str:
-    """Return what `ros2 run xacro` writes on its standard output, without the white space that it adds."""
+def _process(folder: Path, document: Document) -> tuple[str, bool]:
+    """Return what `ros2 run xacro` writes on its standard output, without the white space that it adds.
+
+    The second value is whether it writes something to stderr.
+    """
     xacro: Any = pytest.importorskip("xacro")
     pytest.importorskip("xacro.substitution_args")  # xacro imports it when it is first needed
-    with _fresh(xacro), _packages(xacro, folder), redirect_stderr(io.StringIO()), redirect_stdout(io.StringIO()):
+    errors = io.StringIO()
+    with _fresh(xacro), _packages(xacro, folder), redirect_stderr(errors), redirect_stdout(io.StringIO()):
         result = xacro.process_file(str(folder / document.path), mappings=dict(document.arguments), verbosity=0)
         text: str = result.toxml()
-    return text
+    return text, bool(errors.getvalue())
 
 
 @contextmanager

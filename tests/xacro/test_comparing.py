@@ -6,6 +6,9 @@ from typing import Any
 import pytest
 from lxml import etree
 
+from grader.problems import Problem
+from grader.source import Location
+from grader.xacro.xacro_problems import XACRO_REDEFINED
 from tests.xacro import comparing
 from tests.xacro.documents.document import Dependence, Document, robot
 from tests.xacro.oracle import Accepted, Refused
@@ -23,12 +26,13 @@ def difference(
     *,
     effect: str = "",
     reason: str = "",
+    warned: tuple[Problem, ...] = (),
     undetermined: Dependence = "never",
 ) -> str | None:
     """Return the difference of xacro's result and an expansion with this text, problem and reason."""
     problems = [SimpleNamespace(message="refused", kind=SimpleNamespace(effect=effect))] if effect else []
     reasons = [SimpleNamespace(reason=reason)] if reason else []
-    found: Any = SimpleNamespace(root=etree.fromstring(text), problems=problems, undetermined=reasons)
+    found: Any = SimpleNamespace(root=etree.fromstring(text), problems=problems, undetermined=reasons, warnings=warned)
     monkeypatch.setattr(comparing, "expand", lambda _document: found)
     return comparing.difference(Document(robot(""), undetermined=undetermined), expected)
 
@@ -48,6 +52,14 @@ def test_what_xacro_accepts(monkeypatch: pytest.MonkeyPatch) -> None:
     ):
         text = _ACCEPTED.text.replace(old, new)
         assert difference(monkeypatch, _ACCEPTED, text) is not None, new
+
+
+def test_what_xacro_warns_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What xacro writes to stderr is a warning, and nothing else is."""
+    warned = (Problem(XACRO_REDEFINED, "pi", Location("a.xacro", 1, 1)),)
+    assert difference(monkeypatch, _ACCEPTED._replace(has_warned=True), warned=warned) is None
+    assert "stderr" in str(difference(monkeypatch, _ACCEPTED._replace(has_warned=True)))
+    assert "stderr" in str(difference(monkeypatch, _ACCEPTED, warned=warned))
 
 
 def test_what_xacro_refuses(monkeypatch: pytest.MonkeyPatch) -> None:
