@@ -160,7 +160,9 @@ def _as_turning(robot: Configuration, link: str) -> Configuration:
     joint = robot.parent_joints.get(link)
     if joint is None:
         return robot
-    joints = (replace(other, type="continuous") if other is joint else other for other in robot.known.joints)
+    known = {key: part for key, part in joint.unresolved.items() if key != "@type"}
+    turning = replace(joint.known, type="continuous", unresolved=known)
+    joints = (turning if other is joint.known else other for other in robot.known.joints)
     return Configuration(replace(robot.known, joints=tuple(joints)), robot.positions, is_guarded=robot.is_guarded)
 
 
