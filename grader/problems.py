@@ -32,7 +32,7 @@ class Problem(NamedTuple):
     kind: Kind
     message: str  # a sentence
     location: Location
-    subject: str = ""  # the link that loses content with it, if one does
+    subject: str = ""  # what it is about: the link that loses content with it, a tag, or a few words
 
     @property
     def code(self) -> str:

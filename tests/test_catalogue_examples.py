@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from grader.checks.manual import MANUAL_CHECKS
+from grader.checks.meshes import mesh_problems
 from grader.checks.registry import own_checks
 from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric
@@ -32,7 +33,7 @@ SIDES = pytest.mark.parametrize("side", ["wrong", "right"])
 ALSO = {
     "URDF001": "URDF015", "URDF002": "URDF015", "URDF010": "URDF041", "URDF011": "URDF009", "URDF015": "URDF002",
     "URDF031": "URDF071 URDF015", "URDF061": "URDF015", "URDF071": "URDF015", "URDF041": "URDF091", "URDF043": "URDF062", "URDF070": "URDF080", "URDF082": "URDF084",
-    "URDF085": "URDF084", "URDF099": "URDF031",
+    "URDF085": "URDF084", "URDF095": "URDF009", "URDF099": "URDF031",
 }  # fmt: skip
 FOLDERS = {".urdf": "urdf", ".xacro": "urdf", ".rviz": "rviz"}
 WHEEL = """\
@@ -123,6 +124,7 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
         files, lines = files_of(code, side)
         submission = opened(tmp_path / side, files)
         found = list(submission.urdf.problems) if isinstance(submission.urdf, Read) else []
+        found += mesh_problems(submission, submission.urdf) if isinstance(submission.urdf, Read) else []
         found += package_problems(submission.package) if submission.package else []
         if side == "right":
             assert found == []

@@ -6,15 +6,29 @@
 import posixpath
 import re
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from typing import NamedTuple
 
 from grader.checks.check import About
-from grader.checks.outcome import SLACK, Outcome, failed, in_degrees, measured_point, passed, pending, place
+from grader.checks.outcome import (
+    SLACK,
+    Outcome,
+    failed,
+    in_degrees,
+    location_of,
+    measured_point,
+    passed,
+    pending,
+    place,
+)
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import file_name, shape_name, visual_pose, visuals
 from grader.errors import MissingElement, NotDecided
 from grader.names import closest
+from grader.package.launch.places import is_of_one_machine
 from grader.package.package import Package
+from grader.package.package_problems import MESH_PATH
+from grader.problems import Problem
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Mesh, Visual
 from grader.robot.shapes import turn_between
@@ -31,6 +45,8 @@ _SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):(//)?(.*)", re.DOTALL)  # one l
 _ABSOLUTE = re.compile(r"[/~\\]|[A-Za-z]:")
 _ONE_MACHINE = "exists on one machine only; use package://"
 _BACKSLASH = "has a \\ in its path; separate folders by /"
+
+_MAX_WARNED = 20  # meshes of one file
 
 _BEST_FIRST = ("passed", "pending", "failed")
 
@@ -149,7 +165,8 @@ def _examine_mesh(robot: Configuration, submission: Submission, it: _ShownMesh, 
     wrong = [(f"the mesh of {it.link!r} {fault}", place(it.mesh.location, "filename"))] if fault else []
     wrong += _pose_differences(robot, it, wanted)
     if wrong:
-        return failed("; ".join(text for text, _ in wrong), wrong[0][1], detail=f" (mesh {name})")
+        problem = _problem_text(it.link, it.file, fault) if fault else ""
+        return failed("; ".join(text for text, _ in wrong), wrong[0][1], detail=f" (mesh {name})", problem=problem)
     if doubt:
         text = f"whether ROS 2 finds the mesh {name} of {it.link!r} cannot be determined: {doubt}; needs manual grading"
         return pending(text, cause)
@@ -210,6 +227,41 @@ def mesh_file(filename: str, *, is_expanded: bool = False) -> _MeshFile:
     else:
         fault, doubt = "", f"it is at a {scheme}:// path, which not every program finds"
     return _MeshFile(filename, rest, "", fault, doubt)
+
+
+def mesh_problems(submission: Submission, urdf: Read) -> Iterator[Problem]:
+    """Yield a warning for each mesh that RViz certainly does not find on another machine, or after a build.
+
+    A file of a package that was not submitted may be installed, and so may a file:// path outside of home folders.
+    """
+    links = urdf.loaded.robot.links if urdf.loaded.robot is not None else ()
+    shapes = [(link, visual.geometry) for link in links for visual in link.visuals]
+    shapes += [(link, collision.geometry) for link in links for collision in link.collisions]
+    found = {shape.filename: (link, shape) for link, shape in shapes if isinstance(shape, Mesh)}
+    for name, (link, mesh) in islice(found.items(), _MAX_WARNED):
+        file = mesh_file(name, is_expanded=urdf.is_expanded)
+        at = location_of(place(mesh.location, "filename"))
+        fault = _sure_fault(file, submission)
+        if fault and at is not None and "$" not in name:
+            yield Problem(MESH_PATH, _problem_text(link.name, file, fault), at)
+
+
+def _problem_text(link: str, file: _MeshFile, fault: str) -> str:
+    return f"the mesh {file_name(file.written)} of {quoted(link)} {fault}"
+
+
+def _sure_fault(file: _MeshFile, submission: Submission) -> str:
+    """Return why RViz does not find a mesh, if that is certain."""
+    if file.written.startswith("file://") and not file.package and not is_of_one_machine(file.path):
+        return ""
+    if not (file.package or file.fault or file.doubt):
+        return "is at a relative path, which RViz does not find; use package://"
+    if file.fault or not any(package.name == file.package for package in submission.packages):
+        return file.fault
+    try:
+        return _why_not_found(file, submission)
+    except NotDecided:
+        return ""
 
 
 def _why_not_found(mesh: _MeshFile, submission: Submission) -> str:

@@ -3,9 +3,11 @@
 from collections.abc import Sequence
 from math import isfinite, nan
 
+from grader.checks.meshes import mesh_problems
 from grader.commands.invocation import read_arguments
 from grader.commands.writing import Warn
 from grader.errors import GraderError, InputError, MissingElement, NotDecided
+from grader.problems import in_order
 from grader.report.inspection import Inspection, main_root
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading
@@ -42,7 +44,8 @@ def inspect(
     elif robot is not None and relative_to is not None and not robot.robot.has_link(relative_to):
         known = ", ".join(repr(link.name) for link in robot.robot.links[:_MAX_NAMED])
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
-    return Inspection(urdf.path, urdf.loaded, robot, relative_to)
+    problems = in_order((*urdf.loaded.problems, *mesh_problems(submission, urdf)))
+    return Inspection(urdf.path, urdf.loaded._replace(problems=problems), robot, relative_to)
 
 
 def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None:

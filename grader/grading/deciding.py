@@ -87,12 +87,12 @@ class _Grading:
             return self._fail_or_skip(criterion, missing)
         if result.outcome.status != "failed":
             return result
-        return result._replace(outcome=self._explain(result.outcome))
+        return result._replace(outcome=self._explain(result.outcome, looks_at=criterion.check.about.looks_at))
 
-    def _explain(self, outcome: Outcome, *thing: str) -> Outcome:
+    def _explain(self, outcome: Outcome, *thing: str, looks_at: Collection[str] = ()) -> Outcome:
         from grader.grading.explanation import explain  # late: many submissions lose nothing
 
-        return explain(outcome, self._subjects.problems, self._subjects.source, *thing)
+        return explain(outcome, self._subjects.problems, self._subjects.source, looks_at, *thing)
 
     def _carry(self, result: Result, carried: Carried) -> Result:
         """Return a failure, or a skip because of a cause, as carried if the fact that then counts instead holds."""

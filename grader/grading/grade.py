@@ -8,11 +8,13 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 from grader.checks.manual import MANUAL_CHECKS, evidence_shown
+from grader.checks.meshes import mesh_problems
 from grader.errors import InputError
 from grader.grading.criterion import Evidence
 from grader.grading.deciding import another_robot, decide
 from grader.grading.report import EvidenceResult, Report, Result, without_gifts
 from grader.grading.rubric import Rubric
+from grader.problems import Problem, in_order
 from grader.robot.kinematics import Configuration
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
@@ -51,7 +53,9 @@ def grade(
     another = another_robot(rubric, submission.robot)
     wanted = {criterion.id for criterion in rubric.criteria if criterion.part in chosen}
     results = without_gifts(decide(rubric, submission, wanted), submission)
-    problems = submission.urdf.problems if isinstance(submission.urdf, Read) else ()
+    problems: tuple[Problem, ...] = ()
+    if isinstance(submission.urdf, Read):
+        problems = in_order((*submission.urdf.problems, *mesh_problems(submission, submission.urdf)))
     if submission.package is not None and any(rubric.part(part).needs == "package" for part in chosen):
         # Late: a URDF on its own needs none of what reads a package.
         from grader.package.found_problems import package_problems

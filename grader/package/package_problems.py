@@ -28,5 +28,6 @@ LAUNCH_UNKNOWN = _kind("LCH004", "note", "Cannot be determined statically in a l
 BAD_RVIZ = _kind("RVZ001", "error", "Unreadable RViz file")
 ROS1_CLASS = _kind("RVZ002", "warning", "Display class of ROS 1")
 NO_TF = _kind("RVZ003", "note", "No TF display")
+MESH_PATH = _kind("RVZ004", "warning", "Mesh that RViz does not find")
 
 PACKAGE_CATALOGUE = kinds_in(globals().values())

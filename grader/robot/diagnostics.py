@@ -28,6 +28,7 @@ _OF_MISSING = (
     urdf_problems.NO_ROOT,
     urdf_problems.NO_LINKS,
     urdf_problems.MIMIC_TARGET,
+    urdf_problems.CONTROLLED_JOINT,
 )
 _ZERO: Vector = (0.0, 0.0, 0.0)
 _NOTHING: UnresolvedParts = {}

@@ -165,7 +165,7 @@ def _read_calibration(element: Element, problems: Problems) -> Calibration:
 
 def check_references(robot: Robot, problems: Problems) -> None:
     """Report links and joints that do not exist, and mimic joints that follow themselves."""
-    links = [link.name for link in robot.links]
+    links, joints = [link.name for link in robot.links], [joint.name for joint in robot.joints]
     is_link_open, is_joint_open = (
         any("@name" in it.unresolved for it in every) for every in (robot.links, robot.joints)
     )
@@ -178,14 +178,31 @@ def check_references(robot: Robot, problems: Problems) -> None:
                 message += f"; ROS 2 rejects the file{guess}"
                 problems.add(urdf_problems.UNKNOWN_LINK, message, _child_element(joint, role, problems), "link")
         if joint.mimic is not None and not robot.has_joint(joint.mimic.joint) and not is_joint_open:
-            guess = problems.did_you_mean(joint.mimic.joint, [other.name for other in robot.joints])
+            guess = problems.did_you_mean(joint.mimic.joint, joints)
             message = f"joint {quoted(joint.name)} mimics {quoted(joint.mimic.joint)}, which does not exist{guess}"
             problems.add(urdf_problems.MIMIC_TARGET, message, _child_element(joint, "mimic", problems), "joint")
+    if not is_joint_open:
+        _check_controlled_joints(robot, joints, problems)
     for loop in _mimic_loops(robot):
         message = f"joint {quoted(loop[0])} mimics itself: {' -> '.join(map(quoted, (*loop[:_MAX_STEPS], loop[0])))}"
         problems.add(
             urdf_problems.MIMIC_TARGET, message, _child_element(robot.joint(loop[0]), "mimic", problems), "joint"
         )
+
+
+def _check_controlled_joints(robot: Robot, joints: list[str], problems: Problems) -> None:
+    """Report what controller_manager stops at: unknown joints in ros2_control, and hardware without plugin."""
+    for system in problems.root.iterchildren("ros2_control"):
+        for joint in system.iterchildren("joint"):
+            name = joint.get("name")
+            if name is not None and not robot.has_joint(name):
+                message = f"ros2_control names the joint {quoted(name)}, which the robot does not have"
+                message += problems.did_you_mean(name, joints)
+                problems.add(urdf_problems.CONTROLLED_JOINT, message, joint, "name")
+        for hardware in system.iterchildren("hardware"):
+            if hardware.find("plugin") is None:
+                message = "<hardware> has no <plugin>, so controller_manager cannot load it"
+                problems.add(urdf_problems.HARDWARE_PLUGIN, message, hardware)
 
 
 def _child_element(joint: Joint, tag: str, problems: Problems) -> Element:

@@ -15,6 +15,7 @@ from grader.xml.urdf_format import ATTRIBUTES, JOINT_TYPES, REQUIRED, TAGS
 
 _MAX_ROUNDS = 3  # one undone word can reveal the next: that of a tag, then its attribute, then its value
 _MAX_WORDS = 20  # in one file
+_MAX_ATTRIBUTES = 50  # of one element, because lxml searches each name from the first
 _OF_JOINT = ("parent", "child", "limit", "mimic", "safety_controller")  # a defect of these rejects the file
 
 
@@ -169,15 +170,16 @@ def _misspelt_tags(parent: Element, needed: Collection[str]) -> Iterator[Word]:
     for child in parent:
         tag = str(child.tag)
         meant = near(tag, needed) if tag not in TAGS and not tag.startswith("{") else None
-        if meant is not None:
+        if meant is not None and len(child.attrib) <= _MAX_ATTRIBUTES:
             yield Word(child, None, meant, dict(child.attrib), f"<{tag}> is read as <{meant}>")  # type: ignore[arg-type]
 
 
 def _misspelt_attributes(element: Element) -> Iterator[Word]:
-    tag, given = str(element.tag), {str(name): str(value) for name, value in element.attrib.items()}
-    absent = [name for name in REQUIRED[tag] if name not in given]
-    if not absent:
+    tag = str(element.tag)
+    absent = [name for name in REQUIRED[tag] if element.get(name) is None]
+    if not absent or len(element.attrib) > _MAX_ATTRIBUTES:
         return
+    given = {str(name): str(value) for name, value in element.attrib.items()}
     for name in given:
         meant = near(name, absent) if name not in ATTRIBUTES[tag] else None
         if meant is not None:

@@ -10,14 +10,17 @@ from grader.problems import Effect, Problem, causes, in_order
 from grader.robot import urdf_problems
 from grader.robot.diagnostics import Problems
 from grader.robot.joint_reader import check_references, read_joint
+from grader.robot.kinematics import SINGLE
 from grader.robot.link_reader import Materials, read_link
 from grader.robot.link_tree import check_tree
 from grader.robot.model import Joint, Link, Robot
 from grader.robot.numbers import is_version_one
 from grader.source import Source
-from grader.text import quoted
+from grader.text import enumerated, quoted
 from grader.xml.parsing import Element, Unresolved, XmlDocument, read_document
-from grader.xml.urdf_format import ATTRIBUTES, CHILDREN, TAGS
+from grader.xml.python_xml import python_xml_error
+from grader.xml.urdf_format import ATTRIBUTES, CHILDREN, ELSEWHERE, OWNERS, PARTS, TAGS, numbers_in
+from grader.xml.xml_problems import NOT_WELL_FORMED
 
 if TYPE_CHECKING:
     from grader.robot.meant import Word
@@ -25,6 +28,7 @@ if TYPE_CHECKING:
 
 Verdict = Literal["clean", "degraded", "rejected"]
 
+_MAX_CAUSES = 300  # for which ROS 2 rejects a file: with more of them, no word is read as another one
 _FATAL: frozenset[Effect] = frozenset({"rejects", "undetermined"})
 _XACRO = re.compile(r"<xacro:|\$\{|\$\(")
 # Correct names that urdfdom does not read: they are not misspellings.
@@ -110,7 +114,7 @@ def _read_content(document: XmlDocument, root: Element) -> Reading:
     found, incomplete = problems.listed, _why_incomplete(document, robot) if effects.intersection(_FATAL) else ""
     is_meant = document.is_meant and "rejects" not in problems.effects
     undone: tuple[Word, ...] = ()
-    if document.is_meant and not is_meant and not incomplete:
+    if document.is_meant and not is_meant and not incomplete and len(causes(found)) <= _MAX_CAUSES:
         from grader.robot.meant import read_as_meant  # late: few files are rejected
 
         meant = read_as_meant(root, robot, partial(_read_robot, document, root))
@@ -125,10 +129,25 @@ def _read_content(document: XmlDocument, root: Element) -> Reading:
         message = f"{problems.unlisted} more problems of this file are not listed"
         listed.append(Problem(urdf_problems.UNLISTED, message, document.source.at(len(document.source.text))))
     verdict = _verdict(effects)
+    if verdict != "rejected" and not document.is_expanded:
+        listed += _problems_for_python(document, robot)
     if verdict == "rejected":
         robot = replace(robot, rejected=not is_meant or "undetermined" in effects, incomplete=incomplete)
     places = (document.source, document.root, document.unresolved, document.recovered)
     return Reading(verdict, robot, in_order(listed), *places, is_meant, undone)
+
+
+def _problems_for_python(document: XmlDocument, robot: Robot) -> Iterator[Problem]:
+    """Yield that joint_state_publisher cannot read the file, if it has joints for which it publishes positions."""
+    is_moving = any(joint.type in SINGLE for joint in robot.joints)
+    error = python_xml_error(document.source.text) if is_moving else None
+    if error is None:
+        return
+    at = document.source.at(error.offset)
+    same_line = (it.subject for it in document.problems if it.location.line == at.line and it.kind is NOT_WELL_FORMED)
+    message = f"joint_state_publisher cannot read this file ({next(same_line, error.message)})"
+    message += ": in RViz no moving link has a transform"
+    yield Problem(urdf_problems.NOT_FOR_PYTHON, message, at)
 
 
 def _verdict(effects: Collection[Effect]) -> Verdict:
@@ -242,7 +261,7 @@ def _check_spelling(root: Element, problems: Problems) -> None:
     waiting = [root]
     while waiting:
         element = waiting.pop()
-        allowed = CHILDREN[element.tag]
+        allowed = CHILDREN.get(element.tag, ())
         tags = []
         for child in element:
             tag = child.tag
@@ -250,10 +269,10 @@ def _check_spelling(root: Element, problems: Problems) -> None:
             if tag in allowed:
                 if not ATTRIBUTES[tag].issuperset(child.keys()):
                     _check_attributes(child, problems)
-                if tag in CHILDREN and len(child):
+                if len(child):
                     waiting.append(child)
-            elif tag not in _EXTENSIONS:
-                _check_tag(child, element.tag, allowed, problems)
+            else:
+                _check_unread(child, element, allowed, problems)
         if element is not root and len(tags) > 1 and (len(set(tags)) < len(tags) or element.tag == "geometry"):
             _check_repeated(element, tags, problems)
 
@@ -265,22 +284,38 @@ def _check_attributes(element: Element, problems: Problems) -> None:
         if name in known or name.startswith("{"):
             continue
         meant = TAGS[element.tag].aliases.get(name) or problems.closest(name, missing)
+        message = f"ROS 2 ignores the unknown attribute {quoted(name)} of <{element.tag}>"
         if meant:
-            message = f"ROS 2 ignores the unknown attribute {quoted(name)} of <{element.tag}>"
-            problems.add(urdf_problems.MISSPELT, f"{message}; did you mean {quoted(meant)}?", element, name)
+            message += f"; did you mean {quoted(meant)}?"
+            problems.add(urdf_problems.MISSPELT, message, element, name, str(element.tag))
+        elif PARTS.get(name) and any(numbers_in(element.get(name) or "")):  # a place that the student gives something
+            owners = enumerated([f"<{tag}>" for tag in OWNERS[name]])
+            problems.add(urdf_problems.MISSPELT, f"{message}: it belongs to {owners}", element, name, str(element.tag))
+
+
+def _check_unread(child: Element, parent: Element, allowed: tuple[str, ...], problems: Problems) -> None:
+    """Report an element that urdfdom does not read, unless it is in the place of an extension."""
+    if child.tag not in _EXTENSIONS or (child.tag in ELSEWHERE and parent is not problems.root):
+        _check_tag(child, parent.tag, allowed, problems)
+    elif child.tag == "gazebo":
+        for inner in child.iterchildren("ros2_control", "transmission"):
+            _check_tag(inner, child.tag, (), problems)
 
 
 def _check_tag(child: Element, parent: str, allowed: tuple[str, ...], problems: Problems) -> None:
     if child.tag.startswith("{"):  # a prefix is not a misspelling
         return
-    meant = problems.closest(child.tag, allowed)
-    if meant:
+    instead = ELSEWHERE.get(child.tag, "")
+    meant = problems.closest(child.tag, allowed) if not instead else None
+    if instead:
+        message = f"<{child.tag}> in <{parent}> is ignored: {instead}"
+    elif meant:
         message = f"ROS 2 ignores <{child.tag}> in <{parent}>; did you mean <{meant}>?"
     elif child.tag in ATTRIBUTES:
         message = f"ROS 2 ignores <{child.tag}> in <{parent}>: it does not belong there"
     else:
         return
-    problems.add(urdf_problems.MISSPELT, message, child)
+    problems.add(urdf_problems.MISSPELT, message, child, subject=meant or str(child.tag))
 
 
 def _check_repeated(element: Element, tags: list[str], problems: Problems) -> None:

@@ -166,7 +166,7 @@ class Tag(NamedTuple):
 class Difference(NamedTuple):
     """A difference from XML, an error, or what was assumed about one, at a character offset.
 
-    `subject` is the tag of which a part cannot be read.
+    `subject` is the tag of which a part cannot be read, or what is not well-formed in a few words.
     """
 
     kind: Kind
@@ -513,8 +513,8 @@ class _Scanner:
     def _prefixes(self) -> set[str]:
         return set(_NAMESPACE.findall(self._text))
 
-    def _add(self, kind: Kind, message: str, offset: int) -> None:
-        self._differences.append(Difference(kind, message, offset))
+    def _add(self, kind: Kind, message: str, offset: int, subject: str = "") -> None:
+        self._differences.append(Difference(kind, message, offset, subject))
 
     def _refuse(self, kind: Kind, message: str, offset: int) -> int | None:
         """Add an error; return None, for callers that cannot go on."""
@@ -525,6 +525,5 @@ class _Scanner:
     def _differ(self, key: str, what: str, offset: int) -> None:
         if key not in self._noted:
             self._noted.add(key)
-            self._add(
-                xml_problems.NOT_WELL_FORMED, f"ROS 2 accepts this, but it is not well-formed XML: {what}", offset
-            )
+            message = f"ROS 2 accepts this, but it is not well-formed XML: {what}"
+            self._add(xml_problems.NOT_WELL_FORMED, message, offset, what)

@@ -102,11 +102,24 @@ TAGS: dict[str, _TagFormat] = {
     ),
 }  # fmt: skip
 
+# Elements of SDF and of other tools, which no element below <robot> has: what to do instead.
+ELSEWHERE = {
+    "xyz": "write its numbers as an attribute of <origin>",
+    "rpy": "write its numbers as an attribute of <origin>",
+    "pose": "that is SDF; a URDF has <origin>",
+    "gazebo": "put it directly under <robot>",
+    "ros2_control": "put it directly under <robot>",
+    "transmission": "put it directly under <robot>",
+}
+
 # Views of the table.
 ATTRIBUTES = {name: frozenset(tag.attributes) for name, tag in TAGS.items()}
 CHILDREN = {name: tag.children for name, tag in TAGS.items() if tag.children}
 REQUIRED = {
     name: tuple(key for key, one in tag.attributes.items() if one.default is None) for name, tag in TAGS.items()
+}
+OWNERS = {
+    key: [name for name, tag in TAGS.items() if key in tag.attributes] for it in TAGS.values() for key in it.attributes
 }
 # The parts of the numbers in an attribute of this name; texts have none.
 PARTS = {key: one.parts for tag in TAGS.values() for key, one in tag.attributes.items()}

@@ -367,6 +367,21 @@ def test_a_megabyte_is_read_in_linear_time(frame: str) -> None:
         read_urdf(raw)
 
 
+def test_many_attributes_are_read_in_linear_time() -> None:
+    """An element with 300,000 attributes, of which none is a name, is not searched for a misspelt name."""
+    attributes = " ".join(f'a{number}="1"' for number in range(300_000))
+    with limited_work(20_000_000):  # a search in each attribute for each other one hangs
+        assert read_urdf(f'<robot name="r"><link name="a"/><link {attributes}/></robot>'.encode()).verdict == "rejected"
+
+
+def test_words_are_undone_in_few_mistakes_only() -> None:
+    """With hundreds of mistakes no word is read as another one: the work would not be worth it."""
+    assert read_urdf(robot('<link name="a"/><link name="b"/>' + joint("a", "b", "j").replace("fixed", "fixd"))).is_meant
+    many = "".join(joint("a", f"l{number}", f"j{number}").replace("fixed", "fixd") for number in range(400))
+    with limited_work(1_000_000):
+        assert not read_urdf(robot('<link name="a"/>' + many)).is_meant
+
+
 def test_deep_nesting() -> None:
     """A hundred thousand levels are refused at the 499th, without recursion."""
     text = f'<robot name="r">{"<a>" * 100_000}{"</a>" * 100_000}</robot>'
