@@ -229,12 +229,12 @@ class RobotDifference:
 
     def _is_twice(self, element: Element) -> bool:
         """Return whether another element has the same name, or another joint the same child."""
-        parent = element.getparent()
-        if parent is None:
-            return False
-        keys = [{it.get("name"), end_of(it, "child") or None} - {None} for it in parent.iterchildren(str(element.tag))]
-        own = {element.get("name"), end_of(element, "child") or None} - {None}
-        return sum(not own.isdisjoint(other) for other in keys) > 1
+        return any(self._uses[key] > 1 for key in _identities(element))
+
+    @cached_property
+    def _uses(self) -> Counter[tuple[str, str, str]]:
+        """How many children of the robot have a name, or move a link, by their tag."""
+        return Counter(key for child in self.draft.root.iterchildren("*") for key in _identities(child))
 
     def _inner(self, parent: Element, element: Element) -> Iterator[Piece]:
         """Add an element to another one: values of an origin or axis, another shape, or the element as it is."""
@@ -263,6 +263,12 @@ class RobotDifference:
         if element.tag == "material" and defined is not None and self.draft.material(own.get(name, name)) is None:
             return self.reference.text(defined)
         return text
+
+
+def _identities(element: Element) -> list[tuple[str, str, str]]:
+    """Return what no other child of the robot with this tag may have: its name, and the link that it moves."""
+    texts = (("name", element.get("name") or ""), ("child", end_of(element, "child")))
+    return [(str(element.tag), what, text) for what, text in texts if text]
 
 
 def _cause(sets: Sequence[Set]) -> str:

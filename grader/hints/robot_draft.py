@@ -78,7 +78,11 @@ class Draft:
 
     def link(self, name: str) -> Element | None:
         """Return the first link of this name; a link without a name has an empty one."""
-        return next((link for link in self.links() if (link.get("name") or "") == name), None)
+        return self._links.get(name)
+
+    @cached_property
+    def _links(self) -> dict[str, Element]:
+        return {link.get("name") or "": link for link in reversed(list(self.links()))}
 
     def joint_of(self, link: str) -> Element | None:
         """Return the parent joint of a link, also one whose parent does not exist."""
@@ -89,9 +93,16 @@ class Draft:
 
     def material(self, name: str) -> Element | None:
         """Return the first definition of a material that counts: under the robot, else in a visual."""
-        own = [found for found in self.root.iterchildren("material") if found.get("name") == name]
-        inside = (found for found in self.root.iter("material") if found.get("name") == name and len(found))
-        return next((found for found in own if len(found)), next(inside, next(iter(own), None)))
+        return self._materials.get(name)
+
+    @cached_property
+    def _materials(self) -> dict[str, Element]:
+        own = list(self.root.iterchildren("material"))
+        inside = (found for found in self.root.iter("material") if len(found))
+        found: dict[str, Element] = {}
+        for material in (*(it for it in own if len(it)), *inside, *own):
+            found.setdefault(material.get("name") or "", material)
+        return found
 
     def owner(self, element: Element) -> Element:
         """Return the child of the root that an element is or is in; the root itself for the root."""

@@ -58,6 +58,7 @@ def steps(own: Node, like: Node) -> list[Step]:
     """Return the steps from a tree to another: what is to move, the values, then what is to be added and removed."""
     found = [*_steps(own, like)]
     spare = [step.own for step in found if step.verb == "remove"]
+    taken: list[Node] = []
     moved: list[Step] = []
     left: list[Step] = []
     for step in found:
@@ -68,7 +69,8 @@ def steps(own: Node, like: Node) -> list[Step]:
         else:
             moved += [Step("move", alike, added, parent=step.own), *_steps(alike, added)]
             spare = [node for node in spare if node is not alike]
-    kept = [step for step in left if step.verb != "remove" or any(node is step.own for node in spare)]
+            taken.append(alike)
+    kept = [step for step in left if step.verb != "remove" or not any(node is step.own for node in taken)]
     return moved + sorted(kept, key=lambda step: _LAST.index(step.verb) if step.verb in _LAST else -1)
 
 
