@@ -198,9 +198,9 @@ def _with_xacro(submission: Submission) -> Iterator[Proposal]:
     for source in sources:
         if source is not None:
             yield from (Proposal(edits, _RAW_XACRO) for edits in with_xacro(source))
-    folder, slash, name = urdf.path.rpartition("/")
-    renamed = f"{folder}{slash}{name.removesuffix('.urdf')}.urdf.xacro"
-    yield Proposal((Edit(urdf.path, 1, 1, "", "", renamed),), _RAW_XACRO)
+    if not urdf.path.endswith(".xacro"):
+        renamed = f"{urdf.path.removesuffix('.urdf')}.urdf.xacro"
+        yield Proposal((Edit(urdf.path, 1, 1, "", "", renamed),), _RAW_XACRO)
 
 
 def leaves_others(shared: Collection[str], passing: Iterable[Criterion], lost: Collection[Criterion]) -> bool:

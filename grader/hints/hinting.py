@@ -3,9 +3,11 @@
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal
+from itertools import takewhile
 from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader.errors import InputError
+from grader.files.limits import ROBOT_ENDINGS
 from grader.grading.grade import grade
 from grader.grading.hint_levels import HintLevel
 from grader.grading.report import Hint, Report, Result
@@ -13,7 +15,7 @@ from grader.grading.rubric import ReferenceSolution
 from grader.hints.edits import FoundHint, content, edited_files, with_files
 from grader.hints.robot_draft import Draft
 from grader.hints.search import HintSearch, Trials, costs_of
-from grader.source import Edit, Edits, Location
+from grader.source import Edit, Edits, Location, Source
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import counted, enumerated
@@ -48,7 +50,9 @@ class Fix(NamedTuple):
 
 
 def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedReport:
-    """Return a report with proven hints for criteria that failed."""
+    """Return a report with proven hints for criteria that failed; without any where the search would take long."""
+    if submission.is_costly:
+        return _HintedReport(report, (), [])
     results = {result.criterion.id: result for result in report.results}
     solution = report.rubric.solution
     trials = Trials(report.rubric, submission, results)
@@ -73,7 +77,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
                 at = results[name].outcome.location or Location("", 1, 1)
                 hints[name] = Hint(f"Make the edits for {others}.", at, {})
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
-    report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete or submission.is_costly)
+    report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete)
     return _HintedReport(report, search.edits, trials.faults)
 
 
@@ -163,8 +167,10 @@ def _of_missing(found: FoundHint, level: HintLevel) -> str:
 
 def _changes(edits: Sequence[Edit], submission: Submission) -> str:
     """Return the edits in words, and where a macro is called that one of them changes."""
-    changes = _moves(edits, submission) or [_change(edit, submission) for edit in edits[:_MAX_NAMED]]
-    if len(edits) > _MAX_NAMED:
+    changes = _moves(edits, submission) or _indents(edits, submission)
+    if not changes:
+        changes = [_change(edit, submission) for edit in edits[:_MAX_NAMED]]
+    if len(edits) > len(changes) == _MAX_NAMED:
         changes.append(counted(len(edits) - _MAX_NAMED, "more edit"))
     text = enumerated(changes, _MAX_NAMED + 1)
     source = submission.urdf.reading.source if isinstance(submission.urdf, Read) else None
@@ -224,10 +230,23 @@ def _moves(edits: Sequence[Edit], submission: Submission) -> list[str]:
     return [f"move {_quote(old.old)} ({_where(old, submission)}) to {_insertion(new, submission)}"]
 
 
+def _indents(edits: Sequence[Edit], submission: Submission) -> list[str]:
+    """Return what becomes of the indentation of lines, if nothing else changes."""
+    if any((edit.old + edit.new).strip(" \t") or edit.column > 1 or edit.old == edit.new for edit in edits):
+        return []
+    tabs, spaces = edits[0].new.count("\t"), edits[0].new.count(" ")
+    width = " and ".join(counted(*it) for it in ((tabs, "tab"), (spaces, "space")) if it[0]) or "nothing"
+    lines = f"line{'s' if len(edits) > 1 else ''} {enumerated([str(edit.line) for edit in edits], _MAX_LINES)}"
+    path = edits[0].path
+    return [f"indent {lines if path == submission.path else f'{lines} of {path}'} with {width}"]
+
+
 def _change(edit: Edit, submission: Submission) -> str:
-    old, new = _quote(edit.old), _quote(edit.new)
     if edit.renamed:
         return f"rename `{edit.path}` to `{edit.renamed}`"
+    if not edit.path.endswith(ROBOT_ENDINGS):
+        edit = _whole_lines(edit, submission)
+    old, new = _quote(edit.old), _quote(edit.new)
     if not edit.old:
         return f"add {new} {_insertion(edit, submission)}"
     where = _where(edit, submission)
@@ -237,9 +256,41 @@ def _change(edit: Edit, submission: Submission) -> str:
     return f"change {old} to {new} ({where})" if edit.new else f"remove {old} ({where})"
 
 
+def _whole_lines(edit: Edit, submission: Submission) -> Edit:
+    """Return an edit of a part of an expression as one of the lines that it changes."""
+    if all(map(_is_whole, (edit.old, edit.new))):
+        return edit
+    text = (content(submission, edit.path) or b"").decode("utf-8", "surrogateescape")
+    source = Source(edit.path, text)
+    start, end = source.offset(edit.line, 1), source.offset(edit.line + edit.old.count("\n") + 1, 1)
+    at = source.offset(edit.line, edit.column)
+    old = text[start:end].splitlines(keepends=True)
+    new = f"{text[start:at]}{edit.new}{text[at + len(edit.old) : end]}".splitlines(keepends=True)
+    first = _common_start(old, new)
+    last = _common_start(old[first:][::-1], new[first:][::-1])
+    before, after = ("".join(lines[first : len(lines) - last]) for lines in (old, new))
+    return Edit(edit.path, edit.line + first, 1, before, after)
+
+
+def _common_start(one: Sequence[str], other: Sequence[str]) -> int:
+    """Return how many lines both begin with."""
+    return len([*takewhile(lambda pair: pair[0] == pair[1], zip(one, other, strict=False))])
+
+
+def _is_whole(text: str) -> bool:
+    """Return whether a text has no line break, both brackets and both quotes of each pair, and no comma before it."""
+    is_balanced = all(text.count(one) == text.count(other) for one, other in ("()", "[]", "{}"))
+    is_quoted = text.count("'") % 2 == text.count('"') % 2 == 0
+    is_end = text.lstrip().startswith((",", ")", "]", "}")) and text != ","
+    return is_balanced and is_quoted and "\n" not in text and not is_end
+
+
 def _insertion(edit: Edit, submission: Submission) -> str:
     """Return the line before, after or in which a text is added, or at the end of which."""
     line, at = _line(edit, submission), _at(edit, submission.path)
+    before = edit._replace(line=edit.line - 1)
+    if edit.new.endswith("\n") and not edit.path.endswith(ROBOT_ENDINGS) and _line(before, submission).strip():
+        return f"after {_at(before, submission.path)}"
     if edit.new.endswith("\n") or not line[: edit.column - 1].strip():
         return f"before {at}"
     end = "after" if "\n" in edit.new else "at the end of"
@@ -256,7 +307,7 @@ def _where(edit: Edit, submission: Submission) -> str:
 
 def _line(edit: Edit, submission: Submission) -> str:
     lines = (content(submission, edit.path) or b"").decode("utf-8", "surrogateescape").split("\n")
-    return lines[edit.line - 1].removeprefix("\ufeff") if edit.line <= len(lines) else ""
+    return lines[edit.line - 1].removeprefix("\ufeff") if 0 < edit.line <= len(lines) else ""
 
 
 def _quote(text: str) -> str:

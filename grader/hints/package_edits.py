@@ -14,16 +14,16 @@ from itertools import islice, product
 from keyword import kwlist
 from typing import Any
 
-from grader.hints.edits import Proposal
+from grader.hints.edits import Proposal, edited
 from grader.hints.package_task import WHAT, PackageTask, change, file_proposals, package_names
-from grader.hints.python_file import PythonFile, argument
+from grader.hints.python_file import PythonFile, argument, called
 from grader.markup import indentation, indented
 from grader.names import closest
 from grader.package.launch.model import Launch, NamedFile
 from grader.package.launch.places import HOME, PREFIX, WORKING_FOLDER
 from grader.package.package import SETUP, Package
 from grader.python.library import USUAL_NAMES
-from grader.python.parse import SyntaxFault
+from grader.python.parse import Code, SyntaxFault, parse
 from grader.source import Edit, Source
 
 _WORD = re.compile(r"[^\W\d]\w*")
@@ -53,6 +53,8 @@ _MAX_EDITS = 3  # of one path
 _MAX_FILES = 200
 _LAUNCH = "the launch file"
 _DESCRIPTION = "LaunchDescription"
+_MAX_AROUND = 30  # lines that are indented together
+_WITH_METHOD = ast.Call | ast.Attribute
 _MAX_ITEMS = 30
 _MAX_MADE, _MAX_PROPOSALS = 100, 24  # for one kind of files
 
@@ -105,10 +107,15 @@ def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str 
         yield from _missing_entries(own, PythonFile(Source(source.path, wanted)), what)
         yield from _as_lists(own, what)
         yield from _undefined_names(own, what)
+        yield from _unquoted_names(own, what)
+        yield from _missing_calls(own, what)
+        yield from _indentations(own, what)
     elif ending == other:
         yield from _other_values(source, wanted, what)
     if kind == "launch":
-        yield from _launch_paths(task, task.launch(path, source), source)
+        launch = task.launch(path, source)
+        yield from _launch_paths(task, launch, source)
+        yield from _programs(task, launch, source)
     elif kind == SETUP:
         yield from _setup_paths(task)
     yield from _respellings(source, [wanted, *(task.files if kind == SETUP else task.package.installed)], what)
@@ -123,9 +130,11 @@ def _respellings(source: Source, known: Iterable[str], what: str) -> Iterator[Pr
     for match in _WORD.finditer(source.text):
         places.setdefault(match[0], []).append(match)
     right = {word for text in (*known, *kwlist, *USUAL_NAMES) for word in _WORD.findall(text)}
+    bound = PythonFile(source).bound if source.path.endswith(".py") else frozenset()
     suspects = sorted((word for word in places if word not in right and len(word) > 1), key=lambda it: len(places[it]))
     guesses = ((word, _slip(word, right) or _slip(word, places)) for word in suspects[:_MAX_SUSPECTS])
-    for word, guess in islice(((word, guess) for word, guess in guesses if guess), _MAX_WORDS):
+    slips = ((word, guess) for word, guess in guesses if guess and not {word, guess} <= bound)  # two things
+    for word, guess in islice(slips, _MAX_WORDS):
         yield change([source.edit(*place.span(), guess) for place in places[word]], "the spelling of a word", what)
     yield from _replace_words(source, _PROGRAM, [" "], what)
     quotes = [source.edit(*it.span(), "'" if it[0] in _SINGLE else '"') for it in _TYPOGRAPHIC.finditer(source.text)]
@@ -182,9 +191,8 @@ def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
         end = start + len(file.text[start:].partition("\n")[0].rstrip())
         yield change([file.source.edit(end, end, ",")], "a syntax error", what)
     names = [node for node in file.nodes if isinstance(node, ast.Name)]
-    used = {node.id for node in names if isinstance(node.ctx, ast.Load)}
-    yield change(file.with_imports(sorted(used)), "the imports", what)
-    for word in sorted(used - file.bound - {*dir(builtins)} - {*USUAL_NAMES})[:_MAX_WORDS]:
+    yield change(file.with_imports(sorted(file.used)), "the imports", what)
+    for word in sorted(file.used - file.bound - {*dir(builtins)} - {*USUAL_NAMES})[:_MAX_WORDS]:
         own = sorted(file.values, key=lambda it: -SequenceMatcher(None, it, word).ratio())[:_MAX_MEANT]
         for other in own:
             edits = [file.replaced(node, other) for node in names if node.id == word]
@@ -198,6 +206,68 @@ def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Tuple):
             end = file.span(node.func)[1]
             yield change([file.source.edit(end, end, ",")], "a syntax error", what)
+
+
+def _unquoted_names(file: PythonFile, what: str) -> Iterator[Proposal]:
+    """Yield edits that write a name without the quotes around it."""
+    found = [(it, it.value) for it in file.nodes if isinstance(it, ast.Constant) and isinstance(it.value, str)]
+    for node, name in [pair for pair in found if pair[1] in file.values][:_MAX_WORDS]:
+        yield change([file.replaced(node, name)], f"`{name}` in quotes, which is a text", what)
+
+
+def _missing_calls(file: PythonFile, what: str) -> Iterator[Proposal]:
+    """Yield edits that call a method which is only named, such as infp.read."""
+    inside = {it.func if isinstance(it, ast.Call) else it.value for it in file.nodes if isinstance(it, _WITH_METHOD)}
+    methods = [node for node in file.nodes if isinstance(node, ast.Attribute) and node not in inside]
+    for node in [it for it in methods if isinstance(it.ctx, ast.Load)][:_MAX_WORDS]:
+        yield change([file.replaced(node, f"{file.segment(node)}()")], f"`{node.attr}` without ()", what)
+
+
+def _indentations(file: PythonFile, what: str) -> Iterator[Proposal]:
+    """Yield edits that indent lines as those around them, with which Python can read the file.
+
+    These are the line at which Python stops and the one before it, each alone, and with those that follow it without
+    a blank line.
+    """
+    if not isinstance(file.parsed, SyntaxFault):
+        return
+    lines = file.text.split("\n")
+    at = file.parsed.location.line - 1
+    for first in (it for it in (at, at - 1) if 0 <= it < len(lines) and lines[it].strip()):
+        around = [it for it in (*lines[max(first - _MAX_AROUND, 0) : first], *lines[first + 1 :][:1]) if it.strip()]
+        known = dict.fromkeys(map(_indent_of, reversed(around)))
+        deeper = f"{next(iter(known), '')}    "
+        last = next((it for it in range(first, len(lines)) if not lines[it].strip()), len(lines))
+        for indent, end in product(dict.fromkeys((*known, deeper)), dict.fromkeys((first + 1, last))):
+            edits = [_indented_line(file, it + 1, indent) for it in range(first, min(end, first + _MAX_AROUND))]
+            text = edited(file.text, file.source.path, edits)
+            if text is not None and isinstance(parse(text.encode("utf-8", "surrogateescape"), ""), Code):
+                yield change(edits, "the indentation", what)
+
+
+def _indented_line(file: PythonFile, number: int, indent: str) -> Edit:
+    start = file.source.offset(number, 1)
+    return file.source.edit(start, start + len(_indent_of(file.source.line(number))), indent)
+
+
+def _indent_of(line: str) -> str:
+    return line[: len(line) - len(line.lstrip())]
+
+
+def _programs(task: PackageTask, launch: Launch, source: Source) -> Iterator[Proposal]:
+    """Yield edits that start the program which a check names in place of another one of its package, or the reverse."""
+    named = [name.partition("/") for text in task.given for name in text.split(" or ")]
+    wanted = [(package, name or package) for package, _, name in named]
+    for node in [it for it in launch.nodes if (it.package, it.executable) not in wanted][:_MAX_PATHS]:
+        for package, executable in wanted:
+            texts = {node.package: package, node.executable: executable}
+            if len(texts) == 2 and (node.package == package) != (node.executable == executable):
+                spans = [(start, end) for start, end in _path_offsets(source) if source.text[start:end] in texts]
+                edits = [source.edit(*span, texts[source.text[slice(*span)]]) for span in spans]
+                edits.sort(key=lambda edit: abs(edit.line - node.location.line))
+                for edit in [edit for edit in edits if edit.old != edit.new][:_MAX_EDITS]:
+                    rank = -1 if edit.old == node.executable else 0
+                    yield change([edit], "the program of a node", _LAUNCH)._replace(rank=rank)
 
 
 def _setup_paths(task: PackageTask) -> Iterator[Proposal]:
@@ -314,21 +384,22 @@ def _without(source: Source, start: int, end: int) -> Edit:
 
 
 def _missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[Proposal]:
-    """Yield edits that add an entry of the reference's lists, or all that are missing."""
+    """Yield edits that add what the file makes and does not use, or entries of the reference's list: one, or all.
+
+    A node of a package of which the file has one is not added: that one is wrong.
+    """
+    made = [name for name, value in own.values.items() if isinstance(value, ast.Call) and called(value)[:1].isupper()]
+    unused = [name for name in made if name not in own.used]
     known = {own.plain(it) for it in _items(own)}
-    installed = {own.plain(it.elts[-1]) for it in _items(own) if isinstance(it, ast.Tuple) and it.elts}
-    others = (it for it in _items(like) if like.plain(it) not in known)
-    missing = [it for it in others if not (isinstance(it, ast.Tuple) and like.plain(it.elts[-1]) in installed)]
-    several: list[str] = []
-    spare = {_executable(own, value): name for name, value in own.values.items() if own.plain(value) not in known}
-    for item in missing:
-        executable = _executable(like, item)
-        code = spare.get(executable) if executable is not None else None
-        code = code or like.written(item, own.bound)
-        several.append(code)
-        yield from _adding(own, [code], what)
-    if len(several) > 1:
-        yield from _adding(own, several, what)
+    known |= {own.plain(it.elts[-1]) for it in _items(own) if isinstance(it, ast.Tuple) and it.elts}
+    known |= {package for call in own.calls("Node") if (package := _package_of(own, call)) is not None}
+    missing = [it for it in _items(like) if known.isdisjoint((like.plain(it), _package_of(like, it)))]
+    missing = [it for it in missing if not (isinstance(it, ast.Tuple) and like.plain(it.elts[-1]) in known)]
+    for codes in (unused, [like.written(item, own.bound) for item in missing]):
+        for code in codes:
+            yield from _adding(own, [code], what)
+        if len(codes) > 1:
+            yield from _adding(own, codes, what)
 
 
 def _as_lists(own: PythonFile, what: str) -> Iterator[Proposal]:
@@ -346,9 +417,9 @@ def _adding(own: PythonFile, codes: Sequence[str], what: str) -> Iterator[Propos
         yield change([*needs, edit], f"a missing part of {what}")
 
 
-def _executable(file: PythonFile, code: ast.expr) -> str | None:
-    """Return what a node starts."""
-    given = argument(code, "executable") if isinstance(code, ast.Call) else None
+def _package_of(file: PythonFile, code: ast.expr) -> str | None:
+    """Return the package of the program that a node starts."""
+    given = argument(code, "package") if isinstance(code, ast.Call) else None
     return file.plain(given.value) if given is not None else None
 
 

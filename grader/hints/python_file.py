@@ -145,13 +145,18 @@ class PythonFile:
         return frozenset(found)
 
     @cached_property
+    def used(self) -> frozenset[str]:
+        """The names that the file reads anywhere."""
+        return frozenset(it.id for it in self.nodes if isinstance(it, ast.Name) and isinstance(it.ctx, ast.Load))
+
+    @cached_property
     def imports(self) -> list[ast.Import | ast.ImportFrom]:
         """Its import statements."""
         return [node for node in self.nodes if isinstance(node, ast.Import | ast.ImportFrom)]
 
     def calls(self, name: str) -> list[ast.Call]:
         """Return the calls of a function or class of this name, in order."""
-        found = (node for node in self.nodes if isinstance(node, ast.Call) and _called(node) == name)
+        found = (node for node in self.nodes if isinstance(node, ast.Call) and called(node) == name)
         return sorted(found, key=lambda node: (node.lineno, node.col_offset))
 
     def with_imports(self, names: Iterable[str]) -> list[Edit]:
@@ -176,7 +181,7 @@ def _expression(code: str) -> ast.Expression | None:
         return None
 
 
-def _called(call: ast.Call) -> str:
+def called(call: ast.Call) -> str:
     """Return the last part of the name of the function that is called."""
     return call.func.attr if isinstance(call.func, ast.Attribute) else getattr(call.func, "id", "")
 
@@ -196,8 +201,8 @@ def with_xacro(source: Source) -> Iterator[Edits]:
     for call in [*file.calls("read"), *file.calls("read_text")]:
         owner = file.meant(call.func.value) if isinstance(call.func, ast.Attribute) else call
         owner = file.values.get(owner.id, owner) if isinstance(owner, ast.Name) else owner
-        is_open = isinstance(owner, ast.Call) and _called(owner) == "open" and owner.args
-        if is_open or _called(call) == "read_text":
+        is_open = isinstance(owner, ast.Call) and called(owner) == "open" and owner.args
+        if is_open or called(call) == "read_text":
             path = owner.args[0] if isinstance(owner, ast.Call) and is_open else owner
             new = f"xacro.process_file({file.segment(path)}).toxml()"
             yield (*file.with_imports(["xacro"]), file.replaced(call, new))

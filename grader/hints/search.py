@@ -45,7 +45,7 @@ class Trials:
         parts = {part.id for part in rubric.parts if part.needs != "files"}
         self.rubric, self.submission = rubric, submission
         self.results = {name: result for name, result in results.items() if result.criterion.part in parts}
-        self.left = 0 if submission.is_costly else _MAX_GRADINGS
+        self.left = _MAX_GRADINGS
         self.faults: list[str] = []  # the types of exceptions
         self.is_assumed = False  # whether the last one is read with words undone, and the submission is not
 
@@ -189,10 +189,9 @@ class HintSearch:
     def run(self) -> "HintSearch":
         """Search until nothing more is found, or the budget is spent."""
         with suppress(_NoTrialsLeft):
-            if self.trials.left:
-                for stage in STAGES:
-                    self._take(stage)
-                self.is_complete = not self._is_cut or not self._lost
+            for stage in STAGES:
+                self._take(stage)
+            self.is_complete = not self._is_cut or not self._lost
         self.trials.left = max(self.trials.left, 1 + self.trials.submission.cost)  # for the last one
         with self.trials.isolated():
             self._verify()

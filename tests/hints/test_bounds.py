@@ -5,11 +5,13 @@ from itertools import count
 
 import pytest
 
+from grader.grading.grade import grade
+from grader.hints.hinting import hinted
 from grader.hints.search import _MAX_GRADINGS
 from grader.submission.opening import read_submission
 from tests.examples import spread
 from tests.hints.trials import BASES, graded, search_for
-from tests.samples import ROOT, RUBRICS
+from tests.samples import LAB6, ROOT, RUBRICS
 from tests.work import limited_work
 
 REFERENCE = BASES["reference"].text
@@ -83,3 +85,13 @@ def test_a_check_at_many_positions_is_searched_with_bounded_work() -> None:
         graded(submission, RUBRICS["arm"])
     with limited_work(_MAX_GRADINGS * once.calls):
         search_for(submission, results, RUBRICS["arm"])
+
+
+def test_a_costly_submission_is_not_searched() -> None:
+    """A robot whose reading takes long gets its report at once, even if words could say what it lacks."""
+    text = _with("<!-- -->" * 40_000).replace("<visual>", f"<visual>{'<sphere/>' * 3000}", 1)
+    submission = read_submission(text.encode(), identity="student", path="my_robot.urdf")
+    report = grade(LAB6, submission)
+    assert submission.is_costly
+    with limited_work(100):
+        assert hinted(report, submission, "edit").report == report
