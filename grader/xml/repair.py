@@ -221,6 +221,10 @@ class _Repairer:
     def _close_last(self, offset: int) -> None:
         """Close the innermost open tag before an offset, in a line of its own if it has one."""
         opened = self._open.pop()
+        head = self._text[opened.offset : offset].rstrip()
+        if opened.offset not in self._replaced and _is_never_filled(opened.name) and head.find(">") == len(head) - 1:
+            self._replace(opened.offset, opened.offset + len(head), f"{head[:-1].rstrip()}/>")
+            return
         end, new = self._replaced.get(self._last, (0, " "))
         if not new and not _OTHER.sub("", self._text[end:offset]).strip():  # a wrong end tag is there
             self._replaced[self._last] = end, f"</{opened.name}>"
@@ -273,6 +277,11 @@ class _Repairer:
             after, before = places[bisect_right(places, offset, key=lambda place: place[0]) - 1]
             offsets.append(before + offset - after)
         return found.xml, offsets
+
+
+def _is_never_filled(tag: str) -> bool:
+    """Return whether an element has attributes only: <box size="1 1 1"/> is closed where it begins."""
+    return tag in TAGS and bool(TAGS[tag].attributes) and not TAGS[tag].children
 
 
 def _main_attribute(tag: str) -> str:
