@@ -7,21 +7,29 @@ is asked only for what the earlier ones left. Missing links and joints get hints
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from grader.grading.criterion import Criterion
 from grader.hints.edits import FoundHint, Proposal
 from grader.hints.robot_difference import MissingPart, Piece, RobotDifference
 from grader.hints.robot_draft import Draft, Set
-from grader.hints.robot_variants import in_another_unit, of_own, of_siblings, whole_elements, whole_links
+from grader.hints.robot_variants import (
+    exchanges,
+    in_another_unit,
+    of_own,
+    of_siblings,
+    reversed_joints,
+    whole_elements,
+    whole_links,
+)
 from grader.robot.kinematics import Configuration
 from grader.robot.link_tree import selected_or_name, texts_in
 from grader.robot.meant import Word
-from grader.robot.model import Robot
 from grader.robot.reader import Reading
 from grader.source import Edit, Edits
 from grader.submission.submission import Submission
-from grader.submission.urdf import Read, known_links
+from grader.submission.urdf import Read, is_another_robot
 from grader.text import enumerated
 from grader.xml.urdf_format import JOINT_TYPES
 
@@ -51,8 +59,18 @@ class Situation:
         if isinstance(submission.urdf, Read):
             self.reading = submission.urdf.loaded
             self.draft = Draft.of(submission.urdf.reading)
-        if self.draft is not None and not _is_another(self.draft.robot, wanted):
+        if self.draft is not None and not is_another_robot(self.draft.robot, wanted):
             self.difference = RobotDifference(self.draft, reference or self.draft)
+
+    @cached_property
+    def exchanges(self) -> list[Piece]:
+        """The pieces that exchange ends of joints."""
+        return exchanges(self.difference) if self.difference is not None else []
+
+    @cached_property
+    def has_reversed(self) -> bool:
+        """Whether the parent and the child of a joint are exchanged: the poses around it are no ones to correct."""
+        return self.difference is not None and bool(reversed_joints(self.difference))
 
     @property
     def is_whole(self) -> bool:
@@ -89,6 +107,7 @@ def _of_reference(situation: Situation, lost: _Lost) -> Iterator[Iterable[Propos
     if draft is not None and difference is not None and subjects & {"urdf", "robot"}:
         links = _links_of(lost, difference)
         yield draft.corrections([*difference.names, *JOINT_TYPES])
+        yield _proposals(situation, situation.exchanges)
         yield _proposals(situation, in_another_unit(difference))
         yield _proposals(situation, of_siblings(difference, links or ()))
         yield _proposals(situation, difference.pieces, links)
@@ -129,6 +148,8 @@ def _proposals(
     """Yield the edits of the text that pieces of these links stand for."""
     assert situation.draft is not None
     for piece in pieces:
+        if situation.has_reversed and piece.is_pose:
+            continue
         if links is None or piece.link in links or not situation.is_known(piece.link):
             shared = situation.draft.shared(piece.sets)
             for way, edits in enumerate(situation.draft.ways(piece.sets)):
@@ -153,11 +174,6 @@ def _links_of(criteria: Iterable[Criterion], difference: RobotDifference) -> lis
                 joint = posed.parent_joints.get(link)
                 link = joint.parent if joint is not None else None
     return [*found][:_MAX_LINKS]
-
-
-def _is_another(robot: Robot, wanted: Collection[str]) -> bool:
-    """Return whether a robot has few links, and none of the lab's: no correction makes it the lab's robot."""
-    return 2 * len(robot.links) < len(wanted) and not known_links(robot, wanted)
 
 
 def _repairs(reading: Reading) -> Iterator[Proposal]:
@@ -210,13 +226,17 @@ def leaves_others(shared: Collection[str], passing: Iterable[Criterion], lost: C
 
 
 def missing_hints(
-    difference: RobotDifference | None, criteria: Mapping[str, Criterion], lost: Mapping[str, Decimal]
+    difference: RobotDifference | None,
+    written: Draft | None,
+    criteria: Mapping[str, Criterion],
+    lost: Mapping[str, Decimal],
 ) -> dict[str, FoundHint]:
-    """Return a hint in words for each missing link with its joint, by the costliest criterion that it costs."""
-    if difference is None or difference.draft is difference.reference:
+    """Return a hint in words for each missing link with its joint, by the costliest criterion that it costs.
+
+    `difference` is that of the robot after all edits, `written` is the robot before them.
+    """
+    if difference is None or written is None or difference.draft is difference.reference:
         return {}
-    if 2 * sum(map(difference.draft.robot.has_link, difference.names)) < len(difference.names):
-        return {}  # another robot, or one that is hardly begun
     found: dict[str, FoundHint] = {}
     left = sorted(difference.missing, key=lambda part: part.tag, reverse=True)  # links first, each with its joints
     while left:
@@ -227,7 +247,7 @@ def missing_hints(
         own = [name for name in robots if criteria[name].arguments.get("link") == link]
         names = own or [name for name in robots if link in texts_in(criteria[name].arguments)]
         if names:
-            found[max(names, key=lambda name: lost[name])] = _hint_of_parts(difference, parts)
+            found[max(names, key=lambda name: lost[name])] = _hint_of_parts(written, parts)
     has_link = difference.draft.robot.has_link
     joints = [part for part in difference.missing if has_link(part.link) and has_link(part.parent)]
     loading = [name for name in lost if criteria[name].check.subject == "urdf"]
@@ -235,7 +255,7 @@ def missing_hints(
         return found
     if len(joints) == 1:
         found = {name: hint for name, hint in found.items() if hint.proposal.link != joints[0].link}
-        found[loading[0]] = _hint_of_parts(difference, joints)
+        found[loading[0]] = _hint_of_parts(written, joints)
     else:
         lacking = enumerated([repr(part.link) for part in joints], _MAX_NAMED)
         cause = f"the joints of {lacking} are missing"
@@ -243,9 +263,9 @@ def missing_hints(
     return found
 
 
-def _hint_of_parts(difference: RobotDifference, parts: list[MissingPart]) -> FoundHint:
+def _hint_of_parts(written: Draft, parts: list[MissingPart]) -> FoundHint:
     cause = f"{enumerated([_cause_of_part(part) for part in parts])} {'is' if len(parts) == 1 else 'are'} missing"
-    words = f"add {enumerated([_part_in_words(part) for part in parts])}{_lines_of_similar(difference, parts)}"
+    words = f"add {enumerated([_part_in_words(part) for part in parts])}{_lines_of_similar(written, parts)}"
     return FoundHint(Proposal((), cause, parts[0].link), {}, words=words)
 
 
@@ -259,9 +279,8 @@ def _part_in_words(part: MissingPart) -> str:
     return f"a {part.joint_type} joint from {part.parent!r} to {part.link!r}"
 
 
-def _lines_of_similar(difference: RobotDifference, parts: list[MissingPart]) -> str:
+def _lines_of_similar(draft: Draft, parts: list[MissingPart]) -> str:
     """Return where the first elements like the missing ones are."""
-    draft = difference.draft
     lines: set[int] = set()
     for part in parts:
         joints = (joint for joint in draft.joints() if joint.get("type") == part.joint_type)

@@ -68,7 +68,8 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
             found = _first_at(one, results[entry].outcome.location)
             earlier = tuple(dict.fromkeys(entries[it.edits] for it in before))
             text = message(found, level, submission, earlier)
-            hint = _hint(found, text, entry, results[name], keeps_edits=level == "edit")
+            is_edit = level == "edit" and not any(map(_loses_expression, found.edits))
+            hint = _hint(found, text, entry, results[name], keeps_edits=is_edit)
             hints[name] = hint._replace(after=earlier)
     if level == "edit":
         others = enumerated(list(dict.fromkeys(entries.values())), _MAX_NAMED)
@@ -78,7 +79,24 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
                 hints[name] = Hint(f"Make the edits for {others}.", at, {})
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
     report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete)
-    return _HintedReport(report, search.edits, trials.faults)
+    return _HintedReport(report, tuple(edit for one in _written(search.found) for edit in one.edits), trials.faults)
+
+
+def _written(found: Sequence[FoundHint]) -> list[FoundHint]:
+    """Return the hints whose edits may be written: none that is left to words, and none after it that may need it."""
+    kept: list[FoundHint] = []
+    is_cut = False
+    for one in found:
+        if any(map(_loses_expression, one.edits)) or (one.is_late and is_cut):
+            is_cut = True
+        else:
+            kept.append(one)
+    return kept
+
+
+def _loses_expression(edit: Edit) -> bool:
+    """Return whether an edit writes a value in place of an expression of xacro: which one is better, a person knows."""
+    return edit.path.endswith(ROBOT_ENDINGS) and edit.old.count("$") > edit.new.count("$") and bool(edit.new)
 
 
 def fixed(found: _HintedReport, submission: Submission) -> Fix:
@@ -250,6 +268,8 @@ def _change(edit: Edit, submission: Submission) -> str:
     if not edit.old:
         return f"add {new} {_insertion(edit, submission)}"
     where = _where(edit, submission)
+    if _loses_expression(edit):
+        return f"correct the expression in {old} ({where}) so that it gives {new}"
     added = edit.new.removeprefix(edit.old).strip()
     if edit.old.startswith("<") and edit.new.startswith(edit.old) and "<" not in added:
         return f"add {_quote(added)} to `{edit.old}>` ({where})"

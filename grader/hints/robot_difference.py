@@ -37,6 +37,12 @@ class Piece(NamedTuple):
     rank: int = REFERENCE
     around: Element | None = None
 
+    @property
+    def is_pose(self) -> bool:
+        """Whether it changes where something is, and not what it is held by."""
+        tags = {tag for one in self.sets for tag in (one.tag, str(one.owner.tag))}
+        return not tags.isdisjoint(("origin", "axis")) and tags.isdisjoint(_ENDS)
+
 
 class MissingPart(NamedTuple):
     """A link or joint of the reference that a robot does not have: nothing writes it."""

@@ -239,6 +239,19 @@ class Draft:
             return [edits] if edits else []
         return [(with_attribute(source, start, attribute, escaped(value)),)]
 
+    def exchange(self, *elements: Element, attribute: str) -> Edits:
+        """Return the edits with which two elements have the text of an attribute of each other, as it is written."""
+        places = [self.source.element(self._tags[element]) for element in elements]
+        spans = [markup.attribute(source.text, start, attribute) for source, start in places]
+        pairs = zip(places, spans, strict=True)
+        texts = [source.text[it.value_start : it.value_end] for (source, _), it in pairs if it is not None]
+        if len(texts) != 2 or texts[0] == texts[1]:
+            return ()
+        return tuple(
+            with_attribute(source, start, attribute, text)
+            for (source, start), text in zip(places, reversed(texts), strict=True)
+        )
+
     def write_text(self, element: Element, text: str) -> Edits:
         """Return the edit that gives an element another text; none where it has children, or xacro evaluates it."""
         tag = self._tags[element]

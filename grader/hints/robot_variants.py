@@ -10,8 +10,9 @@ from itertools import combinations
 from math import inf
 
 from grader.hints.robot_difference import OWN, SIBLING, STRUCTURE, Piece, RobotDifference, normal
-from grader.hints.robot_draft import Draft, Set, end_of
+from grader.hints.robot_draft import Draft, Set, child_of, end_of
 from grader.hints.robot_numbers import LARGE, Values, format_number, format_numbers, plausible, values_of
+from grader.source import Edits
 from grader.xml.parsing import Element
 from grader.xml.urdf_format import TAGS
 
@@ -45,7 +46,7 @@ def _first_parts(draft: Draft, link: str) -> dict[str, Element]:
 def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
     """Yield the numbers of the link at the other side, mirrored, where the student builds both unlike the reference."""
     for link in links:
-        other = _WORD.sub(lambda word: _SIDES.get(word[0], word[0]), link)
+        other = other_side(link)
         theirs = _first_parts(difference.draft, other) if other != link else {}
         if theirs:
             like, mine = _first_parts(difference.reference, other), _first_parts(difference.reference, link)
@@ -124,6 +125,46 @@ def _of_number(difference: RobotDifference, element: Element, name: str) -> Iter
     for (one, with_one), (other, with_other) in combinations(lengths, 2):
         edits = (*with_one(other), *with_other(one)) if one != other else ()
         yield difference.piece(element, f"the numbers from which the {name} of {{}} is computed", edits, rank=OWN)
+
+
+def reversed_joints(difference: RobotDifference) -> list[Element]:
+    """Return the joints whose parent should be below their child: in the reference, the child is above the parent."""
+    parents = {end_of(joint, "child"): end_of(joint, "parent") for joint in difference.reference.joints()}
+
+    def links_above(link: str) -> set[str]:
+        found: set[str] = set()
+        while (link := parents.get(link, "")) and link not in found:
+            found.add(link)
+        return found
+
+    return [it for it in difference.draft.joints() if end_of(it, "child") in links_above(end_of(it, "parent"))]
+
+
+def exchanges(difference: RobotDifference) -> list[Piece]:
+    """Return what exchanges parent and child of reversed joints, and the children of two joints of both sides."""
+    found: list[Piece] = []
+    for joint in reversed_joints(difference):
+        edits = _exchange_ends(difference.draft, (joint, "parent"), (joint, "child"))
+        found.append(difference.piece(joint, "parent and child of a joint are exchanged", edits))
+    if len(found) > 1:
+        edits = tuple(dict.fromkeys(edit for piece in found for edit in piece.edits))
+        found.append(found[0]._replace(cause="parents and children of joints are exchanged", edits=edits))
+    for joint in difference.draft.joints():
+        other = difference.draft.joint_of(other_side(end_of(joint, "child")))
+        if other is not None and other is not joint:
+            edits = _exchange_ends(difference.draft, (joint, "child"), (other, "child"))
+            found.append(difference.piece(joint, "the children of two joints are exchanged", edits))
+    return found
+
+
+def _exchange_ends(draft: Draft, *ends: tuple[Element, str]) -> Edits:
+    elements = [child_of(joint, role) for joint, role in ends]
+    return draft.exchange(*[it for it in elements if it is not None], attribute="link")
+
+
+def other_side(link: str) -> str:
+    """Return the name of the link at the other side; the same name if it has no side."""
+    return _WORD.sub(lambda word: _SIDES.get(word[0], word[0]), link)
 
 
 def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:

@@ -4,9 +4,11 @@ A `Piece` is what one mistake needs, with its words; a `Proposal` is one way to 
 proves becomes a `FoundHint`, and in a report a `Hint`. All of them together are the `Fix`.
 """
 
+from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from decimal import Decimal
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError
@@ -16,8 +18,8 @@ from grader.grading.rubric import Rubric
 from grader.hints.edits import FoundHint, Proposal, edited_files, with_files, with_urdf
 from grader.hints.generators import STAGES, Situation, Stage, leaves_others, missing_hints
 from grader.hints.robot_difference import REFERENCE, STRUCTURE
-from grader.hints.robot_draft import Draft
-from grader.source import Edits
+from grader.hints.robot_draft import Draft, end_of
+from grader.source import Certainty, Edits
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
@@ -68,7 +70,7 @@ class Trials:
         self.left -= 1 + self.submission.cost
         if self.left < 0:
             raise _NoTrialsLeft
-        edited = self._edited(edits, whole=whole)
+        edited = self.edited(edits, whole=whole)
         if edited is None or _has_new_problems(self.submission, edited):
             return {}
         self.is_assumed = _is_assumed(edited) and not _is_assumed(self.submission)
@@ -80,7 +82,8 @@ class Trials:
             found[name] = result
         return found
 
-    def _edited(self, edits: Edits, *, whole: bool) -> Submission | None:
+    def edited(self, edits: Edits, *, whole: bool = False) -> Submission | None:
+        """Return the submission with edits; None where they do not fit."""
         files = edited_files(self.submission, edits)
         if files is None:
             return None
@@ -98,10 +101,20 @@ def _has_new_problems(before: Submission, after: Submission) -> bool:
     """Return whether ROS 2 loads the URDF, with a kind of problem that it had not before: no edit may make it worse."""
     if not isinstance(before.urdf, Read) or not isinstance(after.urdf, Read):
         return False
+    if _repeated(after.urdf) - _repeated(before.urdf):
+        return True  # a macro that is called twice makes two links of one name
     if before.urdf.loaded.verdict == "rejected":
         return False
     known = {problem.kind for problem in before.urdf.loaded.problems if problem.kind.effect in _HARMFUL}
     return any(it.kind not in known for it in after.urdf.loaded.problems if it.kind.effect in _HARMFUL)
+
+
+def _repeated(urdf: Read) -> set[tuple[str, str]]:
+    """Return the names that several links have, and the links that several joints move."""
+    draft = Draft.of(urdf.loaded)
+    links = [("link", it.get("name") or "") for it in draft.links()] if draft is not None else []
+    joints = [("joint", end_of(it, "child")) for it in draft.joints()] if draft is not None else []
+    return {key for key, count in Counter(links + joints).items() if count > 1}
 
 
 def _is_assumed(submission: Submission) -> bool:
@@ -155,6 +168,16 @@ class _Tried(NamedTuple):
     is_assumed: bool  # they may pass by what is undone, and not by the edit: others come first
 
 
+class _Proof(NamedTuple):
+    """What a proposal gains, as a hint says it, and together with all edits before it; and the results then."""
+
+    proposal: Proposal
+    gains: Mapping[str, Decimal]
+    together: Mapping[str, Decimal]
+    after: _Results
+    is_late: bool
+
+
 class HintSearch:
     """The search for one submission: `found` are proven edits that fit together, `edits` are those of all."""
 
@@ -170,7 +193,8 @@ class HintSearch:
         No edit is searched for the criteria that are `told`.
         """
         self.trials = trials
-        self._situation = Situation(trials.submission, trials.rubric.links, reference, package)
+        self._situation_of = partial(Situation, wanted=trials.rubric.links, reference=reference, package=package)
+        self._situation = self._situation_of(trials.submission)
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
         self.found: list[FoundHint] = []
         self.missing: dict[str, FoundHint] = {}  # by the criterion that shows that a part is missing, or two edits
@@ -178,7 +202,6 @@ class HintSearch:
         self._told = {*told}  # also criteria for which two edits are told that cannot be told apart
         self._tried_after: dict[Stage, Edits] = {}  # the edits after which a stage was tried last
         self.results: _Results = trials.results  # with all edits
-        self._after: _Results = self.results
         self.is_complete = self._is_cut = False
 
     @property
@@ -198,9 +221,14 @@ class HintSearch:
         with self.trials.isolated():
             known = {name for found in self.found for name in found.gains} | self.missing.keys()
             lost = {name: points for name, points in costs_of(self.trials.results).items() if name not in known}
-            if self._situation.is_whole:
-                self.missing |= missing_hints(self._situation.difference, self._criteria, lost)
+            after = self._situation_after(self.edits)
+            if after.is_whole:
+                self.missing |= missing_hints(after.difference, self._situation.draft, self._criteria, lost)
         return self
+
+    def _situation_after(self, edits: Edits) -> Situation:
+        edited = self.trials.edited(edits) if edits else None
+        return self._situation_of(edited) if edited is not None else self._situation
 
     def _verify(self) -> None:
         """Take no hint back only if all together hold where the submission is read from scratch."""
@@ -216,6 +244,9 @@ class HintSearch:
         if not self._lost or self._tried_after.get(stage) == self.edits:
             return
         self._tried_after[stage] = self.edits
+        made = [it.edits for it in self._situation.exchanges if it.edits and {*it.edits} <= {*self.edits}]
+        if made:  # what else is wrong shows when joints have the right ends; no line moves
+            self._situation = self._situation_after(made[-1])
         tried: list[_Tried] = []
         with self.trials.isolated():
             self._try(stage, tried)
@@ -251,45 +282,56 @@ class HintSearch:
         return one.is_assumed, -gain, one.proposal.rank, one.proposal.way, one.proposal.size
 
     def _prove(self, best: _Tried, tried: Iterable[_Tried]) -> bool:
-        """Add an edit if it gains the points alone, or after the edits before it, and loses nothing of theirs."""
-        edits = tuple(edit for edit in best.proposal.edits if edit not in self.edits)
-        lost = set(self._lost)
-        wanted = best.passes & lost
-        together = self._gains(self.edits, edits, self.results)
-        if together and best.proposal.rank in (REFERENCE, STRUCTURE) and 1 < len(edits) <= _MAX_PARTS:
-            edits, together = self._needed(edits, together)
-        after, best = self._after, best._replace(proposal=best.proposal._replace(edits=edits))
-        alone = self._gains((), edits, self.trials.results) if self.found else {}
-        is_late = bool(self.found) and not wanted & alone.keys()
-        gains = alone if self.found and not is_late else together
-        if not together or any(after[name].outcome.status != "passed" for name in gains):
+        """Add the hint of a proposal if it is proven, and return whether it was added."""
+        wanted = best.passes & {*self._lost}
+        proof = self._proof_of(best.proposal, wanted)
+        if proof is None or self._is_half(best, proof.after):
             return False
-        if not wanted & gains.keys() or self._is_half(best, after):
-            return False
-        known = {name for found in self.found for name in found.gains}
-        gains = {name: points for name, points in gains.items() if name not in known} or gains
-        equal = self._equal_to(best, together, wanted, tried)
-        is_of_robot = all(path.endswith((".urdf", ".xacro")) for path in {edit.path for edit in best.proposal.edits})
+        best = best._replace(proposal=proof.proposal)
+        equal = self._equal_to(best, proof.together, wanted, tried)
+        is_of_robot = all(edit.path.endswith((".urdf", ".xacro")) for edit in proof.proposal.edits)
         if equal is not None and is_of_robot:
             name = max((it for it in self._criteria if it in wanted), key=lambda name: self._criteria[name].points)
-            self.missing[name] = FoundHint(best.proposal, {}, "one of several", alternative=equal.proposal)
+            self.missing[name] = FoundHint(proof.proposal, {}, "one of several", alternative=equal.proposal)
             self._told |= wanted
             return False
-        self.found.append(FoundHint(best.proposal, gains, "one of several" if equal else "preferred", is_late))
-        self.results = after
+        certainty: Certainty = "preferred" if equal is None else "one of several"
+        self.found.append(FoundHint(proof.proposal, proof.gains, certainty, proof.is_late))
+        self.results = proof.after
         self._refused = set()
         return True
 
-    def _needed(self, edits: Edits, gains: dict[str, Decimal]) -> tuple[Edits, dict[str, Decimal]]:
-        """Leave out changes of values without which the others gain as much, and return what the rest gains."""
-        after = self._after
+    def _proof_of(self, proposal: Proposal, wanted: frozenset[str]) -> _Proof | None:
+        """Return what edits gain alone, or else after the edits before them; None if they lose anything."""
+        edits = tuple(edit for edit in proposal.edits if edit not in self.edits)
+        together, after = self._gains(self.edits, edits, self.results)
+        if not together:
+            return None
+        if proposal.rank in (REFERENCE, STRUCTURE) and 1 < len(edits) <= _MAX_PARTS:
+            edits, together, after = self._needed(edits, together, after)
+        gains, is_late = together, False
+        if self.found:
+            alone, _ = self._gains((), edits, self.trials.results)
+            is_late = wanted.isdisjoint(alone)
+            gains = together if is_late else alone
+        if gains.keys().isdisjoint(wanted) or any(after[name].outcome.status != "passed" for name in gains):
+            return None
+        known = {name for found in self.found for name in found.gains}
+        gains = {name: points for name, points in gains.items() if name not in known} or gains
+        return _Proof(proposal._replace(edits=edits), gains, together, after, is_late)
+
+    def _needed(
+        self, edits: Edits, gains: dict[str, Decimal], after: _Results
+    ) -> tuple[Edits, dict[str, Decimal], _Results]:
+        """Leave out changes of values without which the others gain as much; return the rest with what it gains."""
         for edit in [it for it in edits if it.old and it.new]:
             rest = tuple(it for it in edits if it is not edit)
-            left = self._gains(self.edits, rest, self.results) if rest else {}
+            if not rest:
+                break
+            left, results = self._gains(self.edits, rest, self.results)
             if gains.keys() <= left.keys():
-                edits, gains, after = rest, left, self._after
-        self._after = after
-        return edits, gains
+                edits, gains, after = rest, left, results
+        return edits, gains, after
 
     def _equal_to(
         self, best: _Tried, gains: Mapping[str, Decimal], wanted: frozenset[str], tried: Iterable[_Tried]
@@ -301,8 +343,11 @@ class HintSearch:
         others = (it for it in others if not added.issuperset(edit.new.strip(_AROUND) for edit in it.proposal.edits))
         equal = (it for it in others if self._order(it, lost) == self._order(best, lost))
         apart = (it for it in equal if it.proposal.places.isdisjoint(best.proposal.places))
-        proven = (it for it in apart if gains.keys() <= self._gains(self.edits, it.proposal.edits, self.results).keys())
-        return next(proven, None)
+        for one in apart:
+            others_gains, _ = self._gains(self.edits, one.proposal.edits, self.results)
+            if gains.keys() <= others_gains.keys():
+                return one
+        return None
 
     def _is_half(self, best: _Tried, after: _Results) -> bool:
         """Return whether an edit leaves what it should correct as well: in another call of a macro, or of its link."""
@@ -313,8 +358,7 @@ class HintSearch:
         chains = (self._situation.own_chain(it.arguments.get("link")) for it in lost if is_own)
         return any(best.proposal.link in chain for chain in chains)
 
-    def _gains(self, before: Edits, edits: Edits, against: _Results) -> dict[str, Decimal]:
-        """Return what edits gain; nothing where a criterion is worse with them."""
+    def _gains(self, before: Edits, edits: Edits, against: _Results) -> tuple[dict[str, Decimal], _Results]:
+        """Return what edits gain, with the results; nothing where a criterion is worse with them."""
         after = self.trials.graded((*before, *edits), against)
-        self._after = after or self._after
-        return gains_of(against, after)
+        return gains_of(against, after), after
