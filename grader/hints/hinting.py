@@ -68,8 +68,9 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
             found = _first_at(one, results[entry].outcome.location)
             earlier = tuple(dict.fromkeys(entries[it.edits] for it in before))
             text = message(found, level, submission, earlier)
-            is_edit = level == "edit" and not any(map(_loses_expression, found.edits))
-            hint = _hint(found, text, entry, results[name], keeps_edits=is_edit)
+            in_words = level == "edit" and any(map(_loses_expression, found.edits))
+            told = found._replace(gains={}) if in_words else found
+            hint = _hint(told, text, entry, results[name], keeps_edits=level == "edit" and not in_words)
             hints[name] = hint._replace(after=earlier)
     if level == "edit":
         others = enumerated(list(dict.fromkeys(entries.values())), _MAX_NAMED)

@@ -117,5 +117,5 @@ def test_xacro_is_edited_where_it_is_written(tmp_path: Path) -> None:
     other = tmp_path / "other"
     other.mkdir()
     (hint,) = hints_of(other, XACRO.replace(">30<", ">${2 * 5}<"), "robot.urdf.xacro")
-    assert hint["message"] == "Correct the expression in `${2 * 5}` (line 6) so that it gives `30`."
+    assert hint["message"] == "Correct the expression in `${2 * 5}` (line 7) so that it gives `30`."
     assert not hint["edits"]
