@@ -46,7 +46,7 @@ def _first_parts(draft: Draft, link: str) -> dict[str, Element]:
 def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
     """Yield the numbers of the link at the other side, mirrored, where the student builds both unlike the reference."""
     for link in links:
-        other = other_side(link)
+        other = _other_side(link)
         theirs = _first_parts(difference.draft, other) if other != link else {}
         if theirs:
             like, mine = _first_parts(difference.reference, other), _first_parts(difference.reference, link)
@@ -150,7 +150,7 @@ def exchanges(difference: RobotDifference) -> list[Piece]:
         edits = tuple(dict.fromkeys(edit for piece in found for edit in piece.edits))
         found.append(found[0]._replace(cause="parents and children of joints are exchanged", edits=edits))
     for joint in difference.draft.joints():
-        other = difference.draft.joint_of(other_side(end_of(joint, "child")))
+        other = difference.draft.joint_of(_other_side(end_of(joint, "child")))
         if other is not None and other is not joint:
             edits = _exchange_ends(difference.draft, (joint, "child"), (other, "child"))
             found.append(difference.piece(joint, "the children of two joints are exchanged", edits))
@@ -162,7 +162,7 @@ def _exchange_ends(draft: Draft, *ends: tuple[Element, str]) -> Edits:
     return draft.exchange(*[it for it in elements if it is not None], attribute="link")
 
 
-def other_side(link: str) -> str:
+def _other_side(link: str) -> str:
     """Return the name of the link at the other side; the same name if it has no side."""
     return _WORD.sub(lambda word: _SIDES.get(word[0], word[0]), link)
 
