@@ -13,7 +13,7 @@ from grader.checks.registry import own_checks
 
 ROOT = Path(__file__).parent.parent / "grader"
 LAYERS = (
-    ("errors", "markup", "text", "reuse", "pairing"),
+    ("errors", "markup", "merge_conflicts", "text", "reuse", "pairing"),
     ("source", "names"),
     ("problems",),
     ("files", "python", "xml"),

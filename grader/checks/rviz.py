@@ -55,6 +55,8 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
     """
     package = submission.needed_package()
     rviz = _read_rviz(package, name, launch)
+    if rviz.conflict is not None:
+        return failed(rviz.conflict.message, rviz.conflict.location)
     opened = _read_launch(package, launch)
     frames = _frames_of_link(opened, frame)
     actual, expected = rviz.fixed_frame, next(filter(None, frames), frame)

@@ -18,6 +18,7 @@ from grader.hints.edits import Proposal, edited
 from grader.hints.package_task import WHAT, PackageTask, change, file_proposals, package_names
 from grader.hints.python_file import PythonFile, argument, called
 from grader.markup import indentation, indented
+from grader.merge_conflicts import find_conflicts
 from grader.names import closest
 from grader.package.launch.model import Launch, NamedFile
 from grader.package.launch.places import HOME, PREFIX, WORKING_FOLDER
@@ -98,6 +99,10 @@ def _of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
 def _of_text(task: PackageTask, kind: str, source: Source, path: str, like: str | None) -> Iterator[Proposal]:
     """Yield the edits of a file: its difference to the reference, its syntax, its names, its paths and its words."""
     what, wanted = WHAT.get(kind, kind), task.wanted(like) or ""
+    removed = [span for conflict in find_conflicts(source.text) for span in conflict.removed]
+    if removed:  # whose marker lines no other edit removes together
+        yield change([source.edit(*span, "") for span in removed], "an unresolved merge conflict", what)
+        return
     own = PythonFile(source)
     ending, other = (posixpath.splitext(it or "")[1] for it in (path, like))
     is_python = ending in (".py", "")

@@ -14,11 +14,11 @@ from typing import NamedTuple
 
 from grader import markup
 from grader.hints.edits import Proposal, merged, with_attribute
-from grader.names import closest, near
+from grader.names import near
 from grader.source import Edit, Edits, Location, Source
-from grader.xacro.expander import Refusal
+from grader.xacro.corrections import Refusal, respellings, tags_of, values_of_other_calls
 from grader.xacro.expansion import ExpandedSource
-from grader.xacro.scopes import Definition, Key, ScopePlace, UnknownName, XacroScope
+from grader.xacro.scopes import Definition, Key, ScopePlace, XacroFails, XacroScope
 from grader.xacro.texts import Texts
 from grader.xacro.xacro_nodes import XacroNode, walk
 
@@ -332,7 +332,8 @@ class ExpandedEdits:
         `names` are those that the reference and the format have.
         """
         written = Source(self._source.path, self._source.text)
-        found = [*_corrections(written, self._source.documents, self._source.refused)]
+        found = [Proposal(self._source.corrected, "what xacro refuses")] if self._source.corrected else []
+        found += _corrections(written, self._source.documents, self._source.refused)
         given = sorted({word for name in names for word in name.split("_")})
         for document in self._source.documents.values():
             edited = _conditions(document.place.source, given)
@@ -368,70 +369,13 @@ def _corrections(document: Source, files: Mapping[str, XacroNode], refusals: Seq
     macros = {node.attributes.get("name", "") for node in nodes if node.tag == "xacro:macro"}
     for node in nodes:
         if node.tag in _PREFIXED or node.tag in macros:
-            edits = tuple(_tags(node.place, node.tag, f"xacro:{node.tag}"))
+            edits = tuple(tags_of(node.place, node.tag, f"xacro:{node.tag}"))
             yield Proposal(edits, f"<{node.tag}> without xacro:")
-    for error, place, attribute in refusals[:_MAX_NAMES]:
+    named = [it for it in refusals if isinstance(it[0], XacroFails) and (it[0].unknown is not None or it[0].lacking)]
+    for error, place, attribute in named[:_MAX_NAMES]:
+        assert isinstance(error, XacroFails)
         if error.unknown is not None:
-            for edits in _respell(place, attribute, error.unknown):
+            for edits in respellings(place, attribute, error.unknown):
                 yield Proposal(edits, "a name that xacro does not know")
-        if error.lacking:
-            yield from _values_of_other_calls(place, nodes, error.lacking)
-
-
-def _values_of_other_calls(
-    place: ScopePlace, nodes: Sequence[XacroNode], lacking: tuple[str, ...]
-) -> Iterator[Proposal]:
-    """Yield the edits that give a call the values that it lacks, from other calls of the macro, also negated."""
-    own = next((node for node in nodes if node.place[:2] == place[:2]), None)
-    for other in nodes:
-        given = other.attributes
-        if own is not None and other is not own and other.tag == own.tag and set(lacking) <= given.keys():
-            for values in ({name: given[name] for name in lacking}, _negated(given, lacking)):
-                yield Proposal(_give(place, values), f"this call gives no value for {' and '.join(values)}")
-
-
-def _respell(place: ScopePlace, attribute: str | None, unknown: UnknownName) -> Iterator[Edits]:
-    """Yield the edits that correct an unknown name where it is used, or where a similar one is defined."""
-    near = closest(unknown.name, unknown.known)
-    if near is not None:
-        at, where = unknown.known[near] or (place, None)
-        ways = [_rename(place, attribute, unknown.name, near)]
-        if where is not None:
-            ways.append(_rename(at, where, near, unknown.name))
-        yield from (edits for edits in ways if edits)
-
-
-def _negated(given: Mapping[str, str], names: Sequence[str]) -> Mapping[str, str]:
-    return {name: re.sub(r"^(-?)(?=\d)", lambda it: "" if it[1] else "-", given[name]) for name in names}
-
-
-def _give(place: ScopePlace, values: Mapping[str, str]) -> Edits:
-    source, start = place.source.element(place.tag)
-    ends = [markup.name_end(source.text, start), *(it.end for it in markup.attributes(source.text, start))]
-    return (source.edit(ends[-1], ends[-1], "".join(f' {name}="{text}"' for name, text in values.items())),)
-
-
-def _rename(place: ScopePlace, attribute: str | None, old: str, new: str) -> Edits:
-    """Return the edit of an attribute's value; without an attribute, of an attribute's name, the tag, or any value."""
-    source, start = place.source.element(place.tag)
-    if attribute is None:
-        tags = tuple(_tags(place, f"xacro:{old}", f"xacro:{new}"))
-        if tags:
-            return tags
-    for found in markup.attributes(source.text, start):
-        whole = source.text[found.start : found.end]
-        changed = re.sub(rf"(?<![\w.]){re.escape(old)}(?!\w)", new, whole, count=0 if "$" in whole else 1)
-        if attribute in (None, found.name) and changed != whole:
-            return (source.edit(found.start, found.end, changed),)
-    return ()
-
-
-def _tags(place: ScopePlace, old: str, new: str) -> Iterator[Edit]:
-    """Yield the edits of a call's start tag, and of its end tag if it has one."""
-    source, start = place.source.element(place.tag)
-    if source.text[start : markup.name_end(source.text, start)] == f"<{old}":
-        yield source.edit(start, start + len(old) + 1, f"<{new}")
-        end = markup.element_end(source.text, start)
-        closing = re.search(rf"</{re.escape(old)}\s*>\Z", source.text[start:end])
-        if closing is not None:
-            yield source.edit(start + closing.start(), end, f"</{new}>")
+        for edits, values in values_of_other_calls(place, nodes, error.lacking) if error.lacking else ():
+            yield Proposal(edits, f"this call gives no value for {' and '.join(values)}")

@@ -1,8 +1,9 @@
 """package.xml: name, build type and problems of a package (REP 127, 140 and 149)."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from grader.merge_conflicts import resolve_conflicts
 from grader.package import package_problems as kinds
 from grader.package.conditions import evaluate_condition
 from grader.package.manifest_rules import email_of, find_refusals, tag_of, text_of
@@ -37,6 +38,11 @@ class Manifest:
 @reuse
 def read_manifest(data: bytes, path: str) -> Manifest:
     """Read a package.xml. Never raises: errors are among the problems."""
+    resolved = resolve_conflicts(data)
+    if resolved is not None:
+        manifest = read_manifest(resolved.data, path)
+        problem = Problem(kinds.BAD_MANIFEST, f"package.xml has {resolved.message}", Location(path, resolved.line, 1))
+        return replace(manifest, problems=(problem, *manifest.problems))
     source = Source(path, data.decode("utf-8", "replace"))
     try:
         file = XmlFile(data, source)

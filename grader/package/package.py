@@ -204,10 +204,14 @@ class Package:
             rviz = RvizFile(Source(own, ""), None, None, Location(own, 1, 1), (), unread=str(error))
         return self._rviz_files.setdefault(path, rviz)
 
+    @property
+    def launches(self) -> "list[Launch]":
+        """What its launch files do."""
+        return [self.launch(path) for path in self.launch_files[:_MAX_LAUNCHES]]
+
     def robot_references(self, name: str = "") -> "list[NamedFile]":
         """Return where its launch files read the robot in a file of this name, or in any file."""
-        launches = map(self.launch, self.launch_files[:_MAX_LAUNCHES])
-        found = (it for launch in launches for it in launch.named("urdf") if it.path)
+        found = (it for launch in self.launches for it in launch.named("urdf") if it.path)
         return [it for it in found if not name or f"/{it.path}".endswith(f"/{name}")]
 
     def rviz_file(self, name: str, launch: "Launch | None") -> str | None:

@@ -1,8 +1,9 @@
 """RViz configuration files: the fixed frame and the enabled displays, as RViz of ROS 2 reads them."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from grader.merge_conflicts import resolve_conflicts
 from grader.package import package_problems as kinds
 from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.problems import Problem
@@ -53,6 +54,7 @@ class RvizFile:
     frame_location: Location
     displays: tuple[Display, ...]
     unread: str = ""  # why the file was not read at all: too large, damaged
+    conflict: Problem | None = None  # of git, without which it was read
 
     @property
     def problems(self) -> tuple[Problem, ...]:
@@ -61,7 +63,7 @@ class RvizFile:
             return (self.fault,)
         if self.unread:
             return ()
-        found: list[Problem] = []
+        found = [self.conflict] if self.conflict is not None else []
         for display in self.displays:
             if display.package == "rviz":
                 kind = display.kind
@@ -76,6 +78,10 @@ class RvizFile:
 @reuse
 def read_rviz(data: bytes, path: str) -> RvizFile:
     """Read an RViz file. Never raises."""
+    resolved = resolve_conflicts(data)
+    if resolved is not None:
+        problem = Problem(kinds.BAD_RVIZ, resolved.message, Location(path, resolved.line, 1))
+        return replace(read_rviz(resolved.data, path), conflict=problem)
     source = Source(path, data.decode("utf-8", "replace"))
     start = Location(path, 1, 1)
     try:

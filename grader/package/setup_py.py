@@ -233,6 +233,7 @@ def _evaluate_setup(code: Code, listing: PackageListing, written: dict[str, Posi
     interpreter.run(code)
     name = calls[0].kwargs.get("name") if calls else None
     data_files.finish()
+    conflicts = [PythonError(*code.conflict)] if code.conflict is not None else []
     doubts = data_files.doubts
     if interpreter.doubt is not None:
         doubts = [interpreter.doubt, *doubts]
@@ -242,7 +243,7 @@ def _evaluate_setup(code: Code, listing: PackageListing, written: dict[str, Posi
         copies=tuple(data_files.copies),
         stops=tuple(data_files.stops),
         empty=tuple(listing.empty),
-        faults=tuple(sorted(interpreter.errors, key=lambda error: error.at)),
+        faults=(*conflicts, *sorted(interpreter.errors, key=lambda error: error.at)),
         unknown=tuple(dict.fromkeys([*doubts, *data_files.unknown])),
         doubt=doubts[0] if doubts else None,
         is_called=bool(calls) or interpreter.doubt is not None,

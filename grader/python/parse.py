@@ -6,10 +6,11 @@ import sys
 import tokenize
 import warnings
 from codecs import lookup
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from io import BytesIO
 from typing import NamedTuple
 
+from grader.merge_conflicts import resolve_conflicts
 from grader.reuse import reuse
 from grader.source import Location, Source
 
@@ -46,6 +47,7 @@ class Code:
 
     source: Source
     tree: ast.Module
+    conflict: tuple[str, Position] | None = None  # of git, without which it was parsed
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,8 +62,14 @@ class SyntaxFault:
 
 def parse(data: bytes, path: str) -> Code | SyntaxFault:
     """Parse the bytes of a Python file. Never raises: what Python refuses, also for its depth, is a SyntaxFault."""
+    resolved = resolve_conflicts(data)
     try:
-        return _parse(data, path)
+        found = _parse(resolved.data if resolved is not None else data, path)
+        if resolved is None:
+            return found
+        if isinstance(found, Code):
+            return replace(found, conflict=(resolved.message, Position(resolved.line, 1)))
+        return replace(found, message=resolved.message, location=Location(path, resolved.line, 1))
     except (RecursionError, MemoryError):  # these depend on the process, so they are not kept
         return SyntaxFault(Source(path, data.decode("utf-8", "replace")), _TOO_DEEP, Location(path, 1, 1))
 

@@ -1,5 +1,6 @@
 """The words for which ROS 2 rejects a file and that surely stand for others: what the robot is if they are undone."""
 
+import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from itertools import islice
@@ -9,13 +10,15 @@ from grader.names import near
 from grader.problems import Problem
 from grader.robot.diagnostics import Problems
 from grader.robot.model import Robot
+from grader.robot.numbers import readable_numbers
 from grader.text import quoted
 from grader.xml.parsing import Element
-from grader.xml.urdf_format import ATTRIBUTES, JOINT_TYPES, REQUIRED, TAGS
+from grader.xml.urdf_format import ATTRIBUTES, JOINT_TYPES, PARTS, REQUIRED, TAGS
 
-_MAX_ROUNDS = 3  # one undone word can reveal the next: that of a tag, then its attribute, then its value
+_MAX_ROUNDS = 5  # one undone word can reveal the next: that of a tag, then its attribute, then its value
 _MAX_WORDS = 20  # in one file
 _MAX_ATTRIBUTES = 50  # of one element, because lxml searches each name from the first
+_ROOT = re.compile(r"(?i)base|world|map|odom|root")  # how the first link of a robot is usually called
 _OF_JOINT = ("parent", "child", "limit", "mimic", "safety_controller")  # a defect of these rejects the file
 
 
@@ -46,7 +49,14 @@ def read_as_meant(root: Element, robot: Robot, read: Callable[[], tuple[Robot, P
     before: list[tuple[Element, str, dict[str, str]]] = []
     try:
         for _ in range(_MAX_ROUNDS):
-            ways = (_misspelt_format(root), _misspelt_references(root, robot), _repeated_names(root))
+            ways = (
+                _misspelt_format(root),
+                _misspelt_references(root, robot),
+                _repeated_names(root),
+                _readable_vectors(root),
+                _exchanged_ends(root, robot),
+                _pasted_children(root, robot),
+            )
             words = next(filter(None, ([*islice(way, _MAX_WORDS)] for way in ways)), [])
             if not words:
                 return None
@@ -133,6 +143,63 @@ def _misspelt_ends(
             if role == "child":
                 children.add(meant)
             yield _word_with_value(end, "link", meant, "the link")
+
+
+def _readable_vectors(root: Element) -> Iterator[Word]:
+    """Yield vectors that ROS 2 cannot read although their numbers are clear."""
+    for element in root.iter("origin", "axis", "box", "mesh", "color"):
+        given = {str(name): str(value) for name, value in element.attrib.items()}
+        for name, text in given.items():
+            count = len(PARTS.get(name, ()))
+            meant = readable_numbers(text, count) if count > 1 and name in ATTRIBUTES[str(element.tag)] else None
+            if meant is None:
+                continue
+            changed = {**given, name: " ".join(meant[:count])}
+            if len(meant) > count and name == "xyz" and "rpy" not in given:
+                changed["rpy"] = " ".join(meant[count:])
+            sentence = f"{name} is read as {quoted(changed[name])}"
+            yield Word(element, name, str(element.tag), changed, sentence)
+
+
+def _exchanged_ends(root: Element, robot: Robot) -> Iterator[Word]:
+    """Yield the parent and child of the one joint that are exchanged, so that one link has two parents."""
+    parents = [(joint.parent, joint.child) for joint in robot.joints]
+    counts = Counter(child for _, child in parents)
+    doubled = [child for child, count in counts.items() if count > 1]
+    if len(doubled) != 1 or counts[doubled[0]] > _MAX_ROUNDS:
+        return
+    found: dict[int, str] = {}  # the root that the robot has if a joint is exchanged
+    for index, (parent, child) in enumerate(parents):
+        if child == doubled[0] and parent not in counts:
+            others = {*counts, parent} - ({child} if counts[child] == 1 else set())
+            roots = [link.name for link in robot.links if link.name not in others]
+            if len(roots) == 1:
+                found[index] = roots[0]
+    usual = [index for index, name in found.items() if _ROOT.match(name)]
+    only = usual if len(found) > 1 else [*found]
+    elements = [*root.iterchildren("joint")]
+    if len(only) == 1 and len(elements) == len(parents):
+        parent, child = parents[only[0]]
+        ends = {role: elements[only[0]].find(role) for role in ("parent", "child")}
+        for role, link in (("parent", child), ("child", parent)):
+            end = ends[role]
+            if end is not None and end.get("link"):
+                yield _word_with_value(end, "link", link, f"the {role}")
+
+
+def _pasted_children(root: Element, robot: Robot) -> Iterator[Word]:
+    """Yield the child that a second joint has by mistake: the one link that no joint names should be there."""
+    named = {name for joint in robot.joints for name in (joint.parent, joint.child)}
+    lonely = [link.name for link in robot.links if link.name not in named]
+    counts = Counter(joint.child for joint in robot.joints)
+    doubled = [child for child, count in counts.items() if count == 2]
+    if len(lonely) != 1 or len(doubled) != 1:
+        return
+    ends = [(joint, joint.find("child")) for joint in root.iterchildren("joint")]
+    own = [(joint, end) for joint, end in ends if end is not None and end.get("link") == doubled[0]]
+    named_after = [end for joint, end in own if lonely[0] in (joint.get("name") or "")]
+    for end in (named_after if len(named_after) == 1 else [end for _, end in own])[-1:]:
+        yield _word_with_value(end, "link", lonely[0], "the child")
 
 
 def _repeated_names(root: Element) -> Iterator[Word]:

@@ -6,8 +6,9 @@ white space is allowed before a number and rejected after it; nan, inf, hex and 
 
 import re
 from collections.abc import Callable
+from contextlib import suppress
 from functools import lru_cache, wraps
-from math import isinf
+from math import isfinite, isinf, pi
 from typing import TypeVar
 
 from grader.robot.transforms import Vector
@@ -16,6 +17,8 @@ from grader.text import counted, quoted
 _NUMBER = re.compile(r"[ \t\n\v\f\r]*[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _MAX_CACHED_LENGTH = 64  # characters: longer texts would make the cache large
 _COMMA = r"[+-]?[0-9]+,[0-9]+"  # 0,15 for 0.15
+_ARITHMETIC = re.compile(r"(?:[0-9.+\-*/()]|pi)+")
+_MAX_WORK = 1_000  # parts
 _VERSION = r"[ \t\n\v\f\r]*([+-]?[0-9]+)"
 _MAX_LONG = 2**63 - 1
 
@@ -55,6 +58,44 @@ def vector(text: str) -> Vector:
     if len(values) != 3:
         raise NumberError(f"it has {counted(len(values), 'number')}, expected 3")
     return (values[0], values[1], values[2])
+
+
+def readable_numbers(text: str, count: int) -> list[str] | None:
+    """Return the numbers that a list surely means, as texts, for one that ROS 2 cannot read; None if it can be read.
+
+    There may be twice as many, as in a pose. They are separated by any white space or by commas, with decimal commas,
+    or are computed, as in pi/2.
+    """
+    with suppress(NumberError):
+        if len(numbers(text)) == count:
+            return None
+    if "$" in text or len(text) > _MAX_CACHED_LENGTH:
+        return None
+    pieces = text.replace("\N{MINUS SIGN}", "-").split()
+    ways = [pieces, [piece.replace(",", ".") for piece in pieces], " ".join(pieces).replace(",", " ").split()]
+    found = []
+    for way in ways:
+        values = [_computed(piece) for piece in way]
+        if len(way) in (count, 2 * count) and None not in values:
+            found.append([str(value) for value in values])
+    return found[0] if found else None
+
+
+def _computed(piece: str) -> str | None:
+    """Return a number, or the value of an arithmetic expression with pi, as a text that ROS 2 reads; else None."""
+    if _NUMBER.fullmatch(piece):
+        return piece
+    if not _ARITHMETIC.fullmatch(piece):
+        return None
+    from grader.python.budget import Budget, OutOfBudget  # late: few files have such numbers
+    from grader.python.expressions import evaluate
+    from grader.python.values import EvaluationFails, Undetermined
+
+    try:
+        value = evaluate(piece, {"pi": pi}.__getitem__, Budget(_MAX_WORK))
+    except (EvaluationFails, Undetermined, OutOfBudget, KeyError):
+        return None
+    return f"{value:.12g}" if isinstance(value, int | float) and isfinite(value) else None
 
 
 def rgba(text: str) -> tuple[float, float, float, float] | None:

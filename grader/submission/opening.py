@@ -1,5 +1,6 @@
 """Opens a submission: a URDF, a folder, an archive or standard input."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -80,6 +81,8 @@ def _read_with_neighbours(place: Path, data: bytes, identity: str, opening: Open
     try:
         folder = place.parent.resolve()
         root = next((above for above in (folder, *folder.parents) if (above / MANIFEST).is_file()), folder)
+        if any((root.parent / name / MANIFEST).is_file() for name in _packages_in(asked) if name != root.name):
+            root = root.parent  # of a workspace, in which another package is beside this one
         path = printable((folder / place.name).relative_to(root).as_posix())
         found = read_folder(root)
         tree = overlaid(found, {path: data}) if path in found.files or place.is_symlink() else None
@@ -87,6 +90,13 @@ def _read_with_neighbours(place: Path, data: bytes, identity: str, opening: Open
         MachineError.check(error, printable_path(place.name))
         tree = None
     return _with_files_around(submission, tree, path, alone) if tree is not None else submission
+
+
+def _packages_in(asked: Iterable[str]) -> set[str]:
+    """Return the packages in which files are looked for."""
+    from grader.xacro.texts import INSTALLED
+
+    return {text.split("/")[2] for text in asked if text.startswith(f"{INSTALLED}/")}
 
 
 def _with_files_around(submission: Submission, tree: Tree, path: str, alone: Surroundings) -> Submission:

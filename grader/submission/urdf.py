@@ -2,8 +2,9 @@
 
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from functools import partial
 from itertools import islice
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader.errors import InputError, NotDecided
 from grader.files.reading import URDF_LIMIT
@@ -21,6 +22,8 @@ from grader.xml.xml_problems import DOCTYPE, NOT_WELL_FORMED
 
 if TYPE_CHECKING:
     from grader.package.launch.model import NamedFile
+    from grader.xacro.expansion import ExpandedSource
+    from grader.xacro.texts import OtherArguments
 
 _MAX_COMPARED = 50  # links whose names are compared
 _MAX_FOLDERS = 40  # whose launch files are read
@@ -106,9 +109,19 @@ class Surroundings(NamedTuple):
 
     def robot_references(self, path: str) -> "list[NamedFile]":
         """Return where the launch files of the graded package read a URDF; without one, those in a folder around it."""
-        paths = [path] if self.graded is None and not self.is_single else []
-        around = [self.graded] if self.graded is not None else launch_folders(self.tree, self.packages, paths)
+        around = self._launched_packages(path)
         return [found for package in around for found in package.robot_references(path.rpartition("/")[2])]
+
+    def other_arguments(self, path: str, references: "Sequence[NamedFile]") -> "OtherArguments":
+        """Return what is known of arguments of xacro that neither the user nor the launch file gives."""
+        launches = [launch for package in self._launched_packages(path) for launch in package.launches]
+        if any(launch.unknown or launch.syntax for launch in launches):
+            return "default" if references else "unknown"
+        return "none" if references and not self.arguments else "default"
+
+    def _launched_packages(self, path: str) -> list[Package]:
+        paths = [path] if self.graded is None and not self.is_single else []
+        return [self.graded] if self.graded is not None else launch_folders(self.tree, self.packages, paths)
 
     @property
     def paths(self) -> Collection[str]:
@@ -185,12 +198,11 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
     launched = surroundings.robot_references(path)
     programs = {reference.by for reference in launched}
     if programs == {"xacro"} if programs else _says_xacro(name):
-        given = dict(launched[0].arguments) if launched else {}
-        return Read(path, data, _expand_xacro(data, path, surroundings, given), is_expanded=True, has_xacro=True)
+        return Read(path, data, _expand_xacro(data, path, surroundings, launched), is_expanded=True, has_xacro=True)
     reading = read_urdf(data, path)
     if not any(problem.kind is RAW_XACRO for problem in reading.problems):
         return Read(path, data, reading, has_xacro=True)
-    expanded = _expand_xacro(data, path, surroundings, {})
+    expanded = _expand_xacro(data, path, surroundings, [])
     if expanded.robot is None:
         return Read(path, data, reading, has_xacro=True)
     if reading.verdict == "clean":
@@ -235,7 +247,7 @@ def _needs_xacro(data: bytes) -> bool:
     return (b"$" in data or b"xacro:" in data) and find_xacro(data.decode("utf-8", "replace")) is not None
 
 
-def _expand_xacro(data: bytes, path: str, surroundings: Surroundings, launched: Mapping[str, str | None]) -> Reading:
+def _expand_xacro(data: bytes, path: str, surroundings: Surroundings, references: "Sequence[NamedFile]") -> Reading:
     """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be read of the text.
 
     The folder that a build installs a package in is called differently in launch files and in xacro. A file that the
@@ -245,6 +257,7 @@ def _expand_xacro(data: bytes, path: str, surroundings: Surroundings, launched: 
     from grader.xacro.expansion import expand
     from grader.xacro.texts import INSTALLED
 
+    launched = dict(references[0].arguments) if references else {}
     given = dict(launched)
     for name, text in launched.items():
         shared = re.fullmatch(rf"{SHARE}/([^/]+)/?(.*)", text or "")
@@ -253,14 +266,22 @@ def _expand_xacro(data: bytes, path: str, surroundings: Surroundings, launched: 
         package, inside = shared.groups()
         if not inside or surroundings.package(package) is None or surroundings.installed(package, inside) is not None:
             given[name] = f"{INSTALLED}/{package}/share/{package}/{inside}".rstrip("/")
-    expansion = expand(data, path, surroundings, {**given, **surroundings.arguments})
+    arguments = {**given, **surroundings.arguments}
+    others = surroundings.other_arguments(path, references)
+    read = partial(expand, data, path, surroundings, arguments, others)
+    expansion = read()
     if expansion.root is None and expansion.recovered is None and expansion.problems:
         raw = read_urdf(data, path)
         problems = [problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)]
         return Reading("rejected", raw.robot, (*expansion.problems, *problems), raw.source)
     reading = read_robot(expansion.document)
-    meant = read_robot(expansion.meant.document) if expansion.meant is not None else reading
-    if not meant.is_meant or expansion.meant is None:
+    if reading.verdict == "rejected" and expansion.meant is None and expansion.source.is_expanded:
+        unmarked = cast("ExpandedSource", expansion.source).unmarked
+        changed = read(unmarked) if unmarked else expansion
+        if changed.meant is not None and read_robot(changed.meant.document).verdict != "rejected":
+            expansion = changed
+    if expansion.meant is None:
         return reading
-    found = in_order([*causes(reading.problems), *expansion.assumed, *meant.problems])
-    return meant._replace(verdict="rejected", problems=found)
+    meant = read_robot(expansion.meant.document)
+    found = dict.fromkeys([*causes(reading.problems), *expansion.assumed, *meant.problems])
+    return meant._replace(verdict="rejected", problems=in_order(found))

@@ -1,6 +1,6 @@
 """Walks the elements of a xacro file and writes the expanded ones, in the order of xacro."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from itertools import chain
 from typing import NamedTuple
 
@@ -10,56 +10,19 @@ from grader.python.values import EvaluationFails, Undetermined, Value
 from grader.source import Location
 from grader.text import enumerated, quoted
 from grader.xacro import xacro_problems
+from grader.xacro.corrections import Correction, Corrections, Refusal
 from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions, read_yaml_values
 from grader.xacro.macros import MacroError
-from grader.xacro.scopes import Reported, ScopePlace, UnknownName, XacroFails, XacroScope
+from grader.xacro.scopes import Reported, ScopePlace, XacroFails, XacroScope
 from grader.xacro.texts import Texts
 from grader.xacro.xacro_nodes import XacroNode, walk
-
-
-class Misspelt(NamedTuple):
-    """A name that xacro refuses and that surely stands for another one, and where it is."""
-
-    unknown: UnknownName
-    place: ScopePlace
-    location: Location
-
-    @property
-    def sentence(self) -> str:
-        """What it is read as."""
-        return f"the {self.unknown.kind} {quoted(self.unknown.name)} is read as {quoted(self.unknown.meant or '')}"
-
-
-class Respelling:
-    """Names that are read as others: in expressions, and those of elements, by the file and the index of the tag."""
-
-    def __init__(self, misspelt: Iterable[Misspelt] = ()) -> None:
-        self.names: dict[str, str] = {}
-        self._elements: dict[tuple[str, int], dict[str, str]] = {}
-        for (name, _, kind, meant), place, _ in misspelt:
-            own = self._elements.setdefault((place.source.path, place.tag), {})
-            (self.names if kind == "property" else own)[name] = meant or name
-
-    def element(self, node: XacroNode) -> XacroNode:
-        """Return an element with the names that it is read with: of a macro, of attributes, of the block it inserts."""
-        names = self._elements.get((node.place.source.path, node.place.tag))
-        if not names:
-            return node
-        name = node.tag.removeprefix("xacro:")
-        has_block = name == "insert_block"
-        other = XacroNode(f"xacro:{names.get(name, name)}", node.place)
-        other.attributes = {
-            names.get(key, key): names.get(text, text) if has_block else text for key, text in node.attributes.items()
-        }
-        other.children, other.unresolved = node.children, node.unresolved
-        return other
-
 
 _MAX_DOCUMENT = 1024 * 1024  # characters of the values and texts in the expanded document
 _OF_ELEMENT, _OF_ATTRIBUTE = 10, 2  # what expanding one is charged
 _COMPARED = 16  # names that are compared for one part
 _MAX_LISTED = 100
+_MAX_CORRECTED = 20
 _TOO_DEEP = "elements and macros are nested too deeply"
 STOPS = "xacro stops here, and ROS 2 gets no robot"
 
@@ -82,8 +45,6 @@ class Scopes(NamedTuple):
     symbols: XacroScope
 
 
-# What xacro refuses, and where: in an attribute, or without one in the tag itself.
-Refusal = tuple[XacroFails, ScopePlace, str | None]
 # Expands one xacro tag: its element, the expanded element that the result goes into, and the scopes.
 Handler = Callable[["Expander", XacroNode, XacroNode, Scopes], None]
 _KINDS: Mapping[type[EvaluationFails], Kind] = {
@@ -116,7 +77,6 @@ class Expander:
         budget: Budget,
         handlers: Mapping[str, Handler],
         other: Handler,
-        respelling: Respelling,
     ) -> None:
         """`handlers` expand xacro's own tags, and `other` every other tag that begins with xacro: a macro call."""
         self.files = files
@@ -128,14 +88,14 @@ class Expander:
             lambda name: self.texts.note(name),  # noqa: PLW0108
         )
         self.texts = Texts(dict(arguments), self.budget, self.report, own, files.has_package)
-        self.texts.respelt, self._respelling = respelling.names, respelling
         self.own_tags = [tag.removeprefix("xacro:") for tag in handlers]
         self.problems: list[Problem] = []
         self.warnings: list[Problem] = []  # what xacro writes to stderr, and notes
-        self.misspelt: list[Misspelt] = []
+        self.corrections: list[Correction] = []  # of what is refused, where they surely are meant
         self.undetermined: list[Open] = []
-        self.refused: list[Refusal] = []  # what may be corrected, and where
+        self.refused: list[Refusal] = []  # what hints may correct, and where
         self.calls: tuple[tuple[str, ScopePlace], ...] = ()
+        self._meant = Corrections(files, budget)
         self._listed: set[tuple[str, str, int, str | None]] = set()
         self._is_expanded = False
         self._length = 0  # of the expanded document
@@ -219,13 +179,15 @@ class Expander:
         if not isinstance(error, EvaluationFails):
             self.undetermined.append(Open(message, location))
             return message
+        refusal = (error, place, attribute)
+        self.refused.append(refusal)
+        correction = self._meant.of(refusal) if len(self.refused) <= _MAX_CORRECTED else None
+        if correction is not None:
+            self.corrections.append(correction)
+            message = correction.problem or message
         joint = " " if message.endswith("?") else "; "
         kind = _KINDS.get(type(error), xacro_problems.XACRO_EXPRESSION)
         self.problems.append(Problem(kind, f"{message}{joint}{STOPS}", location))
-        if isinstance(error, XacroFails) and (error.unknown is not None or error.lacking):
-            self.refused.append((error, place, attribute))
-            if error.unknown is not None and error.unknown.meant is not None:
-                self.misspelt.append(Misspelt(error.unknown, place, location))
         return ""
 
     def warn(self, kind: Kind, message: str, place: ScopePlace, attribute: str | None = None) -> None:
@@ -272,7 +234,6 @@ class Expander:
     def _element(self, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
         self.budget.charge(_OF_ELEMENT, len(node.tag))
         if node.tag.startswith("xacro:"):
-            node = self._respelling.element(node)
             self.budget.charge(len(node.attributes), sum(map(len, node.attributes.values())))
             unknown = node.attributes.keys() - _ATTRIBUTES.get(node.tag, node.attributes.keys())
             self._handlers.get(node.tag, self._other)(self, node, out, scopes)

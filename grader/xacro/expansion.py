@@ -5,21 +5,23 @@ the same, so that one defect does not hide another.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from itertools import groupby
 from typing import NamedTuple
 
+from grader.merge_conflicts import describe_conflicts, find_conflicts
 from grader.problems import Problem
 from grader.python.budget import Budget, OutOfBudget
 from grader.python.values import EvaluationFails, Undetermined
-from grader.source import Location, Source
+from grader.source import Edit, Edits, Location, Source
 from grader.xacro import xacro_problems
-from grader.xacro.expander import STOPS, Expander, Misspelt, Open, Refusal, Respelling
+from grader.xacro.corrections import Corrections, Refusal, sentence_of
+from grader.xacro.expander import STOPS, Expander, Open
 from grader.xacro.files import Files, Workspace
 from grader.xacro.tags import CALL, HANDLERS
-from grader.xacro.texts import Texts
+from grader.xacro.texts import OtherArguments, Texts
 from grader.xacro.xacro_nodes import XacroNode, read_nodes, recovered_nodes
 from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, error_location, make_element
 from grader.xml.xml_problems import MISPLACED_DECLARATION, RECOVERED
@@ -32,8 +34,11 @@ class ExpandedSource(Source):
 
     is_expanded = True
 
-    def __init__(self, source: Source, nodes: list[XacroNode], expander: Expander, work: int) -> None:
+    def __init__(
+        self, source: Source, nodes: list[XacroNode], expander: Expander, work: int, corrected: Edits = ()
+    ) -> None:
         super().__init__(source.path, source.text)
+        self.corrected = corrected  # the edits without which xacro refuses what it was expanded from
         self.nodes: Sequence[XacroNode] = nodes
         self._expander, self._work = expander, work
 
@@ -72,6 +77,11 @@ class ExpandedSource(Source):
         return bool(self._expander.problems)
 
     @property
+    def unmarked(self) -> Edits:
+        """The edits that write ${side} where {side} or $side stands for a known name."""
+        return Corrections(self._expander.files, Budget()).unmarked()
+
+    @property
     def open_reason(self) -> str:
         """Why something could not be expanded; empty if everything was."""
         return next((found.reason for found in self._expander.undetermined), "")
@@ -95,8 +105,8 @@ class _Expansion(NamedTuple):
     """An expanded file.
 
     If it cannot be expanded at all, `root` is None, and `recovered` is what can be read despite broken tags. `is_meant`
-    says whether xacro refuses nothing else. If it refuses only names that surely stand for others, `meant` is the
-    expansion with these, which `assumed` lists.
+    says whether xacro refuses nothing else. If what it refuses can surely be corrected, `meant` is the expansion of the
+    corrected files, and `assumed` lists what was corrected.
     """
 
     root: Element | None
@@ -121,30 +131,63 @@ class _Expansion(NamedTuple):
         return found._replace(recovered=self.recovered, is_meant=self.is_meant)
 
 
-def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str, str | None]) -> _Expansion:
-    """Return a xacro file as xacro expands it with these arguments; never raises. `path` is that in the submission."""
-    read = partial(_expand, data, path, workspace, arguments)
-    expansion, first = read(Respelling())
-    meant, last, misspelt = expansion, first, list[Misspelt]()
-    while last is not None and last.misspelt and len(misspelt) < _MAX_ASSUMED:
-        of_elements = [found for found in last.misspelt if found.unknown.kind != "property"]
-        misspelt += of_elements or last.misspelt  # elements first: they may define the names
-        meant, last = read(Respelling(misspelt))
-    if first is None or last is None or not misspelt or last.problems:
+def expand(
+    data: bytes,
+    path: str,
+    workspace: Workspace,
+    arguments: Mapping[str, str | None],
+    others: OtherArguments = "default",
+    edits: Edits = (),
+) -> _Expansion:
+    """Return a xacro file as xacro expands it with these arguments; never raises. `path` is that in the submission.
+
+    `others` says what is known of other arguments. With `edits`, which surely are meant, `meant` is the expansion of
+    the files after these, too.
+    """
+    read = partial(_expand, data, path, workspace, arguments, others)
+    expansion, expander = read({})
+    refused = expander.refused if expander is not None else []
+    meant = expansion
+    corrected, assumed = dict.fromkeys(edits), dict[str, Problem]()
+    if edits:
+        sentence, first = sentence_of(edits), edits[0]
+        assumed[sentence] = Problem(RECOVERED, sentence, Location(first.path, first.line, first.column))
+        meant, expander = read(_by_path(corrected))
+    while expander is not None and expander.corrections and len(assumed) < _MAX_ASSUMED:
+        of_elements = [found for found in expander.corrections if found.is_of_element]  # first: they may define names
+        new = of_elements or expander.corrections
+        if all(corrected.keys() >= set(found.edits) for found in new):
+            break
+        for found in new:
+            corrected |= dict.fromkeys(found.edits)
+            assumed.setdefault(found.sentence, Problem(RECOVERED, found.sentence, found.location))
+        meant, expander = read(_by_path(corrected))
+    if expander is None or meant is expansion:
         return expansion
-    last.refused += first.refused  # for hints
-    assumed = {found.sentence: Problem(RECOVERED, found.sentence, found.location) for found in reversed(misspelt)}
+    expander.refused[:0] = refused  # for hints
     return expansion._replace(meant=meant, assumed=tuple(assumed.values()))
 
 
+def _by_path(edits: Iterable[Edit]) -> dict[str, Edits]:
+    by_path: dict[str, Edits] = {}
+    for edit in edits:
+        by_path[edit.path] = (*by_path.get(edit.path, ()), edit)
+    return by_path
+
+
 def _expand(
-    data: bytes, path: str, workspace: Workspace, arguments: Mapping[str, str | None], respelling: Respelling
+    data: bytes,
+    path: str,
+    workspace: Workspace,
+    arguments: Mapping[str, str | None],
+    others: OtherArguments,
+    edits: Mapping[str, Edits],
 ) -> tuple[_Expansion, Expander | None]:
     """Return an expansion, and its expander unless there was nothing to expand."""
     plain, budget = Source(path, data.decode("utf-8", "surrogateescape")), workspace.budget
     before = budget.used
     try:
-        source, refused, is_recovered = _read(data, plain, budget)
+        source, refused, is_recovered = _read(data, plain, budget, edits.get(path, ()))
     except EvaluationFails as error:
         problem = Problem(xacro_problems.XACRO_NOT_XML, f"{error}; {STOPS}", plain.at(0))
         return _Expansion(None, plain, (problem,), (), {}), None
@@ -152,17 +195,19 @@ def _expand(
         return _Expansion(None, plain, (), (Open(str(error), plain.at(0)),), {}), None
     if source is None:
         return _Expansion(None, plain, refused, (), {}), None
-    files = Files(workspace, path)
+    files = Files(workspace, path, edits)
     files.documents[path] = source
     refused = (*refused, *_instructions(plain))
-    expander = Expander(files, arguments, budget, HANDLERS, CALL, respelling)
+    expander = Expander(files, arguments, budget, HANDLERS, CALL)
+    expander.texts.other_arguments = others
     root = expander.root(source)
     nodes: list[XacroNode] = []
     unresolved: dict[Element, Unresolved] = {}
     element = _element(root, nodes, unresolved)
+    corrected = tuple(edit for of_file in edits.values() for edit in of_file)
     expansion = _Expansion(
         None if is_recovered else element,
-        ExpandedSource(plain, nodes, expander, budget.used - before),
+        ExpandedSource(plain, nodes, expander, budget.used - before, corrected),
         (*refused, *expander.problems),
         tuple(expander.undetermined),
         unresolved,
@@ -173,17 +218,22 @@ def _expand(
     return expansion, expander
 
 
-def _read(data: bytes, text: Source, budget: Budget) -> tuple[XacroNode | None, tuple[Problem, ...], bool]:
+def _read(
+    data: bytes, text: Source, budget: Budget, edits: Edits
+) -> tuple[XacroNode | None, tuple[Problem, ...], bool]:
     """Return the elements of a file, what xacro refuses in it, and whether they are only what broken tags leave."""
     path = text.path
     try:
-        return read_nodes(data, path, budget), (), False
+        return read_nodes(data, path, budget, edits=edits), (), False
     except XMLSyntaxError as error:
-        message = f"xacro needs well-formed XML: {error.msg}; {STOPS}"
-        refused = (Problem(xacro_problems.XACRO_NOT_XML, message, error_location(error, text)),)
+        what, location = f"xacro needs well-formed XML: {error.msg}", error_location(error, text)
+    conflicts = find_conflicts(text.text)
+    if conflicts:
+        what, location = describe_conflicts(text.text, conflicts), text.at(conflicts[0].start)
+    refused = (Problem(xacro_problems.XACRO_NOT_XML, f"{what}; {STOPS}", location),)
     with suppress(XMLSyntaxError):
-        return read_nodes(data, path, budget, is_repaired=True), refused, False
-    recovered, assumed = recovered_nodes(data, path, budget)
+        return read_nodes(data, path, budget, is_repaired=True, edits=edits), refused, False
+    recovered, assumed = recovered_nodes(data, path, budget, edits)
     return recovered, (*refused, *assumed) if recovered is not None else refused, True
 
 

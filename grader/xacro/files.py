@@ -2,12 +2,15 @@
 
 import posixpath
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import Protocol
 
 from grader.errors import InputError, NotDecided
+from grader.merge_conflicts import describe_conflicts, find_conflicts
+from grader.names import near
 from grader.python.budget import Budget
 from grader.python.values import EvaluationFails, Undetermined
+from grader.source import Edits, Source
 from grader.xacro.scopes import UnknownName, XacroFails
 from grader.xacro.texts import INSTALLED
 from grader.xacro.xacro_nodes import XacroNode, read_nodes
@@ -17,7 +20,7 @@ _SHARED = re.compile(rf"{INSTALLED}/(?P<package>[^/]+)/share/(?P=package)(?:/+(?
 _ADDED = re.compile(r".*\.(?:urdf|xacro)(.*)", re.IGNORECASE | re.DOTALL)
 _MAX_OPEN = 50  # files that include each other
 _MAX_PATH = 1_000  # characters
-_OF_FILE = 50  # what looking for one is charged
+_OF_FILE, _OF_NAME = 50, 20  # what looking for one, and comparing its name with another one, are charged
 
 
 class Workspace(Protocol):
@@ -53,14 +56,19 @@ class FileFails(XacroFails):
 
 
 class XmlFails(EvaluationFails):
-    """A file that is not well-formed XML."""
+    """A file that is not well-formed XML, with the edits that repair it, and what these assume."""
+
+    def __init__(self, message: str, repair: Edits = (), assumed: str = "") -> None:
+        super().__init__(message)
+        self.repair, self.assumed = repair, assumed
 
 
 class Files:
     """The files that are open while a document is expanded, innermost last."""
 
-    def __init__(self, workspace: Workspace, path: str) -> None:
-        self._workspace, self._budget = workspace, workspace.budget
+    def __init__(self, workspace: Workspace, path: str, edits: Mapping[str, Edits]) -> None:
+        """`edits` correct the files before they are read, by their paths."""
+        self._workspace, self._budget, self._edits = workspace, workspace.budget, edits
         self.open = [path]
         self.documents: dict[str, XacroNode] = {}  # every file that was read, as it is written
         self.followed: dict[tuple[str, int], list[str]] = {}  # the tags that include files, and the paths of these
@@ -104,11 +112,7 @@ class Files:
         try:
             return self._workspace.read(path)
         except InputError as error:
-            self._budget.charge(len(self._workspace.paths))
-            folder = posixpath.dirname(path)
-            names = (posixpath.basename(other) for other in self._workspace.paths if posixpath.dirname(other) == folder)
-            unknown = UnknownName(posixpath.basename(path), dict.fromkeys(names))
-            raise FileFails(str(error), unknown) from None
+            raise self._not_found(path, str(error)) from None
         except NotDecided as error:
             raise Undetermined(str(error)) from None
 
@@ -116,8 +120,38 @@ class Files:
         """Return the root element of an included file."""
         if self.open.count(path) and len(self.open) > _MAX_OPEN:
             raise FileFails(f"{path} includes itself again and again")
+        data = self.read(path)
         try:
-            self.documents[path] = read_nodes(self.read(path), path, self._budget)
+            self.documents[path] = read_nodes(data, path, self._budget, edits=self._edits.get(path, ()))
         except XMLSyntaxError as error:
-            raise XmlFails(f"{path} is not well-formed XML: {error.msg}") from None
+            raise self._not_xml(path, data, error.msg) from None
         return self.documents[path]
+
+    def _not_found(self, path: str, message: str) -> FileFails:
+        """Return the error for a file that does not exist, with the one that it surely stands for."""
+        self._budget.charge(len(self._workspace.paths))
+        folder, name = posixpath.split(path)
+        names = [posixpath.basename(other) for other in self._workspace.paths if posixpath.dirname(other) == folder]
+        self._budget.charge(_OF_NAME * len(names))
+        same = [other for other in self._workspace.paths if other.lower() == path.lower()]
+        if len(same) != 1:
+            return FileFails(message, UnknownName(name, dict.fromkeys(names), "file", near(name, names)))
+        parts, others = path.split("/"), same[0].split("/")
+        first = next(index for index, (one, other) in enumerate(zip(parts, others, strict=True)) if one != other)
+        meant = "/".join(others[first:])
+        unknown = UnknownName("/".join(parts[first:]), {meant: None}, "file", meant)
+        return FileFails(f"{message}, but {same[0]}: capital letters count", unknown)
+
+    def _not_xml(self, path: str, data: bytes, message: str) -> XmlFails:
+        """Return the error for an included file that is not well-formed XML, with what repairs it."""
+        from grader.xml.repair import repair  # late: few files are broken
+
+        source = Source(path, data.decode("utf-8", "replace"))
+        self._budget.charge(1, len(data))
+        repaired = repair(source.text)
+        edits = tuple(source.edit(*change) for change in repaired.changes) if not repaired.is_lossy else ()
+        conflicts = find_conflicts(source.text)
+        assumed = "; ".join(found.message for found in repaired.assumed[:3]) or "the first version is read"
+        if conflicts:
+            return XmlFails(f"{path} has {describe_conflicts(source.text, conflicts)}", edits, assumed)
+        return XmlFails(f"{path} is not well-formed XML: {message}", edits, assumed)

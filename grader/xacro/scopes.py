@@ -59,7 +59,8 @@ Known = Mapping[str, tuple[ScopePlace, str] | None]
 class UnknownName(NamedTuple):
     """A name that is not defined, and those that are; `meant` is the one that it surely stands for, if there is one.
 
-    `kind` is property where the name is in an expression, else what it names: a macro, block, parameter or attribute.
+    `kind` is property where the name is in an expression, else what it names: a macro, block, parameter, attribute or
+    file.
     """
 
     name: str

@@ -207,6 +207,8 @@ def _if(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> 
 
 def _arg(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes) -> None:
     name, default = _needed(node, "name"), _needed(node, "default")
+    if name not in expander.texts.arguments and expander.texts.other_arguments == "unknown":
+        expander.texts.arguments[name] = None
     if name not in expander.texts.arguments:
         expander.texts.arguments[name] = expander.texts.text(default, scopes.symbols)
         expander.texts.defaults[name] = Definition(name, default, node.place, "default", scopes.symbols)

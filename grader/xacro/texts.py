@@ -1,8 +1,9 @@
 """The values of xacro texts: ${expressions}, $(substitutions) and escapes, in a scope."""
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from keyword import iskeyword
+from typing import Literal
 
 from grader.names import did_you_mean, near
 from grader.python.budget import Budget
@@ -38,6 +39,11 @@ _MAX_SHOWN = 60  # characters of a name
 INSTALLED = "/install"  # where the packages are for $(find package): in a folder that no submission has
 
 
+# What is known of arguments that are not given: the file's defaults count, or a launch file may give them, or certainly
+# nothing gives one that has no default.
+OtherArguments = Literal["default", "unknown", "none"]
+
+
 class Texts:
     """Evaluates texts. `arguments` are those of $(arg): given ones, then the file's defaults; None if unknown."""
 
@@ -51,6 +57,7 @@ class Texts:
     ) -> None:
         """`own` are functions that need the document, such as load_yaml; `is_own`: whether a package was submitted."""
         self.arguments = arguments
+        self.other_arguments: OtherArguments = "default"
         self.defaults: dict[str, Definition] = {}  # of arguments that have no other value
         self.names_open: EvaluationFails | Undetermined | None = None  # why a name may be bound that is not known
         self._budget = budget
@@ -60,7 +67,6 @@ class Texts:
         self.noted: dict[tuple[str, str], None] = {}  # functions that write to stderr, and ^, each with the expression
         self.redefined: dict[object, tuple[str, ScopePlace, str]] = {}  # names of xacro's own that get another value
         self._expression = ""  # that is evaluated
-        self.respelt: Mapping[str, str] = {}  # names in expressions, and the names that they are read as
         # What is said of a name, and the name that it stands for, by this name and those that are known.
         self._similar: dict[tuple[str, ...], tuple[str, str | None]] = {}
 
@@ -104,9 +110,6 @@ class Texts:
             return self._globals[name]
         if self.names_open is not None:
             raise self.names_open.with_traceback(None)
-        meant = self.respelt.get(name, name)
-        if meant != name and self.is_bound(meant, scope):
-            return self.find(meant, scope)
         raise XacroFails(*self.unknown("property", name, scope, self._globals))
 
     def unknown(self, kind: str, name: str, scope: XacroScope, own: Iterable[str] = ()) -> tuple[str, UnknownName]:
@@ -198,9 +201,15 @@ class Texts:
 
     def argument(self, name: str) -> str:
         """Return the value of an argument."""
+        if name not in self.arguments and self.other_arguments == "none":
+            default = f'<xacro:arg name="{name}" default="..."/>'
+            message = f"nothing gives the argument {name} a value: give it a default ({default}), or pass it"
+            raise XacroFails(f"{message} in the launch file")
         if name not in self.arguments:
-            raise Undetermined(f"the argument {name} has no default; give it with --arg {name}=VALUE")
+            raise Undetermined(f"the argument {name} has no default, and nothing gives it a value")
         value = self.arguments[name]
+        if value is None and self.other_arguments == "unknown":
+            raise Undetermined(f"the launch file may give the argument {name} a value, and is not evaluated")
         if value is None:
             raise Undetermined(f"the launch file gives the argument {name} a value that is known only at run time")
         return value

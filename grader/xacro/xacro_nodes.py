@@ -1,13 +1,14 @@
 """The elements of a xacro file before and after expansion, each with the place in the source that it came from."""
 
 import re
-from collections.abc import Iterator
+from bisect import bisect_right
+from collections.abc import Callable, Iterator
 
 from grader.problems import Problem
 from grader.python.budget import Budget
 from grader.python.values import EvaluationFails, Undetermined
 from grader.reuse import reuse
-from grader.source import Source
+from grader.source import Edits, Source
 from grader.xacro.scopes import ScopePlace
 from grader.xml.parsing import Element, parse_xml
 
@@ -59,21 +60,23 @@ def walk(node: XacroNode) -> Iterator[XacroNode]:
         waiting += reversed(found.elements)
 
 
-def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = False) -> XacroNode:
+def read_nodes(data: bytes, path: str, budget: Budget, *, is_repaired: bool = False, edits: Edits = ()) -> XacroNode:
     """Return the root of an XML file. Raises XMLSyntaxError, and Undetermined for a file with entities of its own.
 
-    With `is_repaired`, two faults that xacro refuses do not matter: a misplaced declaration, and no xmlns:xacro.
+    With `is_repaired`, two faults that xacro refuses do not matter: a misplaced declaration, and no xmlns:xacro. The
+    text is read after the `edits`; places are those in the text before.
     """
     _decode(data, budget)
-    root, parts = _read(data, path, is_repaired)
+    root, parts = _read(data, path, is_repaired, edits)
     budget.charge(parts)
     return root
 
 
 @reuse
-def _read(data: bytes, path: str, is_repaired: bool) -> tuple[XacroNode, int]:
+def _read(data: bytes, path: str, is_repaired: bool, edits: Edits) -> tuple[XacroNode, int]:
     """Return the root of an XML file, and what its attributes are charged."""
-    text = data.decode()
+    source = Source(path, data.decode())
+    text, origin = _edited(source, edits)
     xml = _DECLARATION.sub(lambda found: " " * len(found[0]), text, count=1)
     if is_repaired:
         xml = _MISPLACED.sub(lambda found: " " * len(found[0]), xml)
@@ -85,17 +88,55 @@ def _read(data: bytes, path: str, is_repaired: bool) -> tuple[XacroNode, int]:
     if "<![CDATA[" in text and any("$" in section for section in _CDATA.findall(text)):
         raise Undetermined("a CDATA section with $ is not supported")
     own = Budget()
-    return _nodes(root, Source(path, text), own), own.used
+    if edits:
+        written, count = Source(path, text), sum(1 for _ in root.iter())
+        source = Source(path, source.text, [origin(written.element(index)[1]) for index in range(count)])
+    return _nodes(root, source, own), own.used
 
 
-def recovered_nodes(data: bytes, path: str, budget: Budget) -> tuple[XacroNode | None, list[Problem]]:
+def _edited(source: Source, edits: Edits) -> tuple[str, Callable[[int], int]]:
+    """Return a text after edits, and what returns the offset before them of a character; one that is moved has its own.
+
+    Of edits that overlap, the first counts.
+    """
+    removed = {
+        edit.old.strip(): source.offset(edit.line, edit.column) + len(edit.old) - len(edit.old.lstrip())
+        for edit in edits
+        if not edit.new
+    }
+    pieces: list[str] = []
+    places: list[tuple[int, int]] = []  # of the pieces: the offset after the edits, and the one before
+    length = position = 0
+    for start, edit in sorted(((source.offset(it.line, it.column), it) for it in edits), key=lambda pair: pair[0]):
+        if start < position:
+            continue
+        for piece, at in ((source.text[position:start], position), (edit.new, removed.get(edit.new.strip(), start))):
+            places.append((length, at))
+            pieces.append(piece)
+            length += len(piece)
+        position = start + len(edit.old)
+    places.append((length, position))
+
+    def origin(offset: int) -> int:
+        after, before = places[bisect_right(places, offset, key=lambda place: place[0]) - 1]
+        return min(before + offset - after, len(source.text))
+
+    return "".join([*pieces, source.text[position:]]), origin
+
+
+def recovered_nodes(
+    data: bytes, path: str, budget: Budget, edits: Edits = ()
+) -> tuple[XacroNode | None, list[Problem]]:
     """Return what can be read of a file with broken tags, None if no link can, and what was assumed."""
     from grader.xml.repair import repair  # late: few files are broken
 
-    text = _decode(data, budget)
+    written = Source(path, _decode(data, budget))
+    text, origin = _edited(written, edits)
     repaired = repair(text)
-    source = Source(path, text, repaired.offsets)
-    assumed = [Problem(found.kind, found.message, source.at(found.offset), found.subject) for found in repaired.assumed]
+    source = Source(path, written.text, [*map(origin, repaired.offsets)])
+    assumed = [
+        Problem(found.kind, found.message, source.at(origin(found.offset)), found.subject) for found in repaired.assumed
+    ]
     return _nodes(parse_xml(repaired.xml), source, budget) if repaired.xml else None, assumed
 
 

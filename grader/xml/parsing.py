@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from lxml import etree
 
+from grader.merge_conflicts import describe_conflicts, find_conflicts, without_conflicts
 from grader.problems import Problem
 from grader.source import Location, Source
-from grader.xml.xml_problems import NOT_UTF8
+from grader.xml.xml_problems import MERGE_CONFLICT, MISMATCHED_TAG, NOT_UTF8, SEVERAL_ROOTS, UNTERMINATED
 
 if TYPE_CHECKING:
     from grader.xml.tinyxml2 import Difference, Scan
@@ -96,25 +97,52 @@ def read_document(data: bytes, path: str) -> XmlDocument:
             return XmlDocument(parse_xml(body), source, [], 0)
         except XMLSyntaxError:
             pass
-    from grader.xml.tinyxml2 import scan  # late: most files are plain, and compiling its patterns takes long
+    from grader.xml.tinyxml2 import (  # late: most files are plain, and compiling its patterns takes long
+        scan,
+    )
 
-    scanned = scan(text)
-    if scanned.is_refused:
-        return _read_repaired(text, path, scanned)
+    scanned = scan(without_conflicts(text, find_conflicts(text)))
+    refused = _why_repaired(text, scanned)
+    if refused:
+        return _read_repaired(text, path, refused, scanned.first_tag)
     source = Source(path, text, scanned.offsets)
     root = parse_xml(scanned.xml) if scanned.xml else None
     return XmlDocument(root, source, _problems(scanned.differences, source), scanned.first_tag)
 
 
-def _read_repaired(text: str, path: str, refused: "Scan") -> XmlDocument:
+def _why_repaired(text: str, scanned: "Scan") -> list["Difference"]:
+    """Return why a text is read after the edits that repair it; empty if it is read as it stands."""
+    from grader.xml.repair import unclosed_comments
+    from grader.xml.tinyxml2 import Difference
+
+    conflicts = find_conflicts(text)
+    if conflicts:
+        message = f"{describe_conflicts(text, conflicts)}; ROS 2 rejects the file"
+        return [Difference(MERGE_CONFLICT, message, conflicts[0].start), *scanned.differences]
+    comments = unclosed_comments(text) if "->\n" in text or "->\r" in text else []
+    if comments:
+        start, end = comments[0]
+        last = text.count("\n", 0, max(text.find("-->", end), end)) + 1
+        message = f"this comment ends with -> and not with -->, so that ROS 2 ignores everything up to line {last}"
+        return [Difference(UNTERMINATED, message, start)]
+    if scanned.is_refused:
+        return scanned.differences
+    is_empty = scanned.xml.endswith(b"/>") and len(scanned.offsets) == 1
+    if is_empty and any(found.kind is SEVERAL_ROOTS for found in scanned.differences):
+        message = "the / in the tag of <robot> closes it before its links; ROS 2 finds no link"
+        return [Difference(MISMATCHED_TAG, message, scanned.offsets[0])]
+    return []
+
+
+def _read_repaired(text: str, path: str, refused: "list[Difference]", first_tag: int) -> XmlDocument:
     """Read a text that TinyXML2 refuses as it is after the edits that repair it; places are those in the text."""
     from grader.xml.repair import repair  # late: few files are broken
 
     repaired = repair(text)
     source = Source(path, text, repaired.offsets)
     recovered = parse_xml(repaired.xml) if repaired.xml else None
-    problems = _problems([*refused.differences, *repaired.assumed], source)
-    return XmlDocument(None, source, problems, refused.first_tag, recovered=recovered)
+    problems = _problems([*refused, *repaired.assumed], source)
+    return XmlDocument(None, source, problems, first_tag, recovered=recovered)
 
 
 def _problems(differences: "Iterable[Difference]", source: Source) -> list[Problem]:

@@ -9,6 +9,7 @@ from bisect import bisect_right
 from typing import Literal, NamedTuple
 
 from grader.markup import indentation
+from grader.merge_conflicts import find_conflicts, without_conflicts
 from grader.names import near
 from grader.text import enumerated
 from grader.xml import xml_problems
@@ -37,6 +38,8 @@ _NAME = re.compile(r"<\s*+([A-Za-z_][\w:.-]*)")
 _XACRO = ("xacro:property", "xacro:arg", "xacro:include")
 _TOP = ("gazebo", "transmission", "ros2_control", *_XACRO)
 _TAGS = {*CHILDREN, *(tag for tags in CHILDREN.values() for tag in tags), *_XACRO}
+_ARROW = re.compile(r"(?<!-)->(?=[ \t]*(?:\r?\n|<))")
+_VISIBLE = re.compile(r"[^\r\n]")
 _MAX_DEPTH = 32  # where reading stops; urdfdom never looks deeper than robot/link/visual/geometry/box
 _MAX_ASSUMED = 20
 
@@ -66,7 +69,32 @@ class _Repair(NamedTuple):
 
 def repair(text: str) -> _Repair:
     """Return the changes that repair a text, and the robot that is read after them."""
-    return _Repairer(text).run()
+    conflicts = find_conflicts(text)
+    changes = [_TextEdit(*span, "") for conflict in conflicts for span in conflict.removed]
+    kept = without_conflicts(text, conflicts)
+    assumed: list[Difference] = []
+    for start, end in unclosed_comments(kept):
+        changes.append(_TextEdit(end - 2, end, "-->"))
+        assumed.append(Difference(xml_problems.RECOVERED, "the comment ends here: -> is read as -->", end - 2))
+        kept = f"{kept[:start]}{_VISIBLE.sub(' ', kept[start:end])}{kept[end:]}"
+    found = _Repairer(kept).run()
+    assumed = [*assumed, *found.assumed] if found.xml else []
+    return found._replace(changes=sorted([*found.changes, *changes]), assumed=assumed)
+
+
+def unclosed_comments(text: str) -> list[tuple[int, int]]:
+    """Return the offsets of comments that end with -> by mistake: they run to the end of another one or of the text."""
+    found: list[tuple[int, int]] = []
+    position = text.find("<!--")
+    while position >= 0 and len(found) < _MAX_ASSUMED:
+        end = text.find("-->", position + 4)
+        whole = end if end >= 0 else len(text)
+        arrow = _ARROW.search(text, position + 4, whole)
+        if arrow is not None and (end < 0 or text.find("<!--", arrow.end(), whole) >= 0):
+            found.append((position, arrow.end()))
+            whole = arrow.end()
+        position = text.find("<!--", whole)
+    return found
 
 
 class _Repairer:
@@ -152,6 +180,10 @@ class _Repairer:
                 self._replace(start, start + 1, "")
                 return None, max(error.resume, start + 1)
             tag, end = self._broken(found), found.end()
+        if tag.form == "empty" and self._has_end(tag, end):
+            self._assume(f"<{short(tag.name)} .../> is read as <{short(tag.name)} ...>", start)
+            self._replace(start, end, f"{self._text[start : self._text.rindex('/', start, end)].rstrip()}>")
+            return tag._replace(form="open"), end
         is_slash_missing = tag.form == "open" and not tag.attributes and self._open and self._open[-1].name == tag.name
         if is_slash_missing and not self._is_before_child(tag, end):
             self._assume(f"<{short(tag.name)}> is read as </{short(tag.name)}>", start)
@@ -166,8 +198,12 @@ class _Repairer:
             self._replace(*found.span(), f"</{name}>")
             return Tag(name, "close", {}, found.start())
         attributes: dict[str, str] = {}
-        for key, *values in _ATTRIBUTE.findall(rest.removesuffix("/")):
-            attributes.setdefault(key, decode("".join(values)))
+        given = [(key, decode("".join(values))) for key, *values in _ATTRIBUTE.findall(rest.removesuffix("/"))]
+        for key, text in given:
+            known = attributes.setdefault(key, text)
+            other = _other_attribute(name, {one for one, _ in given}, text) if known != text else ""
+            if other:
+                attributes[other] = text
         value = _NAMELESS.match(rest)
         if value is not None and (key := _main_attribute(name)) not in attributes and _is_value_of(key, value[1]):
             attributes = {key: decode(value[1]), **attributes}
@@ -179,6 +215,13 @@ class _Repairer:
         written = "".join(f' {key}="{escape(value)}"' for key, value in attributes.items())
         self._replace(*found.span(), f"<{name}{written}{'/' if form == 'empty' else ''}>")
         return Tag(name, form, attributes, found.start())
+
+    def _has_end(self, tag: Tag, end: int) -> bool:
+        """Return whether the content of an element and its own end tag follow, although its tag ends with a slash."""
+        if tag.name not in CHILDREN or not (tag.name == "robot" or self._is_before_child(tag, end)):
+            return False
+        other = re.compile(rf"<\s*(/?)\s*{tag.name}(?![\w:.-])").search(self._text, end)
+        return other is not None and other[1] == "/"
 
     def _is_before_child(self, tag: Tag, end: int) -> bool:
         found = _NAME.search(self._text, end)
@@ -288,6 +331,15 @@ def _main_attribute(tag: str) -> str:
     """Return the attribute that a value without a name is for: the first that the tag needs, else has."""
     known = [*REQUIRED.get(tag, ()), *(TAGS[tag].attributes if tag in TAGS else ())]
     return known[0] if known else ""
+
+
+def _other_attribute(tag: str, given: set[str], value: str) -> str:
+    """Return the one attribute, which is not given, that a value is meant for whose name is given twice."""
+    known = TAGS[tag].attributes if tag in TAGS else {}
+    absent = [name for name in known if name not in given and _is_value_of(name, value)]
+    needed = [name for name in absent if name in REQUIRED.get(tag, ())]
+    found = needed or absent
+    return found[0] if len(found) == 1 else ""
 
 
 def _is_value_of(attribute: str, value: str) -> bool:

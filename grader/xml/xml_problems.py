@@ -14,4 +14,5 @@ NOT_WELL_FORMED = notes("URDF009", "XML that is not well-formed, which ROS 2 acc
 DOCTYPE = warns("URDF010", "A DOCTYPE")
 IGNORED_REST = warns("URDF011", "A part of the file that ROS 2 never reads")
 SEVERAL_ROOTS = warns("URDF012", "More than one element at the top level")
+MERGE_CONFLICT = rejects("URDF016", "An unresolved merge conflict of git")
 RECOVERED = Kind("URDF015", "An assumption about a file that ROS 2 rejects", severity="warning", effect="other")

@@ -236,7 +236,7 @@ def test_one_run_finds_all_problems() -> None:
         '<material name="m"><color rgba="255 0 0 1"/></material>\n'
         '<link name="a"><visual/></link>\n'
         '<link name="a"/>\n'
-        '<joint name="j" type="fixd"><parent link="a"/><child link="x"/><origin xyz="1,2,3"/></joint>'
+        '<joint name="j" type="fixd"><parent link="a"/><child link="x"/><origin xyz="1,2,x"/></joint>'
     )
     assert codes(read_urdf(text.encode())) == ["URDF052", "URDF041", "URDF031", "URDF061", "URDF071", "URDF062"]
 

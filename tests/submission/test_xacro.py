@@ -80,7 +80,7 @@ def test_a_name_that_says_xacro_means_expansion() -> None:
 
 def test_xacro_that_makes_no_difference_is_read_as_it_stands() -> None:
     """Macros for masses alone, and an include that is missing, take nothing away from what ROS 2 loads and RViz shows."""
-    mass = '<xacro:macro name="m"><inertial><mass value="${1}"/></inertial></xacro:macro>'
+    mass = '<xacro:macro name="m"><inertial><mass value="${1}"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></xacro:macro>'
     for more in (mass, mass + '<xacro:include filename="$(find other)/more.xacro"/>'):
         text = PLAIN.replace("${-pi/2}", "-1.57").replace("</robot>", f"{more}</robot>")
         text = text.replace('<link name="lidar">', '<link name="lidar"><xacro:m/>')

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from operator import attrgetter, methodcaller
 from pathlib import PurePosixPath
 
+from grader.merge_conflicts import resolve_conflicts
 from grader.package.launch.actions import CIRCULAR_INCLUDE, ActionVisitor, Include
 from grader.package.launch.api import DESCRIPTION, SUBSTITUTION, class_named, exports, is_a
 from grader.package.launch.arguments import LaunchFunctions, kind_of
@@ -165,6 +166,11 @@ def _launch_of_entities(data: bytes, path: str, context: Context, include: Inclu
 
     source = Source(path, data.decode("utf-8", "replace"))
     findings = Findings(lambda position: Location(path, position.line, position.column))
+    resolved = resolve_conflicts(data)
+    if resolved is not None:
+        findings.add_fault(resolved.message, Position(resolved.line, 1))
+        data = resolved.data
+        source = Source(path, data.decode("utf-8", "replace"))
     root = read_frontend(data, source, is_yaml=is_yaml)
     if isinstance(root, LaunchFault):
         return Launch(source, root)
@@ -200,6 +206,8 @@ def _launch_of_python(data: bytes, path: str, installed: str, context: Context, 
         else:
             findings.add_undecided(f"{_ENTRY}, which the file does not define itself, is not evaluated", START)
     _add_python(findings, file)
+    if code.conflict is not None:
+        findings.add_fault(*code.conflict)
     nodes = [call for call in interpreter.calls if call.name == _NODE and call not in visitor.visited]
     return _launch_of_findings(code.source, findings, tuple(_forgotten_node(node, findings) for node in nodes))
 
