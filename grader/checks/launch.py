@@ -21,10 +21,12 @@ from grader.package.launch.places import (
     one_machine_only,
 )
 from grader.package.package import Package
+from grader.python.values import OBJECT
 from grader.source import Location
 from grader.text import enumerated
 
 if TYPE_CHECKING:
+    from grader.checks.installed_robot import InstalledRobot
     from grader.package.launch.model import Launch, NamedFile, Purpose
 
 
@@ -80,14 +82,15 @@ def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool 
     Args:
         name: The file's name, such as view.launch.py.
         nodes: The nodes, each as "package/executable", or as one name if both are the same; "a or b" leaves a choice.
-        built: Whether a build must install the files that it reads; if not, files of the package count as found.
+        built: Whether it must find the files that it reads; if not, only what else stops it counts.
     """
     launch = _launch_of(package, name)
     if launch.faults:
         raise _fault_that_stops(package, name, launch)
+    if shadow := package.shadows_ros:
+        message = f"the folder {shadow} is installed as a Python package, in place of that of ROS 2: rename it"
+        return failed(message, Location(package.path("setup.py"), 1, 1))
     places = _find_places(package, launch, "read", "urdf", "include", built=built)
-    if wrong := [it for it in places if it.state == "wrong" and _stops_launch(it.file)]:
-        return _fail_places(package, wrong)
     started = {node.name for node in launch.nodes if node.when}
     missing = [choice for choice in (node.split(" or ") for node in nodes) if started.isdisjoint(choice)]
     listed = ", ".join(" or ".join(choice) for choice in missing)
@@ -96,7 +99,12 @@ def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool 
         reason, at = _why_missing(launch, {node for choice in missing for node in choice})
         what, detail = f"the launch file does not start {listed}", f"; it {message}{reason}"
         return judged(False, what, tuple(sorted(started)), tuple(nodes), at=at, detail=detail)
-    _check_starts(launch)
+    if built and (wrong := [it for it in places if it.state == "wrong" and _stops_launch(it.file)]):
+        return _fail_places(package, wrong)
+    if stopping := next(filter(None, (_warning_that_stops(package, it) for it in places)), None):
+        return stopping
+    if built or not any(_is_in_misnamed(package, it) for it in places):
+        _check_starts(launch)
     if missing:
         reason = f": {launch.unknown[0].message}" if launch.unknown else ""
         message = f"cannot determine statically whether {listed} is started{reason}"
@@ -111,26 +119,30 @@ def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool 
 def launch_finds_files(package: Package, *, name: str, built: bool = True, started: bool = True) -> Outcome:
     """The launch file looks for the URDF and RViz files where a build of the package installs them.
 
-    What it reads as text, with `open` or `cat`, must be UTF-8, unless it names the encoding.
+    So it does for other files that it reads, and launch files that it includes. What it reads as text, with `open` or
+    `cat`, must be UTF-8, unless it names the encoding.
 
     Args:
         name: The file's name, such as view.launch.py.
         built: Whether a build must install the files; if not, files of the package count as found.
-        started: Whether ros2 launch starts the file; if not, what stops it, and what is unknown then, does not count.
+        started: Whether ros2 launch starts the file; if not, only a file in a wrong place counts, as far as it is read.
     """
+    if not started and package.launch(_path_of(package, name)).syntax is not None:
+        return passed("the launch file cannot be read, so it looks for no file")
     launch = _launch_of(package, name)
-    places = _find_places(package, launch, "urdf", "rviz", "include", built=built)
-    if not started:
-        places = _without_stopping(places)
+    places = _find_places(package, launch, "urdf", "rviz", "include", "read", built=built)
+    if built:
+        places = [_place_of_parts(package, it) for it in places]
     wrong = [it for it in places if it.state == "wrong"]
     if wrong:
         return _fail_places(package, wrong)
     if not started:
         return passed("the launch file looks for no file in a wrong place")
     unknown = next((it for it in places if it.state == "unknown"), None)
-    if launch.faults and (unknown or all(it.file.purpose == "include" for it in places)):
+    names_none = all(it.file.purpose in ("include", "read") for it in places)
+    if launch.faults and (unknown or names_none):
         raise _fault_that_stops(package, name, launch)
-    if all(it.file.purpose == "include" for it in places):
+    if names_none:
         raise _no_files(launch)
     if unknown is not None:
         raise NotDecided(unknown.text, _UNKNOWN_FILES)
@@ -182,15 +194,15 @@ def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | 
     return "", next((node.location for node in similar), None)
 
 
-def _without_stopping(places: Sequence[_FilePlace]) -> list[_FilePlace]:
-    """Return files that a launch does not stop at, but for unknown ones and those with the mistake that stops it."""
-    stopping = {_is_local(it) for it in places if it.state == "wrong" and _stops_launch(it.file)}
-    others = (it for it in places if not _stops_launch(it.file) and it.state != "unknown")
-    return [it for it in others if it.state != "wrong" or _is_local(it) not in stopping]
-
-
 def _is_local(place: _FilePlace) -> bool:
     return place.file.path is not None and is_of_one_machine(place.file.path)
+
+
+def _is_in_misnamed(package: Package, place: _FilePlace) -> bool:
+    """Return whether a file is looked for below a wrong name of the package, which is not on the machine."""
+    path = place.file.path or ""
+    owner = path.removeprefix(f"{SHARE}/").partition("/")[0]
+    return place.state == "wrong" and path.startswith(f"{SHARE}/") and package.find(owner) is None
 
 
 def _pass_places(places: Sequence[_FilePlace]) -> Outcome:
@@ -240,6 +252,10 @@ def _place_of(package: Package, file: "NamedFile") -> _FilePlace:
     """Return whether a launch file finds a file that it names."""
     if file.path is None or file.reason:
         return _FilePlace(file, "wrong" if file.sure else "unknown", file.reason)
+    if OBJECT in file.path:
+        name = file.path.rpartition(OBJECT)[0].rpartition("<")[2]
+        reason = f"{name}(...) is made part of a text, which is not its value then: use PathJoinSubstitution([...])"
+        return _FilePlace(file, "wrong", reason)
     what, path = _WORDS[file.purpose], posixpath.normpath(file.path)
     if path.startswith(f"{SHARE}/"):
         owner, _, rest = path.removeprefix(f"{SHARE}/").partition("/")
@@ -251,6 +267,39 @@ def _place_of(package: Package, file: "NamedFile") -> _FilePlace:
     if fault:
         return _FilePlace(file, "wrong", f"the launch file looks for the {what} at {fault}")
     return _FilePlace(file, "unknown", f"the {what} {path.removeprefix(PREFIX)} is not part of the package")
+
+
+def _place_of_parts(package: Package, place: _FilePlace) -> _FilePlace:
+    """Return the place of a robot's file, or where something that it needs is not installed."""
+    if place.state != "found" or place.file.purpose not in ("urdf", "read") or not place.text:
+        return place
+    missing = _installed_robot(package, place).missing
+    if not missing:
+        return place
+    mistake = "the robot needs a file that a build does not install"
+    detail = f"{posixpath.basename(place.text)} needs {enumerated(missing)}, which a build does not install there"
+    return _FilePlace(place.file, "wrong", detail, mistake)
+
+
+def _warning_that_stops(package: Package, place: _FilePlace) -> Outcome | None:
+    """Return the failure if Command stops because xacro writes a warning; None if it does not."""
+    if place.state != "found" or not place.file.stops_at_stderr:
+        return None
+    mistake = "Command stops ros2 launch, because xacro writes a warning"
+    if place.file.is_deprecated:
+        return failed(mistake, place.file.location, detail=" about --inorder: remove it")
+    warning = _installed_robot(package, place).warning
+    if warning is None:
+        return None
+    source = package.installed.get(place.text, posixpath.basename(place.text))
+    detail = f": line {warning.location.line} of {source}: {warning.message}"
+    return failed(mistake, place.file.location, detail=detail, mistake=mistake)
+
+
+def _installed_robot(package: Package, place: _FilePlace) -> "InstalledRobot":
+    from grader.checks.installed_robot import read_installed  # late: most launch files open a URDF without xacro
+
+    return read_installed(package, place.text, dict(place.file.arguments) if place.file.by == "xacro" else None)
 
 
 def _fault_of_path(package: Package, path: str) -> str:

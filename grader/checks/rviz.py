@@ -1,6 +1,7 @@
 """Checks of an RViz file: that it is there, its fixed frame, and that it shows the robot."""
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader.checks.check import About
 from grader.checks.outcome import Outcome, Status, failed, judged, passed
@@ -12,7 +13,7 @@ from grader.submission.urdf import Read
 from grader.text import enumerated
 
 if TYPE_CHECKING:
-    from grader.package.launch.model import Launch
+    from grader.package.launch.model import Launch, StartedNode
     from grader.package.rviz import Display, RvizFile
 
 # What the edits for hints may change.
@@ -78,6 +79,8 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
 
 def rviz_shows_robot(package: Package, *, name: str, topic: str = "/robot_description", launch: str = "") -> Outcome:
     """A RobotModel display of the RViz file is on, reads the robot from this topic, and has the prefix of its frames.
+
+    With a launch file, the topic is that of its robot_state_publisher, which its joint state publisher has to reach.
 
     Args:
         name: The name of the RViz file, such as view.rviz.
@@ -158,19 +161,77 @@ def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> tuple
     fault = _class_of_ros1(model) or _why_off(model)
     if not fault and model.package != _PLUGINS:
         return "pending", f"{model.package}/RobotModel is not a class of RViz itself; needs manual grading"
-    if not fault and not model.is_on("Visual Enabled"):
-        fault = "the RobotModel display is on, but its Visual Enabled is off, so RViz draws nothing"
+    hidden = "its Visual Enabled is off" if not model.is_on("Visual Enabled") else model.hides_links
+    if not fault and hidden:
+        fault = f"the RobotModel display is on, but {hidden}, so RViz draws nothing"
     if fault:
         return "failed", fault
     source = model.node.get("Description Source")
     if source is not None and source.text == "File":
         return "pending", "the RobotModel display reads a local file instead of a topic; needs manual grading"
     value = model.node.get("Description Topic", "Value") or model.node.get("Description Topic")
-    actual = (value.text or "" if value is not None else "").strip()
-    if actual.strip("/") == topic.strip("/"):
-        return _judge_prefix(model, opened)
-    fault = f"reads the topic {actual!r}; it should read" if actual else "has no Description Topic; it should be"
-    return "failed", f"the RobotModel display {fault} {topic!r}"
+    verdict = _judge_topic((value.text or "" if value is not None else "").strip(), topic, _Names.of(opened))
+    return verdict if verdict[0] != "passed" else _judge_prefix(model, opened)
+
+
+def _judge_topic(actual: str, topic: str, names: "_Names") -> tuple[Status, str]:
+    """Return whether a RobotModel display reads the robot, by the nodes that are started or else by the topic."""
+    described, shown = names.described, names.shown(actual)
+    if described is None or (described and None in shown):
+        return "pending", "the topics of the nodes are known only at run time; needs manual grading"
+    unheard = names.unheard
+    if actual and described and (described != {topic} or shown != {actual}):
+        if not described & shown:
+            unheard = f"RViz reads the robot from {_listed(shown)}, but it is on {_listed(described)}"
+    elif actual.strip("/") != topic.strip("/"):
+        fault = f"reads the topic {actual!r}; it should read" if actual else "has no Description Topic; it should be"
+        unheard = f"the RobotModel display {fault} {topic!r}"
+    return ("failed", unheard) if unheard else ("passed", "")
+
+
+class _Names(NamedTuple):
+    """The nodes that a launch file certainly starts: who publishes the robot and its joints, and who shows it."""
+
+    publishers: "Sequence[StartedNode]" = ()
+    joints: "Sequence[StartedNode]" = ()
+    viewers: "Sequence[StartedNode]" = ()
+
+    @classmethod
+    def of(cls, opened: "Launch | None") -> "_Names":
+        """Return the nodes of a launch file; none if other ones may be started as well."""
+        if opened is None or opened.faults or opened.unknown or any(node.when is None for node in opened.nodes):
+            return cls()
+        programs = (("robot_state_publisher",), ("joint_state_publisher", "joint_state_publisher_gui"), ("rviz2",))
+        started = [node for node in opened.nodes if node.when]
+        return cls(*([node for node in started if node.executable in names] for names in programs))
+
+    @property
+    def described(self) -> set[str] | None:
+        """The topics that the robot is on; None where one is known only at run time."""
+        topics = {node.topic("robot_description") for node in self.publishers}
+        return None if None in topics else {topic for topic in topics if topic is not None}
+
+    def shown(self, topic: str) -> set[str | None]:
+        """Return the topics that RViz reads for the one in its file."""
+        return {node.topic(topic) for node in self.viewers} or {topic}
+
+    @property
+    def unheard(self) -> str:
+        """Why transforms do not get from the joints to RViz; empty if they do, or if this is not known."""
+        for name, sources, readers in (
+            ("joint_states", self.joints, self.publishers),
+            ("robot_description", self.publishers, [node for node in self.joints if not node.has_description]),
+            ("/tf", self.publishers, self.viewers),
+        ):
+            sent, read = ({node.topic(name) for node in nodes} for nodes in (sources, readers))
+            if sent and read and None not in sent | read and not sent & read:
+                who, reader = sources[0].executable, readers[0].executable
+                return f"{who} publishes on {_listed(sent)}, but {reader} reads {_listed(read)}"
+        return ""
+
+
+def _listed(topics: set[str] | set[str | None]) -> str:
+    return enumerated(sorted(topic for topic in topics if topic))
 
 
 def _judge_prefix(model: "Display", opened: "Launch | None") -> tuple[Status, str]:

@@ -4,6 +4,7 @@ Evidence may take the place of work that a submission lacks, its URDF or its pac
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -29,10 +30,14 @@ _MAX_LISTED = 6
 def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> Iterator[Result]:
     """Yield the results of criteria in the rubric's order; what a criterion requires counts if it is wanted, too."""
     grading = _Grading(rubric, submission)
-    for criterion in rubric.criteria:
-        if criterion.id in wanted:
-            grading.decide(criterion)
-            yield grading.results[criterion.id]
+    left = {criterion.id for criterion in rubric.criteria if criterion.id in wanted}
+    waiting: list[str] = []  # one that a criterion below may still excuse, and those after it
+    for criterion in (it for it in rubric.criteria if it.id in wanted):
+        grading.decide(criterion)
+        left.discard(criterion.id)
+        waiting.append(criterion.id)
+        while waiting and not grading.may_be_excused(waiting[0], left):
+            yield grading.results[waiting.pop(0)]
 
 
 def _manual_subjects(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
@@ -65,9 +70,19 @@ class _Grading:
         """Run the check of a criterion, or skip it because of another that failed."""
         cause = self._blocking_cause(criterion)
         result = Result(criterion, _skip_outcome(cause), cause) if cause else self._decide_by_check(criterion)
-        for carried in criterion.carried:
+        self.results[criterion.id] = self._carry_from_any(result)
+        for above in [it for it in self.results.values() if _is_carried_from(it.criterion, criterion.id)]:
+            self.results[above.criterion.id] = self._carry_from_any(above)
+
+    def may_be_excused(self, name: str, undecided: Collection[str]) -> bool:
+        """Return whether the mistake of a criterion that is not decided yet may be why this one is lost."""
+        result = self.results[name]
+        return result.is_lost and any(_is_carried_from(result.criterion, other) for other in undecided)
+
+    def _carry_from_any(self, result: Result) -> Result:
+        for carried in result.criterion.carried:
             result = self._carry(result, carried) if result.is_lost else result
-        self.results[criterion.id] = result
+        return result
 
     def _blocking_cause(self, criterion: Criterion) -> str | None:
         """Return the criterion because of which this one is skipped, if there is one."""
@@ -114,16 +129,27 @@ class _Grading:
             return Result(result.criterion, outcome, carried=cause.carried or name)
         return other if other.outcome.status == "errored" else result
 
+    def _is_excused(self, criterion: Criterion, cause: str) -> bool:
+        """Return whether what counts instead passes, if another criterion is the cause of a failure."""
+        for carried in (it for it in criterion.carried if cause in it.causes):
+            with suppress(MissingElement):
+                if self._run_check(criterion, carried.check, carried.arguments).outcome.status == "passed":
+                    return True
+        return False
+
     def _cause_of(self, result: Result, causes: Sequence[str]) -> Result | None:
         """Return the failure that made the first of these criteria fail or be skipped, if it made the result so, too.
 
         A skip because of a criterion that is itself carried from that failure counts, too.
         """
         because = result.because
-        origins = (because, self.results[because].carried) if because else None
+        cause = self.results.get(because) if because else None
+        origins = (because, cause.carried if cause is not None else "") if because else None
         for before in (self.results[name] for name in causes if name in self.results):
-            mistake = self.results[before.because or before.criterion.id]
-            if mistake.outcome.status == "failed" and (origins is None or mistake.criterion.id in origins):
+            mistake = self.results.get(before.because or before.criterion.id)  # None for one that is below
+            if mistake is None or mistake.outcome.status != "failed":
+                continue
+            if origins is None or mistake.criterion.id in origins:
                 return mistake
         return None
 
@@ -171,11 +197,22 @@ class _Grading:
         return Result(criterion, self._explain(outcome, missing.kind, missing.name))
 
     def _first_miss(self, criterion: Criterion, thing: tuple[str, str]) -> str:
-        """Return the first criterion that misses a thing, which may be this one; an adjusted one excuses no other."""
+        """Return the first criterion that misses a thing, which may be this one; an adjusted one excuses no other.
+
+        One that is carried from this one is skipped in its place, although it stands above.
+        """
         first = self.missed.get(thing, criterion.id)
+        before = self.results.get(first)
+        if before is not None and self._is_excused(before.criterion, criterion.id):
+            self.results[first] = Result(before.criterion, _skip_outcome(criterion.id), criterion.id)
+            first = criterion.id
         if criterion.adjustment is None:
             self.missed[thing] = first
         return first
+
+
+def _is_carried_from(criterion: Criterion, name: str) -> bool:
+    return any(name in carried.causes for carried in criterion.carried)
 
 
 def _skip_outcome(cause: str) -> Outcome:

@@ -118,7 +118,7 @@ CARRIED = KeyTable(
     {
         "from": described(
             constrained(NAMES, Constraint("at least one id", bool, {"minItems": 1})),
-            "The ids of criteria above this one: their mistakes can make this one fail.",
+            "The ids of other criteria, also of those below: their mistakes can make this one fail.",
         ),
         "check": described(_TEXT, "The check that counts instead."),
         "with": described(_table_type({"type": "object"}), "The arguments of that check."),

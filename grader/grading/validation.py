@@ -120,12 +120,12 @@ class Validation:
             self._complain((*where, "part"), f"there is no part {part!r}{hint}")
 
     def _check_order(self, where: TomlPath, row: TomlRow, positions: Mapping[str, int]) -> None:
-        """Complain of ids in a list of a criterion, such as `requires`, that are not those of criteria above it."""
+        """Complain of ids in a list of a criterion that are not those of others; of `requires`, of those above it."""
         given: Any = self.rubric  # also of a list with other mistakes in it
         for key in where:
             given = given[key] if isinstance(key, int) else given.get(key, {})
         index, is_required = int(where[1]), where[-1] == "requires"
-        verb, action = ("requires", "require") if is_required else ("is carried from", "be carried from")
+        verb = "requires" if is_required else "is carried from"
         if not isinstance(given, list):
             return
         for name in given:
@@ -133,8 +133,10 @@ class Validation:
                 continue
             if name == row.get("id"):
                 message = f"{verb} itself"
+            elif name in positions and not is_required:
+                continue
             elif name in positions:
-                message = f"{verb} {name!r}, which is below: a criterion can only {action} those above it"
+                message = f"{verb} {name!r}, which is below: a criterion can only require those above it"
             else:
                 message = f"{verb} {name!r}, which does not exist{self._guess(name, positions)}"
             self._complain(where, message)

@@ -26,6 +26,9 @@ RESOURCE_INDEX = "share/ament_index/resource_index/packages/"
 NO_PACKAGE = "the submission has no ROS 2 package: there is no package.xml"
 _RVIZ_LIMIT = 512 * 1024  # bytes
 _MAX_LAUNCHES = 10
+# What ros2 launch imports: an installed folder of this name is found before it, on the PYTHONPATH of a workspace.
+_OF_ROS_IN_PYTHON = ("launch", "launch_ros", "launch_xml", "launch_yaml", "rclpy", "ament_index_python", "ros2launch",
+                     "ros2cli", "osrf_pycommon", "yaml")  # fmt: skip
 # What a file of a kind is called in messages, and how its name ends.
 _KINDS = {"urdf": ("URDF", (".urdf", ".xacro")), "rviz": ("RViz file", (".rviz",)), "launch": ("launch file", ENDINGS)}
 
@@ -124,6 +127,12 @@ class Package:
     def installed(self) -> dict[str, str]:
         """Each installed file's path in the package, by its path below the prefix."""
         return self.setup.installed() if self.setup is not None else {}
+
+    @cached_property
+    def shadows_ros(self) -> str:
+        """The name of a Python package that a build installs and that ros2 launch imports in place of its own."""
+        packages = self.setup.packages if self.setup is not None and not self.setup.unknown else ()
+        return next((name for name in packages if name in _OF_ROS_IN_PYTHON), "")
 
     @cached_property
     def launch_files(self) -> tuple[str, ...]:
@@ -238,11 +247,15 @@ class Package:
         return self.find(name) is not None or self.depends_on(name) or is_of_ros(name)
 
     def has_program(self, package: str, name: str) -> bool | None:
-        """Return whether a package has a program, as far as its setup.py tells; one that is not submitted has it."""
+        """Return whether a package has a program, as far as its setup.py tells; one that is not known has it."""
+        from grader.package.launch.programs import lacks_program  # late: as the readers of launch files
+
         owner = self.find(package)
-        if owner is None or owner.is_cmake or owner.setup is None:
-            return True if owner is None else None
-        return owner.setup.has_program(name)
+        if owner is None:
+            return not lacks_program(package, name)
+        if owner.is_cmake or owner.setup is None:
+            return None
+        return owner.setup.has_program(name, package)
 
     def open_installed(self, path: str) -> tuple[bytes, str] | None:
         """Return what a build of any submitted package installs at a path below the prefix, with the file's path."""

@@ -1,6 +1,7 @@
 """RViz configuration files: the fixed frame and the enabled displays, as RViz of ROS 2 reads them."""
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from grader.merge_conflicts import resolve_conflicts
@@ -37,6 +38,17 @@ class Display:
         """Whether it is enabled itself, whatever its group is."""
         # rviz_common's Display::load sets Value first, and then Enabled.
         return _switched_on(self.node.get("Enabled"), default=_switched_on(self.node.get("Value"), default=False))
+
+    @property
+    def hides_links(self) -> str:
+        """Why the links of a RobotModel are not drawn although it is on; empty if they are."""
+        alpha, links = self.node.get("Alpha"), self.node.get("Links")
+        with suppress(ValueError):
+            if alpha is not None and float(alpha.text or "1") <= 0:
+                return "its Alpha is 0"
+        tables = links.value.values() if links is not None and isinstance(links.value, dict) else ()
+        shown = [value for link in tables if (value := link.get("Value")) is not None]
+        return "all its links are off" if shown and not any(_switched_on(it, default=True) for it in shown) else ""
 
     @property
     def location(self) -> Location:
@@ -94,7 +106,7 @@ def read_rviz(data: bytes, path: str) -> RvizFile:
     if manager is None:
         return RvizFile(source, problem, None, start, ())
     frame = manager.get("Global Options", "Fixed Frame")
-    displays = tuple(_displays(manager.get("Displays")))
+    displays = tuple(_displays(manager))
     location = frame.location if frame else manager.location
     return RvizFile(source, None, frame.text if frame else None, location, displays)
 
@@ -106,9 +118,11 @@ def _switched_on(node: YamlNode | None, *, default: bool) -> bool:
     return node.text.lower() not in ("false", "0", "")
 
 
-def _displays(listed: YamlNode | None) -> Iterator[Display]:
-    """Yield the displays of a list and of its groups; in a disabled group they are disabled."""
-    pending = [(node, True) for node in listed.items] if listed is not None else []
+def _displays(root: YamlNode) -> Iterator[Display]:
+    """Yield the displays of the root group and of the groups in it; in a disabled group they are disabled."""
+    listed = root.get("Displays")
+    is_on = _switched_on(root.get("Enabled"), default=_switched_on(root.get("Value"), default=True))
+    pending = [(node, is_on) for node in listed.items] if listed is not None else []
     for _ in range(_MAX_DISPLAYS):
         if not pending:
             return

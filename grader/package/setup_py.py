@@ -144,17 +144,19 @@ class Setup:
     called_at: Position = START
     entry_points: Value = None  # what setup() is given
     ignored: tuple[_IgnoredArgument, ...] = ()  # arguments that setup() does not have
+    scripts_folder: str = "bin"  # below the prefix, for console_scripts
+    packages: tuple[str, ...] = ()  # the Python packages, as far as they are known
 
-    def has_program(self, name: str) -> bool | None:
-        """Return whether a build installs a program for `ros2 run`; None where this is not known."""
-        installed = [copy.target.rpartition("/") for copy in self.copies]
-        if any(target == name and folder.startswith("lib/") for folder, _, target in installed):
+    def has_program(self, name: str, package: str) -> bool | None:
+        """Return whether a build installs a program where `ros2 run` looks for it; None where this is not known."""
+        if any(copy.target == f"lib/{package}/{name}" for copy in self.copies):
             return True
         points = self.entry_points if self.entry_points is not None else {}
         scripts = points.get("console_scripts", []) if isinstance(points, dict) else None
         if not isinstance(scripts, list) or not all(isinstance(script, str) for script in scripts) or self.unknown:
             return None
-        return name in [script.partition("=")[0].strip() for script in scripts]
+        is_listed = name in [script.partition("=")[0].strip() for script in scripts]
+        return is_listed and self.scripts_folder == f"lib/{package}"
 
     def location(self, position: Position) -> Location:
         """Return the location of a position in the file."""
@@ -250,6 +252,8 @@ def _evaluate_setup(code: Code, listing: PackageListing, written: dict[str, Posi
         called_at=calls[0].at if calls else START,
         entry_points=calls[0].kwargs.get("entry_points") if calls else None,
         ignored=tuple(data_files.ignored),
+        scripts_folder=_scripts_folder(listing),
+        packages=_packages_in(calls[0].kwargs.get("packages")) if calls else (),
     )
 
 
@@ -563,6 +567,21 @@ def _cfg_findings(text: str, at: Position) -> Iterator[_Finding]:
             yield from _option_findings(section, options_of_section - _SECTIONS[section], at)
         elif names and not _OF_TOOLS.fullmatch(section):
             yield Unknown(f"the section [{section}] of setup.cfg is not evaluated", at)
+
+
+def _packages_in(value: Value) -> tuple[str, ...]:
+    return tuple(it for it in value if isinstance(it, str)) if isinstance(value, list | tuple) else ()
+
+
+def _scripts_folder(listing: PackageListing) -> str:
+    """Return the folder below the prefix that console_scripts are installed to; bin unless setup.cfg names another."""
+    parser, file = ConfigParser(), listing.files.get("setup.cfg")
+    try:
+        parser.read_string(file.read(_MAX_SETTINGS).decode() if file is not None else "")
+        options = {option.replace("-", "_"): value for option, value in parser["install"].items()}
+        return posixpath.normpath(options["install_scripts"].removeprefix("$base").lstrip("/"))
+    except (InputError, UnicodeDecodeError, Error, KeyError):
+        return "bin"
 
 
 def _option_findings(section: str, others: set[str], at: Position) -> Iterator[_Finding]:

@@ -12,6 +12,10 @@ _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _MAX_EVENTS = 25_000
 _MAX_ALIASES = 1000
 _MAX_DEPTH = 200  # the parser gets slower with each open bracket
+_TAGS = frozenset(
+    f"tag:yaml.org,2002:{name}"
+    for name in ("null", "bool", "int", "float", "str", "seq", "map", "binary", "timestamp", "omap", "pairs", "set")
+)
 _DEEP = "the file is too deeply nested"
 _TOO_DEEP = "exceeded maximum nesting depth"  # of newer versions of libyaml, which look ahead of the events
 
@@ -69,6 +73,24 @@ def yaml_value(text: str) -> Any:
         return yaml.load(text, Loader=_LOADER)  # noqa: S506  a safe loader
     except (yaml.YAMLError, RecursionError) as error:
         raise ValueError(str(error)) from None
+
+
+def check_one_document(text: str, path: str) -> None:
+    """Raise YamlFault for what yaml.safe_load refuses besides: a second document, and a tag that it does not know."""
+    source, documents, depth = Source(path, text), 0, 0
+    try:
+        for count, event in enumerate(yaml.parse(text, Loader=_LOADER)):
+            documents += isinstance(event, yaml.DocumentStartEvent)
+            depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+            tag = getattr(event, "tag", None)
+            if count > _MAX_EVENTS or depth > _MAX_DEPTH:
+                return
+            if documents > 1:
+                raise YamlFault("a second document begins", _location_of(source, event.start_mark))
+            if tag not in (None, "!") and tag not in _TAGS:
+                raise YamlFault(f"the tag {tag[:40]} is not known", _location_of(source, event.start_mark))
+    except yaml.YAMLError:
+        return  # which is reported where the nodes are read
 
 
 def read_yaml(data: bytes, path: str) -> YamlNode:

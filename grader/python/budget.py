@@ -94,7 +94,11 @@ class Budget:
             return part.bit_length() // _BITS
         if isinstance(part, PurePosixPath):
             return self._size_alone(str(part), kind)
-        if isinstance(part, py.PLAIN) or (kind == "holds" and isinstance(part, py.OPAQUE)):
+        if (
+            isinstance(part, py.PLAIN)
+            or (kind == "text" and py.is_object(part))
+            or (kind == "holds" and isinstance(part, py.OPAQUE))
+        ):
             return 0
         if isinstance(part, py.Items | py.Namespace | py.PlainFunction):  # a plain function itself refuses these
             return 0

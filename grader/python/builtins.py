@@ -119,6 +119,8 @@ def _kept(apply: _Apply, function: py.Value, items: Iterator[py.Value]) -> Itera
 
 def truth(value: py.Value) -> bool:
     """Return whether a value counts as true. Raises Undetermined."""
+    if py.is_object(value):
+        return True
     if isinstance(value, py.OPAQUE) and reason_of(value):
         known(value)
     return bool(call_plain(bool, value))

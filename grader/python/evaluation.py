@@ -35,7 +35,7 @@ _MAX_CALLS = 20_000
 _MAX_DEPTH = 30  # of calls
 _CHANGING_METHODS: Mapping[type, tuple[str, ...]] = {
     list: ("append", "extend", "insert", "sort", "reverse", "pop"),
-    dict: ("update", "pop"),
+    dict: ("update", "pop", "setdefault"),
 }
 _TEXT_METHODS = frozenset(name for name in dir(str) if not name.startswith("_"))
 
@@ -59,6 +59,7 @@ class Evaluation(Expressions):
         self.calls: list[py.Call] = []  # what is recorded, in order
         self.doubt: py.Unknown | None = None  # the first that may have failed, or stopped the evaluation
         self.at = START  # the statement that is evaluated
+        self.attempts = 0  # how many try statements are around the statement
         self._depth = 0  # of calls of the file's functions
 
     def doubted(self, unknown: py.Unknown) -> py.Unknown:
@@ -85,7 +86,7 @@ class Evaluation(Expressions):
                 raise py.Undetermined(unknown.reason, unknown.at, is_final=True) from None
             return unknown if unknown.reason == FAILED else self.doubted(unknown)
         except py.EvaluationFails as error:
-            self.error(str(error), position_of(node))
+            self.error(str(error), error.at or position_of(node))
             return py.Unknown(FAILED, position_of(node))
 
     def _name(self, node: ast.Name, scope: py.Scope) -> py.Value:
@@ -107,7 +108,7 @@ class Evaluation(Expressions):
 
     def test(self, value: py.Value, branches: Collection[ast.expr]) -> bool:
         """Return whether a condition holds; stop if that is unknown and a branch may change something."""
-        if isinstance(value, py.Unknown | py.Call | py.QualifiedName | py.BoundMethod):
+        if isinstance(value, py.Unknown | py.Call | py.QualifiedName | py.BoundMethod) and not py.is_object(value):
             nodes = (node for branch in branches for node in ast.walk(branch))
             if any(isinstance(node, _CHANGING) for node in nodes):
                 reason = f"a condition {NOT_EVALUATED}: {reason_of(value)}"
@@ -223,7 +224,7 @@ class Evaluation(Expressions):
             if name in ("extend", "update"):
                 args = [value if isinstance(value, dict) else list(iterate(value)) for value in args]
             elif name != "append":
-                known(args if name != "insert" else args[:1])
+                known(args if name not in ("insert", "setdefault") else args[:1])
             return self.budget.checked(call_plain(getattr(owner, name), *args, **kwargs))
         except py.Undetermined as error:
             if error.is_final:

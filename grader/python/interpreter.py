@@ -30,6 +30,9 @@ _IN_ANNOTATIONS = (
 )  # fmt: skip
 
 
+_OF_IMPORTS = ("ImportError", "ModuleNotFoundError", "Exception")  # what catches an import that fails
+
+
 class _ReturnFlow(py.EvaluationSignal):
     """A return statement, with its value."""
 
@@ -202,6 +205,36 @@ class Interpreter(Evaluation):
                 raise py.Undetermined(f"the names of {module} are not evaluated", self.at, is_final=True)
             scope.names.update(bound)
 
+    def _try(self, node: ast.Try, scope: py.Scope) -> None:
+        """Run a body that raises nothing, or whose import certainly fails; stop at any other."""
+        if node.finalbody:
+            raise py.Undetermined("a try with finally is not evaluated", self.at, is_final=True)
+        errors, doubt, self.doubt, after = list(self.errors), self.doubt, None, node.orelse
+        self.attempts += 1
+        try:
+            for statement in node.body:
+                self._block([statement], scope)
+                if len(self.errors) > len(errors):
+                    self.errors, after = errors, []
+                    self._handle(statement, node.handlers, scope)
+                    break
+        finally:
+            self.attempts -= 1
+        if self.doubt is not None:
+            raise py.Undetermined(self.doubt.reason, self.doubt.at, is_final=True)
+        self.doubt = doubt
+        self._block(after, scope)
+
+    def _handle(self, statement: ast.stmt, handlers: Sequence[ast.ExceptHandler], scope: py.Scope) -> None:
+        """Run the handler of an import that fails; stop at what another statement raises."""
+        for handler in handlers if isinstance(statement, ast.Import | ast.ImportFrom) else ():
+            if handler.type is None or (isinstance(handler.type, ast.Name) and handler.type.id in _OF_IMPORTS):
+                if handler.name:
+                    scope.names[handler.name] = py.Unknown("an error is not evaluated", position_of(handler))
+                self._block(handler.body, scope)
+                return
+        raise py.Undetermined("which error is raised in this try is not evaluated", self.at, is_final=True)
+
     def _assert(self, node: ast.Assert, scope: py.Scope) -> None:
         if not truth(self.evaluate(node.test, scope)):
             self.error("this assertion fails", self.at)
@@ -233,7 +266,7 @@ class Interpreter(Evaluation):
                 return self.budget.checked(list(value) if name == "parents" else value, "path")
         if isinstance(owner, py.PLAIN) and not has_attribute(owner, name):
             raise py.EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
-        return py.BoundMethod(owner, name)
+        return py.BoundMethod(owner, name, node)
 
     def item(self, owner: py.Value, key: py.Value, node: ast.expr) -> py.Value:
         """Return the value of owner[key]; of something outside of the file, by the table."""
@@ -380,6 +413,7 @@ class Interpreter(Evaluation):
         ast.Pass: _pass,
         ast.Import: _import,
         ast.ImportFrom: _import,
+        ast.Try: _try,
         ast.Assert: _assert,
         ast.Raise: _raise,
     }

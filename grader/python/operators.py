@@ -122,6 +122,7 @@ _METHODS: Mapping[type, Mapping[str, Callable[..., py.Value]]] = {
 def operate(op: ast.operator, left: py.Value, right: py.Value, budget: Budget) -> py.Value:
     """Return the value of a binary operator."""
     operation = _OPERATORS.get(type(op))
+    _refuse_object(op, left, right)
     if type(left) in _NUMBERS and type(right) in _NUMBERS:
         if isinstance(op, ast.Pow) and type(left) is type(right) is int and left.bit_length() * right > py.MAX_BITS:
             too_large("number")
@@ -148,6 +149,18 @@ def operate(op: ast.operator, left: py.Value, right: py.Value, budget: Budget) -
     return budget.checked(_run(operation, left, right), kind)
 
 
+def _refuse_object(op: ast.operator, left: py.Value, right: py.Value) -> None:
+    """Raise EvaluationFails for an operator of an object that has none, as Python does."""
+    found = next(filter(py.is_object, (left, right)), None)
+    other = right if found is left else left
+    if found is None or (isinstance(op, ast.Mod) and isinstance(left, str)):
+        return
+    if isinstance(other, py.PLAIN) or py.is_object(other):
+        raise py.EvaluationFails(
+            f"TypeError: {found.short}(...) is an object, not a text: use PathJoinSubstitution([...])"
+        )
+
+
 def _kind(op: ast.operator, left: py.Value, right: py.Value) -> str:
     """Return what the operands may contain: an operator of two lists passes their items on."""
     if isinstance(left, _CONTAINERS) or (isinstance(right, _CONTAINERS) and not isinstance(left, str)):
@@ -167,6 +180,9 @@ def _run(operation: Callable[[py.Value, py.Value], py.Value], left: py.Value, ri
 
 def compare(op: ast.cmpop, left: py.Value, right: py.Value, budget: Budget) -> bool:
     """Return the value of one comparison."""
+    are_plain = all(isinstance(value, py.PLAIN) or py.is_object(value) for value in (left, right))
+    if are_plain and any(map(py.is_object, (left, right))) and isinstance(op, _OF_IDENTITY):
+        return (left is right) == isinstance(op, ast.Eq | ast.Is)
     if isinstance(op, ast.Is | ast.IsNot) and not any(
         value is None or isinstance(value, bool) for value in (left, right)
     ):
@@ -205,6 +221,7 @@ def _exclusive_or(left: py.Value, right: py.Value) -> py.Value:
 
 
 _CONTAINERS = (list, tuple, dict)
+_OF_IDENTITY = (ast.Eq, ast.NotEq, ast.Is, ast.IsNot)
 _OPERATORS: dict[type[ast.operator], Callable[[py.Value, py.Value], py.Value]] = {
     ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
     ast.FloorDiv: operator.floordiv, ast.Mod: operator.mod, ast.Pow: operator.pow, ast.BitOr: operator.or_,

@@ -27,6 +27,9 @@ SCALARS = (str, int, float)
 PLAIN: tuple[Any, ...] = (*SCALARS, type(None), range, list, tuple, dict, PurePosixPath, StringIO, *VIEWS)
 
 
+OBJECT = " object>"  # ends the text of an object that has no text of its own
+
+
 class EvaluationSignal(Exception):
     """What ends the evaluation of an expression or action, and is no error of the grader's own.
 
@@ -77,10 +80,10 @@ class QualifiedName:
 
 
 class BoundMethod:
-    """A method of a value, which is not called yet."""
+    """A method of a value, which is not called yet; `node` is the expression in the file that gives it."""
 
-    def __init__(self, owner: Value, name: str) -> None:
-        self.owner, self.name = owner, name
+    def __init__(self, owner: Value, name: str, node: ast.expr | None = None) -> None:
+        self.owner, self.name, self.node = owner, name, node
 
 
 class Call:
@@ -91,7 +94,13 @@ class Call:
     ) -> None:
         """`owner` is the call whose result it is a method of."""
         self.name, self.args, self.kwargs, self.at, self.owner = name, args, kwargs, at, owner
+        self.is_object = False  # whether it makes an object without operators and a text of its own
         self.method_calls: list[Call] = []  # the recorded ones, of its own result
+
+    @property
+    def short(self) -> str:
+        """The name without its module."""
+        return self.name.rpartition(".")[2]
 
     def argument(self, position: int, *names: str) -> Value:
         """Return an argument by its position or by one of its names; None where it is missing."""
@@ -253,6 +262,8 @@ def reason_of(value: Value) -> str:
     match value:
         case Unknown(reason=reason):
             return str(reason)
+        case Call(is_object=True):
+            return f"the value of {value.short}(...) is not evaluated"
         case Call(name=name) | QualifiedName(name=name) | BoundMethod(name=name):
             return f"the value of {name} is not evaluated"
         case Function():
@@ -282,9 +293,16 @@ def checked_key(key: Value) -> Value:
 
 def str_of(value: Value) -> str:
     """Return str() of a value that is charged; raise Undetermined where it differs between runs, such as an address."""
+    if is_object(value):
+        return f"<{value.short}{OBJECT}"
     if not isinstance(value, (*SCALARS, PurePosixPath)) and not (isinstance(value, PLAIN) and _has_text(value)):
         raise Undetermined("the text of this value differs between runs")
     return str(value)
+
+
+def is_object(value: Value) -> bool:
+    """Return whether a value is an object that is true, equal to itself alone, and has no operators."""
+    return isinstance(value, Call) and value.is_object
 
 
 def _has_text(value: Value) -> bool:

@@ -8,19 +8,19 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from grader.package.launch.api import CONDITION, ENTITY, SOURCE, class_named, is_a
-from grader.package.launch.arguments import BOOLEANS, boolean, items_in, kind_of
-from grader.package.launch.model import ANY, Context, Findings, Resolved
+from grader.package.launch.arguments import items_in, kind_of
+from grader.package.launch.model import ANY, NAMESPACE, Context, Findings, Resolved
 from grader.package.launch.nodes import (
-    check_namespace,
     evaluate_dict,
     evaluate_node,
     evaluate_parameters,
     evaluate_process,
+    namespace_below,
     start_known_file,
     start_node,
     start_process,
 )
-from grader.package.launch.substitutions import known_text, resolve
+from grader.package.launch.substitutions import CONDITIONS, boolean, condition_holds, known_text, resolve
 from grader.python.parse import START, Position
 from grader.python.values import (
     Call,
@@ -35,6 +35,7 @@ from grader.python.values import (
 
 _MAX_ACTIONS = 5_000
 _MAX_DEPTH = 40
+_MAX_PERIOD = 60.0  # seconds that a person waits for a timer
 _LATE = ("sigterm_timeout", "sigkill_timeout", "default_value")  # arguments that are not evaluated at once
 _PROCESSES = ("Node", "ExecuteProcess")
 # Takes the path of a launch file below the prefix and the context for it; returns why it is not read, or nothing.
@@ -53,9 +54,8 @@ class ActionVisitor:
     call_function: Callable[[Function, Position, Sequence[Value] | None, Context], Value]
     visited: set[Call] = field(default_factory=set)  # what is part of the description
     executed: dict[Call, bool | None] = field(default_factory=dict)  # the processes: each is executed once
-    later: list[tuple[Value, Call, Context, bool | None]] = field(
-        default_factory=list
-    )  # what timers and events execute
+    # What timers and events execute, and the process whose start does.
+    later: list[tuple[Value, Call, Context, bool | None, Value]] = field(default_factory=list)
     steps: int = 0
     depth: int = 0
 
@@ -64,8 +64,9 @@ class ActionVisitor:
         self.visit(description, context, context.when, at)
         for _ in range(_MAX_DEPTH):
             later, self.later = self.later, []
-            for actions, call, own, when in later:
-                self.visit_all(actions, call, replace(own, arguments=context.arguments), when)
+            for actions, call, own, when, target in later:
+                is_started = self.executed.get(target, False) if isinstance(target, Call) else when
+                self.visit_all(actions, call, replace(own, arguments=context.arguments), is_started if when else None)
 
     def visit(self, value: Value, context: Context, when: bool | None, at: Position) -> None:
         """Visit an action."""
@@ -172,13 +173,9 @@ def _condition_holds(given: Value, context: Context, at: Position) -> bool:
     if not isinstance(given, Call):
         raise EvaluationFails(f"condition is {kind_of(given)}, not a condition such as IfCondition(...)", at)
     kind = given.name.rpartition(".")[2]
-    if not is_a(given.name, CONDITION) or kind not in ("IfCondition", "UnlessCondition"):
+    if not is_a(given.name, CONDITION) or kind not in CONDITIONS:
         raise Undetermined(f"the condition {kind} is not evaluated", given.at)
-    text = known_text(given.kwargs["predicate_expression"], context, given.at)
-    holds = BOOLEANS.get(text.strip().lower())
-    if holds is None:
-        raise EvaluationFails(f"a condition is {text[:40]!r}, expected true or false", given.at)
-    return holds == (kind == "IfCondition")
+    return condition_holds(given, context)
 
 
 def _evaluate_field(value: Value, test: str, context: Context, at: Position) -> None:
@@ -253,8 +250,15 @@ def _set_environment(visitor: ActionVisitor, call: Call, context: Context, when:
 def _push_namespace(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
     del visitor
     if when is not False:
-        check_namespace(call.kwargs["namespace"], context, call.at)
-        context.arguments["ros_namespace"] = Unknown("the namespace is not evaluated", call.at)
+        found = namespace_below(call.kwargs["namespace"], context, call.at)
+        context.arguments[NAMESPACE] = found if when else Unknown("the namespace is set under a condition", call.at)
+
+
+def _set_remap(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    del visitor
+    if when is not False:
+        rule = tuple(known_text(call.kwargs[name], context, call.at) for name in ("src", "dst"))
+        context.remaps = (*context.remaps, rule if when else None)
 
 
 def _set_parameter(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
@@ -280,10 +284,20 @@ def _visit_group(visitor: ActionVisitor, call: Call, context: Context, when: boo
 
 
 def _start_timer(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
-    if when:
-        visitor.later.append((call.kwargs["actions"], call, context, when))
+    period = call.kwargs["period"]
+    if not isinstance(period, float) and when is not False:
+        period = _seconds(known_text(period, context, call.at), call.at)
+    if when and period <= _MAX_PERIOD:
+        visitor.later.append((call.kwargs["actions"], call, context, when, None))
     else:
         visitor.perhaps(call.kwargs["actions"], call, context, when)
+
+
+def _seconds(text: str, at: Position) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise EvaluationFails(f"the period {text[:40]!r} of a timer is no number", at) from None
 
 
 def _register_handler(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
@@ -295,7 +309,8 @@ def _register_handler(visitor: ActionVisitor, call: Call, context: Context, when
     value = handler.kwargs.get("on_exit", handler.kwargs.get("on_start"))
     actions = visitor.call_function(value, handler.at, None, context) if isinstance(value, Function) else value
     if kind == "OnProcessStart" and value is actions and when is not False:
-        visitor.later.append((actions if isinstance(actions, list | tuple) else [actions], handler, context, None))
+        target, executed = handler.kwargs.get("target_action"), actions if isinstance(actions, list) else [actions]
+        visitor.later.append((executed, handler, context, when, target))
     elif not isinstance(actions, QualifiedName | None):
         visitor.perhaps(actions, handler, context, when)
 
@@ -342,7 +357,7 @@ def _launch_arguments(given: Value, context: Context, at: Position) -> dict[str,
     pairs = items_in(given) if given is not None else []
     found: dict[str, Resolved] = {}
     for pair in pairs or ():
-        if not isinstance(pair, list | tuple) or len(pair) != 2:
+        if not isinstance(pair, list | tuple | str) or len(pair) != 2:
             raise Undetermined("launch_arguments that are no pairs are not evaluated", at)
         for part in pair:
             if not isinstance(part, str | Call | Unknown | list | tuple):
@@ -376,5 +391,5 @@ _KINDS: Mapping[str, Callable[[ActionVisitor, Call, Context, bool | None], None]
     **dict.fromkeys(("SetEnvironmentVariable", "AppendEnvironmentVariable"), _set_environment),
     "IncludeLaunchDescription": _include_file, "OpaqueFunction": _call_opaque_function, "TimerAction": _start_timer,
     "RegisterEventHandler": _register_handler, **dict.fromkeys(("Shutdown", "EmitEvent"), _shut_down),
-    "PushROSNamespace": _push_namespace, "SetParameter": _set_parameter,
+    "PushROSNamespace": _push_namespace, "SetParameter": _set_parameter, "SetRemap": _set_remap,
 }  # fmt: skip

@@ -4,8 +4,8 @@ An argument is a text (a string or substitutions), a list of them, a parameter o
 check of each kind, which returns what is wrong.
 """
 
+from ast import expr, unparse
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from functools import partial
 from pathlib import PurePosixPath
 from typing import Any
@@ -13,12 +13,12 @@ from typing import Any
 from grader.names import did_you_mean
 from grader.package.launch.api import ENTITY, PROCESS, SOURCE, SUBSTITUTION, LaunchClass, class_named, exports, is_a
 from grader.package.launch.model import UnknownText, not_evaluated
-from grader.package.launch.substitutions import PERFORMS
-from grader.package.yaml_nodes import yaml_value
+from grader.package.launch.substitutions import CONDITIONS, PERFORMS
 from grader.python.evaluation import Evaluation, record
-from grader.python.parse import Position
+from grader.python.parse import position_of
 from grader.python.values import (
     VIEWS,
+    BoundMethod,
     Call,
     EvaluationFails,
     Function,
@@ -31,7 +31,6 @@ from grader.python.values import (
     known,
 )
 
-BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 SCALARS = (bool, int, float, str)
 TYPED = ("launch_ros.parameter_descriptions.ParameterValue", "launch_ros.parameter_descriptions.Parameter")
 FILE = "launch_ros.parameter_descriptions.ParameterFile"
@@ -43,17 +42,21 @@ OPENED = {
 _COLLECTIONS: Any = (list, tuple, dict, set, frozenset, *VIEWS)
 _NAMES = {
     type(None): "None", bool: "a boolean", int: "a number", float: "a number", dict: "a dict", Function: "a function",
+    BoundMethod: "a method that is not called", UnknownText: "a text",
 }  # fmt: skip
 _WANTED = {bool: "True, False", float: "a decimal number such as 2.0", int: "an integer", str: "a string"}
 _ACTIONS = (
     "Node", "ExecuteProcess", "LogInfo", "LaunchDescription", "DeclareLaunchArgument", "SetLaunchConfiguration",
     "GroupAction", "SetEnvironmentVariable", "AppendEnvironmentVariable", "IncludeLaunchDescription", "OpaqueFunction",
     "TimerAction", "RegisterEventHandler", "OnProcessExit", "OnProcessStart", "Shutdown", "EmitEvent",
-    "PushROSNamespace", "SetParameter",
+    "PushROSNamespace", "SetParameter", "SetRemap",
 )  # fmt: skip
+_MAX_DEPTH = 20  # of lists in others
 _OF_ONE_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
 # The classes that are evaluated, besides the sources of included files; what is wrong with their arguments.
-_EVALUATED = frozenset({*_ACTIONS, *PERFORMS, "IfCondition", "UnlessCondition", "ParameterValue", "LaunchContext"})
+_EVALUATED = frozenset({*_ACTIONS, *PERFORMS, *CONDITIONS, "ParameterValue", "LaunchContext"})
+# The arguments that are kept as they are: of all others launch makes a copy when the object is made.
+_KEPT_AS_IT_IS = {"GroupAction": "actions", "TimerAction": "actions", "OpaqueFunction": "args"}
 
 
 class LaunchFunctions(dict[str, Any]):
@@ -83,9 +86,23 @@ def _function_of(name: str) -> "Callable[[Evaluation, Call], Value] | None":
 def _record_constructor(cls: LaunchClass, evaluation: Evaluation, call: Call) -> Value:
     call.name = cls.name
     doubt = check(cls, call)
+    call.is_object = True
+    for name in [name for name in call.kwargs if name != _KEPT_AS_IT_IS.get(cls.short)]:
+        call.kwargs[name] = _copied(call.kwargs[name], evaluation)
     if doubt is not None:
         evaluation.doubted(Unknown(not_evaluated(doubt.reason), doubt.at))
     return record(evaluation, call)
+
+
+def _copied(value: Value, evaluation: Evaluation, depth: int = 0) -> Value:
+    """Return a copy of the lists and dicts in a value."""
+    if not isinstance(value, _COLLECTIONS) or depth > _MAX_DEPTH:
+        return value
+    evaluation.budget.charge(len(value))
+    if isinstance(value, dict):
+        return {key: _copied(item, evaluation, depth + 1) for key, item in value.items()}
+    copies = [_copied(item, evaluation, depth + 1) for item in value]
+    return copies if isinstance(value, (list, *VIEWS)) else type(value)(copies)
 
 
 def _fail_missing(message: str, *_: object) -> Value:
@@ -130,14 +147,25 @@ def _name_arguments(cls: LaunchClass, call: Call) -> None:
 
 def _wrong_argument(cls: LaunchClass, call: Call, name: str, value: Value) -> str:
     """Return what is wrong with an argument, or, without a name, with all together. Raises Undetermined."""
+    if bound := _find_bound(value):
+        text = unparse(bound)[:60]
+        raise EvaluationFails(f"{text} without (): write {text}()", position_of(bound))
     if not name:
         message = _SPECIAL[cls.short](call) if cls.short in _SPECIAL else ""
         return f"{cls.short}: {message}" if message else ""
     test = cls.parameters[name].check
     own = _CHECKS.get(test.removesuffix("?"))
     wanted = own(value) if own is not None and not (value is None and test.endswith("?")) else ""
-    tail = "" if wanted.startswith("has a value") else f", not {kind_of(value)}"
+    tail = "" if wanted.startswith("has a") else f", not {kind_of(value)}"
     return f"{name} of {cls.short} {wanted}{tail}" if wanted else ""
+
+
+def _find_bound(value: Value) -> expr | None:
+    """Return the expression of a method in a value that is not called."""
+    if isinstance(value, list | tuple | dict):
+        items = value.values() if isinstance(value, dict) else value
+        return next(filter(None, map(_find_bound, items)), None)
+    return value.node if isinstance(value, BoundMethod) else None
 
 
 def _is_text(value: Value) -> bool:
@@ -179,8 +207,13 @@ def _wrong_text(value: Value) -> str:
     """Return what is wrong with a value that has to be a text, or nothing. Raises Undetermined."""
     if isinstance(value, _COLLECTIONS):
         wrong = next((item for item in value if not _is_text(item)), "")
-        return f"takes strings and substitutions, not {kind_of(wrong)} in a list" if wrong != "" else ""
+        return f"has an item that is {kind_of(wrong)}{_in_quotes(wrong)}" if wrong != "" else ""
     return "" if _is_text(value) else "takes a string or a substitution"
+
+
+def _in_quotes(value: Value) -> str:
+    """Return how a number is written as a text, as advice."""
+    return f": write '{value}'" if type(value) in (int, float) else ""
 
 
 def kind_of(value: Value) -> str:
@@ -270,7 +303,12 @@ def type_of(call: Call) -> "type | None":
 
 def _wrong_texts(value: Value) -> str:
     items = items_in(value)
-    return "has to be a list: put [ ] around it" if items is None else next(filter(None, map(_wrong_text, items)), "")
+    if items is None:
+        return "has to be a list: put [ ] around it"
+    wrong = next((item for item in items if not isinstance(item, _COLLECTIONS) and not _is_text(item)), "")
+    if wrong != "":
+        return f"has an item that is {kind_of(wrong)}{_in_quotes(wrong)}"
+    return next(filter(None, map(_wrong_text, items)), "")
 
 
 def _wrong_mapping(value: Value) -> str:
@@ -311,17 +349,6 @@ _CHECKS: Mapping[str, Callable[[Value], str]] = {
 }
 
 
-def boolean(text: str, at: Position) -> bool:
-    """Return the value of a text as launch reads it where it wants a boolean, by the rules of YAML."""
-    found: object = BOOLEANS[text] if text in ("0", "1") else None
-    if found is None and len(text) < 20:
-        with suppress(ValueError):
-            found = yaml_value(text)
-    if not isinstance(found, bool):
-        raise EvaluationFails(f"{text[:40]!r} is neither true nor false", at)
-    return found
-
-
 def _wrong_declaration(call: Call) -> str:
     choices, default = call.kwargs.get("choices"), call.kwargs.get("default_value")
     if choices is not None and not items_in(choices):
@@ -335,8 +362,8 @@ def _wrong_include(call: Call) -> str:
     source, given = call.kwargs["launch_description_source"], call.kwargs.get("launch_arguments")
     if not (isinstance(source, Call) and is_a(source.name, SOURCE)) and (wrong := _wrong_text(source)):
         return f"the first argument {wrong}, not {kind_of(source)}"
-    if isinstance(given, dict):
-        return "launch_arguments is given a dict: add .items() to it"
+    if isinstance(given, dict) and not all(isinstance(key, str) and len(key) == 2 for key in given):
+        return "launch_arguments is given a dict: add .items() to it"  # Python takes a key of two letters for a pair
     return "launch_arguments takes pairs" if given is not None and items_in(given) is None else ""
 
 
@@ -353,6 +380,8 @@ def _wrong_event_handler(call: Call) -> str:
     items = value if isinstance(value, list) else [value]
     if not isinstance(value, Function) and not all(isinstance(it, Call) and _is_entity(it) for it in items):
         raise Undetermined("what this event handler executes")
+    if isinstance(target, str | list | dict | int | float):
+        return f"target_action is {kind_of(target)}, not an action such as Node(...)"
     if not isinstance(target, Call | None) or (target is not None and not is_a(target.name, PROCESS)):
         raise Undetermined("the target of this event handler")
     return ""
@@ -371,8 +400,12 @@ def _wrong_text_substitution(call: Call) -> str:
 
 
 def _wrong_timer(call: Call) -> str:
-    if not isinstance(call.kwargs["period"], float):
-        raise Undetermined("a timer whose period is no decimal number")
+    """Return what is wrong with the period: a string is read as a number when the timer is made."""
+    if isinstance(call.kwargs["period"], str):
+        try:
+            call.kwargs["period"] = float(call.kwargs["period"])
+        except ValueError:
+            return f"the period {call.kwargs['period'][:40]!r} is no number"
     return ""
 
 

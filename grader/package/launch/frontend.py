@@ -13,7 +13,7 @@ from grader.names import closest, did_you_mean
 from grader.package.launch.api import class_named, front_end
 from grader.package.launch.arguments import TYPED, check
 from grader.package.launch.model import Findings, LaunchFault
-from grader.package.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
+from grader.package.yaml_nodes import YamlFault, YamlNode, check_one_document, read_yaml, yaml_value
 from grader.python.parse import START, Position
 from grader.python.values import Call, EvaluationFails, EvaluationSignal, Undetermined, Unknown, Value
 from grader.source import Location, Source
@@ -30,6 +30,12 @@ _SUBSTITUTIONS = {
     "find-exec": "name",
     "eval": "expression [python_modules]",
     "dirname": "",
+    "filename": "",
+    "file-content": "path",
+    "exec-in-pkg": "executable package",
+    "if": "condition if_value [else_value]",
+    "not": "value",
+    **dict.fromkeys(("and", "or", "equals", "not-equals"), "left right"),
 }
 _ON_STDERR = (["fail"], ["ignore"], ["warn"], ["capture"])
 _MAX_DEPTH = 40
@@ -46,6 +52,7 @@ _ACTIONS: Mapping[str, str] = {
     "set_env": "name! value!", "let": "name! value!", "timer": "period!:float -cancel_on_shutdown children",
     "node": f"exec! pkg args -ros_args -node-name -exec_name namespace remap[] param[] {_PROCESS}",
     **dict.fromkeys(("push_ros_namespace", "push-ros-namespace"), "namespace!"), "set_parameter": "name! value!",
+    "set_remap": "from! to!",
 }  # fmt: skip
 _NESTED: Mapping[str, str] = {
     "arg": "name! value!", "choice": "value!", "remap": "from! to!",
@@ -56,8 +63,12 @@ _VALUE_TYPES = ("str", "bool", "float", "int", "list_of_str", "list_of_bool", "l
 # The argument of the constructor, where it has another name than the attribute.
 _ARGUMENTS = {
     "pkg": "package", "exec": "executable", "default": "default_value", "message": "msg", "launch-prefix": "prefix",
-    "file": "launch_description_source", "args": "arguments",
+    "file": "launch_description_source", "args": "arguments", "from": "src", "to": "dst",
 }  # fmt: skip
+_ROS1 = (
+    "this is a launch file of ROS 1; in ROS 2 write exec= for type=, $(find-pkg-share ...) for $(find ...),"
+    " $(var ...) for $(arg ...), and <param> inside of <node>"
+)
 _RAW = ("shell", "emulate_tty", "scoped")
 
 
@@ -82,16 +93,33 @@ class _Entity:
 def read_frontend(data: bytes, source: Source, *, is_yaml: bool) -> _Entity | LaunchFault:
     """Return the root entity of a launch file in XML or YAML, or why it cannot be read. Never raises."""
     try:
+        data.decode()  # as open does, whatever the file itself says of its encoding
         root = _YamlReader().root(data, source.path) if is_yaml else _xml_root(XmlFile(data, source))
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        return LaunchFault("the file is not UTF-8 text: save it as UTF-8", Location(source.path, line, 1))
     except (YamlFault, XmlFault) as fault:
         return LaunchFault(f"not readable as {'YAML' if is_yaml else 'XML'}: {fault}", fault.location)
     except EvaluationFails as error:
         line, column = error.at or START
         return LaunchFault(str(error), Location(source.path, line, column))
     if root is not None and root.kind == "launch":
+        if not is_yaml and _is_of_ros1(root):
+            root.error = _ROS1
         return root
     what = "the file is not a list of actions below launch:" if is_yaml else "the root of the file is not <launch>"
     return LaunchFault(f"{what}; ros2 launch starts nothing", Location(source.path, 1, 1))
+
+
+def _is_of_ros1(root: _Entity) -> bool:
+    """Return whether a launch file is one of ROS 1: its nodes have a type."""
+    pending = [root]
+    while pending:
+        entity = pending.pop()
+        pending += entity.actions
+        if entity.kind == "node" and "type" in entity.attributes and "exec" not in entity.attributes:
+            return True
+    return False
 
 
 def _xml_root(file: XmlFile) -> _Entity:
@@ -115,6 +143,7 @@ class _YamlReader:
 
     def root(self, data: bytes, path: str) -> _Entity | None:
         """Return the entity of the whole file; None where its only key is not launch."""
+        check_one_document(data.decode(), path)
         root = read_yaml(data, path)
         node = root.get("launch")
         if node is None or not isinstance(root.value, dict) or len(root.value) > 1:

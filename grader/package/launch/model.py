@@ -14,6 +14,7 @@ from grader.source import Location, Source
 
 _MAX_STEPS = 50_000
 ANY = "**"
+NAMESPACE = "ros_namespace"  # the launch configuration that has the namespace of what follows, as in launch_ros
 STATE_PUBLISHER = "robot_state_publisher"
 Purpose = Literal["urdf", "rviz", "include", "read"]
 
@@ -28,6 +29,8 @@ class Contents:
     path: str
     by: str
     arguments: tuple[tuple[str, str | None], ...] = ()
+    stops_at_stderr: bool = False  # whether launch stops if the program writes a warning
+    is_deprecated: bool = False  # whether xacro has an option of which it warns
 
 
 class UnknownText(Unknown):
@@ -74,6 +77,7 @@ class Context:
     installation: Installation
     arguments: dict[str, Resolved] = field(default_factory=dict)
     when: bool | None = True  # whether the file is launched at all
+    remaps: "tuple[tuple[str, ...] | None, ...]" = ()  # of SetRemap; None for one that is not known
     given: frozenset[str] = frozenset()  # the launch arguments that the file is included with
     reads: list[tuple[Contents, Position]] = field(default_factory=list)  # that the current action needs
     budget: Budget = field(default_factory=partial(Budget, _MAX_STEPS))  # of all files that are launched
@@ -98,6 +102,7 @@ class StartedNode:
     """A program that is started. `when` is True, False where a condition prevents it, None if known at run time only.
 
     `frame_prefix` is what robot_state_publisher puts before the name of each link; None where it is known at run time.
+    The same holds for `namespace`, and for the `remaps` of names.
     """
 
     package: str
@@ -105,6 +110,20 @@ class StartedNode:
     when: bool | None
     location: Location
     frame_prefix: str | None = ""
+    namespace: str | None = ""
+    remaps: tuple[tuple[str, ...], ...] | None = ()
+    has_description: bool = False  # whether it is given the robot itself, not only by a topic
+
+    def topic(self, name: str) -> str | None:
+        """Return the topic that the node has for a name in its program; None where it is known at run time."""
+        if self.namespace is None or self.remaps is None:
+            return None
+        full = self._full_name(name)
+        rules = (rule[1] for rule in self.remaps if self._full_name(rule[0]) == full)
+        return self._full_name(next(rules, full))
+
+    def _full_name(self, name: str) -> str:
+        return name if name.startswith("/") else f"/{(self.namespace or '').strip('/')}/{name}".replace("//", "/")
 
     @property
     def name(self) -> str:
@@ -123,6 +142,8 @@ class NamedFile:
     sure: bool = True  # False where it is unknown
     by: str = ""  # the program that reads it, if there is one: xacro, cat, open or decode
     arguments: tuple[tuple[str, str | None], ...] = ()  # that xacro gets
+    stops_at_stderr: bool = False  # whether launch stops if xacro writes a warning
+    is_deprecated: bool = False  # whether xacro has an option of which it warns
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,7 +231,9 @@ class Findings:
             case Unknown(reason=reason):
                 self.references.append(NamedFile(purpose, None, location, reason, sure=False))
             case Contents():
-                self.references.append(NamedFile(purpose, path.path, location, by=path.by, arguments=path.arguments))
+                found = NamedFile(purpose, path.path, location, "", by=path.by, arguments=path.arguments)
+                found = replace(found, stops_at_stderr=path.stops_at_stderr, is_deprecated=path.is_deprecated)
+                self.references.append(found)
             case _:
                 self.references.append(NamedFile(purpose, path, location, wrong))
 

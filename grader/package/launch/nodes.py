@@ -4,16 +4,21 @@ These files are the robot and the configuration of RViz. `known_launch_files.tom
 well-known packages start, which submissions include but do not contain.
 """
 
+import posixpath
 import re
 import shlex
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
 from functools import cache
+from itertools import pairwise
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from grader.package.launch.arguments import FILE, OPENED, SCALARS, TYPED, boolean, items_in, kind_of, type_of
+from grader.package.launch.arguments import FILE, OPENED, SCALARS, TYPED, items_in, kind_of, type_of
 from grader.package.launch.model import (
+    NAMESPACE,
     STATE_PUBLISHER,
     Contents,
     Context,
@@ -25,22 +30,23 @@ from grader.package.launch.model import (
     UnknownText,
 )
 from grader.package.launch.places import PREFIX, ROS, SHARE
-from grader.package.launch.substitutions import PART_UNKNOWN, known_text, resolve
+from grader.package.launch.programs import is_part_of_ros
+from grader.package.launch.substitutions import PART_UNKNOWN, boolean, check_program, known_text, resolve
 from grader.package.yaml_nodes import yaml_value
 from grader.python.parse import Position
 from grader.python.values import Call, EvaluationFails, EvaluationSignal, Undetermined, Unknown, Value
 
 _RVIZ = "rviz2"
 _GIVEN: Mapping[str, Purpose] = {STATE_PUBLISHER: "urdf", _RVIZ: "rviz"}  # the nodes that are given a file
-# Packages that ROS 2 consists of, or that labs take for granted, whether package.xml names them or not.
-_OF_ROS = frozenset(
-    {"rviz2", "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui", "xacro", "tf2_ros",
-     "rclpy", "rclcpp", "launch", "launch_ros", "ros2launch", "turtlesim", "demo_nodes_cpp", "demo_nodes_py",
-     "rqt_graph", "rqt_gui", "tf2_tools", "rosbag2", "ros2bag", "teleop_twist_keyboard"}
-)  # fmt: skip
 _MAX_YAML = 200_000  # characters
+_HEAD = '<?xml version="1.0" ?>\n<!-- by xacro -->\n'  # of what xacro writes
 _OUTPUTS = ("screen", "log", "both", "own_log", "full")
 _STARTS = re.compile(rf"ros2\s+(run|launch)|rviz2|{PART_UNKNOWN}")
+# Debuggers, terminals and other programs that start the program behind them.
+_PREFIXES = frozenset(
+    {"gdb", "gdbserver", "lldb", "valgrind", "xterm", "gnome-terminal", "konsole", "terminator", "nice", "taskset",
+     "sudo", "time", "strace", "ltrace", "perf", "stdbuf", "chrt", "env", "setsid", "rr", "heaptrack", "python3"}
+)  # fmt: skip
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _NAMESPACE = re.compile(r"|/|/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 
@@ -55,18 +61,57 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
         findings.add_unknown(f"the program of a node is not evaluated: {unknown}".removesuffix(": "), call.at)
         return
     prefix = _frame_prefix(call, context) if executable == STATE_PUBLISHER else ""
-    findings.nodes.append(StartedNode(package, executable, when, findings.locate(call.at), prefix))
+    node = StartedNode(package, executable, when, findings.locate(call.at), prefix)
+    findings.nodes.append(_with_names(node, call, context))
     if when is not False and executable == STATE_PUBLISHER:
         _find_description(findings, call, context)
     elif when is not False and executable == _RVIZ:
         _find_configuration(findings, call, context)
 
 
+def _with_names(node: StartedNode, call: Call, context: Context) -> StartedNode:
+    """Return a node with its namespace and remappings, and whether it is given the robot itself."""
+    words = _words_of(call.kwargs.get("arguments"), context, call.at)
+    own = words[words.index("--ros-args") + 1 :] if "--ros-args" in words else []
+    rules = [word.partition(":=") for before, word in pairwise(own) if before in ("-r", "--remap")]
+    is_given = any("robot_description" in table for table in _tables_in(call.kwargs.get("parameters")))
+    has_description = is_given or (bool(words) and not words[0].startswith("-") and node.executable != _RVIZ)
+    try:
+        namespace: str | None = namespace_below(call.kwargs.get("namespace") or "", context, call.at)
+        given = [tuple(known_text(it, context, call.at) for it in rule) for rule in call.kwargs.get("remappings") or ()]
+    except EvaluationSignal:
+        return replace(node, namespace=None, remaps=None, has_description=has_description)
+    namespace = next((value for name, _, value in rules if name == "__ns"), namespace)
+    remaps = (*context.remaps, *given, *((name, to) for name, _, to in rules))
+    is_known = None not in remaps and PART_UNKNOWN not in words and "ros_arguments" not in call.kwargs
+    known = tuple(rule for rule in remaps if rule is not None)
+    return replace(node, namespace=namespace, remaps=known if is_known else None, has_description=has_description)
+
+
 def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
-    """Add that a command starts nodes, if it does."""
-    words = " ".join(_words_of(call.kwargs["cmd"], context, call.at))
-    if when is not False and _STARTS.search(words):
+    """Add the node that a command starts, if it does."""
+    if when is False:
+        return
+    words = _words_of(call.kwargs["cmd"], context, call.at)
+    if call.kwargs.get("shell"):
+        with suppress(ValueError):
+            words = shlex.split(" ".join(words))
+    node = _node_of_command(words, call)
+    if node is not None:
+        start_node(findings, node, context, when)
+    elif _STARTS.search(" ".join(words)):
         findings.add_unknown("the nodes that a command starts are not evaluated", call.at)
+
+
+def _node_of_command(words: list[str], call: Call) -> Call | None:
+    """Return the Node action that does the same as a command; None for a command that is not known."""
+    is_run = words[:2] == ["ros2", "run"] and len(words) > 3 and not any(it.startswith("-") for it in words[2:4])
+    if not is_run and words[:1] != [_RVIZ]:
+        return None
+    package, program, *arguments = words[2:] if is_run else [_RVIZ, *words]
+    if PART_UNKNOWN in package + program:
+        return None
+    return Call(call.name, [], {"package": package, "executable": program, "arguments": arguments}, call.at)
 
 
 def evaluate_node(call: Call, context: Context) -> None:
@@ -75,31 +120,31 @@ def evaluate_node(call: Call, context: Context) -> None:
     name, namespace = call.kwargs.get("name"), call.kwargs.get("namespace")
     if name is not None and _NAME.fullmatch(text := known_text(name, context, call.at)) is None:
         raise EvaluationFails(f"the name of the node, {text!r}, is not valid: use letters, digits and _", call.at)
-    if namespace is not None or "ros_namespace" in context.arguments:
-        check_namespace(namespace or "", context, call.at)
+    if namespace is not None or NAMESPACE in context.arguments:
+        namespace_below(namespace or "", context, call.at)
     if call.kwargs.get("ros_arguments") is not None:
         raise Undetermined("ros_arguments are not evaluated", call.at)
     package = call.kwargs.get("package")
     if package is not None:
-        text = known_text(package, context, call.at)
-        program = known_text(call.kwargs["executable"], context, call.at)
-        if not context.installation.has_package(text):
-            raise Undetermined(f"whether the package {text!r} is installed is not evaluated", call.at)
-        if context.installation.has_program(text, program) is not True:
-            reason = f"{text!r} has no program {program!r}"
-            if context.installation.has_program(text, program) is None:
-                raise Undetermined(f"whether {reason} is not evaluated".replace(" has no ", " has the "), call.at)
-            raise EvaluationFails(f"the package {reason}", call.at)
+        text, program = (known_text(call.kwargs[it], context, call.at) for it in ("package", "executable"))
+        check_program(text, program, context, call.at)
 
 
 def evaluate_process(call: Call, context: Context) -> None:
     """Evaluate what launch does with the arguments of a process besides their texts. Raises EvaluationSignal."""
     if "cmd" in call.kwargs and not items_in(call.kwargs["cmd"]):
         raise EvaluationFails("cmd is empty", call.at)
+    if "cmd" in call.kwargs:
+        words = _words_of(call.kwargs["cmd"], context, call.at)
+        node = _node_of_command(words, call)
+        if node is not None:
+            check_program(node.kwargs["package"], node.kwargs["executable"], context, call.at)
     try:
-        shlex.split(known_text(call.kwargs.get("prefix") or "", context, call.at))
+        prefix = shlex.split(known_text(call.kwargs.get("prefix") or "", context, call.at))
     except ValueError:
         raise EvaluationFails("the quotes in a prefix are not closed", call.at) from None
+    if prefix and posixpath.basename(prefix[0]) not in _PREFIXES:
+        raise Undetermined(f"whether the prefix {prefix[0][:40]!r} starts the program is not evaluated", call.at)
     output = call.kwargs.get("output", "log")
     if not isinstance(output, dict) and (text := known_text(output, context, call.at)) not in _OUTPUTS:
         raise EvaluationFails(f"output={text!r} is not one of {', '.join(_OUTPUTS)}", call.at)
@@ -107,11 +152,14 @@ def evaluate_process(call: Call, context: Context) -> None:
         raise EvaluationFails("output has the keys stdout, stderr and both only", call.at)
 
 
-def check_namespace(value: Value, context: Context, at: Position) -> None:
-    """Raise Undetermined for a namespace that may not be valid, or stands below one that the file itself sets."""
-    text = known_text(value, context, at)
-    if _NAMESPACE.fullmatch(text) is None or isinstance(context.arguments.get("ros_namespace"), str):
-        raise Undetermined(f"whether the namespace {text!r} is valid is not evaluated", at)
+def namespace_below(value: Value, context: Context, at: Position) -> str:
+    """Return a namespace below the one that the launch file has set. Raises EvaluationSignal."""
+    text, above = known_text(value, context, at), context.arguments.get(NAMESPACE, "")
+    if re.search(r"[^\w/~{}]|[^\x00-\x7f]", text):
+        raise EvaluationFails(f"the namespace {text[:40]!r} is not valid: use letters, digits, _ and /", at)
+    if _NAMESPACE.fullmatch(text) is None or not isinstance(above, str):
+        raise Undetermined(f"whether the namespace {text[:40]!r} is valid is not evaluated", at)
+    return text if text.startswith("/") else "/".join(filter(None, (above.removesuffix("/"), text)))
 
 
 def _frame_prefix(call: Call, context: Context) -> str | None:
@@ -157,7 +205,7 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
         findings.refer("urdf", Unknown("robot_description is a list", call.at), call)
         return
     match found := _text_if_known(value, context, call.at):
-        case Contents(path=path, by=by) if by != "xacro" and path.endswith(".xacro"):
+        case Contents(path=path, by=by) if by != "xacro" and path.endswith(".xacro") and _may_be_xacro(path, context):
             name = path.rpartition("/")[2]
             message = f"{name} is read without xacro; if it uses xacro, write Command(['xacro ', ...])"
             findings.references.append(NamedFile("urdf", path, findings.locate(call.at), message, sure=False, by=by))
@@ -166,9 +214,17 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
             findings.refer("urdf", Unknown(reason, call.at), call, value)
         case str():
             message = "robot_description is given the path of the URDF, not its contents: read the file first"
+            if re.fullmatch(r"\w+", found):
+                message = f"robot_description is given the text {found[:40]!r}: write the variable without quotes"
             findings.refer("urdf", None, call, value, wrong=message)
         case _:
             findings.refer("urdf", found, call, value)
+
+
+def _may_be_xacro(path: str, context: Context) -> bool:
+    """Return whether a file may use xacro: it has a tag or an expression of it, or is not known."""
+    text = context.text_of(path)
+    return text is None or "xacro:" in text or "$" in text
 
 
 def _find_configuration(findings: Findings, call: Call, context: Context) -> None:
@@ -198,12 +254,16 @@ def _find_configuration(findings: Findings, call: Call, context: Context) -> Non
 
 
 def _display_config(words: list[str]) -> str | None:
+    """Return what follows -d; of several, the last counts, as for Qt's parser."""
+    found: str | None = None
     for index, word in enumerate(words):
         if word in ("-d", "--display-config"):
-            return "".join(words[index + 1 : index + 2])
-        if word.startswith(("-d", "--display-config")):
-            return word.removeprefix("-d") if word[2:3].isspace() else PART_UNKNOWN
-    return None
+            found = "".join(words[index + 1 : index + 2])
+        elif word.startswith("--display-config="):
+            found = word.removeprefix("--display-config=")
+        elif word.startswith("-d"):
+            found = word.removeprefix("-d") if word[2:3].isspace() else PART_UNKNOWN
+    return found
 
 
 def _text_if_known(value: Value, context: Context, at: Position) -> Resolved:
@@ -315,12 +375,23 @@ def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> A
             raise Undetermined(f"the parameter {name!r} is too long to be read as YAML", at)
         return yaml_value(text) if text else text
     except ValueError:
-        if isinstance(found, Contents) and found.by == "xacro":
+        if isinstance(found, Contents) and found.by == "xacro" and not _is_never_yaml(text):
             raise Undetermined(
                 f"whether the output of xacro is YAML, as which {name!r} is read, is not evaluated", at
             ) from None
         hint = "write ParameterValue(..., value_type=str)"
         raise EvaluationFails(f"the parameter {name!r} is read as YAML, which fails: {hint}", at) from None
+
+
+def _is_never_yaml(text: str) -> bool:
+    """Return whether a URDF is no YAML after xacro either, which keeps comments, texts and values."""
+    if "xacro:" in text or "${" in text or "$(" in text:
+        return False
+    try:
+        yaml_value(_HEAD + re.sub(r"[ \t]+", " ", text))
+    except ValueError:
+        return True
+    return False
 
 
 def _is_uniform(values: list[Any]) -> bool:
@@ -336,7 +407,7 @@ def _tables_in(parameters: Value) -> Iterator[dict[Any, Value]]:
 
 def is_of_ros(package: str) -> bool:
     """Return whether a package is on every machine that runs ROS 2 in a lab."""
-    return package in _OF_ROS or package in _started_by()
+    return is_part_of_ros(package) or package in _started_by()
 
 
 def start_known_file(findings: Findings, path: str, call: Call, context: Context) -> bool:
@@ -346,7 +417,11 @@ def start_known_file(findings: Findings, path: str, call: Call, context: Context
     nodes = _started_by().get(package, {}).get(file) if prefix.startswith((PREFIX, ROS)) else None
     if nodes is None:
         return False
-    findings.nodes += [StartedNode(node, node, context.when, findings.locate(call.at)) for node in nodes]
+    above = context.arguments.get(NAMESPACE, "")
+    namespace = above if isinstance(above, str) else None
+    findings.nodes += [
+        StartedNode(node, node, context.when, findings.locate(call.at), namespace=namespace) for node in nodes
+    ]
     for node in nodes:
         if node in _GIVEN and package != "urdf_launch":
             findings.refer(_GIVEN[node], Unknown(f"{name} decides which file {node} gets", call.at), call)

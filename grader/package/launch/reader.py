@@ -352,6 +352,8 @@ class _PythonLaunchFile:
         is_utf8 = encoding is None or str(encoding).lower().replace("_", "-") in ("utf-8", "utf8")
         if mode not in (None, "r", "rt") or not is_utf8 or others or len(call.args) > 2:
             raise Undetermined("this use of open is not evaluated", call.at, is_final=True)
+        if evaluation.attempts and self.context.text_of(path) is None:
+            raise Undetermined("whether the file of this try is there is not evaluated", call.at, is_final=True)
         self.reads.append((Contents(path, "open"), call.at))
         call.name, call.args, call.kwargs = "builtins.open", [path], {}
         return record(evaluation, call)

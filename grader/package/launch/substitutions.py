@@ -5,16 +5,22 @@ import posixpath
 import re
 import shlex
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from math import isclose
 
 from grader.package.launch.model import ANY, Contents, Context, FileText, Resolved
-from grader.package.launch.places import HOME, SHARE
+from grader.package.launch.places import HOME, PREFIX, SHARE
+from grader.package.launch.programs import is_part_of_ros, programs_of
+from grader.package.yaml_nodes import yaml_value
 from grader.python.budget import Budget, OutOfBudget
 from grader.python.builtins import BUILTINS, MATH
 from grader.python.expressions import evaluate
 from grader.python.parse import Position
 from grader.python.values import MAX_TEXT, Call, EvaluationFails, Namespace, Undetermined, Unknown, Value, str_of
+from grader.text import enumerated
 
+_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
 PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
 _PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", "env", "rviz2"})
@@ -59,6 +65,34 @@ def known_text(value: Value, context: Context, at: Position) -> str:
     if isinstance(found, str):
         return found
     raise Undetermined(found.reason if isinstance(found, Unknown) else "the content of a file is used as a text", at)
+
+
+def boolean(text: str, at: Position) -> bool:
+    """Return the value of a text as launch reads it where it wants a boolean, by the rules of YAML."""
+    found: object = _BOOLEANS[text] if text in ("0", "1") else None
+    if found is None and len(text) < 20:
+        with suppress(ValueError):
+            found = yaml_value(text)
+    if not isinstance(found, bool):
+        raise EvaluationFails(f"{text[:40]!r} is neither true nor false", at)
+    return found
+
+
+def condition_holds(given: Call, context: Context) -> bool:
+    """Return whether a condition of `CONDITIONS` holds. Raises EvaluationSignal."""
+    kind = given.name.rpartition(".")[2]
+    if kind in ("IfCondition", "UnlessCondition"):
+        text = known_text(given.kwargs["predicate_expression"], context, given.at)
+        holds = _BOOLEANS.get(text.strip().lower())
+        if holds is None:
+            raise EvaluationFails(f"a condition is {text[:40]!r}, expected true or false", given.at)
+        return holds == (kind == "IfCondition")
+    name, wanted = given.kwargs["launch_configuration_name"], given.kwargs["expected_value"]
+    expected = known_text(wanted, context, given.at) if wanted is not None else None
+    found = context.arguments.get(name) if isinstance(name, str) else None  # no other object is the key of one
+    if isinstance(name, Unknown) or (found is None and ANY in context.arguments) or not isinstance(found, str | None):
+        raise Undetermined("the launch configuration of this condition is not evaluated", given.at)
+    return (found == expected) == (kind == "LaunchConfigurationEquals")
 
 
 @dataclass(slots=True)
@@ -142,7 +176,7 @@ class _Substitution:
             raise EvaluationFails("on_stderr is one of fail, ignore, warn, capture", self.call.at)
         parts = self.call.kwargs["command"]
         texts = [self.resolve(piece) for piece in (parts if isinstance(parts, list | tuple) else [parts])]
-        contents = _command_output(texts, self.call.at)
+        contents = _command_output(texts, self.call.at, stops_at_stderr=mode == "fail")
         self.context.reads.append((contents, self.call.at))
         return contents
 
@@ -154,14 +188,84 @@ class _Substitution:
             raise Undetermined("the modules of this expression are not evaluated", self.call.at)
         return _expression_text(texts[0], self.call.at, self.context)
 
+    def is_true(self, name: str) -> bool:
+        """Return an argument that is read as a boolean."""
+        return boolean(known_text(self.call.kwargs[name], self.context, self.call.at), self.call.at)
 
+    def both(self) -> str:
+        left, right = self.is_true("left"), self.is_true("right")
+        return str(left and right).lower()
+
+    def either(self) -> str:
+        left, right = self.is_true("left"), self.is_true("right")
+        return str(left or right).lower()
+
+    def choice(self) -> Resolved:
+        return self.argument("if_value" if self.is_true("condition") else "else_value")
+
+    def equals(self) -> str:
+        """Return whether two texts are equal: as booleans, as numbers, or as they are."""
+        left, right = (self.compared(name) for name in ("left", "right"))
+        if left.lower() in _BOOLEANS and right.lower() in _BOOLEANS:
+            return str(_BOOLEANS[left.lower()] == _BOOLEANS[right.lower()]).lower()
+        with suppress(ValueError):
+            return str(isclose(float(left), float(right))).lower()
+        return str(left == right).lower()
+
+    def compared(self, name: str) -> str:
+        value = self.call.kwargs[name]
+        if value is None:
+            value = ""
+        elif isinstance(value, bool):
+            value = str(value).lower()
+        elif isinstance(value, int | float):
+            value = str(value)
+        elif not all(isinstance(it, str | Call | Unknown) for it in (value if isinstance(value, list) else [value])):
+            raise Undetermined("the text of a list in this substitution is not evaluated", self.call.at)
+        return known_text(value, self.context, self.call.at)
+
+    def file_content(self) -> Contents:
+        contents = Contents(known_text(self.call.kwargs["path"], self.context, self.call.at), "open")
+        self.context.reads.append((contents, self.call.at))
+        return contents
+
+    def executable(self) -> Resolved:
+        """Return the path of a program of a package. Raises EvaluationSignal."""
+        package, name = (
+            known_text(self.call.kwargs[it], self.context, self.call.at) for it in ("package", "executable")
+        )
+        check_program(package, name, self.context, self.call.at)
+        return f"{PREFIX}/lib/{package}/{name}"
+
+
+def check_program(package: str, name: str, context: Context, at: Position) -> None:
+    """Raise EvaluationFails if a package certainly has no such program, Undetermined if this is not known."""
+    if not context.installation.has_package(package):
+        raise Undetermined(f"whether the package {package!r} is installed is not evaluated", at)
+    is_there = context.installation.has_program(package, name)
+    if is_there is None:
+        raise Undetermined(f"whether {package!r} has the program {name!r} is not evaluated", at)
+    if not is_there:
+        others = enumerated(programs_of(package)) or "none"
+        where = f" in lib/{package}: see console_scripts of setup.py, and install_scripts of setup.cfg"
+        known = f"; it has {others}" if is_part_of_ros(package) else where
+        raise EvaluationFails(f"the package {package!r} has no program {name!r}{known}", at)
+
+
+# The conditions that are evaluated.
+CONDITIONS = ("IfCondition", "UnlessCondition", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals")
 # The substitutions that are evaluated.
 PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
     "TextSubstitution": lambda it: it.argument("text"), "LaunchConfiguration": _Substitution.configuration,
     "PathJoinSubstitution": _Substitution.path, "Command": _Substitution.command,
     "PythonExpression": _Substitution.expression, "FindPackageShare": _Substitution.package_folder,
     "FindExecutable": _Substitution.program, "EnvironmentVariable": _Substitution.variable,
-    "ThisLaunchFileDir": lambda it: posixpath.dirname(it.context.path),
+    "ThisLaunchFileDir": lambda it: posixpath.dirname(it.context.path), "ThisLaunchFile": lambda it: it.context.path,
+    "AndSubstitution": _Substitution.both, "OrSubstitution": _Substitution.either,
+    "NotSubstitution": lambda it: str(not it.is_true("value")).lower(), "IfElseSubstitution": _Substitution.choice,
+    "EqualsSubstitution": _Substitution.equals, "FileContent": _Substitution.file_content,
+    "NotEqualsSubstitution": lambda it: "false" if it.equals() == "true" else "true",
+    "ExecutableInPackage": _Substitution.executable,
 }  # fmt: skip
 
 
@@ -188,7 +292,7 @@ def _find_name(name: str) -> Value:
     raise EvaluationFails(f"the name {name!r} is not defined")
 
 
-def _command_output(texts: Sequence[Resolved], at: Position) -> Contents:
+def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr: bool) -> Contents:
     """Return the contents of the file that a command prints, whose parts have these texts. Raises EvaluationSignal."""
     command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()[:MAX_TEXT]
     if glued := re.match(r"(xacro|cat)(?=/)", command):
@@ -203,7 +307,9 @@ def _command_output(texts: Sequence[Resolved], at: Position) -> Contents:
     if found is None:
         unknown = next((text.reason for text in texts if isinstance(text, Unknown)), "")
         raise Undetermined(f"the output of this command is not evaluated{unknown and ': ' + unknown}", at)
-    return found
+    if found.by != "xacro" or not stops_at_stderr:
+        return found
+    return replace(found, stops_at_stderr=True, is_deprecated=not {"-i", "--inorder"}.isdisjoint(words))
 
 
 def _printed_file(words: list[str]) -> Contents | None:
