@@ -28,7 +28,6 @@ from grader.python.parse import START, Code, Position, SyntaxFault, parse, posit
 from grader.python.values import (
     PLAIN,
     Call,
-    EvaluationFails,
     Function,
     Items,
     QualifiedName,
@@ -260,7 +259,7 @@ def _evaluate_setup(code: Code, listing: PackageListing, written: dict[str, Posi
 def _read_call(data_files: "_DataFiles", call: Call) -> None:
     """Read a call of setup(): the files that it installs, and whether a build succeeds with it."""
     if call.args:
-        raise EvaluationFails("setup() takes arguments by name only: write name=...")
+        data_files.stop("setup() takes arguments by name only: write name=...", call.at)
     for ignored in _ignored_arguments(call.kwargs):
         data_files.ignored.append(ignored)
         value = call.kwargs.pop(ignored.name)
@@ -340,6 +339,8 @@ class _DataFiles:
                 self._folder(folder, files, at)
             case list() | dict() | set():
                 self.stop("an entry of data_files is not a tuple: write (folder, [files])", at)
+                for folder, files in entry.items() if isinstance(entry, dict) else ():
+                    self._folder(folder, files, at)
             case (*folders, list() as files) if all(isinstance(it, str) for it in folders):
                 self.stop("an entry of data_files is not a tuple of a folder and a list of files", at)
                 self._folder(posixpath.join("", *folders), files, at)
@@ -375,6 +376,8 @@ class _DataFiles:
             return
         for file in files:
             self._file(file, folder, at)
+            for inner in file if isinstance(file, list) else ():  # a list in the list, which stops the build
+                self._file(inner, folder, at)
 
     def _not_list(self, files: Value, at: Position) -> None:
         if isinstance(files, Items):

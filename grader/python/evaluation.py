@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import PurePosixPath
 from typing import ClassVar, NamedTuple
 
+from grader.names import closest
 from grader.python import values as py
 from grader.python.budget import Budget
 from grader.python.builtins import BUILTINS, call, truth
@@ -81,10 +82,12 @@ class Evaluation(Expressions):
             return self.value(node, scope)
         except py.Undetermined as error:
             unknown = py.Unknown(str(error), error.at or position_of(node))
+            if unknown.reason == FAILED and not error.is_final:
+                return unknown
             may_change = not isinstance(node, _WHOLE) and any(isinstance(part, _CHANGING) for part in ast.walk(node))
             if error.is_final or may_change:
                 raise py.Undetermined(unknown.reason, unknown.at, is_final=True) from None
-            return unknown if unknown.reason == FAILED else self.doubted(unknown)
+            return self.doubted(unknown)
         except py.EvaluationFails as error:
             self.error(str(error), error.at or position_of(node))
             return py.Unknown(FAILED, position_of(node))
@@ -100,6 +103,10 @@ class Evaluation(Expressions):
         if node.id.startswith("__"):
             raise py.Undetermined(f"the name {node.id!r} {NOT_EVALUATED}")
         self.error(f"the name {node.id!r} is not defined or imported", position_of(node))
+        texts = (name for name, value in self.module.names.items() if isinstance(value, str))
+        meant = closest(node.id, texts) if node.id not in USUAL_NAMES else None
+        if meant is not None:
+            return self.module.names[meant]
         return py.QualifiedName(USUAL_NAMES.get(node.id, f"?.{node.id}"))
 
     def _builtin(self, name: str) -> py.Value:

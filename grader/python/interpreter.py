@@ -14,6 +14,7 @@ from operator import setitem
 from pathlib import PurePosixPath
 from typing import Any, ClassVar
 
+from grader.names import closest
 from grader.python import values as py
 from grader.python.budget import Budget
 from grader.python.builtins import truth
@@ -150,7 +151,13 @@ class Interpreter(Evaluation):
         self._block(node.body if truth(self.evaluate(node.test, scope)) else node.orelse, scope)
 
     def _for(self, node: ast.For, scope: py.Scope) -> None:
-        for item in iterate(self.evaluate(node.iter, scope)):
+        items = self.evaluate(node.iter, scope)
+        if (
+            isinstance(items, py.Unknown) and items.reason == FAILED
+        ):  # how often it runs once that is fixed is not known
+            self.doubted(items)
+            items = []
+        for item in iterate(items):
             self.bind(node.target, item, scope)
             self._block(node.body, scope)
         self._block(node.orelse, scope)
@@ -259,7 +266,11 @@ class Interpreter(Evaluation):
                 full = f"{module}.{name}"
                 error = attribute_error(module, name) if full not in self.functions else None
                 if error is not None:
-                    raise py.EvaluationFails(error)
+                    meant = closest(full, (it for it in self.functions if it.rpartition(".")[0] == module))
+                    if meant is None:
+                        raise py.EvaluationFails(error)
+                    self.error(error, position_of(node))
+                    full = meant
                 return CONSTANTS.get(full, py.QualifiedName(full))
             case PurePosixPath() if name in _PARTS:
                 value = getattr(owner, name)
@@ -274,6 +285,9 @@ class Interpreter(Evaluation):
             return super().item(owner, key, node)
         made = py.Call(f"{owner.name}.__getitem__", [key], {}, position_of(node))
         function = self.functions.get(made.name)
+        if function is None and isinstance(owner, py.QualifiedName) and owner.name in self.functions:
+            self.error(f"{owner.name} is a function: write ( ) around its arguments, not [ ]", position_of(node))
+            return self.call_value(owner, py.Call("", [key], {}, position_of(node)))
         if function is None or isinstance(function, py.PlainFunction):
             raise py.Undetermined(f"{owner.name}[...] {NOT_EVALUATED}")
         return function(self, made)
