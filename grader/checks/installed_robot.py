@@ -16,6 +16,7 @@ from grader.problems import Problem
 from grader.robot.model import Mesh, Robot
 from grader.robot.reader import read_robot, read_urdf
 from grader.xacro.expansion import expand
+from grader.xacro.xacro_problems import WRITTEN_TO_STDERR
 
 
 class InstalledRobot(NamedTuple):
@@ -95,7 +96,8 @@ def read_installed(package: Package, path: str, arguments: dict[str, str | None]
         return InstalledRobot(tuple(files.missing))
     expansion = expand(data, path, files, arguments)
     _note_meshes(read_robot(expansion.document).robot, files, is_expanded=True)
-    return InstalledRobot(tuple(files.missing))
+    warnings = (problem for problem in expansion.warnings if problem.kind in WRITTEN_TO_STDERR)
+    return InstalledRobot(tuple(files.missing), next(warnings, None))
 
 
 def _note_meshes(robot: Robot | None, files: _InstalledFiles, *, is_expanded: bool) -> None:
