@@ -89,7 +89,11 @@ class Draft:
         joint = self._parents.get(link)
         if joint is not None and joint.location is not None:
             return self._elements[joint.location.tag]
-        return next((joint for joint in self.joints() if end_of(joint, "child") == link), None)
+        return self._joints.get(link)
+
+    @cached_property
+    def _joints(self) -> dict[str, Element]:
+        return {end_of(joint, "child"): joint for joint in reversed(list(self.joints()))}
 
     def material(self, name: str) -> Element | None:
         """Return the first definition of a material that counts: under the robot, else in a visual."""

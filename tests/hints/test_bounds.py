@@ -6,11 +6,12 @@ from itertools import count
 import pytest
 
 from grader.grading.grade import grade
+from grader.hints.generators import Situation
 from grader.hints.hinting import hinted
 from grader.hints.search import _MAX_GRADINGS
 from grader.submission.opening import read_submission
 from tests.examples import spread
-from tests.hints.trials import BASES, graded, search_for
+from tests.hints.trials import BASES, graded, reference_draft, search_for
 from tests.samples import LAB6, ROOT, RUBRICS
 from tests.work import limited_work
 
@@ -95,3 +96,14 @@ def test_a_costly_submission_is_not_searched() -> None:
     assert submission.is_costly
     with limited_work(100):
         assert hinted(report, submission, "edit").report == report
+
+
+def test_the_joint_of_each_link_is_found_at_once() -> None:
+    """Joints of links with names of one side are compared with those of the other side in linear work."""
+    text = _with(_chain("base_link", 4 * MANY).replace('"c', '"l'))
+    submission = read_submission(text.encode(), identity="student", path="my_robot.urdf")
+    draft = reference_draft("lab6")
+    assert draft is not None
+    with limited_work(150_000):
+        found = Situation(submission, LAB6.links, draft, lambda: None).exchanges
+    assert {piece.link for piece in found} == {"left_wheel", "right_wheel"}
