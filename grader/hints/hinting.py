@@ -65,10 +65,10 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
         with trials.isolated():
             entry = entries.get(one.edits, name)
             before = search.found[: search.found.index(one)] if one.is_late else []
-            hidden = [it for it in before if results[entries[it.edits]].outcome.status != "failed"]
-            found = _first_at(_with_edits_of(hidden, one), results[entry].outcome.location)
-            earlier = tuple(dict.fromkeys(entries[it.edits] for it in before if it not in hidden))
-            text = message(found, level, submission, earlier)
+            found = _first_at(one, results[entry].outcome.location)
+            earlier = tuple(dict.fromkeys(entries[it.edits] for it in before))
+            shown_before = tuple(it for it in earlier if results[it].outcome.status == "failed")
+            text = message(found, level, submission, shown_before)
             in_words = level == "edit" and any(map(_loses_expression, found.edits))
             told = found._replace(gains={}) if in_words else found
             hint = _hint(told, text, entry, results[name], keeps_edits=level == "edit" and not in_words)
@@ -127,12 +127,6 @@ def _entry(
         return name not in costs, not is_there, results[name].criterion.check.subject != "urdf", -cost
 
     return min([name for name in found.gains if shown.get(name) is found] or found.gains, key=rank)
-
-
-def _with_edits_of(hidden: Sequence[FoundHint], found: FoundHint) -> FoundHint:
-    """Return a hint with the edits that it needs and that no report shows, because only skipped criteria gain."""
-    needed = tuple(edit for one in hidden for edit in one.edits)
-    return found._replace(proposal=found.proposal._replace(edits=(*needed, *found.proposal.edits)))
 
 
 def _first_at(found: FoundHint, where: Location | None) -> FoundHint:

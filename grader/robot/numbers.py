@@ -72,7 +72,8 @@ def readable_numbers(text: str, count: int) -> list[str] | None:
     if "$" in text or len(text) > _MAX_CACHED_LENGTH:
         return None
     pieces = text.replace("\N{MINUS SIGN}", "-").split()
-    ways = [pieces, [piece.replace(",", ".") for piece in pieces], " ".join(pieces).replace(",", " ").split()]
+    decimal = [piece.strip(",").replace(",", ".") for piece in pieces]
+    ways = [pieces, decimal, " ".join(pieces).replace(",", " ").split()]
     found = []
     for way in ways:
         values = [_computed(piece) for piece in way]

@@ -117,9 +117,29 @@ class Corrections:
         if edits:
             problem = f"there is no property {unknown.name}; a text needs quotes: '{unknown.name}'"
             return _correction(edits, location)._replace(problem=problem)
-        edits = _rename(place, attribute, unknown.name, unknown.meant) if unknown.meant else ()
-        sentence = f"the {unknown.kind} {quoted(unknown.name)} is read as {quoted(unknown.meant or '')}"
-        return Correction(edits, sentence, location, of_element) if edits else None
+        return self._respelt(place, attribute, unknown, is_of_element=of_element) if unknown.meant else None
+
+    def _respelt(
+        self, place: ScopePlace, attribute: str | None, unknown: UnknownName, *, is_of_element: bool
+    ) -> Correction | None:
+        """Return the correction of a name where it is used, or where it is defined if nothing uses it as defined."""
+        meant = unknown.meant or ""
+        definition = unknown.known.get(meant)
+        if definition is not None and definition[1] is not None and self._uses(unknown.name) > 1:
+            edits = _rename(*definition, meant, unknown.name) if not self._uses(meant) else ()
+            if edits:
+                sentence = f"the {unknown.kind} {quoted(meant)} is read as {quoted(unknown.name)}"
+                return Correction(edits, sentence, definition[0].at(definition[1]), is_of_element=True)
+        edits = _rename(place, attribute, unknown.name, meant)
+        sentence = f"the {unknown.kind} {quoted(unknown.name)} is read as {quoted(meant)}"
+        return Correction(edits, sentence, place.at(attribute), is_of_element) if edits else None
+
+    def _uses(self, name: str) -> int:
+        """Return how many attributes use a name in an expression, or give an argument of this name."""
+        used = re.compile(rf"(?<![\w.]){re.escape(name)}(?!\w)")
+        texts = (text for node in self.nodes() for text in node.attributes.values() if "${" in text)
+        given = sum(name in node.attributes for node in self.nodes() if node.tag.startswith("xacro:"))
+        return given + sum(any(map(used.search, _EXPRESSION.findall(text))) for text in texts)
 
     def nodes(self) -> Iterator[XacroNode]:
         """Yield the elements of all files, as they are written."""

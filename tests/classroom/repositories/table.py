@@ -63,7 +63,7 @@ ROWS = (
     Row("banyan", "xacro in a .urdf that the launch file expands", one(INSIDE, f"{SRC}/{URDF}", "inertial", SRC, "my_robot.urdf"), (("docx", ""),)),
     Row("baobab", "a macro for the wheels", one("reference", f"{SRC}/urdf/{MACRO_FILE}", "wheel", SRC, MACRO_FILE), (("pictures", "Task 1"),)),
     Row("beech", "macros in a file beside it", one(VISUAL, f"{SRC}/urdf/{MACRO_FILE}", "including", SRC, MACRO_FILE), (("box", f"{SRC}/urdf"),)),
-    Row("birch", "macros from $(find my_robot)", one(GREEN, f"{SRC}/urdf/{MACRO_FILE}", "finding", SRC, MACRO_FILE)),
+    Row("birch", "macros from $(find my_robot)", one(GREEN, f"{SRC}/urdf/{MACRO_FILE}", "finding", SRC, MACRO_FILE, lost=("launch-finds-files",))),
     Row("bonsai", "a main file that only includes others", one(BACK, f"{SRC}/urdf/{MACRO_FILE}", "parts", SRC, MACRO_FILE)),
     Row("boxwood", "a plain URDF generated from the xacro beside it", one(AXIS, f"{SRC}/{URDF}", "generated", SRC), (("webots", "webots_ws/src/my_world"),)),
     # A folder of the lab.
@@ -99,7 +99,7 @@ ROWS = (
     Row("mahogany", "Webots and the box of the prelab beside the lab", one("reference", f"Lab6/my_robot/{URDF}", package="Lab6/my_robot"), (("webots", "webots_ws/src/my_world"), ("box", "Prelab6"), ("box", "Lab6"))),
     Row("mango", "the robot is called otherwise, in a package that is not", one(BURIED, f"{SRC}/urdf/wheeled_base.urdf", package=SRC, lost=("launch-nodes", "launch-finds-files"))),
     Row("maple", "a plain URDF in a xacro file, and an old one at the path of the handout", one(MIRRORED, "Lab6/my_robot.urdf.xacro"), (("another version", "Lab6/old/urdf"),)),
-    Row("mimosa", "xacro that the launch file expands, from $(find my_robot)", one(LOW, f"{SRC}/urdf/{MACRO_FILE}", "finding", SRC, MACRO_FILE), (("stale build", "roscourse_sim_ws"),)),
+    Row("mimosa", "xacro that the launch file expands, from $(find my_robot)", one(LOW, f"{SRC}/urdf/{MACRO_FILE}", "finding", SRC, MACRO_FILE, lost=("launch-finds-files",)), (("stale build", "roscourse_sim_ws"),)),
     Row("mulberry", "the lab's folder has the login in its name", one(INSIDE, f"lab6-mulberry/{URDF}", package="lab6-mulberry"), (("another version", "lab5-mulberry"),)),
     # No robot.
     Row("myrtle", "pictures only", extras=(("pictures", "Lab6"),)),
