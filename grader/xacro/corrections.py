@@ -20,14 +20,15 @@ from grader.xacro.xacro_nodes import XacroNode, walk
 _MAX_NODES = 2000
 _OF_WALK = 500  # what looking at all elements of a file is charged
 _MAX_SHOWN = 60  # characters of an edit in a sentence
-_EXPRESSION = re.compile(r"\$\{([^}]*)\}")
+_MAX_VALUE = 10_000  # characters of an attribute that is corrected
+_EXPRESSION = re.compile(r"\$\{([^{}]*)\}")  # no brace inside: else many that open take quadratic time
 _NAME = re.compile(r"[^\W\d]\w*")
 _DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+\s*")
 # A separator between parameters, which xacro takes for a part of the name or of the default before it.
-_SEPARATOR = re.compile(r"\$\{[^}]*\}|'[^']*'|(?P<separator>\s*[,;](?=\s|\Z|[*^\W\d]))")
+_SEPARATOR = re.compile(r"\$\{[^{}]*\}|'[^']*'|(?P<separator>\s*[,;](?=\s|\Z|[*^\W\d]))")
 # What is written for ${side}: {side}, $ {side}, $(side), $side.
 _UNMARKED = re.compile(
-    r"\$\{[^}]*\}|\$?\s*\{\s*(?P<brace>[^\W\d]\w*)\s*\}|\$\(\s*(?P<paren>[^\W\d]\w*)\s*\)|\$(?P<bare>[^\W\d]\w*)"
+    r"\$\{[^{}]*\}|\$?\s*\{\s*(?P<brace>[^\W\d]\w*)\s*\}|\$\(\s*(?P<paren>[^\W\d]\w*)\s*\)|\$(?P<bare>[^\W\d]\w*)"
 )
 
 
@@ -243,7 +244,7 @@ def _values(place: ScopePlace, attribute: str | None) -> Iterator[tuple[str, str
     """Yield the name, the text and the quote of an attribute; without a name, those of all attributes of the tag."""
     source, start = place.source.element(place.tag)
     for found in markup.attributes(source.text, start):
-        if attribute in (None, found.name):
+        if attribute in (None, found.name) and found.value_end - found.value_start <= _MAX_VALUE:
             yield found.name, source.text[found.value_start : found.value_end], source.text[found.value_end]
 
 
