@@ -225,6 +225,9 @@ class Interpreter(Evaluation):
                     self.errors, after = errors, []
                     self._handle(statement, node.handlers, scope)
                     break
+        except py.Undetermined:
+            self.errors = errors  # a handler may have caught what was raised before
+            raise
         finally:
             self.attempts -= 1
         if self.doubt is not None:
