@@ -69,7 +69,7 @@ ROOTS = (
 
 @st.composite
 def manifests(draw: st.DrawFn) -> str:
-    """Return a package.xml as ros2 pkg create writes it, with some lines left out, added or repeated."""
+    """Return a package.xml as ros2 pkg create writes it, without some lines, or with lines added or repeated."""
     lines = [line for line in LINES if draw(st.integers(0, 11)) > 0]
     for other in draw(st.lists(st.sampled_from((*OTHERS, *LINES)), max_size=3)):
         lines.insert(draw(st.integers(0, len(lines))), other)
