@@ -76,8 +76,8 @@ class MissingElement(LookupError):
     `kind` and `name` are equal for checks that fail for the same reason; the kinds `URDF` and `package` are those of
     work that a submission lacks, where evidence may take its place. `known` lists the names that exist; `location`
     is a Location or LazyLocation in the file, or None. The text is the message and the detail, which is what differs
-    between students who made the same mistake; `mistake` is the message alone. `problem` is that of an Outcome.
-    What fails for the same reason later is skipped, or with `costs_once` not deducted.
+    between students who made the same mistake; `mistake` is the message alone. `problem` and `absent` are those of an
+    Outcome. What fails for the same reason later is skipped, or with `costs_once` not deducted.
     """
 
     def __init__(
@@ -91,6 +91,7 @@ class MissingElement(LookupError):
         location: object = None,
         problem: str = "",
         costs_once: bool = False,
+        absent: str = "",
     ) -> None:
         self.kind = kind
         self.name = name
@@ -98,6 +99,7 @@ class MissingElement(LookupError):
         self.location = location
         self.problem = problem
         self.costs_once = costs_once
+        self.absent = absent
         self.mistake = message or f"there is no {kind} {name!r}"
         if not message:
             detail = f"; the file has: {', '.join(map(repr, known[:20])) or 'none'}"

@@ -1,10 +1,12 @@
 """Checks that need manual grading: the grader finds answers and pictures, and a person marks them."""
 
+import re
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Outcome, pending
 from grader.submission.submission import Submission
-from grader.text import enumerated
+from grader.text import capitalised, enumerated
 
 if TYPE_CHECKING:
     from grader.documents.evidence import EvidenceFile
@@ -44,7 +46,8 @@ def answered(
         searched = f" in {enumerated(found.read, _MAX_LISTED)}" if found.read else ""
         labels = enumerated([repr(label) for label in places[:3]], word="or")
         message = f"{question} No answer was found under {labels}{searched}; needs manual grading{unread}"
-        return pending(message, problem=", but ".join([_NOT_FOUND, *doubts]))
+        outcome = pending(message, problem=", but ".join([_NOT_FOUND, *doubts]))
+        return outcome._replace(expected=f"a heading `{_as_title(places[0])}` in {enumerated(files[:3], word='or')}")
     how = f" ({passage.how})" if passage.how else ""
     problem = ""
     if passage.is_empty:
@@ -85,7 +88,23 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
     others = enumerated(paths, _MAX_LISTED) or "no pictures"
     message = f"no picture or PDF is named {labels}; the submission has {others}; needs manual grading"
     has_documents = any(file.suffix in _MAY_HOLD_PICTURES for file in submission.tree.files.values())
-    return pending(message, problem=f"{_NOT_FOUND}, but there are documents" if has_documents else _NOT_FOUND)
+    outcome = pending(message, problem=f"{_NOT_FOUND}, but there are documents" if has_documents else _NOT_FOUND)
+    return outcome._replace(expected=picture_named(names))
+
+
+def picture_named(names: Sequence[str]) -> str:
+    """Return words for the picture that the first of these labels names: a picture named `Task3_Step3.png`."""
+    return f"a picture named `{picture_name(names)}`"
+
+
+def picture_name(names: Sequence[str]) -> str:
+    """Return a name for a picture that the first of these labels finds: Task3_Step3.png."""
+    return re.sub(r" (?=\d)", "", _as_title(names[0])).replace(" ", "_") + ".png"
+
+
+def _as_title(label: str) -> str:
+    """Return a label with capitals: Task 1 Step 15."""
+    return " ".join(map(capitalised, label.split()))
 
 
 def _pending_pictures(start: str, found_files: "tuple[EvidenceFile, ...]") -> Outcome:

@@ -43,6 +43,7 @@ class Outcome(NamedTuple):
     location: Location | None = None  # the place to look at, of a failure
     mistake: str = ""  # the message without what differs between students: equal mistakes are counted together
     problem: str = ""  # the message of the file's problem that it reports, or in a few words what is in doubt
+    absent: tuple[str, ...] = ()  # what is not built yet, of a failure that is due to that alone: "lidar", "package"
 
 
 def fault_of(returned: object) -> str:
@@ -82,6 +83,7 @@ _VALID: Mapping[str, Callable[[object], bool]] = {
     "location": lambda value: value is None or isinstance(value, Location),
     "mistake": _is_text,
     "problem": _is_text,
+    "absent": lambda value: isinstance(value, tuple) and all(map(_is_text, value)),
 }
 
 

@@ -119,7 +119,7 @@ def _readable_manifest(package: Package) -> "Manifest":
     if manifest is None:
         where = f"the folder {package.folder!r}" if package.folder else "the submission"
         message = f"{where} has a setup.py, but no package.xml, so it is not a ROS 2 package"
-        raise MissingElement(MANIFEST, package.folder, message=message)
+        raise MissingElement(MANIFEST, package.folder, message=message, absent=MANIFEST)
     if not manifest.build_type and manifest.refusals:
         problem = manifest.refusals[0]
         raise MissingElement(MANIFEST, package.folder, message=problem.message, location=problem.location)
@@ -175,7 +175,7 @@ def _readable_setup(package: Package) -> "Setup":
         raise NotDecided("the grader does not evaluate CMakeLists.txt, which lists what is installed")
     if setup is None:
         message = "the package has no setup.py, so a build of an ament_python package installs nothing"
-        raise MissingElement("setup.py", package.folder, message=message)
+        raise MissingElement("setup.py", package.folder, message=message, absent="setup.py")
     if setup.fault is not None and setup.fault.sure:
         message = f"Python cannot read setup.py: {setup.fault.message}"
         raise MissingElement("setup.py", package.folder, message=message, location=setup.fault.location)

@@ -85,6 +85,7 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
         joints: The name of each joint, and the link below it.
     """
     wrong: list[tuple[str, str]] = []
+    absent: dict[str, str] = {}
     at = None
     for name, link in joints.items():
         joint = robot.parent_joints.get(link)
@@ -92,14 +93,18 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
             continue
         robot.robot.check_complete()
         if joint is None:
-            wrong.append((f"no joint {name!r} connects {link!r}", ""))
+            thing = f"joint of {link}" if robot.robot.has_link(link) else link
+            absent[thing] = f"no joint {name!r} connects {link!r}"
         else:
             wrong.append((f"the joint of {link!r} should be named {name!r}", f", not {joint.name!r}"))
             at = at or place(joint.location, "name")
-    if not wrong:
-        return passed(f"the joints are named {enumerated([repr(name) for name in joints])}")
-    message = "; ".join(mistake + detail for mistake, detail in wrong)
-    return failed(message, at)._replace(mistake="; ".join(mistake for mistake, _ in wrong))
+    if wrong:  # what is not there at all, other criteria report
+        message = "; ".join(mistake + detail for mistake, detail in wrong)
+        return failed(message, at)._replace(mistake="; ".join(mistake for mistake, _ in wrong))
+    if absent:
+        outcome = failed("; ".join(absent.values()))
+        return outcome._replace(absent=tuple(absent) if robot.are_joints_in_place else ())
+    return passed(f"the joints are named {enumerated([repr(name) for name in joints])}")
 
 
 def root_of_tree(robot: Configuration, *, link: str, holds: str, links: list[str] | None = None) -> Outcome:

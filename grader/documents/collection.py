@@ -104,6 +104,11 @@ class DocumentCollection:
             self._headings[key] = find_headings(document.lines, stem(document.file.name), sorted(key[1]))
         return self._headings[key]
 
+    @property
+    def read(self) -> tuple[str, ...]:
+        """The paths of the documents that were read."""
+        return tuple(path for path, found in self._read_files.items() if isinstance(found, TextDocument))
+
     def named(self, patterns: Sequence[str]) -> tuple[list[TextDocument], list[_Unread]]:
         """Return the documents whose names match one of the patterns, and what of them was not read, and why."""
         key = tuple(patterns)

@@ -16,6 +16,7 @@ from grader.grading.criterion import Carried, Criterion
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
 from grader.grading.subjects import Subjects
+from grader.names import near
 from grader.robot.model import Robot
 from grader.robot.shapes import UnknownShape
 from grader.source import LazyLocation, Location
@@ -102,7 +103,19 @@ class _Grading:
             return self._fail_or_skip(criterion, missing)
         if result.outcome.status != "failed":
             return result
-        return result._replace(outcome=self._explain(result.outcome, looks_at=criterion.check.about.looks_at))
+        outcome = result.outcome
+        if not all(self._is_unbuilt(name) for name in outcome.absent if name in self._rubric.links):
+            outcome = outcome._replace(absent=())
+        outcome = self._explain(outcome, looks_at=criterion.check.about.looks_at)
+        return result._replace(outcome=self._with_place(outcome, criterion))
+
+    def _with_place(self, outcome: Outcome, criterion: Criterion) -> Outcome:
+        """Return a failure of the robot with a place: without an own one that of the link that is examined."""
+        robot, link = self.submission.robot, criterion.arguments.get("link")
+        if outcome.location is not None or outcome.absent or robot is None or criterion.check.subject != "robot":
+            return outcome
+        found = robot.link(link) if isinstance(link, str) and robot.has_link(link) else next(iter(robot.links), None)
+        return outcome._replace(location=location_of(found.known.location)) if found is not None else outcome
 
     def _explain(self, outcome: Outcome, *thing: str, looks_at: Collection[str] = ()) -> Outcome:
         from grader.grading.explanation import explain  # late: many submissions lose nothing
@@ -190,11 +203,29 @@ class _Grading:
             return Result(criterion, _skip_outcome(first), first)
         at = missing.location if isinstance(missing.location, Location | LazyLocation) else None
         outcome = Outcome(
-            "failed", str(missing), location=location_of(at), mistake=missing.mistake, problem=missing.problem
+            "failed",
+            str(missing),
+            location=location_of(at),
+            mistake=missing.mistake,
+            problem=missing.problem,
+            absent=self._absent_of(missing),
         )
         if first != criterion.id:
             return Result(criterion, outcome, carried=first)
-        return Result(criterion, self._explain(outcome, missing.kind, missing.name))
+        outcome = self._explain(outcome, missing.kind, missing.name)
+        return Result(criterion, self._with_place(outcome, criterion))
+
+    def _absent_of(self, missing: MissingElement) -> tuple[str, ...]:
+        """Return what is not built yet, if that is all."""
+        if missing.kind == "link":
+            return (missing.name,) if missing.name in self._rubric.links and self._is_unbuilt(missing.name) else ()
+        return (missing.absent,) if missing.absent else ()
+
+    def _is_unbuilt(self, name: str) -> bool:
+        """Return whether no link of the robot may be meant by the name of a missing one."""
+        robot, wanted = self.submission.robot, self._rubric.links
+        others = [link.known for link in robot.links if link.known.name not in wanted] if robot is not None else []
+        return not (any(link.visuals for link in others) or near(name, [link.name for link in others], "link"))
 
     def _first_miss(self, criterion: Criterion, thing: tuple[str, str]) -> str:
         """Return the first criterion that misses a thing, which may be this one; an adjusted one excuses no other.
@@ -237,27 +268,36 @@ def _fault_outcome(check: Check, fault: str) -> Outcome:
 
 
 def another_robot(rubric: Rubric, robot: Robot | None, link: str = "") -> MissingElement | None:
-    """Return the error for a robot that is another one, and so has no `link`; None if it may be that of the lab."""
+    """Return the error for a robot that is another one, and so has no `link`; None if it may be that of the lab.
+
+    Most of its links are none of the lab's: one that only lacks links is unfinished.
+    """
     if robot is None or not is_another_robot(robot, rubric.links):
         return None
-    count = known_links(robot, rubric.links)
-    links = f"only {count} of the {len(rubric.links)} links" if count else "none of the links"
+    if 2 * sum(link.known.name not in rubric.links for link in robot.links) <= len(robot.links):
+        return None
     missing = f"there is no link {link!r}, and " if link else ""
-    message = f"{missing}this looks like another robot: it has {links} that the rubric names"
+    message = f"{missing}this looks like another robot: it has {_known_links_text(rubric, robot)}"
     names = enumerated([repr(link.name) for link in robot.links], _MAX_LISTED) or "no link"
     detail = f" ({enumerated(sorted(rubric.links), _MAX_LISTED)}); it has {names}"
     location = robot.links[0].location if robot.links else None
     return MissingElement("robot of the lab", "", message=message, detail=detail, location=location)
 
 
+def _known_links_text(rubric: Rubric, robot: Robot) -> str:
+    count = known_links(robot, rubric.links)
+    return f"{f'only {count} of the {len(rubric.links)}' if count else 'none of the'} links that the rubric names"
+
+
 def _missing_work(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
     """Return what a submission with evidence lacks, the `URDF` or the `package` of this lab, and why."""
-    found = {}
-    another = another_robot(rubric, submission.robot)
+    found, robot = {}, submission.robot
     if isinstance(submission.urdf, Absent):
         found["URDF"] = "no URDF was submitted"
-    elif another is not None:
-        found["URDF"] = another.mistake
+    elif robot is not None and is_another_robot(robot, rubric.links):
+        another = another_robot(rubric, robot)
+        lacking = f"the robot has {_known_links_text(rubric, robot)}"
+        found["URDF"] = another.mistake if another is not None else lacking
     package = submission.package
     if package is None:
         found["package"] = submission.no_package[0]

@@ -78,7 +78,9 @@ class Result(NamedTuple):
             return ""
         if self.criterion.adjustment is not None:
             return self.criterion.adjustment.message
-        return f"Not deducted: caused by {self.carried}." if self.carried else ""
+        if not self.carried:
+            return ""
+        return f"No points lost for {self.criterion.id}: it fails only because of {self.carried}."
 
     @property
     def is_adjusted(self) -> bool:

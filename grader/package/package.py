@@ -161,7 +161,7 @@ class Package:
         has_folder = kind != "launch" or any(it.rpartition("/")[2] == kind for it in self.tree.folders)
         folder = "" if has_folder else ", and there is no folder launch"
         message = f"the package has no {word}: no file ends in {enumerated(endings[:3], word='or')}{folder}"
-        return MissingElement(f"{word} in the package", "", message=message, detail=self.built(kind))
+        return MissingElement(f"{word} in the package", "", message=message, detail=self.built(kind), absent=word)
 
     def without_data_files(self, message: str) -> MissingElement:
         """Return the error for a setup.py that gives setup() no data_files, because of this mistake."""

@@ -6,17 +6,16 @@ https://docs.github.com/actions/reference/workflow-commands-for-github-actions
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from decimal import Decimal
 from functools import cache
 from typing import NamedTuple
 
 from grader.grading.report import Report
 from grader.problems import Severity
 from grader.report.content import closing_lines, head, other_problems, report_sections, score_text
-from grader.report.criteria import Entry, earned_text, is_failure, is_manual, points_of, remarks_on
+from grader.report.criteria import Entry, earned_text, is_failure, is_manual, remarks_on
 from grader.report.locations import SourceOf, archive_around, location_text, width_of
 from grader.source import Base, Location
-from grader.text import counted_points, printable, without_tag_commands
+from grader.text import printable, without_tag_commands
 
 _MAX_ANNOTATIONS = 10  # of each type
 _MAX_MESSAGE = 4000  # characters
@@ -26,16 +25,10 @@ _COMMANDS: dict[Severity, str] = {"error": "error", "warning": "warning", "note"
 class _Finding(NamedTuple):
     """One thing to fix."""
 
-    rule: str  # the id of the criterion, or the code of the problem
+    title: str  # what a mistake costs and its criteria, the id of a criterion, or the code of a problem
     level: Severity
     text: str  # printable, of several lines
     place: Mapping[str, str] = {}  # without any the whole submission is meant
-    lost: Decimal = Decimal(0)  # with the points of criteria that are skipped because of it
-
-    @property
-    def cost(self) -> str:
-        """The lost points between parentheses; empty if none are lost."""
-        return f" ({counted_points(self.lost)} lost)" if self.lost else ""
 
 
 def render_github(report: Report, base: Base) -> str:
@@ -46,15 +39,18 @@ def render_github(report: Report, base: Base) -> str:
         some = [finding for finding in found if finding.level == level]
         room = _MAX_ANNOTATIONS - (level == "note")
         listed = some if len(some) <= room else [*some[: room - 1], _rest_finding(some[room - 1 :])]
-        lines += [command(name, one.place, f"{one.rule}{one.cost}", one.text) for one in listed]
+        lines += [command(name, one.place, one.title, one.text) for one in listed]
     return "".join(lines)
 
 
 def _findings(report: Report, base: Base) -> Iterator[_Finding]:
     """Yield what to fix or grade manually, and remarks; `base` is where the submission is in its repository."""
     found, source_of = report_sections(report), cache(report.submission.source)  # reads each file once
-    for entry in (*found.failures, *(one for one in found.pending if not is_manual(one.result))):
-        yield _criterion_finding(entry, source_of, base)
+    for entry in (*found.mistakes, *(one for one in found.pending if not is_manual(one.result))):
+        yield _entry_finding(entry, source_of, base)
+    for title, lines in ((found.unbuilt_title, [*found.unbuilt_lines]), ("Not found", [*found.missing])):
+        if lines:
+            yield _Finding(title, "note", "\n".join(line.text for line in lines))
     for result in report.results:
         remarks = remarks_on(result) if not is_failure(result) else ()
         if remarks:
@@ -65,21 +61,15 @@ def _findings(report: Report, base: Base) -> Iterator[_Finding]:
         yield _Finding(problem.code, problem.severity, text, _annotation_place(where, source_of, base))
 
 
-def _criterion_finding(entry: Entry, source_of: SourceOf, base: Base) -> _Finding:
-    skipped, is_bonus, where = entry.skipped, entry.result.criterion.bonus, entry.location
+def _entry_finding(entry: Entry, source_of: SourceOf, base: Base) -> _Finding:
+    is_mistake, where = bool(entry.lost) or is_failure(entry.result), entry.location
     lines = entry.texts("finding", "comment", "hint", "feedback", "expected", "alike")
-    if is_bonus:
+    level: Severity = "error" if is_mistake else "warning"
+    if entry.result.criterion.bonus:
         lines.append(f"Extra credit: {earned_text(entry.result)}.")
-    if skipped:
-        lines.append(f"Skipped because of it: {len(skipped)} more, {points_of(skipped)}.")
-    level: Severity = "error"
-    if not is_failure(entry.result):
-        level = "warning"
-    elif entry.result.why_given or is_bonus:
         level = "note"
-    lost = entry.lost if is_failure(entry.result) else Decimal(0)
     text, place = _annotation_text(lines, where, base), _annotation_place(where, source_of, base)
-    return _Finding(entry.id, level, text, place, lost)
+    return _Finding(f"{entry.cost}: {entry.names}" if is_mistake else entry.id, level, text, place)
 
 
 def _annotation_place(where: Location | None, source_of: SourceOf, base: Base) -> Mapping[str, str]:
@@ -102,22 +92,17 @@ def _annotation_text(lines: list[str], where: Location | None, base: Base) -> st
 
 
 def _rest_finding(found: Sequence[_Finding]) -> _Finding:
-    names = ", ".join(dict.fromkeys(finding.rule for finding in found))
-    lost = sum((finding.lost for finding in found), Decimal(0))
-    text = f"See the report for: {names}"
-    return found[0]._replace(rule=f"{len(found)} more", text=text, lost=lost, place={})
+    text = "\n".join(("See the report for:", *dict.fromkeys(finding.title for finding in found)))
+    return found[0]._replace(title=f"{len(found)} more", text=text, place={})
 
 
 def _overview(report: Report) -> str:
     """Return the lines about the whole submission and the undecided criteria."""
-    found = report_sections(report)
     lines = [line.text for line in head(report)]  # first, because the rest may be cut off
     pending = ", ".join(result.criterion.id for result in report.results if result.is_open)
     if pending:
         lines.append(f"Needs manual grading: {pending}")
-    lines += [text for entry in found.failures for text in entry.texts("skipped")]
-    lines += [line.text for line in found.skipped]
-    lines += [f"{result.criterion.id}: {result.why_given}" for result in report.results if result.carried]
+    lines += [line.text for line in report_sections(report).carried]
     return "\n".join((*lines, *closing_lines(report)))
 
 

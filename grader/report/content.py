@@ -3,13 +3,13 @@
 People read a report from the top: what to fix comes first, what is fine last. All of it is printable text.
 """
 
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from itertools import groupby
 from typing import NamedTuple
 
 from grader.checks.loading import urdf_loads
+from grader.checks.manual import picture_name, picture_named
 from grader.grading.criterion import worth
 from grader.grading.report import EvidenceResult, Report, Result
 from grader.problems import Problem
@@ -20,14 +20,29 @@ from grader.report.criteria import (
     Section,
     alike,
     blocks_of,
+    carried_text,
+    hint_text,
+    is_absent,
     is_failure,
+    is_not_found,
+    looked_for,
+    lost_points,
     points_of,
-    skipped_text,
+    sentence,
     status_of,
     sum_text,
 )
 from grader.report.locations import location_text
-from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted
+from grader.text import (
+    capitalised,
+    counted,
+    counted_points,
+    enumerated,
+    first_lines,
+    format_points,
+    printable,
+    shell_quoted,
+)
 from grader.xml.xml_problems import RECOVERED
 
 _REMARKS = ("Marked manually", "Corrected after grading", "Comments")
@@ -38,25 +53,48 @@ VERDICTS = {
     "rejected": "ROS 2 rejects the file",
 }
 _MAX_LISTED = 12
-_STATUSES = ("passed", "failed", "skipped", "pending", "errored", "adjusted", "marked manually")
 
 
 class ReportSections(NamedTuple):
-    """The criteria of a report, except those that passed and have no remark."""
+    """A report, except for the criteria that passed and have no remark, in the order in which a student needs it."""
 
-    failures: tuple[Entry, ...]
-    skipped: tuple[Line, ...]  # although nothing failed: a mark overrides the cause, or nothing was submitted
+    mistakes: tuple[Entry, ...]  # in what exists: first what keeps ROS 2 from loading the file, then the costliest
+    unbuilt: tuple[Entry, ...]  # what is not there at all
+    carried: tuple[Line, ...]  # failures that cost nothing
+    missing: tuple[Line, ...]  # what was searched in vain: answers and pictures
     pending: tuple[Entry, ...]  # what needs manual grading
     remarks: tuple[Section, ...]  # what did not fail and has a mark, an adjustment or a comment; some in two of them
 
     @property
     def sections(self) -> Iterator[Section]:
-        """What failed, what needs manual grading, and the remarks."""
-        if self.failures or self.skipped:
-            yield Section("Failed" if self.failures else "Not graded", self.failures, self.skipped)
+        """The parts under their titles."""
+        if self.mistakes or self.carried:
+            yield Section("Mistakes", self.mistakes, self.carried)
+        if self.unbuilt:
+            yield Section(self.unbuilt_title, lines=tuple(self.unbuilt_lines))
+        if self.missing:
+            yield Section("Not found", lines=self.missing)
         if self.pending:
             yield Section("Needs manual grading", self.pending)
         yield from self.remarks
+
+    @property
+    def unbuilt_title(self) -> str:
+        """The title of what is not built yet, with the points that it costs."""
+        points = lost_points(result for entry in self.unbuilt for result in entry.results)
+        names = dict.fromkeys(name for entry in self.unbuilt for name in entry.result.outcome.absent)
+        return printable(f"Not built yet: {', '.join(names)} ({counted_points(points)})")
+
+    @property
+    def unbuilt_lines(self) -> Iterator[Line]:
+        """What to add, a line for each thing that is not there."""
+        listed = set[str]()
+        for entry in self.unbuilt:
+            outcome, hint = entry.result.outcome, entry.result.hint
+            if not listed.issuperset(outcome.absent):
+                what = hint_text(entry, hint) if hint is not None else sentence(outcome.mistake or outcome.message)
+                yield Line("unbuilt", f"{printable(', '.join(outcome.absent))}: {what}")
+            listed.update(outcome.absent)
 
 
 def report_sections(report: Report, *, everything: bool = False) -> ReportSections:
@@ -64,47 +102,82 @@ def report_sections(report: Report, *, everything: bool = False) -> ReportSectio
     known = entries(report, everything=everything)
     others = [entry for entry in known.values() if not is_failure(entry.result)]
     by_status = dict(alike(others, lambda entry: entry.status))
-    skipped = alike((one.result for one in by_status.get("skipped", ())), lambda one: one.because or "")
+    failed = [known[failure.id] for failure in failures(report)]
+    costing = [entry for entry in failed if not (entry.first or entry.result.why_given)]
+    skipped = alike(by_status.get("skipped", ()), lambda one: one.result.because or "")
+    alone = [_skipped_alone(cause, some) for cause, some in skipped if cause not in known or not known[cause].skipped]
+    open_entries = by_status.get("pending", ())
     commented = [one for one in others if one.result.comment and one.status not in ("pending", "adjusted")]
     marked = [one for one in others if one.result.manual_mark]
     remarks = zip(_REMARKS, (marked, by_status.get("adjusted", ()), commented), strict=True)
-    failed = [known[failure.id] for failure in failures(report)]
+    carried = alike((entry.result for entry in failed if entry.result.carried), lambda one: one.carried)
     return ReportSections(
-        tuple(_join_equal(_without_repeats(failed))),
-        tuple(
-            Line("skipped", skipped_text(cause, some))
-            for cause, some in skipped
-            if cause not in known or not known[cause].skipped
-        ),
-        tuple(_join_equal(by_status.get("pending", ()))),
-        tuple(Section(title, tuple(some)) for title, some in remarks if some),
+        mistakes=(*_join_equal(one for one in costing if not is_absent(one.result)), *alone),
+        unbuilt=tuple(sorted((one for one in costing if is_absent(one.result)), key=_building_order)),
+        carried=tuple(Line("carried", carried_text(cause, some)) for cause, some in carried),
+        missing=tuple(_missing_lines(report, [one.result for one in open_entries if is_not_found(one.result)])),
+        pending=tuple(_join_equal(one for one in open_entries if not is_not_found(one.result))),
+        remarks=tuple(Section(title, tuple(some)) for title, some in remarks if some),
     )
+
+
+def _skipped_alone(cause: str, some: Sequence[Entry]) -> Entry:
+    """Return the entry of criteria that are skipped although no mistake says so: a mark may override their cause."""
+    why = f"Skipped because {cause} failed." if cause else "Not graded, because nothing was submitted."
+    first, *others = some
+    return first._replace(also=tuple(others), blocks=(Line("finding", printable(why)),))
+
+
+def _building_order(entry: Entry) -> tuple[int, int]:
+    """Return the rank of what is not built yet: criteria about one thing first, in the rubric's order."""
+    return len(entry.result.outcome.absent), entry.result.criterion.position
+
+
+def _missing_lines(report: Report, results: Sequence[Result]) -> Iterator[Line]:
+    """Yield what was searched in vain for criteria and as evidence, and what is there instead."""
+    yield from (Line("missing", text) for text in looked_for(results))
+    wanted = {result.outcome.expected for result in results}
+    evidence = [found.evidence.names for found in report.evidence if not (found.files or found.possible)]
+    others = [f"`{picture_name(names)}`" for names in evidence if picture_named(names) not in wanted]
+    if others:
+        pictures = "a picture" if len(others) == 1 else "pictures"
+        yield Line("missing", printable(f"evidence: {pictures} named {enumerated(others, _MAX_LISTED)}"))
+    unmatched = _unmatched(report) if results else []
+    if unmatched:
+        yield Line("there", printable(f"There, but it matches nothing: {enumerated(unmatched, _MAX_LISTED)}"))
+
+
+def _unmatched(report: Report) -> list[str]:
+    """Return the documents that were read and the pictures in which nothing was found."""
+    used = {result.outcome.location.path for result in report.results if result.is_open and result.outcome.location}
+    documents = report.submission.readable_documents
+    read = documents.read if documents is not None else ()
+    return [path for path in dict.fromkeys((*read, *(file.path for file in report.other_pictures))) if path not in used]
 
 
 def entries(report: Report, *, everything: bool = False) -> Mapping[str, Entry]:
     """Return the entry of every criterion by its id, in the rubric's order."""
     failed = {failure.id: failure for failure in failures(report)}
     found = (failed.get(result.criterion.id, Entry(result)) for result in report.results)
-    return {one.id: one._replace(blocks=tuple(blocks_of(one, report, everything=everything))) for one in found}
+    filled = {one.id: one._replace(blocks=tuple(blocks_of(one, report, everything=everything))) for one in found}
+    return {name: one._replace(also=tuple(filled[it.id] for it in one.also)) for name, one in filled.items()}
 
 
 def failures(report: Report) -> tuple[Entry, ...]:
     """Return the criteria that failed or lost points, without blocks; those that one edit fixes follow each other.
 
-    What keeps ROS 2 from loading the file comes first, then the costliest mistake. What is about a package that was not
-    submitted, and then what is carried forward, comes last. Equals are in the rubric's order.
+    What keeps ROS 2 from loading the file comes first, then the costliest mistake; what is carried forward comes last.
+    Equals are in the rubric's order.
     """
     skipped = dict(alike((one for one in report.results if status_of(one) == "skipped"), lambda one: one.because or ""))
     found = [Entry(one, skipped.get(one.criterion.id, ())) for one in report.results if is_failure(one)]
     mistakes = [_fixed_together(some) for _, some in alike(found, _shared_edit)]
-    is_rejected, has_package = report.submission.verdict == "rejected", report.submission.package is not None
+    is_rejected = report.submission.verdict == "rejected"
 
-    def rank(mistake: tuple[Entry, ...]) -> tuple[bool, bool, bool, Decimal]:
-        criteria = [failure.result.criterion for failure in mistake]
-        is_last = not has_package and report.rubric.part(criteria[0].part).needs == "package"
-        is_urgent = is_rejected and any(criterion.check.subject == "urdf" for criterion in criteria)
-        lost = sum((failure.lost for failure in mistake), Decimal(0))
-        return bool(mistake[0].result.why_given), is_last, not is_urgent, -lost
+    def rank(mistake: tuple[Entry, ...]) -> tuple[bool, bool, Decimal]:
+        first = mistake[0].result
+        is_urgent = is_rejected and any(entry.result.criterion.check.subject == "urdf" for entry in mistake)
+        return bool(first.why_given), not is_urgent, -mistake[0].lost
 
     return tuple(failure for mistake in sorted(mistakes, key=rank) for failure in mistake)
 
@@ -126,20 +199,11 @@ def _fixed_together(some: tuple[Entry, ...]) -> tuple[Entry, ...]:
     return first._replace(also=tuple(also)), *(one._replace(first=first.id) for one in also)
 
 
-def _without_repeats(failed: Iterable[Entry]) -> Iterator[Entry]:
-    """Yield entries without feedback that an earlier one has."""
-    seen = set[Line]()
-    for entry in failed:
-        feedback = {one for one in entry.blocks if isinstance(one, Line) and one.role == "feedback"}
-        yield entry._replace(blocks=tuple(block for block in entry.blocks if block not in feedback & seen))
-        seen |= feedback
-
-
 def _join_equal(entries: Iterable[Entry]) -> Iterator[Entry]:
     """Yield one entry for all that could not be graded for the same reason."""
     for _, (first, *others) in alike(entries, _reason_to_join):
         names = enumerated([entry.id for entry in others])
-        line = Line("alike", f"The same holds for {names} ({points_of(one.result for one in others)}).")
+        line = Line("alike", f"The same holds for {names} ({points_of(entry.result for entry in others)}).")
         yield first._replace(also=tuple(others), blocks=(*first.blocks, line)) if others else first
 
 
@@ -148,6 +212,29 @@ def _reason_to_join(entry: Entry) -> str:
     outcome, has_own = entry.result.outcome, any(isinstance(block, Answer) for block in entry.blocks)
     is_ungraded = entry.status in ("pending", "errored") and not (has_own or entry.result.comment)
     return outcome.mistake or outcome.message if is_ungraded else entry.id
+
+
+def result_line(report: Report) -> str:
+    """Return the result in a line: the points of what is decided, what they were lost by, and what is open.
+
+    Of a student in a class it is the grade, and how it came about.
+    """
+    if report.grade is not None:
+        return f"{capitalised(score_text(report))}. {grade_line(report)}"
+    found, decided = report_sections(report), report.max_score - report.pending
+    if decided == 0 and not found.mistakes:
+        return sentence(pending_points(report)) if report.pending else "Nothing to grade."
+    points = f"{format_points(report.score)} of {counted_points(decided)}"
+    open_points = f"; {format_points(report.pending)} more {'needs' if report.pending == 1 else 'need'} manual grading"
+    reasons = []
+    if found.mistakes:
+        lost = format_points(sum((entry.lost for entry in found.mistakes), Decimal(0)))
+        reasons.append(f"{counted(len(found.mistakes), 'mistake costs', 'mistakes cost')} {lost}")
+    if found.unbuilt:
+        lost = format_points(sum((entry.lost for entry in found.unbuilt), Decimal(0)))
+        reasons.append(f"{'what is not built yet' if reasons else 'what is not built yet costs'} {lost}")
+    text = f"{points}: {', '.join(reasons)}" if reasons else f"All automatic checks passed: {points}"
+    return f"{text}{open_points if report.pending else ''}."
 
 
 def score_text(report: Report) -> str:
@@ -177,33 +264,18 @@ def grade_line(report: Report) -> str:
     return f"Final mark, instead of {text} points." if report.grade.is_final else f"Points: {text}."
 
 
-def summary(report: Report) -> str:
-    """Return the URDF, whether ROS 2 loads it, and how many criteria passed, failed, and so on."""
-    path, words = report.submission.path, verdict_and_counts(report)
-    return f"{printable(path)}: {words}" if path is not None else words
+def graded_line(report: Report) -> str:
+    """Return the rubric and what is graded with it: the URDF, else the submission."""
+    return printable(f"{report.rubric.id}: {report.submission.path or report.submission.id}")
 
 
-def verdict_and_counts(report: Report) -> str:
-    """Return whether ROS 2 loads the URDF, and how many criteria passed, failed, and so on."""
+def verdict_line(report: Report) -> str:
+    """Return whether ROS 2 loads the URDF."""
     submission = report.submission
-    urdf = "the URDF could not be read" if submission.unread else "no URDF was submitted"
+    text = "the URDF could not be read" if submission.unread else "no URDF was submitted"
     if submission.path is not None and submission.has_urdf:
-        urdf = VERDICTS[submission.verdict] if submission.verdict else UNDECIDED
-    statuses = Counter(_counted_status(result) for result in report.results)
-    counts = (f"{count} {_status_words(status, count)}" for status in _STATUSES if (count := statuses[status]))
-    return f"{urdf}; {', '.join(counts)}"
-
-
-def _counted_status(result: Result) -> str:
-    if result.manual_mark:
-        return "marked manually"
-    return "adjusted" if result.is_adjusted else result.outcome.status
-
-
-def _status_words(status: str, count: int) -> str:
-    if status == "pending":
-        return "needs manual grading" if count == 1 else "need manual grading"
-    return "corrected after grading" if status == "adjusted" else status
+        text = VERDICTS[submission.verdict] if submission.verdict else UNDECIDED
+    return sentence(text)
 
 
 def bonus_line(report: Report) -> str:
@@ -224,14 +296,12 @@ def package_line(report: Report) -> str:
 
 
 def head(report: Report) -> Iterator[Line]:
-    """Yield what a report says first: how the grade came about, the URDF, the criteria, the package, what is open."""
-    for text in (grade_line(report), summary(report), bonus_line(report), package_line(report)):
+    """Yield what a report says first: what is graded, the result, whether ROS 2 loads the URDF, the package, notes."""
+    yield Line("graded", graded_line(report))
+    yield Line("result", result_line(report))
+    for text in (verdict_line(report), bonus_line(report), package_line(report)):
         if text:
             yield Line("summary", text)
-    if report.open_points:
-        names = [printable(result.criterion.id) for result in report.pending_automatic]
-        rest = f"; could not be decided: {enumerated(names, _MAX_LISTED)}" if names else ""
-        yield Line("pending", pending_points(report) + rest)
     sha256 = report.rubric.sha256
     yield Line("provenance", f"grader {report.version}, rubric {printable(report.rubric.id)}, sha256 {sha256}")
     yield from (Line("note", text) for text in notes(report))
@@ -301,15 +371,10 @@ def other_problems(report: Report) -> list[Problem]:
 
 def next_command(report: Report) -> str:
     """Return the command that explains the costliest failure, or else what is undecided; empty without either."""
-    failed = [failure.result for failure in failures(report) if failure.result.manual_mark is None]
+    found = report_sections(report)
+    failed = [entry.result for entry in (*found.mistakes, *found.unbuilt) if entry.result.manual_mark is None]
     first = next(iter((*failed, *report.pending_automatic)), None)
     return _explain_command(first.criterion.id, report) if first is not None else ""
-
-
-def what_is_left(report: Report) -> str:
-    """Return what is left where no command follows; points may be lost by a manual mark."""
-    start = "No check failed" if failures(report) else "Nothing to fix"
-    return f"{start}: {pending_points(report)}." if report.open_points else f"{start}."
 
 
 def _explain_command(name: str, report: Report) -> str:

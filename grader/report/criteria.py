@@ -3,7 +3,7 @@
 A writer decides how a block looks in its medium and which roles it leaves out, but neither words nor order.
 """
 
-from collections.abc import Callable, Hashable, Iterable, Iterator
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from decimal import Decimal
 from itertools import groupby
 from typing import Literal, NamedTuple, TypeVar
@@ -11,7 +11,7 @@ from typing import Literal, NamedTuple, TypeVar
 from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome
 from grader.grading.criterion import Criterion, worth
-from grader.grading.report import Report, Result
+from grader.grading.report import Hint, Report, Result
 from grader.report.locations import SourceOf, excerpt_lines, location_text
 from grader.source import Edits, Location
 from grader.text import by_name, capitalised, enumerated, format_points, printable, signed_points
@@ -33,8 +33,8 @@ _MAX_FILES, _MAX_CRITERIA = 2, 3
 
 # Of a submission, of a criterion, and of the list of evidence, problems and files.
 Role = Literal[
-    "summary", "pending", "provenance",
-    "finding", "comment", "hint", "feedback", "expected", "skipped", "alike",
+    "graded", "result", "summary", "provenance",
+    "finding", "comment", "hint", "feedback", "expected", "alike", "carried", "unbuilt", "there",
     "part", "found", "missing", "error", "warning", "note", "ignored",
 ]  # fmt: skip
 
@@ -61,6 +61,23 @@ def is_failure(result: Result) -> bool:
 def has_passed(result: Result) -> bool:
     """Return whether a check passed, without a mark or a comment."""
     return status_of(result) == "passed" and result.manual_mark is None and result.comment is None
+
+
+def lost_points(results: Iterable[Result]) -> Decimal:
+    """Return the points that criteria lost: no extra credit, and nothing that needs manual grading."""
+    decided = (result for result in results if not (result.criterion.bonus or result.is_open))
+    return sum((result.criterion.maximum - result.points for result in decided), Decimal(0))
+
+
+def is_absent(result: Result) -> bool:
+    """Return whether a criterion failed only because what it is about is not built yet: no hint makes it pass."""
+    is_found = result.hint is not None and bool(result.hint.gains)
+    return status_of(result) == "failed" and bool(result.outcome.absent) and not (result.carried or is_found)
+
+
+def is_not_found(result: Result) -> bool:
+    """Return whether an answer or a picture was searched in vain."""
+    return is_manual(result) and result.is_open and result.outcome.expected is not None
 
 
 def is_manual(result: Result) -> bool:
@@ -128,28 +145,32 @@ class Entry(NamedTuple):
         return status_of(self.result)
 
     @property
-    def lost(self) -> Decimal:
-        """The points that a failure costs, with those of what is skipped because of it; extra credit costs nothing."""
-        own = self.result.criterion.maximum - self.result.points if not self.result.criterion.bonus else Decimal(0)
-        return sum((other.criterion.maximum for other in self.skipped), own)
+    def results(self) -> tuple[Result, ...]:
+        """All criteria of the mistake: this one, those that its edit fixes, and those that are skipped because."""
+        own = (self.result, *self.skipped)
+        return (*own, *(result for other in self.also for result in other.results))
 
     @property
-    def points(self) -> str:
-        """The points and the maximum, 3/4; of a failure the points that it costs: -6 points.
+    def lost(self) -> Decimal:
+        """The points that the mistake costs in all."""
+        return lost_points(self.results)
 
-        Those of what is skipped because of it are apart: -3 points, and 21 for what depends on it. Of extra credit it
-        is what was earned.
-        """
-        if not is_failure(self.result):
-            return earned_text(self.result)
-        others = sum((other.criterion.maximum for other in self.skipped), Decimal(0))
-        own = self.lost - others
-        lost = f"{signed_points(-own) if own else '0'} {'point' if own == 1 else 'points'}"
-        if others:
-            lost += f", and {format_points(others)} for what depends on it"
-        if not self.result.criterion.bonus:
-            return lost
-        return f"{earned_text(self.result)}, {lost}" if self.lost else earned_text(self.result)
+    @property
+    def cost(self) -> str:
+        """The points that the mistake costs in all, as in `-8 points`; of extra credit what was earned."""
+        if self.result.criterion.bonus and not self.lost:
+            return f"{earned_text(self.result)} points"
+        return f"{signed_points(-self.lost) if self.lost else '0'} {'point' if self.lost == 1 else 'points'}"
+
+    @property
+    def names(self) -> str:
+        """The criteria that lose points by the mistake: the only one, or each with its points, this one first."""
+        costly = [result for result in self.results if lost_points((result,))]
+        if [result.criterion.id for result in costly] in ([], [self.id]):
+            return printable(self.id)
+        named = [f"{result.criterion.id} {format_points(lost_points((result,)))}" for result in costly]
+        rest = f" and {len(named) - _MAX_CRITERIA} more" if len(named) > _MAX_CRITERIA else ""
+        return printable(", ".join(named[:_MAX_CRITERIA]) + rest)
 
     @property
     def location(self) -> Location | None:
@@ -212,26 +233,34 @@ def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iter
     A hint is in place of the rubric's feedback; with `everything` there are both.
     """
     result, criterion, outcome = entry.result, entry.result.criterion, entry.result.outcome
+    hint = result.hint
     is_asked = outcome.status == "pending" and not result.is_adjusted
     has_failed = entry.status == "failed" and result.manual_mark is None
     is_mistake = has_failed and not result.carried  # else the advice would be to change what is as it should be
     has_subject = report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot")
     yield from _findings(result)
-    if outcome.location is not None and has_failed:
-        yield outcome.location
+    at = _place_to_change(result) if is_mistake else outcome.location
+    if at is not None and has_failed:
+        yield at
     if is_asked:
         yield from _answers(result)
-    if result.hint is not None and is_mistake:
-        yield Line("hint", sentence(hint_text(entry, result.hint.message)))
-        if result.hint.edits and not entry.first:
-            yield Diff(result.hint.edits)
-    if criterion.feedback and is_mistake and has_subject and (everything or result.hint is None):
+    if hint is not None and is_mistake:
+        yield Line("hint", hint_text(entry, hint))
+        if hint.edits and not entry.first:
+            yield Diff(hint.edits)
+    if criterion.feedback and is_mistake and has_subject and (everything or hint is None):
         yield Line("feedback", _one_line(criterion.feedback))
     if is_failure(result) and not is_asked:
         # The title of a criterion is never stated alone, because it would read as a fact.
         yield Line("expected", f"Passes when: {sentence(criterion.title)}")
-    if entry.skipped:
-        yield Line("skipped", skipped_text(entry.id, entry.skipped))
+
+
+def _place_to_change(result: Result) -> Location | None:
+    """Return the place of a failure, or of its hint where that is in another line."""
+    at, hint = result.outcome.location, result.hint
+    if hint is None or not hint.gains or (at is not None and (at.path, at.line) == (hint.at.path, hint.at.line)):
+        return at
+    return hint.at
 
 
 def _findings(result: Result) -> Iterator[Line]:
@@ -295,22 +324,17 @@ def sentence(message: str) -> str:
     return text if text.endswith((".", "?")) else f"{text}."
 
 
-def hint_text(entry: Entry, message: str) -> str:
-    """Return the message of the hint of a failure, with what the same edit fixes besides."""
-    hint = entry.result.hint
-    if entry.first or hint is None:
+def hint_text(entry: Entry, hint: Hint) -> str:
+    """Return the message of the hint of a failure, and which criteria have to be looked at after that edit."""
+    if entry.first:
         return f"Fixed by the same edit as {entry.first}."
-    also = [f"{other.id}, {signed_points(-other.lost)}" for other in entry.also]
-    skipped = (result.criterion.id for one in (entry, *entry.also) for result in one.skipped)
-    left = [name for name in skipped if name not in hint.gains]
-    texts = [message.removesuffix(".")]
+    left = [result.criterion.id for result in entry.results if result.criterion.id not in hint.gains]
+    texts = [hint.message.removesuffix(".")]
     if hint.certainty == "one of several" and hint.gains:
         texts.append("Other edits are as good")
-    if also:
-        texts.append(f"Also fixes {enumerated(also, _MAX_CRITERIA)}")
-    if left:
-        texts.append(f"Then look at {enumerated(left, _MAX_CRITERIA)}")
-    return f"{'. '.join(texts)}."
+    if left and hint.gains:
+        texts.append(f"Then check {enumerated(left, _MAX_CRITERIA)}")
+    return sentence(". ".join(texts))
 
 
 def plain_lines(entry: Entry, source_of: SourceOf) -> list[str]:
@@ -342,15 +366,12 @@ def pending_reason(result: Result) -> str:
     return printable(f"{where} ({doubt})" if where and doubt else where or doubt)
 
 
-def carried_text(results: Iterable[Result]) -> str:
+def carried_text(cause: str, results: Sequence[Result]) -> str:
     """Return which criteria fail only because of a mistake that is counted elsewhere, and have their points."""
-    causes = alike(results, lambda result: result.carried)
-    texts = (f"{enumerated([one.criterion.id for one in some])} (caused by {cause})" for cause, some in causes)
-    return printable(f"Not deducted: {', '.join(texts)}.")
+    names, verb = enumerated([one.criterion.id for one in results]), "it fails" if len(results) == 1 else "they fail"
+    return printable(f"No points lost for {names}: {verb} only because of {cause}.")
 
 
-def skipped_text(cause: str, results: tuple[Result, ...]) -> str:
-    """Return which criteria are skipped because of another one, or because nothing was submitted, and their points."""
-    names = enumerated([result.criterion.id for result in results])
-    why = f"Skipped because {cause} failed" if cause else "Not graded, because nothing was submitted"
-    return printable(f"{why}: {names} ({points_of(results)}).")
+def looked_for(results: Iterable[Result]) -> Iterator[str]:
+    """Yield what was searched in vain, of each answer and each picture."""
+    return (printable(f"{result.criterion.id}: {result.outcome.expected}") for result in results)

@@ -23,6 +23,7 @@ from grader.report.criteria import (
     earned_text,
     groups,
     has_passed,
+    is_failure,
 )
 from grader.report.locations import diff_lines, excerpt_lines, location_text
 from grader.source import Location
@@ -38,7 +39,7 @@ _OPENING = re.compile(r"^([-+=]|\d+[.)](?= |$))")  # a list, rule or heading at 
 # GitHub looks for mentions and issue numbers after it has rendered Markdown, so escapes do not prevent them.
 _MENTION = re.compile(r"@|#(?=\d)")
 _FENCE = re.compile(r"`{3,}")
-_LOOKS = {"pending": "**{}**", "hint": "**{}**", "feedback": "*{}*", "part": "{}:"}
+_LOOKS = {"graded": "# {}", "result": "**{}**", "hint": "**{}**", "feedback": "*{}*", "part": "{}:"}
 _MAX_FENCE = 80  # backticks: GitHub's parser takes no more to start code, and counts those of a block to 255
 _CUT = "**The report is cut off here, because it is too long.** A report that is saved to a file is complete.\n"
 
@@ -84,28 +85,35 @@ def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
     for section in content.closing(report):
         yield from _section(section, report, answers=answers)
     command = content.next_command(report)
-    yield f"Next: {code(command)}" if command else content.what_is_left(report)
+    if command:
+        yield f"Next: {code(command)}"
 
 
 def _head(report: Report) -> Iterator[str]:
-    yield f"# {escape(content.score_text(report))}: {escape(printable(report.rubric.title))}"
     yield from (_LOOKS.get(line.role, "{}").format(escape(line.text)) for line in content.head(report))
 
 
 def _section(section: Section, report: Report, *, answers: bool) -> Iterator[str]:
-    yield f"## {section.title}"
+    yield f"## {escape(section.title)}"
     for entry in section.entries:
-        result, name = entry.result, code(entry.id)
-        is_bare = result.is_adjusted or bool(entry.texts("expected"))
-        name = name if is_bare else f"{escape(printable(result.criterion.title))} ({name})"
         details = (indent(block, "  ") for block in _details(entry, report, answers=answers))
-        yield "\n\n".join((f"- {SYMBOLS[entry.status]} {earned_text(result)} {name}", *details))
-    for is_item, lines in groupby(section.lines, lambda line: line.role not in ("part", "skipped")):
-        texts = [_LOOKS.get(line.role, "{}").format(escape(line.text)) for line in lines]
+        yield "\n\n".join((f"- {SYMBOLS[entry.status]} {_entry_head(entry)}", *details))
+    for is_item, lines in groupby(section.lines, lambda line: line.role not in ("part", "carried", "there")):
+        texts = [_LOOKS.get(line.role, "{}").format(escape_words(line.text)) for line in lines]
         if is_item:
             yield "\n".join(f"- {text}" for text in texts)
         else:
             yield from texts
+
+
+def _entry_head(entry: Entry) -> str:
+    """Return what a mistake costs and its criteria; of another criterion the points, and the title where it holds."""
+    result, name = entry.result, code(entry.id)
+    if entry.lost or is_failure(result):
+        return f"**{entry.cost}**: {code(entry.names)}"
+    if result.is_adjusted:
+        return f"{earned_text(result)} {name}"
+    return f"{earned_text(result)} {escape(printable(result.criterion.title))} ({name})"
 
 
 def _details(entry: Entry, report: Report, *, answers: bool) -> Iterator[str]:
@@ -113,7 +121,7 @@ def _details(entry: Entry, report: Report, *, answers: bool) -> Iterator[str]:
     for block in entry.blocks:
         match block:
             case Line(role, text):
-                yield _LOOKS.get(role, "{}").format(escape(text))
+                yield _LOOKS.get(role, "{}").format(escape_words(text))
             case Location():
                 yield code(location_text(block))
                 if excerpt := [*excerpt_lines(block, report.submission.source)]:
@@ -140,6 +148,20 @@ def escape(text: str) -> str:
     plain = _ACTIVE.sub(lambda found: _HTML.get(found[0]) or f"\\{found[0]}", text.strip())
     plain = _OPENING.sub(lambda found: f"{found[0][:-1]}\\{found[0][-1]}", plain)
     return _MENTION.sub("\\g<0>\u2060", plain)
+
+
+def escape_words(text: str) -> str:
+    """Return one line of printable text in which what is between backticks is code."""
+    parts = text.split("`")
+    if len(parts) % 2 == 0:
+        return escape(text)
+    return "".join(code(part) if number % 2 else _keep_spaces(part) for number, part in enumerate(parts))
+
+
+def _keep_spaces(text: str) -> str:
+    """Return escaped text with the spaces around it."""
+    inner = text.strip(" ")
+    return text.replace(inner, escape(inner)) if inner else text
 
 
 def code(text: str) -> str:

@@ -10,7 +10,7 @@ from math import cos, hypot, sin, tau
 from textwrap import wrap
 
 from grader.grading.report import Report
-from grader.report.content import bonus_line, grade_line, notes, score_text, summary
+from grader.report.content import bonus_line, grade_line, notes, score_text, verdict_line
 from grader.report.criteria import points_of, remarks_on
 from grader.report.drawing.picture import Body, Picture, Wheel, picture_of, plain_picture
 from grader.report.drawing.views import PANEL, WIDTH, FreePlaces, Panel, Place, frames_of, from_back_to_front, panels_of
@@ -102,7 +102,7 @@ def _wrapped(words: str, width: float) -> list[str]:
 
 def render_svg(report: Report) -> str:
     """Return the drawing of the graded robot as a file; without a robot, a sentence with the reason."""
-    words = [grade_line(report), summary(report), bonus_line(report)]
+    words = [grade_line(report), verdict_line(report), bonus_line(report)]
     if report.another_robot:
         words += notes(report)[:1]
     for result in report.results:

@@ -1,12 +1,10 @@
 """A report for a person at a terminal: what to fix first; the score last, where the eye is when the command ends.
 
-In 24 rows it has of each failure what it costs, what is wrong and what to do, and of the rest what is open. What has no
-room is joined, cut or left out; where even that does not make 24 rows, messages are whole. Text of a submission is
+It has the first mistakes in full, and a line for each further one; `--verbose` has everything. Text of a submission is
 never interpreted as markup or control codes.
 """
 
-import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple, get_args
 
@@ -29,10 +27,8 @@ from grader.report.criteria import (
     Role,
     Section,
     alike,
-    carried_text,
     earned_text,
     groups,
-    hint_text,
     is_failure,
     is_manual,
     pending_reason,
@@ -51,19 +47,15 @@ if TYPE_CHECKING:
 INDENT = 2
 LOOKS: Mapping[Role, str] = {
     **dict.fromkeys(get_args(Role), ""),
-    **dict.fromkeys(("pending", "comment", "hint"), "bold"),
-    **dict.fromkeys(("provenance", "expected", "part", "ignored"), "dim"),
-    **dict.fromkeys(("missing", "skipped", "alike", "warning"), "yellow"),
+    **dict.fromkeys(("result", "comment", "hint"), "bold"),
+    **dict.fromkeys(("graded", "provenance", "expected", "part", "ignored", "there"), "dim"),
+    **dict.fromkeys(("missing", "alike", "carried", "warning"), "yellow"),
     "feedback": "italic",
     "error": "bold red",
     "note": "cyan",
 }
 _DIFF_STYLES = {"-": "red", "+": "green"}
-_MAX_FIRST = 3  # failures with their source line
-_MAX_ROWS, _MAX_REASON = 4, 2  # rows of a message, and of a reason; a hint has fewer than a message
-_MOST_ROWS = 10  # of a message in a report of more than 24 rows
-_LAST_WORD, _LAST_NUMBER = re.compile(r"\s+\S*$"), re.compile(r"\s+[-+.\d]+$")  # a number keeps its unit
-_ROWS = 24  # of a common terminal
+_MAX_WHOLE = 5  # mistakes in full
 _MAX_NAMES, _MAX_PROBLEMS, _MAX_FILES = 3, 3, 2
 
 
@@ -72,19 +64,10 @@ class Page(NamedTuple):
 
     console: Console
     rows: list[Text]
-    is_whole: bool = True  # else it is a short report
-    is_tight: bool = False  # without empty rows
-    is_cut: bool = False  # with short texts
-
-    @property
-    def height(self) -> int:
-        """The number of rows that a terminal shows."""
-        return sum(row.plain.count("\n") + 1 for row in self.rows)
 
     def leave_row(self) -> None:
-        """Add an empty row if there is room for it."""
-        if not self.is_tight:
-            self.rows.append(Text())
+        """Add an empty row."""
+        self.rows.append(Text())
 
     def title(self, text: str | Text, style: str = "bold") -> None:
         """Add a title below an empty row."""
@@ -95,11 +78,9 @@ class Page(NamedTuple):
         """Add a line, with an indent where it wraps."""
         self.inset(text, style, head=Text())
 
-    def inset(
-        self, text: str | Text, style: str = "", indent: int = INDENT, head: Text | None = None, most: int | None = None
-    ) -> None:
-        """Add a text below a title or an item, of more than `most` rows the first ones."""
-        self.rows.append(block(self.console, Text(text, style) if isinstance(text, str) else text, indent, head, most))
+    def inset(self, text: str | Text, style: str = "", indent: int = INDENT, head: Text | None = None) -> None:
+        """Add a text below a title or an item."""
+        self.rows.append(block(self.console, Text(text, style) if isinstance(text, str) else text, indent, head))
 
     def item(self, status: str, *parts: str | tuple[str, str]) -> None:
         """Add texts, with their styles, behind the symbol of a status."""
@@ -120,24 +101,100 @@ class Page(NamedTuple):
         self.rows.clear()
 
 
-def _show_entry(entry: Entry, report: Report, page: Page, number: int = 0) -> None:
-    """Add a criterion; `number` counts failures, of which a short report has only the first with all blocks."""
-    head, message = _entry_head(entry, page), Text(" ".join(entry.texts("finding")))
-    source_of = report.submission.source
-    if page.is_tight:
-        page.inset(Text(": ").join((head, message)), head=Text(), most=_most_rows(page, number))
+def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
+    """Print a report, with `verbose` everything in it."""
+    found = report_sections(report, everything=verbose)
+    page = Page(console, [])
+    if verbose:
+        _show_everything(report, found, page)
     else:
-        page.line(head)
-        page.inset(message)
-    for part in entry.blocks if page.is_whole else _shortened(entry, page, is_first=number < _MAX_FIRST):
+        _show_brief(report, found, page)
+    _show_end(report, page)
+    page.print()
+
+
+def _show_brief(report: Report, found: ReportSections, page: Page) -> None:
+    """Add the short report, without its last lines."""
+    _show_start(report, page)
+    _show_mistakes(found.mistakes, report, page)
+    if found.unbuilt:
+        page.title(found.unbuilt_title)
+    for line in found.unbuilt_lines:
+        page.inset(line.text)
+    if found.carried:
+        page.leave_row()
+    for line in found.carried:
+        page.line(line.text, LOOKS[line.role])
+    if found.missing:
+        page.title("Not found")
+    for line in found.missing:
+        page.inset(line.text, LOOKS[line.role])
+    _show_pending(report, found.pending, page)
+    for section in found.remarks:
+        page.leave_row()
+        for entry in section.entries:
+            words = " ".join(remarks_on(entry.result)) or entry.texts("finding")[0]
+            page.item(entry.status, (printable(entry.id), "bold"), f"  {earned_text(entry.result)}: {words}")
+    _show_groups(report, page)
+    _show_files(report, page)
+    page.leave_row()
+
+
+def _show_start(report: Report, page: Page) -> None:
+    """Add what was graded, the result, and notes; the package only if the path of the URDF does not show it."""
+    submission = report.submission
+    rejected = ", which ROS 2 rejects" if submission.verdict == "rejected" else ""
+    page.line(content.graded_line(report) + rejected, LOOKS["graded"])
+    page.line(content.result_line(report), LOOKS["result"])
+    folder = f"{submission.package.folder}/" if submission.package is not None and submission.package.folder else ""
+    package = content.package_line(report)
+    if package and not (submission.path or "").startswith(folder or "urdf/"):
+        page.line(package, "dim")
+    for line in content.notes(report):
+        page.line(line, LOOKS["note"])
+
+
+def _show_mistakes(mistakes: Sequence[Entry], report: Report, page: Page) -> None:
+    """Add the first mistakes in full, and the costs and places of the rest."""
+    for entry in mistakes[:_MAX_WHOLE]:
+        page.leave_row()
+        _show_entry(entry, report, page, _brief_blocks(entry))
+    rest = mistakes[_MAX_WHOLE:]
+    if rest:
+        them = "it" if len(rest) == 1 else "them"
+        page.title(f"{counted(len(rest), 'more mistake')}: --verbose shows {them} in full")
+    for entry in rest:
+        page.line(_mistake_head(entry, page))
+
+
+def _brief_blocks(entry: Entry) -> Iterator[Block]:
+    """Yield the blocks of a short report: no diff, because the hint says it, and what is expected only if needed."""
+    is_clear = entry.result.outcome.expected is not None or bool(entry.texts("hint", "feedback"))
+    for part in entry.blocks:
+        match part:
+            case Diff():
+                pass
+            case Line("expected") if is_clear:
+                pass
+            case Answer() if is_failure(entry.result):
+                pass
+            case _:
+                yield part
+
+
+def _show_entry(entry: Entry, report: Report, page: Page, blocks: Iterable[Block]) -> None:
+    """Add a criterion or a mistake with these blocks."""
+    page.line(_mistake_head(entry, page) if entry.lost or is_failure(entry.result) else _entry_head(entry, page))
+    page.inset(" ".join(entry.texts("finding")))
+    source_of = report.submission.source
+    for part in blocks:
         match part:
             case Line(role, text) if role != "finding":
-                is_cut = page.is_cut and role in ("feedback", "expected")
-                page.inset(text, LOOKS[role], most=_MAX_REASON - (number > 0) if is_cut else None)
+                page.inset(text, LOOKS[role])
             case Location():
                 source = source_of(part.path)
                 if source is not None and source.line(part.line).strip():
-                    page.rows.append(excerpt_block(page.console, source, part, INDENT, is_underlined=not page.is_tight))
+                    page.rows.append(excerpt_block(page.console, source, part, INDENT))
             case Answer(title, lines):
                 page.inset(f"{title}:", "bold")
                 for line in lines:
@@ -147,87 +204,41 @@ def _show_entry(entry: Entry, report: Report, page: Page, number: int = 0) -> No
                     page.inset(line, _DIFF_STYLES.get(line[0], "dim"), 2 * INDENT)
 
 
-def _most_rows(page: Page, number: int) -> int:
-    """Return how many rows the message of a failure may have on a page without empty rows."""
-    if not page.is_cut:
-        return _MOST_ROWS
-    return _MAX_ROWS if number < _MAX_FIRST else _MAX_REASON
+def _mistake_head(entry: Entry, page: Page) -> Text:
+    """Return what a mistake costs, its criteria, and its place, without the folder where there is no room for it."""
+    cost = (entry.cost, STYLES[entry.status]), ": ", (entry.names, "bold")
+    text = Text.assemble(page.mark(entry.status), " ", *cost)
+    where = entry.location
+    if where is None:
+        return text
+    places = (where, where._replace(path=where.path.rpartition("/")[2], calls=()))
+    fitting = (it for it in places if text.cell_len + len(location_text(it)) + 2 <= page.console.width)
+    return text.append(f"  {location_text(next(fitting, places[-1]))}", "dim")
 
 
 def _entry_head(entry: Entry, page: Page) -> Text:
-    """Return the name of a failure, its cost and place, or the title, name and points of another criterion."""
-    name, mark = printable(entry.id), page.mark(entry.status)
-    if not is_failure(entry.result):
-        title = printable(entry.result.criterion.title)
-        return Text.assemble(mark, " ", (title, "bold"), (f"  {name}", "dim"), f"  {entry.points}")
-    text = Text.assemble(mark, " ", (name, "bold"), (f"  {entry.points}", STYLES[entry.status]))
-    if entry.location is not None:
-        where = entry.location._replace(calls=()) if page.is_tight else entry.location
-        text.append(f"  {location_text(where)}", "dim")
-    return text
+    """Return the title, name and points of a criterion that did not fail."""
+    title, name = printable(entry.result.criterion.title), printable(entry.id)
+    points = earned_text(entry.result)
+    return Text.assemble(page.mark(entry.status), " ", (title, "bold"), (f"  {name}", "dim"), f"  {points}")
 
 
-def _shortened(entry: Entry, page: Page, *, is_first: bool) -> Iterator[Block]:
-    """Yield the blocks for which a short report has room."""
-    is_failed, is_loose = is_failure(entry.result), not page.is_tight
-    is_clear = entry.result.outcome.expected is not None or bool(entry.texts("hint", "feedback"))
-    for part in entry.blocks:
-        match part:
-            case Line("hint", text):
-                yield Line("hint", _short_hint(entry, text, page))
-            case Line("skipped") if is_loose:
-                words = f"{counted(len(entry.skipped), 'criterion is', 'criteria are')} skipped because of it"
-                yield Line("skipped", f"{words} ({points_of(entry.skipped)}).")
-            case Line("comment" | "alike"):
-                yield part
-            case Location() if is_first:
-                yield part
-            case Answer() if not is_failed:
-                yield part
-            case Line("feedback") if is_first or is_loose:
-                yield part
-            case Line("expected") if not is_clear and (is_first or is_loose):
-                yield part
-
-
-def _short_hint(entry: Entry, text: str, page: Page) -> str:
-    """Return the hint, or what is wrong if its edits are too long."""
-    rows, hint = block(page.console, Text(text), INDENT).plain.count("\n") + 1, entry.result.hint
-    if hint is None or not hint.cause or rows < _MAX_ROWS:
-        return text
-    return hint_text(entry, f"Wrong: {hint.cause}. --verbose shows the edits.")
-
-
-def block(console: Console, text: Text, indent: int, head: Text | None = None, most: int | None = None) -> Text:
-    """Return text that keeps its indent when it wraps; `head` is in place of the indent of the first line.
-
-    Of more than `most` lines it is the first ones, with an ellipsis.
-    """
+def block(console: Console, text: Text, indent: int, head: Text | None = None) -> Text:
+    """Return text that keeps its indent when it wraps; `head` is in place of the indent of the first line."""
     lines = text.wrap(console, max(8, console.width - indent))
     for line in lines:
         line.rstrip()
-    kept = lines[:most]
-    if len(kept) < len(lines):
-        ellipsis = _symbol(console, "\u2026", "...")
-        room = max(8, console.width - indent) - len(ellipsis)
-        words = kept[-1].plain if kept[-1].cell_len <= room else _LAST_WORD.sub("", kept[-1].plain)
-        kept[-1].truncate(min(room, len(_LAST_NUMBER.sub("", words))))
-        kept[-1].append(ellipsis)
-    return (Text(" " * indent) if head is None else head) + Text("\n" + " " * indent).join(kept)
+    return (Text(" " * indent) if head is None else head) + Text("\n" + " " * indent).join(lines)
 
 
-def excerpt_block(
-    console: Console, source: Source, where: Location, indent: int, style: str = "red", *, is_underlined: bool = True
-) -> Text:
-    """Return the source line of a location, and if wanted a line that underlines the marked part."""
+def excerpt_block(console: Console, source: Source, where: Location, indent: int, style: str = "red") -> Text:
+    """Return the source line of a location, and a line that underlines the marked part."""
     number = str(where.line)
     before, meant, after = excerpt(source, where, max(8, console.width - indent - len(number) - 3))
     mark, bar = _symbol(console, "\u2500", "-"), _symbol(console, "\u2502", "|")
     text = Text.assemble((f"{' ' * indent}{number} {bar} ", "dim"), (before + meant + after).rstrip())
-    if is_underlined:
-        under = " " * len(before) + mark * max(1, len(meant))
-        text.append(f"\n{' ' * (indent + len(number))} {bar} ", "dim").append(under, style)
-    return text
+    under = " " * len(before) + mark * max(1, len(meant))
+    return text.append(f"\n{' ' * (indent + len(number))} {bar} ", "dim").append(under, style)
 
 
 def _symbol(console: Console, fancy: str, plain: str) -> str:
@@ -235,81 +246,17 @@ def _symbol(console: Console, fancy: str, plain: str) -> str:
     return fancy if console.encoding.lower().startswith("utf") else plain
 
 
-def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
-    """Print a report, with `verbose` everything in it, else in 24 rows as far as possible."""
-    found = report_sections(report, everything=verbose)
-    if verbose:
-        page = Page(console, [], is_whole=True)
-        _show_everything(report, found, page)
-        _show_end(report, page)
-        page.print()
-        return
-    page = _brief_page(report, found, Page(console, [], is_whole=False))
-    if page.height > _ROWS:
-        page = _brief_page(report, found, Page(console, [], is_whole=False, is_tight=True))
-    if page.height > _ROWS:
-        cut = _brief_page(report, found, Page(console, [], is_whole=False, is_tight=True, is_cut=True))
-        page = cut if cut.height <= _ROWS else page  # if nothing makes it fit, sentences stay whole
-    page.print()
-
-
-def _brief_page(report: Report, found: ReportSections, page: Page) -> Page:
-    """Return a page with the short report."""
-    _show_brief(report, found, page)
-    _show_end(report, page)
-    return page
-
-
-def _show_brief(report: Report, found: ReportSections, page: Page) -> None:
-    """Add the short report, without its last lines."""
-    _show_start(report, page)
-    listed = (entry for entry in found.failures if not (entry.result.why_given or entry.first))
-    for number, entry in enumerate(listed):
-        page.leave_row()
-        _show_entry(entry, report, page, number)
-    carried = [entry.result for entry in found.failures if entry.result.why_given]
-    lines = [line.text for line in found.skipped]
-    if carried:
-        lines.insert(0, carried_text(carried))
-    if lines:
-        page.leave_row()
-    for line in lines:
-        page.line(line, "yellow")
-    _show_pending(report, found.pending, page)
-    for section in found.remarks:
-        page.leave_row()
-        for entry in section.entries:
-            words = " ".join(remarks_on(entry.result)) or entry.texts("finding")[0]
-            page.item(entry.status, (printable(entry.id), "bold"), f"  {entry.points}: {words}")
-    _show_groups(report, page)
-    _show_submission(report, page)
-    page.leave_row()
-
-
-def _show_start(report: Report, page: Page) -> None:
-    """Add what was graded; the package only if the path of the URDF does not show it."""
-    submission = report.submission
-    graded = printable(submission.path or submission.id)
-    graded += ", which ROS 2 rejects" if submission.verdict == "rejected" else ""
-    page.line(f"grader {report.version}, {printable(report.rubric.id)}: {graded}", "dim")
-    folder = f"{submission.package.folder}/" if submission.package is not None and submission.package.folder else ""
-    package = content.package_line(report)
-    if package and not (submission.path or "").startswith(folder or "urdf/"):
-        page.line(package, "dim")
-    if report.another_robot:
-        page.line(content.notes(report)[0], "yellow")
-
-
 def _show_pending(report: Report, pending: Sequence[Entry], page: Page) -> None:
     """Add what needs manual grading: where each answer and picture was found, or why a check cannot decide."""
     if pending:
-        page.title(content.pending_points(report) if report.open_points else "Not graded")
+        points = points_of(result for entry in pending for result in entry.results)
+        page.title(f"Needs manual grading ({points})" if report.open_points else "Not graded")
     every = [one for entry in pending for one in (entry, *entry.also)]
     for reason, some in alike(every, lambda entry: pending_reason(entry.result)):
         results = [entry.result for entry in some]
         if any(one.comment or (is_manual(one) and one.criterion.answer) for one in results):
             for entry in some:
-                _show_entry(entry, report, page)
+                _show_entry(entry, report, page, _brief_blocks(entry))
             continue
         names = enumerated([printable(entry.id) for entry in some], _MAX_NAMES)
         points = worth(result.criterion for result in results).short
@@ -329,18 +276,21 @@ def _show_groups(report: Report, page: Page) -> None:
         page.item(status, ", ".join(f"{printable(group.title)} {group.points}" for group in some))
 
 
-def _show_submission(report: Report, page: Page) -> None:
-    """Add the evidence in a line, problems, notes, and the first of the files that were not graded."""
-    submission, found = report.submission, sum(bool(one.files) for one in report.evidence)
-    if report.evidence and not page.is_tight:
-        missing = [printable(one.evidence.title) for one in report.evidence if not (one.files or one.possible)]
-        named = f"; missing: {enumerated(missing, _MAX_FILES)}" if missing and found else ""
-        page.line(f"Evidence: {found or 'none'} of {len(report.evidence)} found{named}", "dim")
-    _show_problems(report, page)
-    notes = content.notes(report)
-    for line in notes[1:] if report.another_robot else notes:  # the first one is shown above
-        page.line(line, "cyan")
-    others, ignored = [file.path for file in submission.unused_candidates], submission.ignored
+def _show_files(report: Report, page: Page) -> None:
+    """Add the first problems that no criterion has reported, and the first of the files that were not graded."""
+    problems = content.other_problems(report)
+    listed = [found for found in problems if found.severity != "note"]
+    if listed:
+        page.leave_row()
+    for found in listed[:_MAX_PROBLEMS]:
+        where = f"{printable(found.location.path.rpartition('/')[2])}:{found.location.line}"
+        text = Text.assemble((f"{found.code} {found.severity} ", LOOKS[found.severity]), (where, "dim"))
+        page.line(text.append(f": {printable(found.message)}"))
+    rest = len(problems) - len(listed[:_MAX_PROBLEMS])
+    if rest:
+        words = counted(rest, "more problem" if listed else "note")
+        page.line(f"{words}: --verbose shows {'it' if rest == 1 else 'them'}", "dim")
+    others, ignored = [file.path for file in report.submission.unused_candidates], report.submission.ignored
     if others:
         page.line(printable(f"Not graded: {enumerated(others, _MAX_FILES)} (--verbose says why)"), "dim")
     if ignored:
@@ -348,33 +298,10 @@ def _show_submission(report: Report, page: Page) -> None:
         page.line(printable(f"Ignored: {ignored[0]}{more}"), "dim")
 
 
-def _show_problems(report: Report, page: Page) -> None:
-    """Add the first problems that no failed criterion has reported, and how many more there are."""
-    problems = content.other_problems(report)
-    listed = [found for found in problems if found.severity != "note"]
-    if page.is_tight:
-        problems = listed = [found for found in listed if not found.kind.is_consequence]
-    if listed:
-        page.leave_row()
-    for found in listed[:_MAX_PROBLEMS]:
-        where = f"{printable(found.location.path.rpartition('/')[2])}:{found.location.line}"
-        text = Text.assemble((f"{found.code} {found.severity} ", LOOKS[found.severity]), (where, "dim"))
-        page.inset(text.append(f": {printable(found.message)}"), head=Text(), most=1 if page.is_cut else 2)
-    rest = len(problems) - len(listed[:_MAX_PROBLEMS])
-    if rest:
-        words = counted(rest, "more problem" if listed else "note")
-        page.line(f"{words}: --verbose shows {'it' if rest == 1 else 'them'}", "dim")
-
-
 def _show_end(report: Report, page: Page) -> None:
-    """Add whether ROS 2 loads the URDF, the next command, and the score."""
-    command, verdict = content.next_command(report), content.verdict_and_counts(report)
-    following = f"Next: {command}" if command else content.what_is_left(report)
-    lines = [following]
-    if not page.is_whole:
-        lines = [f"{verdict}. {following}"] if page.is_tight else [verdict, following]
-        lines += [content.bonus_line(report), content.grade_line(report)]
-    for line in lines:
+    """Add the next command and the score."""
+    command = content.next_command(report)
+    for line in (f"Next: {command}" if command else "", content.bonus_line(report)):
         if line:
             page.line(line)
     counting = report.counting
@@ -401,9 +328,9 @@ def _show_everything(report: Report, found: ReportSections, page: Page) -> None:
 def _show_section(section: Section, report: Report, page: Page) -> None:
     page.title(section.title)
     for number, entry in enumerate(section.entries):
-        if number and section.title == "Failed":
+        if number and is_failure(entry.result):
             page.leave_row()
-        _show_entry(entry, report, page)
+        _show_entry(entry, report, page, entry.blocks)
     for line in section.lines:
         page.inset(line.text, LOOKS[line.role], 2 * INDENT if line.role in ("found", "missing") else INDENT)
 

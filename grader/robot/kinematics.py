@@ -295,7 +295,9 @@ class Configuration:
             self.known.check_complete()
             roots = " and ".join(sorted((frame.root, base.root)))
             message = f"no chain of joints leads from {quoted(relative_to or base.root)} to {quoted(link)}"
-            raise MissingElement("connection", roots, message=message, location=self.link(link).location)
+            absent = f"joint of {link}" if frame.root == link and self.are_joints_in_place else ""
+            at = self.link(link).location
+            raise MissingElement("connection", roots, message=message, location=at, absent=absent)
         if frame.group != base.group:
             deeper = max(frame, base, key=lambda either: either.depth)  # the chain crosses into the deeper group
             raise _undefined_pose(self.known_parents[deeper.group], self.known)
@@ -305,6 +307,12 @@ class Configuration:
         if not isfinite(sum(pose.translation)):
             raise _undefined_pose(self.between(relative_to, link)[-1], self.robot)
         return pose
+
+    @property
+    def are_joints_in_place(self) -> bool:
+        """Whether each joint connects two links that are there: none of them may be meant for another link."""
+        robot = self.known
+        return all(map(robot.has_link, (end for joint in robot.joints for end in (joint.parent, joint.child))))
 
     def axis(self, joint: str | Joint) -> Vector:
         """Return the unit axis of a joint in its child link's frame; raises MissingElement if it has no direction."""

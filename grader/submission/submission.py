@@ -184,7 +184,7 @@ class Submission:
             return self.package
         self._refuse_unopened("package")
         message, detail = self.no_package
-        raise MissingElement("package", "", message=message, detail=detail)
+        raise MissingElement("package", "", message=message, detail=detail, absent="package")
 
     def needed_urdf(self) -> Reading:
         """Return the graded URDF; raises MissingElement without one, NotDecided if it cannot be read statically."""
@@ -201,7 +201,7 @@ class Submission:
         files = f"none of the {count} files contains a <robot>" if count > 1 else "the only file contains no <robot>"
         built = next((path for path in self.tree.generated if path.lower().endswith(ROBOT_ENDINGS)), "")
         detail = f"{f': {files}' if count else ''}{was_not_committed(built) if built else ''}"
-        raise MissingElement("URDF", "", message="no URDF was submitted", detail=detail)
+        raise MissingElement("URDF", "", message="no URDF was submitted", detail=detail, absent="URDF")
 
     def surroundings(self, budget: Budget, tree: Tree | None = None) -> Surroundings:
         """Return the files around its URDF: its own, or other ones."""

@@ -1,6 +1,6 @@
 """The pages about one robot: the report for the student, with three views of the robot, and an inspection."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from itertools import groupby
 
 from markupsafe import Markup
@@ -25,7 +25,7 @@ def render_html(report: Report) -> str:
     picture = picture_of(report)
     callouts = [callout for callout in picture.callouts if callout.point is not None] if picture is not None else []
     called = {result.criterion.id: callout.number for callout in callouts for result in callout.results}
-    sections = [part._replace(entries=tuple(_nested(part.entries))) for part in report_sections(report).sections]
+    sections = [*report_sections(report).sections]
     by_part = groupby(groups(report), key=lambda group: group.part)
     values = {
         "version": report.version,
@@ -52,15 +52,6 @@ def render_html(report: Report) -> str:
 
 def _part_card(title: str, some: list[CriteriaGroup]) -> tuple[str, str, list[CriteriaGroup]]:
     return title, earned_text(*(result for group in some for result in group.results)), some
-
-
-def _nested(entries: Sequence[Entry]) -> Iterator[Entry]:
-    """Yield the entries, those that one edit fixes inside the one that shows it."""
-    shown = {entry.id for entry in entries if entry.texts("hint") and not entry.first}
-    for entry in entries:
-        others = tuple(one for one in entries if one.first == entry.id in shown)
-        if entry.first not in shown:
-            yield entry if entry.texts("alike") else entry._replace(also=others)
 
 
 def _addresses(entry: Entry) -> Iterator[tuple[str, str]]:
