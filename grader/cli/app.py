@@ -6,9 +6,7 @@ from collections.abc import Collection, Sequence
 from contextlib import nullcontext, redirect_stderr, suppress
 from importlib import import_module
 from io import StringIO
-from itertools import dropwhile, pairwise
-from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -16,9 +14,9 @@ from grader import __version__
 from grader.cli.ending import outer_limits, quiet_interrupts
 from grader.cli.streams import warn
 from grader.commands.invocation import ExitCode
-from grader.commands.rubrics import DEFAULT_RUBRIC
 from grader.commands.writing import write_stdout
 from grader.errors import GraderError
+from grader.files.limits import ROBOT_ENDINGS
 from grader.text import printable_path, shell_quoted
 
 # In the order of the help, with the module of each: it holds a function, or a group of commands, of this name.
@@ -28,6 +26,8 @@ COMMANDS = {
     "schema": "explain", "rubric": "rubric",
 }  # fmt: skip
 _LIMITED = ("grade", "inspect")  # the commands that read one submission
+# Of options that take a file, for one that is given without.
+_EXAMPLES = {"--fix": "my_robot.urdf --fix fixed.urdf", "--save": "my_robot.urdf --save html=report.html"}
 _COMPLETION = ("--show-completion", "--install-completion")
 
 
@@ -84,35 +84,7 @@ def run(arguments: Sequence[str]) -> int:
     Every error is one line on standard error, never a traceback.
     """
     with quiet_interrupts():
-        code = _run(arguments)
-        words = [*dropwhile(lambda word: word.startswith("-"), arguments)]
-        if code == ExitCode.NOT_GRADED and words[:1] == ["grade"]:
-            _discard_reports(words[1:])
-        return code
-
-
-def _discard_reports(words: Sequence[str]) -> None:
-    """Remove what `--save` names in the arguments of a `grade` that is refused, whatever is wrong with them.
-
-    A report that lies there already may be forged by a student, and would count as the result of this run. The refusal
-    may be about any of the arguments, so they are not parsed again.
-    """
-    from grader.commands.grade_submission import remove_reports
-    from grader.commands.invocation import read_saves
-    from grader.commands.rubrics import files_of
-
-    def values(option: str) -> list[str]:
-        joined = [word.removeprefix(f"{option}=") for word in words if word.startswith(f"{option}=")]
-        return joined + [value for word, value in pairwise(words) if word == option]
-
-    saves: list[tuple[Any, Path]] = []
-    for text in values("--save"):
-        with suppress(GraderError, OSError):
-            saves += read_saves([text])
-    with suppress(GraderError, OSError):
-        rubric = [file for name in values("--rubric") or [DEFAULT_RUBRIC] for file in files_of(name)]
-        answers = map(Path, values("--answers"))
-        remove_reports(tuple(saves), [*rubric, *answers], *(word for word in words if word[:1] != "-"))
+        return _run(arguments)
 
 
 def _run(arguments: Sequence[str]) -> int:
@@ -159,7 +131,8 @@ def _command(arguments: Sequence[str]) -> list[str]:
     first = arguments[0] if arguments else "-"
     if first in COMMANDS:
         return [first]
-    if not first.startswith("-") and os.path.lexists(first):
+    is_submission = os.path.lexists(first) or first.lower().endswith((*ROBOT_ENDINGS, ".zip"))
+    if not first.startswith("-") and is_submission:
         raise GraderError(f"there is no command {first!r}; to grade it, use `grader grade {shell_quoted(first)}`")
     return []
 
@@ -169,11 +142,13 @@ def _other_error(error: Exception) -> ExitCode:
         warn(_one_line(f"internal error, please report it: {type(error).__name__}: {error}"))
         return ExitCode.FAULT
     message, context = error.format_message(), getattr(error, "ctx", None)
+    example = _EXAMPLES.get(getattr(error, "option_name", ""), "")
     if context is not None and message == context.get_help():  # a group of commands without arguments
         print(message, file=sys.stderr)
     else:
         command = context.command_path if context is not None else "grader"
-        warn(_one_line(f"{message} (`{command} --help` shows the usage)"))
+        advice = f"for example `{command} {example}`" if example else f"`{command} --help` shows the usage"
+        warn(_one_line(f"{message} ({advice})"))
     return ExitCode.NOT_GRADED
 
 

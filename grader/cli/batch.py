@@ -1,5 +1,6 @@
 """grader batch: a class against a rubric, into a gradebook."""
 
+import os
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Literal, get_args
@@ -7,15 +8,16 @@ from typing import Annotated, Literal, get_args
 import typer
 
 from grader.classroom.workers import forks
-from grader.cli.options import AnswersOption, ArgOption, FormatOption, PartOption
+from grader.cli.options import RUBRIC_VARIABLE, AnswersOption, ArgOption, FormatOption, PartOption
 from grader.cli.streams import TERMINAL
+from grader.commands.rubrics import DEFAULT_RUBRIC
 from grader.errors import GraderError
 from grader.report.formats import Format, OutputFormat
 
 Layout = Literal["auto", "folders", "canvas", "moodle", "teams", "nbgrader"]
 _PATH = "A folder with an entry for each student, or the zip of an LMS; name those of all sections."
 _GRADEBOOK = "The gradebook, a folder; default: ID-grades, with the rubric's id."
-_RUBRIC = "The rubric: an id or a .toml file; default: that of the last run, else lab6."
+_RUBRIC = "The rubric: an id or a .toml file; default: that of the last run, else GRADER_RUBRIC, else lab6."
 _IGNORE = "A starter file, excluded from equal work; repeatable."
 _REPORTS = "The folder of the reports; default: reports in the gradebook."
 _TIMEOUT = "Time limit for each submission."
@@ -91,6 +93,7 @@ def batch(
         paths=paths,
         gradebook=gradebook,
         rubric=rubric,
+        usual_rubric=os.environ.get(RUBRIC_VARIABLE) or DEFAULT_RUBRIC,
         roster=roster,
         due=due,
         layout=layout,

@@ -8,7 +8,7 @@ import typer
 
 from grader.cli.options import AnswersOption, ArgOption, MaxSizeOption, PartOption, RubricOption
 from grader.cli.streams import TERMINAL, screen, warn, write_stderr
-from grader.commands.grade_submission import GradeRequest, grade_and_save
+from grader.commands.grade_submission import GradeRequest, GradeRun, grade_and_save
 from grader.commands.invocation import read_saves
 from grader.commands.rubrics import DEFAULT_RUBRIC
 from grader.commands.writing import write_stdout
@@ -86,7 +86,7 @@ def grade(
         if watch:
             from grader.commands.watch import watch as grade_on_change
 
-            return grade_on_change(request, TERMINAL)
+            grade_on_change(request, TERMINAL)
         return _grade_once(request)
     except GraderError as error:
         if _is_github_job():
@@ -98,9 +98,12 @@ def grade(
 
 def _grade_once(request: GradeRequest) -> int:
     """Grade, and print the report; in a job of GitHub Actions also publish it. Return the exit code."""
-    run = grade_and_save(request, warn)
-    text = render(run.report, request.output_format, run.base, screen(), verbose=request.verbose)
-    write_stdout(text if request.output_format.needs == "console" else text.encode("utf-8", "backslashreplace"))
+
+    def show(run: GradeRun) -> None:
+        text = render(run.report, request.output_format, run.base, screen(), verbose=request.verbose)
+        write_stdout(text if request.output_format.needs == "console" else text.encode("utf-8", "backslashreplace"))
+
+    run = grade_and_save(request, warn, show)
     if _is_github_job():
         from grader.commands.github import publish_report  # late: most runs are no such job
 

@@ -11,7 +11,10 @@ PartOption = Annotated[
     list[str] | None,
     typer.Option("--part", metavar="ID", help="Grade only this part; repeatable."),
 ]
-RubricOption = Annotated[str, typer.Option(metavar="ID|FILE", help="The rubric: an id or a .toml file.")]
+RUBRIC_VARIABLE = "GRADER_RUBRIC"
+RubricOption = Annotated[
+    str, typer.Option(metavar="ID|FILE", envvar=RUBRIC_VARIABLE, help="The rubric: an id or a .toml file.")
+]
 GradebookOption = Annotated[Path, typer.Option("--gradebook", metavar="FOLDER", help="The gradebook, a folder.")]
 MaxSizeOption = Annotated[int, typer.Option(metavar="BYTES", min=1, help="Maximum size of a URDF.")]
 AnswersOption = Annotated[

@@ -58,6 +58,7 @@ class ClassRequest:
     paths: Sequence[Path] | None  # the class folders or zips
     gradebook: Path | None
     rubric: str | None  # an id or a file
+    usual_rubric: str  # of a new gradebook, if no other one is named
     roster: Path | None
     due: str | None  # the deadline
     layout: str | None
@@ -100,13 +101,16 @@ class _ClassInputs:
 
 def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
     """Return the inputs of a run; raise InputError and RubricError. Nothing is written."""
+    usual = load_rubric(options.usual_rubric)
     rubric = load_rubric(options.rubric) if options.rubric is not None else None
-    folder = options.gradebook or Path(f"{rubric.id if rubric is not None else DEFAULT_RUBRIC}-grades")
+    folder = options.gradebook or Path(f"{(rubric or usual).id}-grades")
     is_new = not names.is_gradebook(folder)
     names.check_free(folder)
     settings = ClassSettings() if is_new else read_settings(folder)
     if rubric is None:
-        rubric = load_rubric(DEFAULT_RUBRIC if is_new else folder / settings.rubric)
+        rubric = usual if is_new else load_rubric(folder / settings.rubric)
+        if options.usual_rubric != DEFAULT_RUBRIC and usual.id != rubric.id:
+            warn(f"{printable_path(folder)} keeps its rubric {rubric.id}, not {usual.id}: name it with --rubric")
     elif (recorded := settings.rubric_id) not in ("", rubric.id):
         raise InputError(
             f"{printable_path(folder)} is the gradebook of {recorded}, not of {rubric.id}: name another folder"

@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal
 from pathlib import Path
@@ -10,20 +10,21 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.commands.invocation import ExitCode, Saves, exit_code, read_arguments, read_threshold
 from grader.commands.rubrics import files_of, load
-from grader.commands.writing import CHECKOUTS, Warn, refuse_inputs, refuse_symlinks, remove_previous, save
+from grader.commands.writing import CHECKOUTS, Warn, refuse_inputs, refuse_symlinks, save_all
 from grader.errors import GraderError, InputError
 from grader.files.limits import ROBOT_ENDINGS
 from grader.grading.hint_levels import HintLevel
 from grader.report.formats import Format, inputs_of, render
 from grader.source import Base
-from grader.text import printable
+from grader.text import printable, shell_quoted
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
     from grader.grading.rubric import Rubric
     from grader.hints.hinting import Fix
 
-_KEPT = (*ROBOT_ENDINGS, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # files that a report may not remove first
+_SOURCES = (*ROBOT_ENDINGS, ".toml", ".py", ".yaml", ".yml", ".rviz", ".cfg")  # files that no report may replace
+_MAX_UP = 3  # folders between a package and what is graded in it
 _SHA256 = r"[0-9a-fA-F]{64}"
 
 
@@ -50,7 +51,7 @@ class GradeRequest(NamedTuple):
         return read_threshold(self.fail_under) if self.fail_under is not None else None
 
 
-class _GradeRun(NamedTuple):
+class GradeRun(NamedTuple):
     """A submission that was graded."""
 
     report: "Report"
@@ -68,24 +69,27 @@ class _GradeRun(NamedTuple):
         return printable(f"exit code 1: could not be decided, and needs manual grading: {names}")
 
 
-def grade_and_save(request: GradeRequest, warn: Warn) -> _GradeRun:
-    """Grade a submission and save its reports. Raises GraderError."""
+def grade_and_save(request: GradeRequest, warn: Warn, show: Callable[[GradeRun], None]) -> GradeRun:
+    """Grade a submission, show its report, and save reports and fixed files. Raises GraderError."""
     rubric = files_of(request.rubric, request.answers) if request.saves else ()
-    modes = remove_reports(request.saves, rubric, request.path)
+    check_saves(request.saves, rubric, request.path)
     run = grade_submission(request, warn)
-    if request.fix is None or run.fix is None:
-        save_reports(request, run, modes)
-        return run
-    from grader.commands.hints_and_fix import files_to_fix, write_fix  # late: few ask for it
+    files: Mapping[Path, bytes] = {}
+    if request.fix is not None and run.fix is not None:
+        from grader.commands.hints_and_fix import files_to_fix  # late: few ask for it
 
-    others = [*files_of(request.rubric, request.answers), *(file for _, file in request.saves)]
-    files = files_to_fix(request.fix, request.path, run.report, run.fix, run.besides, others)
-    save_reports(request, run, modes)
-    warn(write_fix(request.fix, request.path, run.report, run.fix, files))
+        others = [*files_of(request.rubric, request.answers), *(file for _, file in request.saves)]
+        files = files_to_fix(request.fix, request.path, run.report, run.fix, run.besides, others)
+    show(run)
+    save_reports(request, run)
+    if request.fix is not None and run.fix is not None:
+        from grader.commands.hints_and_fix import write_fix
+
+        warn(write_fix(request.fix, request.path, run.report, run.fix, files))
     return run
 
 
-def grade_submission(request: GradeRequest, warn: Warn) -> _GradeRun:
+def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
     """Grade a submission. Raises GraderError."""
     threshold = request.threshold  # before grading, to refuse a wrong one at once
     for kind in (request.output_format, *(kind for kind, _ in request.saves)):
@@ -95,10 +99,13 @@ def grade_submission(request: GradeRequest, warn: Warn) -> _GradeRun:
     from grader.submission.submission import Opening
 
     rubric = requested_rubric(request)
-    opening = Opening(request.max_size, read_arguments(request.arg or ()))
+    reports = frozenset(os.path.realpath(file) for _, file in request.saves if file.suffix.lower() not in _SOURCES)
+    opening = Opening(request.max_size, read_arguments(request.arg or ()), reports=reports)
     submission = open_submission(request.path, rubric.lab, opening, with_neighbours=True)
     if submission.several:
         warn(submission.several)
+    if submission.package is None and not submission.is_single and (around := _package_around(request.path)):
+        warn(f"{around}/package.xml exists: this is inside a package; run `grader grade {around}`")
     report = grade(rubric, submission, tuple(request.part or ()))
     for result in report.results:
         if result.traceback:
@@ -110,45 +117,36 @@ def grade_submission(request: GradeRequest, warn: Warn) -> _GradeRun:
         report, fix = add_hints(report, submission, request.hints, warn, is_fixed=request.fix is not None)
     folder = _folder_of(request.path, submission.path) if submission.is_single else None
     besides = tuple(folder / path for path in submission.besides) if folder is not None else ()
-    return _GradeRun(report, _base_of(request.path, folder), exit_code(report, threshold), fix, besides)
+    return GradeRun(report, _base_of(request.path, folder), exit_code(report, threshold), fix, besides)
 
 
-def remove_reports(saves: Saves, rubric: Sequence[Path], *paths: str) -> dict[Path, int]:
-    """Remove the files that `--save` names and return their permissions.
+def check_saves(saves: Saves, rubric: Sequence[Path], *paths: str) -> None:
+    """Raise InputError if a report would overwrite an input, or lead through a symlink of a submission.
 
-    They may be of an earlier run, or forged by a student: if this run is refused, they must not be mistaken for its
-    reports. Robot descriptions and other files of a package stay, because they may be what is read. Raises InputError
-    if a report would overwrite a file of the rubric or one of the submissions, or lead through a symlink of a
-    submission.
+    Inputs are the files of the rubric and the submissions that are files.
     """
-    if not saves:
-        return {}
-    refusals: list[InputError] = []
-    modes: dict[Path, int | None] = {}
     # os.path.isdir is False for a name that is too long, for which Path.is_dir raises before Python 3.14.
     inputs = [*rubric, *(Path(path) for path in paths if not os.path.isdir(path))]  # noqa: PTH112
     for _, file in saves:
-        try:
-            refuse_symlinks(file, paths)
-            refuse_inputs("--save", file, inputs)
-            if Path(os.path.realpath(file)).suffix.lower() not in _KEPT:
-                modes[file] = remove_previous(file)
-        except InputError as error:  # the others are removed nevertheless
-            refusals.append(error)
-    if refusals:
-        raise refusals[0]
-    return {file: mode for file, mode in modes.items() if mode is not None}
+        refuse_symlinks(file, paths)
+        refuse_inputs("--save", file, inputs)
 
 
-def save_reports(request: GradeRequest, run: _GradeRun, modes: Mapping[Path, int]) -> None:
-    """Write the reports that `--save` names, with the permissions of the files before them. Raises InputError."""
+def save_reports(request: GradeRequest, run: GradeRun) -> None:
+    """Write the reports that `--save` names. Raises InputError: then none has changed."""
     graded = Path(request.path, run.report.submission.path or "")
     for _, file in request.saves:
-        is_source = file.suffix.lower() in _KEPT
+        is_source = file.suffix.lower() in _SOURCES
         refuse_inputs("--save", file, (Path(request.path) if is_source else graded, *run.besides))
-    for kind, file in request.saves:
-        text = render(run.report, kind, run.base, verbose=request.verbose)
-        save(file, text, (request.path,), modes.get(file))
+    texts = {file: render(run.report, kind, run.base, verbose=request.verbose) for kind, file in request.saves}
+    save_all({file: text.encode("utf-8", "backslashreplace") for file, text in texts.items()}, (request.path,))
+
+
+def _package_around(path: str) -> str:
+    """Return the way from a folder up to the package that it is in; empty if it is in none."""
+    folder = Path(path).absolute()
+    ways = (os.path.normpath(f"{path}/{'../' * depth}") for depth in range(1, min(_MAX_UP, len(folder.parents)) + 1))
+    return next((shell_quoted(way) for way in ways if Path(way, "package.xml").is_file()), "")
 
 
 def requested_rubric(request: GradeRequest) -> "Rubric":

@@ -69,7 +69,9 @@ def read_saves(texts: Sequence[str]) -> Saves:
 def _read_save(text: str) -> tuple[Format, Path]:
     kind, equals, file = text.partition("=")
     if kind not in list(Format) or not equals or file in ("", "-"):
-        raise GraderError(f"--save takes FORMAT=FILE with one of the formats {', '.join(Format)}, not {text!r}")
+        meant = next((kind for kind in Format if text.endswith(f".{kind.ending}")), None)
+        guess = f"; did you mean --save {meant}={text}?" if meant is not None and not equals else ""
+        raise GraderError(f"--save takes FORMAT=FILE with one of the formats {', '.join(Format)}, not {text!r}{guess}")
     # The shell expands no ~ after `=`; Path.expanduser raises for an unknown user.
     return Format(kind), Path(os.path.expanduser(file))  # noqa: PTH111
 

@@ -13,12 +13,11 @@ from rich.text import Text
 
 from grader.commands.grade_submission import (
     GradeRequest,
+    check_saves,
     grade_submission,
-    remove_reports,
     requested_rubric,
     save_reports,
 )
-from grader.commands.invocation import ExitCode
 from grader.commands.rubrics import files_of
 from grader.commands.writing import Terminal
 from grader.errors import GraderError, InputError, MachineError, RubricError
@@ -27,7 +26,7 @@ from grader.grading.report import Report, Result
 from grader.grading.rubric import find_rubric, shipped_rubrics
 from grader.report.criteria import alike
 from grader.report.formats import Format, render
-from grader.report.screen import draw
+from grader.report.screen import Screen, draw
 from grader.report.terminal import Page
 from grader.text import enumerated, format_points, printable, printable_path, signed_points
 
@@ -44,8 +43,8 @@ _CHANGES = {
 _Stamps = dict[str, tuple[int, ...] | None]
 
 
-def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
-    """Grade now and after every change, until Ctrl-C; return the exit code of the last grading.
+def watch(request: GradeRequest, terminal: Terminal) -> None:
+    """Grade now and after every change, until Ctrl-C, which raises KeyboardInterrupt.
 
     A submission or rubric that cannot be read is reported, and graded again after the next change.
 
@@ -55,29 +54,22 @@ def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
     """
     watched = _watched(request)
     rubric = files_of(request.rubric, request.answers) if request.saves else ()
-    modes = remove_reports(request.saves, rubric, request.path)
+    check_saves(request.saves, rubric, request.path)
     _ = request.threshold  # refuse a wrong one at once
     gc.enable()  # unlike other commands, this one may run for hours
-    code: ExitCode | None = None
     last: Report | None = None
     terminal.warn(f"watching {printable_path(request.path)}; stop with Ctrl-C")
-    try:
-        for besides in _changes(watched, frozenset(os.path.realpath(file) for _, file in request.saves)):
-            try:
-                result = grade_submission(request, terminal.warn)
-            except (InputError, MachineError, RubricError) as error:
-                code = ExitCode.NOT_GRADED
-                for line in str(error).split("\n"):
-                    terminal.warn(line)
-                continue
-            code, besides[:] = result.exit_code, result.besides
-            save_reports(request, result, modes)
-            _show(result.report, last, terminal, verbose=request.verbose)
-            last = result.report
-    except KeyboardInterrupt:
-        if code is None:  # during the first grading
-            raise
-    return ExitCode.NOT_GRADED if code is None else code
+    for besides in _changes(watched, frozenset(os.path.realpath(file) for _, file in request.saves)):
+        try:
+            result = grade_submission(request, terminal.warn)
+        except (InputError, MachineError, RubricError) as error:
+            for line in str(error).split("\n"):
+                terminal.warn(line)
+            continue
+        besides[:] = result.besides
+        save_reports(request, result)
+        _show(result.report, last, terminal, verbose=request.verbose)
+        last = result.report
 
 
 def _watched(request: GradeRequest) -> list[Path]:
@@ -98,18 +90,29 @@ def _watched(request: GradeRequest) -> list[Path]:
 
 
 def _show(report: Report, last: Report | None, terminal: Terminal, *, verbose: bool) -> None:
-    """Show the whole report, then what changed."""
+    """Show a rule with the time below an earlier report, the whole report, then what changed."""
     screen = terminal.screen()
-    lines = comparison_lines(last, report) if last is not None else []
+    text = render(report, Format.TERMINAL, screen=screen, verbose=verbose)
+    if last is not None:
+        lines = [Text(line, "bold") for line in comparison_lines(last, report)]
+        text = _drawn([_rule(screen.width)], screen) + text + _drawn([Text(), *lines], screen)
+    terminal.print(text)
 
-    def print_lines(console: Console) -> None:
-        page = Page(console, [Text()])
-        for line in lines:
-            page.inset(line, "bold", 0)
+
+def _rule(width: int) -> Text:
+    return Text(f"-- {time.strftime('%H:%M:%S')} ".ljust(width, "-"), "dim")
+
+
+def _drawn(rows: list[Text], screen: Screen) -> str:
+    """Return rows of text as the screen shows them."""
+
+    def print_rows(console: Console) -> None:
+        page = Page(console, [])
+        for row in rows:
+            page.inset(row, indent=0)
         page.print()
 
-    changes = draw(print_lines, screen) if lines else ""
-    terminal.print(render(report, Format.TERMINAL, screen=screen, verbose=verbose) + changes)
+    return draw(print_rows, screen)
 
 
 def comparison_lines(before: Report, after: Report) -> list[str]:

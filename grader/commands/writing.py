@@ -7,8 +7,8 @@ import errno
 import os
 import stat
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import AbstractContextManager, suppress
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -62,21 +62,45 @@ def save(path: Path, text: str, submissions: Sequence[Path | str] = (), mode: in
 
 
 def save_bytes(path: Path, data: bytes, submissions: Sequence[Path | str] = (), mode: int | None = None) -> None:
-    """Write a file atomically. A path that is not a regular file, such as a pipe or a device, is written to directly.
+    """Write a file atomically, as `save_all` does; a new one gets the permissions `mode`."""
+    save_all({path: data}, submissions, mode)
 
-    A symlink is followed unless it is in one of the submissions, which are folders and files that students made. A new
-    file gets the permissions `mode`; one that is replaced keeps its own. Raises InputError if the file cannot be
-    written.
+
+def save_all(files: Mapping[Path, bytes], submissions: Sequence[Path | str] = (), mode: int | None = None) -> None:
+    """Write files, each atomically, and none before all are written beside their places.
+
+    A path that is not a regular file, such as a pipe or a device, is written to directly. A symlink is followed unless
+    it is in one of the submissions, which are folders and files that students made. A new file gets the permissions
+    `mode`; one that is replaced keeps its own. Raises InputError if a file cannot be written: then none has changed.
     """
-    refuse_symlinks(path, submissions)
+    temporaries: dict[Path, Path] = {}
     try:
-        if is_stdout(path):  # also if that is redirected to a file: printed text goes there as well
-            write_stdout(data)
-        elif path.exists() and not path.is_file():
-            with path.open("wb") as file:
-                file.write(data)
-        else:
-            _replace(Path(os.path.realpath(path)), data, mode)
+        for path, data in files.items():
+            with _as_input_error(path):
+                refuse_symlinks(path, submissions)
+                if not is_stdout(path) and (path.is_file() or not path.exists()):
+                    target = Path(os.path.realpath(path))
+                    temporaries[path] = _write_beside(target, data, mode)
+        for path, data in files.items():
+            with _as_input_error(path):
+                if path in temporaries:
+                    temporaries[path].replace(os.path.realpath(path))
+                elif is_stdout(path):  # also if that is redirected to a file: printed text goes there as well
+                    write_stdout(data)
+                else:
+                    with path.open("wb") as file:
+                        file.write(data)
+    finally:
+        for temporary in temporaries.values():
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def _as_input_error(path: Path) -> Iterator[None]:
+    """Raise InputError for a file that cannot be written."""
+    try:
+        yield
     except (OSError, ValueError) as error:
         if isinstance(error, FileNotFoundError) and not path.parent.exists():
             raise missing_folder(path) from None
@@ -92,27 +116,8 @@ def make_folder(folder: Path) -> None:
         raise InputError(f"cannot make the folder {printable_path(folder)}: {error.strerror}") from None
 
 
-def remove_previous(path: Path) -> int | None:
-    """Remove the regular file of an earlier run and return its permissions; None if there is none.
-
-    A run that fails later then leaves no old report. Raises InputError if the file cannot be removed.
-    """
-    if is_stdout(path):
-        return None
-    target = Path(os.path.realpath(path))
-    try:
-        mode = target.lstat().st_mode
-        if not stat.S_ISREG(mode):
-            return None
-        target.unlink()
-    except (FileNotFoundError, NotADirectoryError, ValueError):  # `save` reports why it cannot be written
-        return None
-    except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror}") from None
-    return stat.S_IMODE(mode)
-
-
-def _replace(target: Path, data: bytes, mode: int | None) -> None:
+def _write_beside(target: Path, data: bytes, mode: int | None) -> Path:
+    """Write a file that is to replace another one beside it, with its permissions, and return its path."""
     # An unpredictable name, created exclusively: no student can prepare a file or symlink there.
     temporary = target.with_name(f".{os.urandom(8).hex()}.tmp")
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
@@ -125,11 +130,11 @@ def _replace(target: Path, data: bytes, mode: int | None) -> None:
             mode = stat.S_IMODE(target.stat().st_mode)
         if mode is not None:
             temporary.chmod(mode)
-        temporary.replace(target)
     except OSError:
         with suppress(OSError):
             temporary.unlink(missing_ok=True)
         raise
+    return temporary
 
 
 def _sync(handle: int) -> None:

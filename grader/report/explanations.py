@@ -22,6 +22,7 @@ from grader.text import enumerated, format_points, printable
 from grader.xacro.xacro_problems import XACRO_CATALOGUE
 
 _WIDTH = 80
+_MAX_SIMILAR = 6  # criteria that are named
 _CHECKS = "checks"
 EVERY_KIND = (*CATALOGUE, *XACRO_CATALOGUE, *PACKAGE_CATALOGUE)
 EFFECTS = {
@@ -93,9 +94,10 @@ def explanation(name: str, rubric: Rubric) -> str:
     lists = (
         f"`{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, and reports show the codes"
     )
-    raise InputError(
-        f"there is no problem code, criterion or check {name!r}{did_you_mean(name, known) or f'; {lists}'}"
-    )
+    begun = [criterion.id for criterion in rubric.criteria if criterion.id.startswith(name)]
+    similar = f"; there are {enumerated(begun, _MAX_SIMILAR)}: `grader explain {begun[0]}`" if begun else ""
+    guess = similar or did_you_mean(name, known) or f"; {lists}"
+    raise InputError(f"there is no problem code, criterion or check {name!r}{guess}")
 
 
 def _paragraphs(texts: Iterable[str]) -> str:

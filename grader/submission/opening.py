@@ -1,5 +1,6 @@
 """Opens a submission: a URDF, a folder, an archive or standard input."""
 
+import os
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
@@ -50,6 +51,8 @@ def open_submission(path: str, lab: Lab, opening: Opening = DEFAULTS, *, with_ne
     shown = printable_path(place)
     if tree is not None:
         identity = tree.name if place.is_dir() else tree_name(place)
+        if opening.reports and place.is_dir():
+            tree = tree.only(lambda inside: os.path.realpath(place / inside) not in opening.reports)
         return submission_of(tree, identity, lab, opening, shown=shown)
     if place.suffix.lower() in _NO_URDFS:
         from grader.submission.robots import START, is_robot  # late: most URDFs are called .urdf

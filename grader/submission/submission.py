@@ -44,6 +44,7 @@ class Opening(NamedTuple):
     arguments: Mapping[str, str] = _NO_ARGUMENTS  # of xacro
     no_documents: str = ""  # why no document is read, where grading ran out of memory with them
     converted: Mapping[str, str] = _NO_ARGUMENTS  # the texts of Word and PDF files that were read before, by path
+    reports: frozenset[str] = frozenset()  # real paths of earlier reports, which are not part of a folder
 
 
 DEFAULTS = Opening()
