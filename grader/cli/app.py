@@ -147,7 +147,7 @@ def _other_error(error: Exception) -> ExitCode:
         print(message, file=sys.stderr)
     else:
         command = context.command_path if context is not None else "grader"
-        advice = f"for example `{command} {example}`" if example else f"`{command} --help` shows the usage"
+        advice = f"for example `grader grade {example}`" if example else f"`{command} --help` shows the usage"
         warn(_one_line(f"{message} ({advice})"))
     return ExitCode.NOT_GRADED
 

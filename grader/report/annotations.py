@@ -63,7 +63,7 @@ def _findings(report: Report, base: Base) -> Iterator[_Finding]:
 
 def _entry_finding(entry: Entry, source_of: SourceOf, base: Base) -> _Finding:
     is_mistake, where = bool(entry.lost) or is_failure(entry.result), entry.location
-    lines = entry.texts("finding", "comment", "hint", "feedback", "expected", "alike")
+    lines = entry.texts("finding", "comment", "hint", "feedback", "expected", "alike", "also", "skipped")
     level: Severity = "error" if is_mistake else "warning"
     if entry.result.criterion.bonus:
         lines.append(f"Extra credit: {earned_text(entry.result)}.")

@@ -183,9 +183,11 @@ def failures(report: Report) -> tuple[Entry, ...]:
 
 
 def _shared_edit(failure: Entry) -> str:
-    """Return what failures have in common that one edit fixes."""
-    hint = failure.result.hint
-    return hint.shown_by if hint is not None and not failure.result.why_given else failure.id
+    """Return what failures have in common that one edit fixes; a manual mark stands alone."""
+    result = failure.result
+    if result.hint is None or result.why_given or result.manual_mark is not None:
+        return f"only {failure.id}"
+    return result.hint.shown_by
 
 
 def _fixed_together(some: tuple[Entry, ...]) -> tuple[Entry, ...]:

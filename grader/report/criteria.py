@@ -34,7 +34,8 @@ _MAX_FILES, _MAX_CRITERIA = 2, 3
 # Of a submission, of a criterion, and of the list of evidence, problems and files.
 Role = Literal[
     "graded", "result", "summary", "provenance",
-    "finding", "comment", "hint", "feedback", "expected", "alike", "carried", "unbuilt", "there",
+    "finding", "comment", "hint", "feedback", "expected", "alike", "also", "skipped",
+    "carried", "unbuilt", "there",
     "part", "found", "missing", "error", "warning", "note", "ignored",
 ]  # fmt: skip
 
@@ -77,7 +78,7 @@ def is_absent(result: Result) -> bool:
 
 def is_not_found(result: Result) -> bool:
     """Return whether an answer or a picture was searched in vain."""
-    return is_manual(result) and result.is_open and result.outcome.expected is not None
+    return is_manual(result) and result.is_open and result.outcome.expected is not None and result.comment is None
 
 
 def is_manual(result: Result) -> bool:
@@ -253,6 +254,11 @@ def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iter
     if is_failure(result) and not is_asked:
         # The title of a criterion is never stated alone, because it would read as a fact.
         yield Line("expected", f"Passes when: {sentence(criterion.title)}")
+    for other in entry.also:
+        yield Line("also", f"{printable(other.id)}: {' '.join(line.text for line in _findings(other.result))}")
+    if entry.skipped:
+        names = enumerated([result.criterion.id for result in entry.skipped])
+        yield Line("skipped", printable(f"Skipped because {entry.id} failed: {names}."))
 
 
 def _place_to_change(result: Result) -> Location | None:

@@ -168,11 +168,11 @@ def _show_mistakes(mistakes: Sequence[Entry], report: Report, page: Page) -> Non
 
 
 def _brief_blocks(entry: Entry) -> Iterator[Block]:
-    """Yield the blocks of a short report: no diff, because the hint says it, and what is expected only if needed."""
+    """Yield the blocks of a short report: what is expected only if needed, and nothing that head and hint say."""
     is_clear = entry.result.outcome.expected is not None or bool(entry.texts("hint", "feedback"))
     for part in entry.blocks:
         match part:
-            case Diff():
+            case Diff() | Line("also" | "skipped"):
                 pass
             case Line("expected") if is_clear:
                 pass

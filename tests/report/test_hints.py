@@ -1,47 +1,12 @@
 """Hints: each format shows the proven change in place of the feedback, once, and its edits where the format has a place for them."""
 
-from typing import Any
-
 import pytest
 
-from grader.grading.report import ManualMark, Result
+from grader.grading.report import ManualMark
 from grader.report.formats import Format, render
 from grader.report.locations import diff_lines
 from grader.source import Edit, Source
 from tests.report.reports import hinted
-
-
-def _with_hint(results: tuple[Result, ...], **changes: Any) -> tuple[Result, ...]:
-    return tuple(it._replace(hint=it.hint._replace(**changes)) if it.hint is not None else it for it in results)
-
-
-def test_a_hint_is_never_cut() -> None:
-    """Half an edit would be a wrong one: a long message is cut instead."""
-    report = hinted()
-    change = "Change " + " ".join(f"part{number}" for number in range(20))
-    results = tuple(
-        result._replace(outcome=result.outcome._replace(message="wrong " * 200)) if result.hint is not None else result
-        for result in report.results
-    )
-    text = render(report._replace(results=_with_hint(results, message=change)), Format.TERMINAL)
-    assert f"{change}." in " ".join(text.split())
-    assert "wrong\u2026" in text
-
-
-def test_a_hint_without_room_is_described() -> None:
-    """What it changes; the lines that change are in the whole report."""
-    report = hinted()
-    change = "Change " + " ".join(f"part{number}" for number in range(80))
-    results = _with_hint(report.results, message=change, cause="the sign of the roll")
-    short, whole = (
-        render(report._replace(results=results), Format.TERMINAL, verbose=verbose) for verbose in (False, True)
-    )
-    assert "Wrong: the sign of the roll. --verbose shows the edits. Also fixes right-wheel-axis, -1." in " ".join(
-        short.split()
-    )
-    assert "part79" not in short
-    assert "part79." in whole
-    assert '    +      <origin xyz="-0.15 -0.2 0" rpy="-1.57 0 0" />\n' in whole
 
 
 def test_a_manual_mark_leaves_no_hint() -> None:

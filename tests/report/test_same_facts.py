@@ -12,6 +12,7 @@ import pytest
 
 from grader.grading.report import Report, Result
 from grader.report.content import other_problems
+from grader.report.criteria import is_absent, is_not_found
 from grader.report.formats import Format, render
 from grader.text import format_points, printable
 from tests.report.readers import READERS, read_commands
@@ -46,11 +47,13 @@ def facts(report: Report) -> Iterator[Fact]:
         yield Fact("package", (submission.package.folder or submission.package.name,))
     score, most, is_pending = map(format_points, (report.score, report.max_score, report.pending))
     if report.pending:
-        yield Fact("waits", (f"{is_pending} points need", f'"pending":{is_pending},'))
+        words = f"{is_pending} more need", f"{is_pending} points need", f'"pending":{is_pending},'
+        yield Fact("waits", words)
     keys = ('"max_score":', '"max-score":', '"maxScore":')
     yield Fact(
         "score",
         (
+            f"{score} of {format_points(report.max_score - report.pending)} points",
             f"{score}/{most} points",
             f"{score}/{most}  {report.rubric.title}",
             f'"score":{score},"output',
@@ -84,25 +87,38 @@ def _of_criterion(result: Result, report: Report) -> Iterator[Fact]:
         return
     if status == "passed":
         return
+    cause = next((one for one in report.results if one.criterion.id == result.because), result)
+    if is_absent(result) or is_absent(cause):  # one line for each thing
+        absent = (result if is_absent(result) else cause).outcome.absent
+        yield from (
+            Fact("unbuilt", (thing, outcome.message, f'"because":"{result.because}"'), name) for thing in absent
+        )
+        return
+    if is_not_found(result):
+        wanted, message = str(outcome.expected), printable(outcome.message)
+        yield Fact("looked for", (wanted, wanted.replace("`", ""), message), name)
+        return
     is_open = status in ("skipped", "pending")
     yield Fact(f"title of {status}" if is_open else "title", (criterion.title, name), name)
     if status == "skipped":
         yield Fact("because", (f"{result.because} failed", f'"because":"{result.because}"'), name)
         return
-    yield Fact("message of pending" if is_open else "message", (printable(outcome.message),), name)
+    if result.carried:
+        yield Fact("carried", (f"only because of {result.carried}", f'"carried":"{result.carried}"'), name)
+        return
+    message = printable(outcome.message)
+    yield Fact("message of pending" if is_open else "message", (message, message.replace("`", "")), name)
     if is_open and isinstance(outcome.measured, str):
         lines = (line for line in map(printable, outcome.measured.splitlines()) if line.strip())
         yield from (Fact("found", (line, line.lstrip("# ").replace("`", "")), name) for line in lines)
     if status == "failed" and outcome.location is not None:
         yield Fact("place", (f"{outcome.location.path}:{outcome.location.line}",), name)
-    if result.carried:
-        yield Fact("carried", (result.why_given, f'"carried":"{result.carried}"'), name)
-    elif (
+    if (
         status == "failed"
         and result.hint is None
         and (report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot"))
     ):
-        yield Fact("feedback", (criterion.feedback,), name)
+        yield Fact("feedback", (criterion.feedback, criterion.feedback.replace("`", "")), name)
 
 
 def _plain(text: str) -> str:
@@ -119,7 +135,7 @@ def missing_from(kind: Format, report: Report) -> Iterator[Fact]:
         text = render(report, kind, verbose=True)
     shown = _plain(READERS[kind].text(text))
     reported = read_commands(text) if kind is Format.GITHUB else []
-    named = {name for command in reported for name in command.data.partition("See the report for: ")[2].split(", ")} - {
+    named = {line for command in reported for line in command.data.partition("See the report for:")[2].split("\n")} - {
         ""
     }
     for fact in facts(report):

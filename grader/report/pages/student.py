@@ -1,6 +1,6 @@
 """The pages about one robot: the report for the student, with three views of the robot, and an inspection."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from itertools import groupby
 
 from markupsafe import Markup
@@ -9,7 +9,7 @@ from grader import __version__
 from grader.grading.report import Report
 from grader.report import content
 from grader.report.content import report_sections
-from grader.report.criteria import STATUS_WORDS, SYMBOLS, CriteriaGroup, Entry, earned_text, groups, status_of
+from grader.report.criteria import STATUS_WORDS, SYMBOLS, CriteriaGroup, earned_text, groups, status_of
 from grader.report.drawing.picture import Picture, picture_of, plain_picture
 from grader.report.inspection import MAX_LISTED, Inspection, effect, lists
 from grader.report.locations import diff_lines, location_text, source_lines
@@ -43,7 +43,9 @@ def render_html(report: Report) -> str:
         "kind_of": lambda block: type(block).__name__,
         "called": called,
         "sections": sections,
-        "cards": dict(item for section in sections for entry in section.entries for item in _addresses(entry)),
+        "cards": {
+            result.criterion.id: entry.id for part in sections for entry in part.entries for result in entry.results
+        },
         "parts": [_part_card(report.rubric.part(part).title, [*some]) for part, some in by_part],
         "no_picture": NO_PICTURE,
     }
@@ -52,12 +54,6 @@ def render_html(report: Report) -> str:
 
 def _part_card(title: str, some: list[CriteriaGroup]) -> tuple[str, str, list[CriteriaGroup]]:
     return title, earned_text(*(result for group in some for result in group.results)), some
-
-
-def _addresses(entry: Entry) -> Iterator[tuple[str, str]]:
-    """Yield the criteria of a card, each with the criterion whose card shows it."""
-    for one in (entry, *entry.also):
-        yield one.id, one.id if one.first else entry.id
 
 
 def inspection_html(inspection: Inspection) -> str:
