@@ -40,6 +40,7 @@ from grader.text import (
 _SAFE = re.compile(
     r"(?i)(?!(?:con|prn|aux|nul|com\d|lpt\d)(?:\.|$)|index$|.*-[0-9a-f]{64}$)[\w=][\w.@+=,'()-]{0,39}(?<!\.)"
 )
+_CLASS_PAGE = "index.html"
 _TASK_SIZE = 4  # reports
 _SECONDS = 60.0  # in which hints are searched, and a few reports written
 _NOTHING = Outcome("skipped", "not graded, because nothing was submitted")
@@ -55,6 +56,7 @@ class ReportRun(NamedTuple):
     folder: Path  # to write into
     formats: tuple[Format, ...]
     answers: Path | None = None  # the model answers
+    class_page: str = ""  # its address as seen from a report, if it is written
     time: str = ""  # of the newest run: workers read the gradebook once for it
 
 
@@ -80,7 +82,8 @@ def report_of(book: Gradebook, grade: StudentGrade, *, has_hints: bool = True) -
         report = Report(nothing, book.rubric, book.settings.parts, results)
     is_changed = grade.has_final or grade.late.points or any(result.manual_mark for result in report.results)
     counting = Grade(grade.total, grade.late.points, grade.final_points is not None) if is_changed else None
-    return report._replace(notes=(*report.notes, *notes_of(grade, report)), grade=counting)
+    student = grade.student.name or grade.student.key
+    return report._replace(notes=(*report.notes, *notes_of(grade, report)), grade=counting, student=student)
 
 
 def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
@@ -139,9 +142,11 @@ def write_reports(run: ReportRun, terminal: Terminal, jobs: int | None = None, t
     make_folder(run.folder)
     book = Gradebook(run.gradebook)
     files = file_names([one.student.key for one in book if one.stored is not None or one.has_final])
-    lost = render_reports(run._replace(time=book.run.time), files, terminal, jobs, timeout)
+    place = run.gradebook if run.folder == run.gradebook / names.REPORTS else run.folder
+    class_page = "" if Format.HTML not in run.formats else f"{'' if place == run.folder else '../'}{_CLASS_PAGE}"
+    run = run._replace(time=book.run.time, class_page=class_page)
+    lost = render_reports(run, files, terminal, jobs, timeout)
     if Format.HTML in run.formats:
-        place = run.gradebook if run.folder == run.gradebook / names.REPORTS else run.folder
         prefix = "" if place == run.folder else f"{names.REPORTS}/"
         write_class_page(book, place, {key: prefix + name for key, name in files.items() if key not in lost})
     terminal.warn(f"{counted(len(files) - len(lost), 'report')} written to {printable_path(run.folder)}")
@@ -181,7 +186,7 @@ def _write_some(run: ReportRun, tasks: Sequence[_ReportTask]) -> list[tuple[str,
     """Write the reports of some students, in a worker; return the students."""
     book = _opened_gradebook(run)
     for task in tasks:
-        report = report_of(book, book.grade(task.key), has_hints=task.has_hints)
+        report = report_of(book, book.grade(task.key), has_hints=task.has_hints)._replace(class_page=run.class_page)
         for kind in run.formats:
             save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind))
     return [(task.key, "") for task in tasks]
@@ -216,4 +221,4 @@ def write_class_page(book: Gradebook, folder: Path, pages: Mapping[str, str]) ->
 
     grades = list(book)
     links = {key: quote(f"{name}.{Format.HTML.ending}") for key, name in pages.items()}
-    save(folder / "index.html", without_commands(render_class_page(book, grades, statistics(book, grades), links)))
+    save(folder / _CLASS_PAGE, without_commands(render_class_page(book, grades, statistics(book, grades), links)))

@@ -146,6 +146,8 @@ class Report(NamedTuple):
     hints_complete: bool = True  # whether the search for hints ended before its budget did
     version: str = __version__  # of the grader
     grade: Grade | None = None  # in a class, where a person or the late penalty changes the score
+    student: str = ""  # the name, in a class
+    class_page: str = ""  # its address as seen from the student's page, if there is one
 
     @property
     def all_notes(self) -> tuple[str, ...]:
@@ -166,6 +168,11 @@ class Report(NamedTuple):
     def counting(self) -> Decimal | None:
         """The points that count for the student: the grade, else the score; None for an excused student."""
         return self.grade.points if self.grade is not None else self.score
+
+    @property
+    def is_bare(self) -> bool:
+        """Whether the criteria say nothing: the student is excused, or the submission could not be read."""
+        return self.counting is None or bool(self.submission.unread and not self.submission.path)
 
     @property
     def open_points(self) -> Decimal:

@@ -99,6 +99,8 @@ class ReportSections(NamedTuple):
 
 def report_sections(report: Report, *, everything: bool = False) -> ReportSections:
     """Return the description of a report; with `everything` the rubric's feedback where there is a hint, too."""
+    if report.is_bare:
+        return ReportSections((), (), (), (), (), ())
     known = entries(report, everything=everything)
     others = [entry for entry in known.values() if not is_failure(entry.result)]
     by_status = dict(alike(others, lambda entry: entry.status))
@@ -267,8 +269,9 @@ def grade_line(report: Report) -> str:
 
 
 def graded_line(report: Report) -> str:
-    """Return the rubric and what is graded with it: the URDF, else the submission."""
-    return printable(f"{report.rubric.id}: {report.submission.path or report.submission.id}")
+    """Return the rubric and what is graded with it: the URDF, else the submission; in a class whose it is."""
+    graded = f"{report.rubric.id}: {report.submission.path or report.submission.id}"
+    return printable(f"{graded} ({report.student})" if report.student else graded)
 
 
 def verdict_line(report: Report) -> str:
@@ -373,6 +376,8 @@ def other_problems(report: Report) -> list[Problem]:
 
 def next_command(report: Report) -> str:
     """Return the command that explains the costliest failure, or else what is undecided; empty without either."""
+    if report.student and not report.rubric.is_copy_of_shipped:  # which the student does not have
+        return ""
     found = report_sections(report)
     failed = [entry.result for entry in (*found.mistakes, *found.unbuilt) if entry.result.manual_mark is None]
     first = next(iter((*failed, *report.pending_automatic)), None)

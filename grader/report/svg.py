@@ -67,7 +67,7 @@ def drawing_element(picture: Picture, title: str = "", *, legend: bool = True, a
     parts = _headline(title, above) if title else []
     parts += [f"<g>{''.join(_view(panel, picture))}</g>" for panel in panels]
     parts += _key(picture, panels[0].top)
-    height, words = panels[-1].top + panels[-1].height, _callout_lines(picture)
+    height, words = panels[-1].top + panels[-1].height, callout_lines(picture)
     lines = [line for part in words if legend for line in _wrapped(part, _WIDTH)]
     parts += [_text("text", (_LEFT, height + _LINE * number), line) for number, line in enumerate(lines, 1)]
     below = _LINE * len(lines) + 6.0 if lines else 0.0
@@ -81,7 +81,7 @@ def _svg(title: str, words: str, height: float, parts: Iterable[str]) -> str:
     return f'{start} {size}>{said}<rect class="paper" {size}/>{"".join(parts)}</svg>'
 
 
-def _callout_lines(picture: Picture) -> list[str]:
+def callout_lines(picture: Picture) -> list[str]:
     """Return what each callout of a picture is about, and what is not shown."""
     called = [
         f"{one.number}: {one.link or 'the robot'}: {points_of(one.results)} lost"

@@ -1,37 +1,52 @@
 """The pages about one robot: the report for the student, with three views of the robot, and an inspection."""
 
-from collections.abc import Mapping
+from base64 import b64encode
+from collections.abc import Mapping, Sequence
 from itertools import groupby
 
 from markupsafe import Markup
 
 from grader import __version__
+from grader.documents.pictures import PDF, EmbeddedPicture
+from grader.grading.criterion_pictures import may_have_pictures, pictures_of
 from grader.grading.report import Report
 from grader.report import content
 from grader.report.content import report_sections
-from grader.report.criteria import STATUS_WORDS, SYMBOLS, CriteriaGroup, earned_text, groups, status_of
+from grader.report.criteria import (
+    STATUS_WORDS,
+    SYMBOLS,
+    CriteriaGroup,
+    Entry,
+    alike,
+    earned_text,
+    groups,
+    is_manual,
+    status_of,
+)
 from grader.report.drawing.picture import Picture, picture_of, plain_picture
 from grader.report.inspection import MAX_LISTED, Inspection, effect, lists
 from grader.report.locations import diff_lines, location_text, source_lines
 from grader.report.pages.shell import Assets, render_page
-from grader.report.svg import NO_PICTURE, STYLE, drawing_element
+from grader.report.svg import NO_PICTURE, STYLE, callout_lines, drawing_element
 from grader.text import format_points, printable
 
+_MAX_PICTURES = 6 * 1024 * 1024  # bytes on a page
 _CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts
 
 
 def render_html(report: Report) -> str:
     """Return the report as a page. Model answers are on it only if the rubric was loaded with them."""
-    picture = picture_of(report)
+    picture = picture_of(report) if not report.is_bare else None
     callouts = [callout for callout in picture.callouts if callout.point is not None] if picture is not None else []
     called = {result.criterion.id: callout.number for callout in callouts for result in callout.results}
     sections = [*report_sections(report).sections]
-    by_part = groupby(groups(report), key=lambda group: group.part)
+    by_part = groupby(groups(report) if not report.is_bare else (), key=lambda group: group.part)
     values = {
         "version": report.version,
-        "title": printable(f"{content.score_text(report)}: {report.rubric.title} ({report.submission.id})"),
+        "title": printable(f"{report.student or content.graded_line(report)}: {content.score_text(report)}"),
         "report": report,
         "content": content,
+        "head": {role: [line.text for line in some] for role, some in alike(content.head(report), lambda it: it.role)},
         "maximum": format_points(report.max_score) if report.counting is not None else "",
         "symbols": SYMBOLS,
         "status_words": STATUS_WORDS,
@@ -43,13 +58,27 @@ def render_html(report: Report) -> str:
         "kind_of": lambda block: type(block).__name__,
         "called": called,
         "sections": sections,
-        "cards": {
-            result.criterion.id: entry.id for part in sections for entry in part.entries for result in entry.results
-        },
+        "cards": {one.criterion.id: entry.id for part in sections for entry in part.entries for one in entry.results},
         "parts": [_part_card(report.rubric.part(part).title, [*some]) for part, some in by_part],
+        "pictures": _pictures(report, [entry for part in sections for entry in part.entries]),
         "no_picture": NO_PICTURE,
     }
-    return _render("student.html", values, picture, "student.js")
+    return _render("student.html", values, picture, "student.js", "img-src data:")
+
+
+def _pictures(report: Report, entries: Sequence[Entry]) -> Mapping[str, list[tuple[str, str]]]:
+    """Return the pictures of criteria that need manual grading, each as where it is and its data as an address."""
+    shown: dict[str, list[tuple[str, str]]] = {}
+    room = _MAX_PICTURES
+    for entry in entries:
+        if not is_manual(entry.result) or not may_have_pictures(entry.result):
+            continue
+        for one in pictures_of(entry.result, report.submission):
+            if isinstance(one, EmbeddedPicture) and one.kind is not PDF and len(one.data) <= room:
+                room -= len(one.data)
+                address = f"data:{one.kind.media_type};base64,{b64encode(one.data).decode()}"
+                shown.setdefault(entry.id, []).append((one.where, address))
+    return shown
 
 
 def _part_card(title: str, some: list[CriteriaGroup]) -> tuple[str, str, list[CriteriaGroup]]:
@@ -75,9 +104,12 @@ def inspection_html(inspection: Inspection) -> str:
     return _render("inspection.html", values, plain_picture(robot, inspection.relative_to))
 
 
-def _render(template: str, values: Mapping[str, object], picture: Picture | None, script: str = "") -> str:
+def _render(
+    template: str, values: Mapping[str, object], picture: Picture | None, script: str = "", sources: str = ""
+) -> str:
     """Return a page about the robot of a picture, if there is one."""
     drawn = drawing_element(picture, legend=False) if picture is not None else ""
     views = Markup(drawn)  # noqa: S704  an element, whose text is escaped
-    assets = Assets("robot.css student.css", script, STYLE if drawn else "")
-    return render_page(template, {**values, "picture": picture, "views": views}, {}, assets)
+    assets = Assets("robot.css student.css", script, STYLE if drawn else "", sources)
+    legend = callout_lines(picture) if picture is not None else []
+    return render_page(template, {**values, "picture": picture, "views": views, "legend": legend}, {}, assets)
