@@ -34,7 +34,6 @@ from grader.report.criteria import (
 )
 from grader.report.locations import location_text
 from grader.text import (
-    capitalised,
     counted,
     counted_points,
     enumerated,
@@ -224,7 +223,12 @@ def result_line(report: Report) -> str:
     Of a student in a class it is the grade, and how it came about.
     """
     if report.grade is not None:
-        return f"{capitalised(score_text(report))}. {grade_line(report)}"
+        texts = [grade_line(report)]
+        if report.counting is not None:
+            texts.insert(0, f"{score_text(report)}.")
+        if report.open_points:
+            texts.append(f"{pending_points(report)}.")
+        return " ".join(texts)
     found, decided = report_sections(report), report.max_score - report.pending
     if decided == 0 and not found.mistakes:
         return sentence(pending_points(report)) if report.pending else "Nothing to grade."

@@ -10,7 +10,7 @@ from typing import Any
 from lxml import etree
 
 from grader.grading.report import Report, Result
-from grader.report.content import closing_lines, counting_text, entries, graded_line, head, score_text
+from grader.report.content import closing_lines, counting_text, entries, graded_line, head
 from grader.report.criteria import Entry, earned_text, is_failure, plain_lines, status_of
 from grader.report.locations import archive_around
 from grader.source import Base
@@ -24,7 +24,7 @@ _COUNTS = {"failures": "failure", "errors": "error", "skipped": "skipped"}
 def render_junit(report: Report, base: Base) -> str:
     """Return the report; its paths are those in the repository, where the submission is at `base`."""
     top = etree.Element("testsuites", {"name": graded_line(report), **_counts(report.results)})
-    said = [score_text(report), *(line.text for line in head(report)), *closing_lines(report)]
+    said = [*(line.text for line in head(report)), *closing_lines(report)]
     parts = groupby(entries(report).values(), key=lambda entry: entry.result.criterion.part)
     suites = [(report.rubric.part(part).title, tuple(some)) for part, some in parts]
     for number, (title, some) in enumerate(suites or [(report.rubric.title, ())]):

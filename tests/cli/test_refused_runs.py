@@ -1,4 +1,4 @@
-"""A `grade` that ends with exit code 2 leaves no report, old or new, and writes over nothing that it reads or writes."""
+"""A `grade` that ends with exit code 2 changes no file."""
 
 import shutil
 import subprocess
@@ -97,8 +97,8 @@ def files(place: Path) -> dict[str, bytes]:
 
 @pytest.mark.parametrize("is_first", [True, False])
 @pytest.mark.parametrize("why", spread(REFUSALS, 4))
-def test_a_refused_run_leaves_no_report(place: Path, why: str, is_first: bool) -> None:
-    """The old report goes, whatever is wrong and wherever `--save` stands; every other file stays as it was."""
+def test_a_refused_run_changes_nothing(place: Path, why: str, is_first: bool) -> None:
+    """Whatever is wrong and wherever `--save` stands, an old report stays as it was, as does every other file."""
     before = files(place)
     words = [*(() if "grade" in REFUSALS[why] else ("grade",)), *REFUSALS[why]]
     at = words.index("grade") + 1 if is_first or words[-1] == "--part" else len(words)  # that takes the next word
@@ -106,19 +106,17 @@ def test_a_refused_run_leaves_no_report(place: Path, why: str, is_first: bool) -
     done = run_with_input(words, b"", folder=place)
     assert (done.returncode, done.stdout) == (2, b""), done.stderr
     assert done.stderr.startswith(b"grader: "), done.stderr
-    del before["r.json"]
     assert files(place) == before, done.stderr
 
 
 @pytest.mark.exhaustive
 def test_a_report_that_cannot_be_printed_is_not_saved(place: Path) -> None:
-    """Nor is the first of two reports kept if the second cannot be written."""
+    """Nor is the first of two reports written if the second cannot be written beside its place."""
     before = files(place)
-    del before["r.json"]
     with Path("/dev/full").open("wb") as full:
         done = subprocess.run([*GRADER, "grade", "a.urdf", "--save", "json=r.json"], stdout=full, check=False)
     assert (done.returncode, files(place)) == (2, before), done.stderr
-    done = run_with_input(["grade", "a.urdf", "--save", "json=r.json", "--save", "svg=/dev/full"], b"", folder=place)
+    done = run_with_input(["grade", "a.urdf", "--save", "json=r.json", "--save", "svg=none/r.svg"], b"", folder=place)
     assert (done.returncode, files(place)) == (2, before), done.stderr
 
 
