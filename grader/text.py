@@ -125,6 +125,14 @@ def signed_points(points: Decimal) -> str:
     return f"{'+' if points >= 0 else '-'}{format_points(abs(points))}"
 
 
+def size_text(size: int) -> str:
+    """Return a number of bytes for people: 32 MiB, or 1500 bytes where no larger unit fits."""
+    for unit, factor in (("GiB", 1 << 30), ("MiB", 1 << 20), ("KiB", 1 << 10)):
+        if size >= factor and size % factor == 0:
+            return f"{size // factor} {unit}"
+    return f"{size} bytes"
+
+
 def was_not_committed(path: str) -> str:
     """Return the end of a message on a missing file that a build has copied to a path."""
     return f"; a build contains {path}: was the source not committed?"

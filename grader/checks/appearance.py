@@ -59,12 +59,17 @@ def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNega
     if actual is None:
         return failed(f"the box of {link!r} is rotated: its edges should be along the axes of {link!r}", at)
     fine = min(actual) >= 0.0 and all_within(actual, size, tolerance)
-    message = f"{link!r} shows a box {point(actual)} m"
+    message = f"the box of {link!r} is {_size_text(actual)} m"
     if not fine:
-        message += f"; it should be {point(size)} m ({other_unit(actual, size) or 'x, y, z'})"
+        message += f"; it should be {_size_text(size)} m ({other_unit(actual, size) or 'x, y, z'})"
     elif centred and not within(_off_centre(visual), 0.0, tolerance):
         return _off_centre_failure(link, visual, tolerance)
     return judged(fine, message, actual, size, tolerance, "m", at=at)
+
+
+def _size_text(size: Vector) -> str:
+    """Return the edges of a box: 0.6 x 0.4 x 0.2."""
+    return " x ".join(point((edge,)) for edge in size)
 
 
 def shows_cylinder(
@@ -170,7 +175,7 @@ def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
     """
     shown = visible(robot, link)
     if not shown:
-        return passed(f"{link!r} shows nothing")
+        return passed(f"{link!r} has no visible shape")
     message = f"{link!r} shows {shape_name(shown[0].geometry)}; it should have no visual"
     return failed(message, shown[0].location)
 

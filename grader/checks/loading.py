@@ -33,7 +33,7 @@ def urdf_loads(urdf: Reading) -> Outcome:
     others = f" (and {counted(len(problems) - 1, 'more such problem')})" if len(problems) > 1 else ""
     message = f"{first.message}{others}"
     if assumed := _list_assumed(urdf):
-        what = "Not deducted elsewhere" if urdf.is_meant else "Assumed"
+        what = "The rest is graded with this correction" if urdf.is_meant else "Assumed"
         message += f"{'' if message.endswith('?') else '.'} {what}: {assumed}"
     outcome = failed(message, first.location, problem=first.message)
     return outcome._replace(mistake=f"{first.code}: {first.kind.title}")

@@ -23,6 +23,7 @@ ABOUT = {
 _SMALL_ANGLE = 1e-3  # radians
 _STANDSTILL = 1e-9  # metres
 _MAX_SLOPE = 45.0  # degrees between the axis of a wheel and the level
+_NEARLY = 5.0  # degrees within which an axis is said to be vertical
 
 
 def rolls_forward(
@@ -77,11 +78,12 @@ def travel_of(
     moved = _flatten(minus(robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base).apply(low), low), up)
     travel = unit((-moved[0], -moved[1], -moved[2])) if hypot(*moved) > _STANDSTILL else None
     if travel is None:
-        return None, "its lowest point does not move"
+        return None, "its lowest point stays in place"
     upright = abs(dot(robot.pose(joint.child, relative_to=base).rotate(robot.axis(joint)), up))
     slope = degrees(asin(min(1.0, upright)))
     if slope > _MAX_SLOPE + SLACK:
-        return None, f"it swivels about an axis {in_degrees(slope)} off level; at most {in_degrees(_MAX_SLOPE)} count"
+        is_upright = slope >= 90.0 - _NEARLY
+        return None, "it turns about a vertical axis" if is_upright else f"its axis is {in_degrees(slope)} off level"
     return travel, ""
 
 
@@ -136,14 +138,12 @@ def turns_about_itself(
     away = hypot(*cross(turning, T_joint_wheel.translation))
     at, detail = place(joint.axis_location, "xyz") or joint.location, f" (joint {joint.name!r})"
     if tilt > angle + SLACK:
-        message = (
-            f"{link!r} wobbles: its joint axis is {in_degrees(tilt)} off the cylinder's axis; it should be along it"
-        )
+        message = f"the joint axis of {link!r} is {in_degrees(tilt)} off the cylinder's axis; they should coincide"
         return judged(False, message, tilt, 0.0, angle, "deg", at=at, detail=detail)
     fine = away <= tolerance + SLACK
     message = f"{link!r} turns about its own axis"
     if not fine:
-        message = f"{link!r} turns off centre: its joint axis is {in_millimetres(away)} from the cylinder's axis"
+        message = f"the joint axis of {link!r} is {in_millimetres(away)} from the cylinder's axis; they should coincide"
         message += "; it should be on it"
     at = place(visual.origin.location, "xyz") or at
     return judged(fine, message, away, 0.0, tolerance, "m", at=at, detail="" if fine else detail)

@@ -15,6 +15,8 @@ _AnyPlace = Location | LazyLocation | None
 # A tolerance includes its end: 0.152 is within 0.002 of 0.15, although the floats differ by slightly more.
 SLACK = 1e-9
 _SIDES = ("too large", "too small")
+_BASE = "base"  # begins the names of the frames of a base: its x axis points forward, y left, z up (REP 103, REP 105)
+_DIRECTIONS = (("too far forward", "too far back"), ("too far left", "too far right"), ("too high", "too low"))
 _UNITS = ((1000.0, "millimetres"), (100.0, "centimetres"))
 _FEW, _MANY = 100.0, 1e7  # from here on: no decimals, an exponent
 
@@ -157,12 +159,19 @@ def measured_point(
     what: str, actual: Vector, expected: Vector, tolerance: float, frame: str, *, at: _AnyPlace = None
 ) -> Outcome:
     """Compare a point in a frame, in metres; each coordinate must be within the tolerance."""
-    pairs = zip("xyz", actual, expected, strict=True)
-    off = [f"{axis} {difference(a - b)}" for axis, a, b in pairs if not within(a, b, tolerance)]
+    wrong = [axis for axis in range(3) if not within(actual[axis], expected[axis], tolerance)]
+    off = [_off_along(axis, actual[axis] - expected[axis], frame) for axis in wrong]
     message = f"{what} is at {point(actual)} m in {frame!r}"
     if off:
         message += f"; it should be at {point(expected)} m ({other_unit(actual, expected) or ', '.join(off)})"
     return judged(not off, message, actual, expected, tolerance, "m", at=at)
+
+
+def _off_along(axis: int, off: float, frame: str) -> str:
+    """Return how far a coordinate is off: in the frame of a base by where that is, else by its sign."""
+    if not frame.startswith(_BASE):
+        return f"{'xyz'[axis]} {difference(off)}"
+    return difference(off, *_DIRECTIONS[axis])
 
 
 def other_unit(actual: Sequence[float], expected: Sequence[float]) -> str:

@@ -229,7 +229,7 @@ def _not_below(robot: Configuration, link: str, parent: str) -> Outcome:
     if joint is None:  # two links of one tree, the second without a parent joint: it is above the first
         above = robot.chain(parent, above=link)
         assert above
-        message = f"the parent and child of a joint are swapped: {link!r} is above {parent!r}; it should be below"
+        message = f"the parent and child of a joint are swapped: {link!r} is the parent; it should be the child"
         return failed(message, place(above[0].location), detail=f" (joint {above[0].name!r})")
     message = f"the parent of {link!r} is {joint.parent!r}; it should be {parent!r}"
     return failed(message, place(joint.location, "link", "parent"), detail=f" (joint {joint.name!r})")

@@ -103,7 +103,7 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
     if rubric.solution is None:
         return f"{found}\n", ExitCode.PASSED
     unearned = grade(rubric, rubric.solution.submission).unearned
-    lines = [f"the reference does not get {result.criterion.id}: {result.outcome.message}" for result in unearned]
+    lines = [f"{result.criterion.id} fails on the reference: {result.outcome.message}" for result in unearned]
     unresolved = [*_unresolved_lines(rubric)]
     if unresolved or any(result.outcome.status != "pending" for result in unearned):
         raise RubricError(tuple(map(printable, lines + unresolved)))

@@ -4,6 +4,7 @@ Robots, packages and archives are known by their names.
 """
 
 from grader.errors import FileError, InputError
+from grader.text import size_text
 
 ROBOT_ENDINGS = (".urdf", ".xacro")
 PACKAGE_FILES = frozenset({"package.xml", "setup.py"})
@@ -66,11 +67,11 @@ def files_limit_error(name: str) -> InputError:
 
 def archive_size_error(name: str) -> FileError:
     """Return the error for an archive of more than `MAX_ARCHIVE_SIZE` bytes."""
-    return FileError(name, f"is larger than {MAX_ARCHIVE_SIZE} bytes, the limit for an archive")
+    return FileError(name, f"is larger than {size_text(MAX_ARCHIVE_SIZE)}, the limit for an archive")
 
 
 def unpacked_limit_error(name: str, limit: int) -> FileError:
     """Return the error for an archive that would unpack to more than a limit."""
     ratio = f", {MAX_RATIO} times its own size" if HARMLESS_SIZE < limit < MAX_UNPACKED_SIZE else ""
-    reason = f"would unpack to more than {limit} bytes, the limit for an archive{ratio}, and was not read"
+    reason = f"would unpack to more than {size_text(limit)}, the limit for an archive{ratio}, and was not read"
     return FileError(name, reason)

@@ -15,7 +15,7 @@ from typing import Any
 
 from grader.errors import InputError, MachineError
 from grader.files.limits import ROBOT_ENDINGS
-from grader.text import printable_path
+from grader.text import printable_path, size_text
 
 URDF_LIMIT = 1024 * 1024  # bytes
 # O_NONBLOCK: opening a FIFO would block. Anything but a regular file is refused before it is read.
@@ -172,5 +172,5 @@ def advice_for(path: str) -> str:
 def capped(data: bytes, limit: int, shown: str, advice: str = _ADVICE) -> bytes:
     """Return the bytes that were read of a file; raises InputError if they are more than the limit."""
     if len(data) > limit:
-        raise InputError(f"{shown} is larger than {limit} bytes, the limit{advice}")
+        raise InputError(f"{shown} is larger than {size_text(limit)}, the limit{advice}")
     return data

@@ -8,6 +8,7 @@ from typing import NamedTuple, Protocol
 from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.limits import ignored_part
+from grader.text import size_text
 
 IS_LINK = "is a symlink, and was not followed"
 _SMALL = 4096  # bytes
@@ -173,7 +174,7 @@ def overlaid(tree: Tree, files: Mapping[str, bytes | None]) -> Tree:
 def _file_of(path: str, data: bytes) -> File:
     def read(limit: int, *, first: bool = False) -> bytes:
         if not first and len(data) > limit:
-            raise InputError(f"{path} is larger than {limit} bytes")
+            raise InputError(f"{path} is larger than {size_text(limit)}")
         return data[:limit]
 
     return File(path, len(data), read)

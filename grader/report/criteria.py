@@ -361,7 +361,7 @@ def pending_reason(result: Result) -> str:
     """Return where the answer or the pictures are that need manual grading, or why a check cannot decide."""
     outcome = result.outcome
     if not is_manual(result):
-        return sentence(outcome.message)
+        return sentence(outcome.message.removesuffix("; needs manual grading"))  # which the heading says
     where = ""
     if isinstance(outcome.measured, tuple):
         where = enumerated(list(map(str, outcome.measured)), _MAX_FILES)

@@ -294,7 +294,7 @@ class Configuration:
         if frame.root != base.root:
             self.known.check_complete()
             roots = " and ".join(sorted((frame.root, base.root)))
-            message = f"no chain of joints leads from {quoted(relative_to or base.root)} to {quoted(link)}"
+            message = f"{quoted(link)} is not connected to {quoted(relative_to or base.root)} by joints"
             absent = f"joint of {link}" if frame.root == link and self.are_joints_in_place else ""
             at = self.link(link).location
             raise MissingElement("connection", roots, message=message, location=at, absent=absent)

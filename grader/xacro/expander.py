@@ -24,7 +24,7 @@ _COMPARED = 16  # names that are compared for one part
 _MAX_LISTED = 100
 _MAX_CORRECTED = 20
 _TOO_DEEP = "elements and macros are nested too deeply"
-STOPS = "xacro stops here, and ROS 2 gets no robot"
+STOPS = "xacro fails here, so ROS 2 loads no robot"
 
 
 class TagFails(XacroFails):
