@@ -1,5 +1,6 @@
 """Cases of the corpus: what a user gives to the command line, and what comes back. README.md describes their form."""
 
+import atexit
 import json
 import shlex
 import shutil
@@ -7,8 +8,10 @@ import tomllib
 import zipfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from itertools import takewhile
 from pathlib import Path
+from tempfile import mkdtemp
 from typing import Any
 
 from tests.command_line import ROOT, Done, run_with_input
@@ -19,6 +22,25 @@ from tests.corpus.steps import STEPS, copy, remove
 CORPUS = Path(__file__).parent
 
 Expected = dict[str, str]  # exit, stdout, stderr and files/PATH; what is empty is left out
+
+
+@cache
+def _lab_with_edits() -> Path:
+    """Return a copy of the rubric lab6 whose hints may show edits."""
+    folder = Path(mkdtemp(prefix="grader-edits-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    shutil.copytree(ROOT / "rubrics/lab6", folder / "lab6")
+    file = folder / "lab6/rubric.toml"
+    text = file.read_text("utf-8")
+    assert 'hints = "cause" ' in text
+    file.write_text(text.replace('hints = "cause" ', 'hints = "edit"  '), "utf-8")
+    return file
+
+
+def _with_places(command: str, here: Path) -> str:
+    """Return a command with the folders and the rubric that words in capitals stand for."""
+    rubric = str(_lab_with_edits()) if "EDITS" in command else ""
+    return command.replace("ROOT", str(ROOT)).replace("HERE", str(here)).replace("EDITS", rubric)
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +106,7 @@ class Case:
         return {key: text for key, text in found.items() if text or key.startswith("files/")}
 
     def _run(self, command: str, here: Path) -> Done:
-        words = shlex.split(command.replace("ROOT", str(ROOT)).replace("HERE", str(here)))
+        words = shlex.split(_with_places(command, here))
         own = dict(word.split("=", 1) for word in takewhile(lambda word: "=" in word, words))
         variables = {name: text.replace("HERE", str(here)) for name, text in {**self.variables, **own}.items()}
         return run_with_input(words[len(own) :], self.stdin.encode(), variables, here / self.folder)
