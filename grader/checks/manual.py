@@ -47,7 +47,8 @@ def answered(
         labels = enumerated([repr(label) for label in places[:3]], word="or")
         message = f"{question} No answer was found under {labels}{searched}; needs manual grading{unread}"
         outcome = pending(message, problem=", but ".join([_NOT_FOUND, *doubts]))
-        return outcome._replace(expected=f"a heading `{_as_title(places[0])}` in {enumerated(files[:3], word='or')}")
+        heading = f"a heading `{_as_title(places[0])}` in {enumerated(files[:3], word='or')}"
+        return outcome if doubts else outcome._replace(expected=heading)
     how = f" ({passage.how})" if passage.how else ""
     problem = ""
     if passage.is_empty:
@@ -89,7 +90,7 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
     message = f"no picture or PDF is named {labels}; the submission has {others}; needs manual grading"
     has_documents = any(file.suffix in _MAY_HOLD_PICTURES for file in submission.tree.files.values())
     outcome = pending(message, problem=f"{_NOT_FOUND}, but there are documents" if has_documents else _NOT_FOUND)
-    return outcome._replace(expected=picture_named(names))
+    return outcome if has_documents else outcome._replace(expected=picture_named(names))
 
 
 def picture_named(names: Sequence[str]) -> str:

@@ -33,9 +33,9 @@ _NO_ANSWERS = {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md"
 # answers.
 _OTHER = re.compile(
     r"\s*<(?:\?xml|!--|robot|launch|package)"  # XML with the ending .txt
-    r"|(?:# )?[\d.]+ / [\d.]+ points(?:  |: )"  # "# 24.5 / 30 points: lab6", the report in Markdown
+    # "lab6: my_robot.urdf" and "24.5 of 30 points: ...", or the grade, below it: the report as text and in Markdown
+    r"|(?:# )?\S+: [^\n]*\n\s*(?:\*\*)?(?:All automatic checks passed: )?[\d.]+ (?:of|/) [\d.]+ points?\b"
     r"|::notice title=[\d.]+ / "  # the report for GitHub Actions
-    r"|grader \d\S*, \S+: "  # "grader 1.0, lab6: my_robot.urdf", the report as text
 )
 
 

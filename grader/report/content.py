@@ -227,11 +227,11 @@ def result_line(report: Report) -> str:
         if report.counting is not None:
             texts.insert(0, f"{score_text(report)}.")
         if report.open_points:
-            texts.append(f"{pending_points(report)}.")
+            texts.append(f"{_pending_points(report)}.")
         return " ".join(texts)
     found, decided = report_sections(report), report.max_score - report.pending
     if decided == 0 and not found.mistakes:
-        return sentence(pending_points(report)) if report.pending else "Nothing to grade."
+        return sentence(_pending_points(report)) if report.pending else "Nothing to grade."
     points = f"{format_points(report.score)} of {counted_points(decided)}"
     open_points = f"; {format_points(report.pending)} more {'needs' if report.pending == 1 else 'need'} manual grading"
     reasons = []
@@ -316,7 +316,7 @@ def head(report: Report) -> Iterator[Line]:
     yield from (Line("note", text) for text in notes(report))
 
 
-def pending_points(report: Report) -> str:
+def _pending_points(report: Report) -> str:
     """Return how many points need manual grading."""
     return f"{counted_points(report.pending)} {'needs' if report.pending == 1 else 'need'} manual grading"
 

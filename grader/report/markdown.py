@@ -99,7 +99,7 @@ def _section(section: Section, report: Report, *, answers: bool) -> Iterator[str
         details = (indent(block, "  ") for block in _details(entry, report, answers=answers))
         yield "\n\n".join((f"- {SYMBOLS[entry.status]} {_entry_head(entry)}", *details))
     for is_item, lines in groupby(section.lines, lambda line: line.role not in ("part", "carried", "there")):
-        texts = [_LOOKS.get(line.role, "{}").format(escape_words(line.text)) for line in lines]
+        texts = [_LOOKS.get(line.role, "{}").format(_escape_words(line.text)) for line in lines]
         if is_item:
             yield "\n".join(f"- {text}" for text in texts)
         else:
@@ -121,7 +121,7 @@ def _details(entry: Entry, report: Report, *, answers: bool) -> Iterator[str]:
     for block in entry.blocks:
         match block:
             case Line(role, text):
-                yield _LOOKS.get(role, "{}").format(escape_words(text))
+                yield _LOOKS.get(role, "{}").format(_escape_words(text))
             case Location():
                 yield code(location_text(block))
                 if excerpt := [*excerpt_lines(block, report.submission.source)]:
@@ -150,10 +150,10 @@ def escape(text: str) -> str:
     return _MENTION.sub("\\g<0>\u2060", plain)
 
 
-def escape_words(text: str) -> str:
+def _escape_words(text: str) -> str:
     """Return one line of printable text in which what is between backticks is code."""
     parts = text.split("`")
-    if len(parts) % 2 == 0:
+    if len(parts) % 2 == 0 or "``" in text:
         return escape(text)
     return "".join(code(part) if number % 2 else _keep_spaces(part) for number, part in enumerate(parts))
 

@@ -182,9 +182,10 @@ def _brief_blocks(entry: Entry) -> Iterator[Block]:
                 yield part
 
 
-def _show_entry(entry: Entry, report: Report, page: Page, blocks: Iterable[Block]) -> None:
-    """Add a criterion or a mistake with these blocks."""
-    page.line(_mistake_head(entry, page) if entry.lost or is_failure(entry.result) else _entry_head(entry, page))
+def _show_entry(entry: Entry, report: Report, page: Page, blocks: Iterable[Block], *, is_whole: bool = False) -> None:
+    """Add a criterion or a mistake with these blocks; `is_whole` never shortens its place."""
+    is_mistake = bool(entry.lost) or is_failure(entry.result)
+    page.line(_mistake_head(entry, page, is_whole=is_whole) if is_mistake else _entry_head(entry, page))
     page.inset(" ".join(entry.texts("finding")))
     source_of = report.submission.source
     for part in blocks:
@@ -204,14 +205,14 @@ def _show_entry(entry: Entry, report: Report, page: Page, blocks: Iterable[Block
                     page.inset(line, _DIFF_STYLES.get(line[0], "dim"), 2 * INDENT)
 
 
-def _mistake_head(entry: Entry, page: Page) -> Text:
+def _mistake_head(entry: Entry, page: Page, *, is_whole: bool = False) -> Text:
     """Return what a mistake costs, its criteria, and its place, without the folder where there is no room for it."""
     cost = (entry.cost, STYLES[entry.status]), ": ", (entry.names, "bold")
     text = Text.assemble(page.mark(entry.status), " ", *cost)
     where = entry.location
     if where is None:
         return text
-    places = (where, where._replace(path=where.path.rpartition("/")[2], calls=()))
+    places = (where,) if is_whole else (where, where._replace(path=where.path.rpartition("/")[2], calls=()))
     fitting = (it for it in places if text.cell_len + len(location_text(it)) + 2 <= page.console.width)
     return text.append(f"  {location_text(next(fitting, places[-1]))}", "dim")
 
@@ -330,7 +331,7 @@ def _show_section(section: Section, report: Report, page: Page) -> None:
     for number, entry in enumerate(section.entries):
         if number and is_failure(entry.result):
             page.leave_row()
-        _show_entry(entry, report, page, entry.blocks)
+        _show_entry(entry, report, page, entry.blocks, is_whole=True)
     for line in section.lines:
         page.inset(line.text, LOOKS[line.role], 2 * INDENT if line.role in ("found", "missing") else INDENT)
 

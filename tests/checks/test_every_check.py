@@ -47,7 +47,7 @@ def test_unconnected_links_are_reported(case: Case[Scene]) -> None:
     """If no joints connect two links, a check says so instead of measuring."""
     error = missing(case.check, case.passing.without_joints(), **case.arguments)
     assert error.kind == "connection"
-    assert "no chain of joints leads from " in str(error)
+    assert " is not connected to " in str(error)
 
 
 @every_related_case

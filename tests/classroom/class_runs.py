@@ -153,8 +153,8 @@ def without_hints() -> Path:
     atexit.register(shutil.rmtree, folder)
     shutil.copytree(ROOT / "rubrics/lab6", folder, dirs_exist_ok=True)
     text = (ROOT / "rubrics/lab6/rubric.toml").read_text(encoding="utf-8")
-    assert text.count('hints = "edit"') == 1
-    (folder / "lab6.toml").write_text(text.replace('hints = "edit"', 'hints = "none"'), encoding="utf-8")
+    assert text.count('hints = "cause"') == 1
+    (folder / "lab6.toml").write_text(text.replace('hints = "cause"', 'hints = "none"'), encoding="utf-8")
     return folder / "lab6.toml"
 
 

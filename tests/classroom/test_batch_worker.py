@@ -40,8 +40,8 @@ UNREADABLE = {
     "rar": ("lab6.rar", b"Rar!\x1a\x07\x00", "lab6.rar is a rar archive, which is not supported"),
     "empty": ("lab6.zip", zipped({}), "lab6.zip is empty"),
     "checksum": ("lab6.zip", damaged("a.urdf"), "a.urdf: Bad CRC-32"),
-    "large": ("a.urdf", LARGE, "a.urdf is larger than 1048576 bytes, the limit for a URDF"),
-    "large-in-a-zip": ("lab6.zip", zipped({"a.urdf": LARGE}), "a.urdf is larger than 1048576 bytes, the limit for a"),
+    "large": ("a.urdf", LARGE, "a.urdf is larger than 1 MiB, the limit for a URDF"),
+    "large-in-a-zip": ("lab6.zip", zipped({"a.urdf": LARGE}), "a.urdf is larger than 1 MiB, the limit for a"),
     "nested": ("lab6.zip", zipped({"b.zip": CUT}), "b.zip cannot be read as an archive"),
 }
 

@@ -95,7 +95,7 @@ def test_reports_have_hints_for_the_students_own_text(top: Path) -> None:
 def test_the_rubric_says_how_much_reports_tell(tmp_path: Path, level: str) -> None:
     """Below the level edit reports have no edit."""
     shutil.copytree(LAB / "my_robot", tmp_path / "lab/my_robot")
-    text = (LAB / "rubric.toml").read_text(encoding="utf-8").replace('hints = "edit"', f'hints = "{level}"')
+    text = (LAB / "rubric.toml").read_text(encoding="utf-8").replace('hints = "cause"', f'hints = "{level}"')
     rubric = tmp_path / "lab/lab6.toml"
     rubric.write_text(text, encoding="utf-8")
     make(tmp_path / "class", {"ash.urdf": MIRRORED})

@@ -290,4 +290,4 @@ def test_a_compressed_tar_is_read_to_a_limit(tmp_path: Path) -> None:
     packed = tmp_path / "lab6.tar.gz"
     packed.write_bytes(gzip.compress(gzip.decompress(path.read_bytes())))
     output = bounded("grade", packed, calls=_FEW_CALLS, code=2)
-    assert "would unpack to more than 33554432 bytes, the limit for an archive, and was not read" in output
+    assert "would unpack to more than 32 MiB, the limit for an archive, and was not read" in output

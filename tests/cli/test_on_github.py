@@ -62,7 +62,7 @@ def test_a_summary_is_appended(job: GithubJob) -> None:
     root = read_as_github(job.summary.read_text(encoding="utf-8"))
     assert [heading.text_content() for heading in root.iter("h1")] == [
         "Built",
-        *["43 / 70 points: IRP Lab 6: a wheeled base"] * 2,
+        *["lab6: my_robot.urdf"] * 2,
     ]
 
 

@@ -10,6 +10,7 @@ import pytest
 from tests.command_line import run
 from tests.samples import ROOT
 
+pytestmark = pytest.mark.usefixtures("shows_edits")
 LAUNCH, SETUP, RVIZ = "*.launch.py", "setup.py", "*.rviz"
 FRONTEND, XML = "equivalent-launch-file-in-xml", "*.launch.xml"
 XACRO, PLAIN = "equivalent-xacro-command", "equivalent-f-strings-and-pathlib"

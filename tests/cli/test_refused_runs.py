@@ -75,6 +75,7 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     for old, new in (
         ('reference = "my_robot"', 'reference = "solution/my_robot"'),
         ('"answers.toml"', '"lab.answers.toml"'),
+        ('hints = "cause"', 'hints = "edit"'),
     ):
         assert old in rubric
         rubric = rubric.replace(old, new)

@@ -113,7 +113,7 @@ def test_unreadable_states_are_waited_out(robot: Path, watch: Watch) -> None:
     gone = f"grader: {robot} does not exist\n"
     assert done.err[0].endswith(gone)
     assert (done.err[1], done.err[2], done.err[4], done.err[5]) == ("", gone, "", gone)
-    assert "is larger than 1048576 bytes" in done.err[3]
+    assert "is larger than 1 MiB" in done.err[3]
     assert (done.out[0], done.out[2], done.out[3], done.out[5], done.code) == ("", "", "", "", 130)
     assert "\n64/70" in done.out[1]
     assert "\n70/70" in done.out[4]

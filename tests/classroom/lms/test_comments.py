@@ -43,7 +43,7 @@ def test_lost_points() -> None:
         "About loads: 3 of 3. nice",
         "About box: 1 of 2.5. nice try",
         "About tall: 0 of 0.5: skipped because loads failed",
-        "About tall: 0.5 of 0.5: it is too low. Not deducted: caused by box.",
+        "About tall: 0.5 of 0.5: it is too low. No points lost for tall: it fails only because of box.",
         "About essay: 0 of 4: skipped because loads failed",
         "About essay: – of 4: a person has to mark it. see me",
     ]
