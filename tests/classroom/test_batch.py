@@ -165,13 +165,13 @@ def test_several_files_are_graded_like_a_folder(tmp_path: Path) -> None:
 
 
 def test_reports_quote_unchanged_files_only(tmp_path: Path) -> None:
-    """A text report has the quoted line, as `grader grade` has; once the file has changed, it has points only."""
+    """A text report quotes lines as `grader grade` does, below the student's name; once the file has changed, none."""
     folder, book, words = tmp_path / "class", tmp_path / "lab6", tmp_path / "words"
     for name in ("ann", "bea"):
         shutil.copytree(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf", folder / name)
     grader("batch", folder, "--gradebook", book, "--reports", words)
     alone = grader("grade", folder / "ann").stdout
-    assert (words / "ann.txt").read_text() == alone
+    assert (words / "ann.txt").read_text() == alone.replace("my_robot.urdf\n", "my_robot.urdf (ann)\n", 1)
     quoted = next(line for line in alone.splitlines() if "<" in line and "xyz" in line)
     (folder / "ann/my_robot.urdf").write_text('<robot name="other"/>\n' * 100)
     before = (book / "results.jsonl").read_bytes()

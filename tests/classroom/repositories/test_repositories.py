@@ -20,7 +20,7 @@ TEAMS = [row for row in ROWS if len(row.works) > 1]
 WITHOUT = [row for row in ROWS if not row.works]
 WORKS = [(row, folder) for row in ROWS for folder in row.works]
 # What each repository without a robot shows: the evidence that is found, and the answers.
-PRELAB = ("yew", "olive")  # have a robot, but another one
+PRELAB = ("yew",)  # have a robot, but another one; that of olive has no links
 EVIDENCE = {"yew": (5, 0), "myrtle": (5, 0), "nutmeg": (4, 0), "oak": (5, 2), "oleander": (5, 2), "olive": (5, 2), "palm": (5, 0), "pear": (0, 0)}  # fmt: skip
 
 
