@@ -70,7 +70,7 @@ def launch_found(package: Package, *, name: str) -> Outcome:
     if is_launch_named(path, name):
         return passed(f"the launch file is {path}")
     detail = f"; the package has {path}{package.built('launch', name)}"
-    return failed(f"there is no launch file {name!r}", detail=detail)
+    return failed(f"there is no launch file {name!r}", Location(package.path(path), 1, 1), detail=detail)
 
 
 def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool = True) -> Outcome:

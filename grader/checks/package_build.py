@@ -230,7 +230,7 @@ def _why_not_installed(
     empty = _pattern_for(setup.empty, files, kind)
     if empty is None:
         message += ": no entry of data_files in setup.py names it"
-        return MissingElement(what, package.folder, message=message)
+        return MissingElement(what, package.folder, message=message, location=setup.location(setup.called_at))
     problem = f"the pattern {empty.pattern!r} in setup.py matches no file"
     # Late: a URDF on its own needs none of what reads a package.
     from grader.package.found_problems import why_no_match

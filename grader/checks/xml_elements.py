@@ -141,7 +141,8 @@ def _no_tag(reading: Reading, root: Element, wanted: WantedElement) -> Outcome:
         above = inside.getparent()
         detail = f"; there is one in <{name_of(above)}>" if above is not None else ""
         return failed(message, _element_place(reading, inside), detail=detail)
-    return failed(message, detail=did_you_mean(wanted.tag, {name_of(element) for element in root}))
+    meant = did_you_mean(wanted.tag, {name_of(element) for element in root})
+    return failed(message, detail=meant)._replace(absent=() if meant else (wanted.element,))
 
 
 def _no_attributes(reading: Reading, tags: Sequence[Element], wanted: WantedElement) -> Outcome:

@@ -173,7 +173,8 @@ def _reword(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
         return
     for _, first, last, start, end in changes:
         offset, old = start_of_text + len("".join(own[:first])), "".join(own[first:last])
-        yield change([source.edit(offset, offset + len(old), "".join(right[start:end]))], "a line", what)
+        cause = "a line" if first < last else "a missing line"
+        yield change([source.edit(offset, offset + len(old), "".join(right[start:end]))], cause, what)
 
 
 def _other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:

@@ -184,11 +184,11 @@ def failures(report: Report) -> tuple[Entry, ...]:
 
 
 def _shared_edit(failure: Entry) -> str:
-    """Return what failures have in common that one edit fixes; a manual mark stands alone."""
-    result = failure.result
-    if result.hint is None or result.why_given or result.manual_mark is not None:
+    """Return what failures have in common that one edit fixes, or else what is said of them; a mark stands alone."""
+    result, outcome = failure.result, failure.result.outcome
+    if result.why_given or result.manual_mark is not None:
         return f"only {failure.id}"
-    return result.hint.shown_by
+    return result.hint.shown_by if result.hint is not None else f"{outcome.message} {outcome.location}"
 
 
 def _fixed_together(some: tuple[Entry, ...]) -> tuple[Entry, ...]:

@@ -254,8 +254,10 @@ def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iter
     if is_failure(result) and not is_asked:
         # The title of a criterion is never stated alone, because it would read as a fact.
         yield Line("expected", f"Passes when: {sentence(criterion.title)}")
-    for other in entry.also:
-        yield Line("also", f"{printable(other.id)}: {' '.join(line.text for line in _findings(other.result))}")
+    for said, others in alike(entry.also, lambda other: " ".join(line.text for line in _findings(other.result))):
+        names = printable(enumerated([other.id for other in others]))
+        is_same = said == " ".join(line.text for line in _findings(result))
+        yield Line("also", f"The same holds for {names}." if is_same else f"{names}: {said}")
     if entry.skipped:
         names = enumerated([result.criterion.id for result in entry.skipped])
         yield Line("skipped", printable(f"Skipped because {entry.id} failed: {names}."))

@@ -213,8 +213,9 @@ def _mistake_head(entry: Entry, page: Page, *, is_whole: bool = False) -> Text:
     if where is None:
         return text
     places = (where,) if is_whole else (where, where._replace(path=where.path.rpartition("/")[2], calls=()))
-    fitting = (it for it in places if text.cell_len + len(location_text(it)) + 2 <= page.console.width)
-    return text.append(f"  {location_text(next(fitting, places[-1]))}", "dim")
+    room = page.console.width - INDENT - text.cell_len
+    fitting = (it for it in places if len(location_text(it)) + 2 <= room)
+    return text.append(f"  {location_text(next(fitting, where))}", "dim")
 
 
 def _entry_head(entry: Entry, page: Page) -> Text:
