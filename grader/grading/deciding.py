@@ -21,7 +21,7 @@ from grader.robot.model import Robot
 from grader.robot.shapes import UnknownShape
 from grader.source import LazyLocation, Location
 from grader.submission.submission import Submission
-from grader.submission.urdf import Absent, is_another_robot, known_links
+from grader.submission.urdf import Absent, is_another_robot, is_foreign_robot, known_links
 from grader.text import enumerated
 
 _MAX_PICTURES = 50
@@ -268,13 +268,8 @@ def _fault_outcome(check: Check, fault: str) -> Outcome:
 
 
 def another_robot(rubric: Rubric, robot: Robot | None, link: str = "") -> MissingElement | None:
-    """Return the error for a robot that is another one, and so has no `link`; None if it may be that of the lab.
-
-    Most of its links are none of the lab's: one that only lacks links is unfinished.
-    """
-    if robot is None or not is_another_robot(robot, rubric.links):
-        return None
-    if 2 * sum(link.known.name not in rubric.links for link in robot.links) <= len(robot.links):
+    """Return the error for a robot that is another one, and so has no `link`; None if it may be that of the lab."""
+    if robot is None or not is_foreign_robot(robot, rubric.links):
         return None
     missing = f"there is no link {link!r}, and " if link else ""
     message = f"{missing}this looks like another robot: it has {_known_links_text(rubric, robot)}"

@@ -29,7 +29,7 @@ from grader.robot.meant import Word
 from grader.robot.reader import Reading
 from grader.source import Edit, Edits
 from grader.submission.submission import Submission
-from grader.submission.urdf import Read, is_another_robot
+from grader.submission.urdf import Read, is_foreign_robot
 from grader.text import enumerated
 from grader.xml.urdf_format import JOINT_TYPES
 
@@ -59,7 +59,7 @@ class Situation:
         if isinstance(submission.urdf, Read):
             self.reading = submission.urdf.loaded
             self.draft = Draft.of(submission.urdf.reading)
-        if self.draft is not None and not is_another_robot(self.draft.robot, wanted):
+        if self.draft is not None and not is_foreign_robot(self.draft.robot, wanted):
             self.difference = RobotDifference(self.draft, reference or self.draft)
 
     @cached_property
@@ -264,13 +264,18 @@ def missing_hints(
 
 
 def _hint_of_parts(written: Draft, parts: list[MissingPart]) -> FoundHint:
-    cause = f"{enumerated([_cause_of_part(part) for part in parts])} {'is' if len(parts) == 1 else 'are'} missing"
+    first = parts[0].link if parts[0].tag == "link" else ""
+    causes = enumerated([_cause_of_part(part, first) for part in parts])
     words = f"add {enumerated([_part_in_words(part) for part in parts])}{_lines_of_similar(written, parts)}"
-    return FoundHint(Proposal((), cause, parts[0].link), {}, words=words)
+    verb = "is" if len(parts) == 1 else "are"
+    return FoundHint(Proposal((), f"{causes} {verb} missing", parts[0].link), {}, words=words)
 
 
-def _cause_of_part(part: MissingPart) -> str:
-    return f"the link {part.link!r}" if part.tag == "link" else f"the joint of {part.link!r}"
+def _cause_of_part(part: MissingPart, first: str) -> str:
+    """Return words for a part; the joint of the first link is its joint."""
+    if part.tag == "link":
+        return f"the link {part.link!r}"
+    return "its joint" if part.link == first else f"the joint of {part.link!r}"
 
 
 def _part_in_words(part: MissingPart) -> str:

@@ -129,9 +129,9 @@ def _skipped_alone(cause: str, some: Sequence[Entry]) -> Entry:
     return first._replace(also=tuple(others), blocks=(Line("finding", printable(why)),))
 
 
-def _building_order(entry: Entry) -> tuple[int, int]:
-    """Return the rank of what is not built yet: criteria about one thing first, in the rubric's order."""
-    return len(entry.result.outcome.absent), entry.result.criterion.position
+def _building_order(entry: Entry) -> tuple[int, bool, int]:
+    """Return the rank of what is not built yet: criteria about one thing first, those with a hint, as in the rubric."""
+    return len(entry.result.outcome.absent), entry.result.hint is None, entry.result.criterion.position
 
 
 def _missing_lines(report: Report, results: Sequence[Result]) -> Iterator[Line]:

@@ -228,6 +228,13 @@ def is_another_robot(robot: Robot | None, wanted: Collection[str]) -> bool:
     return 2 * known_links(robot, wanted) < len(wanted)
 
 
+def is_foreign_robot(robot: Robot | None, wanted: Collection[str]) -> bool:
+    """Return whether a robot is another one, and not only unfinished: most of its links are not wanted."""
+    if robot is None or not is_another_robot(robot, wanted):
+        return False
+    return 2 * sum(link.name not in wanted for link in robot.links) > len(robot.links)
+
+
 def _says_xacro(name: str) -> bool:
     """Return whether xacro in a file of this name, in lower case, is meant to be expanded; standard input is a URDF."""
     return not name.endswith(".urdf") if ".xacro" in name else ".urdf" not in name and name != "-"
