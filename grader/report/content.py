@@ -188,7 +188,9 @@ def _shared_edit(failure: Entry) -> str:
     result, outcome = failure.result, failure.result.outcome
     if result.why_given or result.manual_mark is not None:
         return f"only {failure.id}"
-    return result.hint.shown_by if result.hint is not None else f"{outcome.message} {outcome.location}"
+    return (
+        result.hint.shown_by if result.hint is not None else f"{outcome.mistake or outcome.message} {outcome.location}"
+    )
 
 
 def _fixed_together(some: tuple[Entry, ...]) -> tuple[Entry, ...]:

@@ -32,13 +32,14 @@ def recast(report: Report, words: Words) -> Report:
     def path() -> str:
         return f"a{printable(words())}"
 
-    hints: dict[str, Hint] = {}  # criteria with the same hint still have the same
+    hints: dict[str, Hint] = {}  # criteria with the same hint still have the same, and those with the same place
+    places: dict[Location, Location] = {}
     problems = tuple(
         problem._replace(message=words(), location=Location(path(), 2, 3)) for problem in other_problems(report)
     )
     return report._replace(
         submission=_submission(report.submission, words, path),
-        results=tuple(_result(result, words, path, hints) for result in report.results),
+        results=tuple(_result(result, words, path, hints, places) for result in report.results),
         problems=problems,
         notes=tuple(words() for _ in report.notes),
         another_robot=f"a {words()}" if report.another_robot else "",
@@ -92,9 +93,10 @@ def _urdf(old: Urdf, words: Words, path: Words) -> Urdf:
     return old._replace(path=path(), reading=old.reading._replace(robot=renamed))
 
 
-def _result(old: Result, words: Words, path: Words, known: dict[str, Hint]) -> Result:
-    outcome = old.outcome
-    where = Location(path(), 1, 2) if outcome.location is not None else None
+def _result(old: Result, words: Words, path: Words, known: dict[str, Hint], places: dict[Location, Location]) -> Result:
+    outcome, where = old.outcome, old.outcome.location
+    if where is not None:
+        where = places.setdefault(where, Location(f"{len(places)}{path()}", 1, 2))
     measured = f"found\n{words()}" if isinstance(outcome.measured, str) else outcome.measured
     hint = known.setdefault(old.hint.message, _hint(old.hint, words, path)) if old.hint is not None else None
     mistake = outcome.mistake or outcome.message  # equal for what is about the same, as before
