@@ -325,8 +325,7 @@ def package_facts(solution: Solution) -> _Facts:
     yield _package_fact("package_found", name=package.name)
     if package.manifest is not None and package.manifest.build_type:
         yield _package_fact("package_type", build_type=package.manifest.build_type)
-    if not package.is_cmake:
-        yield _package_fact("setup_imports")
+    yield _package_fact("setup_imports")
     yield from _installs(package, path if path is not None and package.holds(path) else "")
     for launch in package.launch_files:
         yield from _launch_facts(posixpath.basename(launch), package.launch(launch))

@@ -50,8 +50,8 @@ class _InstalledFiles:
     @property
     def is_known(self) -> bool:
         """Whether it is known what builds install."""
-        setups = [it.setup for it in self.owners if not it.is_cmake]
-        return len(setups) == len(self.owners) and all(it is not None and not it.unknown for it in setups)
+        setups = [it.installation for it in self.owners]
+        return all(it is not None and not it.unknown for it in setups)
 
     def read(self, path: str) -> bytes:
         """Return the bytes of a file. Raises InputError."""

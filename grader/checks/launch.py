@@ -20,7 +20,7 @@ from grader.package.launch.places import (
     is_of_one_machine,
     one_machine_only,
 )
-from grader.package.package import Package
+from grader.package.package import CMAKE, SETUP, Package
 from grader.python.values import OBJECT
 from grader.source import Location
 from grader.text import enumerated
@@ -89,7 +89,7 @@ def launch_starts(package: Package, *, name: str, nodes: list[str], built: bool 
         raise _fault_that_stops(package, name, launch)
     if shadow := package.shadows_ros:
         message = f"the folder {shadow} is installed as a Python package, in place of that of ROS 2: rename it"
-        return failed(message, Location(package.path("setup.py"), 1, 1))
+        return failed(message, Location(package.path(CMAKE if package.is_cmake else SETUP), 1, 1))
     places = _find_places(package, launch, "read", "urdf", "include", built=built)
     started = {node.name for node in launch.nodes if node.when}
     missing = [choice for choice in (node.split(" or ") for node in nodes) if started.isdisjoint(choice)]
@@ -232,7 +232,7 @@ def _no_files(launch: "Launch") -> NotDecided | MissingElement:
 
 def _missing_file(package: Package, place: _FilePlace) -> MissingElement:
     """Return what the package is missing for a named file, by the kinds and names that the checks of packages use."""
-    setup, purpose, name = package.setup, place.file.purpose, package.folder
+    setup, purpose, name = package.installation, place.file.purpose, package.folder
     if setup is not None and setup.misspelt is not None:
         return package.without_data_files(setup.misspelt.message)
     kind, looked_for = f"installed {purpose}", posixpath.basename(place.file.path or "")
@@ -342,11 +342,12 @@ def _fault_of_owner(package: Package, owner: str, rest: str, what: str) -> str:
 
 def _place_in_package(owner: Package, target: str, file: "NamedFile") -> _FilePlace:
     """Return whether a build of a package installs a file at the path where it is looked for."""
-    setup, what = owner.setup, _WORDS[file.purpose]
-    if owner.is_cmake or (setup is not None and setup.fault is not None and not setup.fault.sure):
+    setup, what = owner.installation, _WORDS[file.purpose]
+    if setup is not None and setup.fault is not None and not setup.fault.sure:
         return _FilePlace(file, "unknown", f"cannot determine statically whether a build installs the {what}")
     if setup is None or setup.fault is not None:
-        return _FilePlace(file, "missing", f"a build installs no {what}: there is no setup.py that Python can read")
+        why = setup.fault_text if setup is not None else "there is no setup.py"
+        return _FilePlace(file, "missing", f"a build installs no {what}: {why}")
     installed = setup.installed()
     if target in installed and setup.misspelt is not None:
         return _FilePlace(file, "missing", f"a build does not install the {what}: {setup.misspelt.message}")

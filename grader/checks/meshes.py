@@ -312,23 +312,16 @@ def _without_package(name: str, path: str, submission: Submission) -> str:
 
 def _why_not_installed(package: Package, target: str, held: list[str]) -> str:
     """Return why a build does not install a file of a package at a path; empty if it does."""
-    setup = package.setup
-    if package.is_cmake:
-        from grader.package.cmake import installs  # late: most packages have a setup.py
-
-        if installs(package.tree, package.name, target.removeprefix(f"share/{package.name}/")):
-            return ""
-        doubt = "cannot determine statically what CMakeLists.txt installs"
-        raise NotDecided(doubt, doubt)
+    setup = package.installation
     if setup is None:
         return "is not installed: its package has no setup.py"
+    if setup.fault is not None and setup.fault.sure:
+        return f"is not installed: {setup.fault_text}"
+    installed, doubt = setup.installed(), ""
     if setup.fault is not None:
-        if setup.fault.sure:
-            return "is not installed: Python cannot read setup.py"
-        installed, doubt = {}, f"setup.py cannot be read ({setup.fault.message})"
-    else:
-        installed = setup.installed()
-        doubt = "cannot determine statically what setup.py installs" if setup.unknown else ""
+        doubt = f"{setup.file} cannot be read ({setup.fault.message})"
+    elif setup.unknown:
+        doubt = f"cannot determine statically what {setup.file} installs"
     if target in installed:
         return ""
     if doubt:
@@ -336,4 +329,4 @@ def _why_not_installed(package: Package, target: str, held: list[str]) -> str:
     elsewhere = next((path for path, source in installed.items() if source in held), None)
     if elsewhere is not None:
         return f"is looked for at {target}, but a build installs it as {elsewhere}"
-    return f"is not installed: add {held[0]} to data_files in setup.py, for {posixpath.dirname(target)}"
+    return f"is not installed: add {held[0]} to {setup.entries}, for {posixpath.dirname(target)}"

@@ -9,14 +9,14 @@ from grader.checks.check import About
 from grader.checks.outcome import Outcome, failed, judged, passed
 from grader.errors import MissingElement, NotDecided
 from grader.names import closest
-from grader.package.package import MANIFEST, RESOURCE_INDEX, SETUP, Package
+from grader.package.package import CMAKE, MANIFEST, RESOURCE_INDEX, SETUP, Package
 from grader.submission.submission import Submission
 from grader.text import enumerated, first_lines
 
 if TYPE_CHECKING:
     from grader.package.file_search import EmptyGlob
+    from grader.package.installation import Installation
     from grader.package.manifest import Manifest
-    from grader.package.setup_py import Setup
 
 
 _FileKind = Literal["urdf", "launch", "rviz"]
@@ -44,7 +44,7 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
         more = f" (and {count - 1} more)" if count > 1 else ""
         return failed(problem.message + more, problem.location, problem=problem.message)
     message = f"the package is named {manifest.name!r}{'' if fine else f'; it should be named {name!r}'}"
-    setup, registered = package.setup, package.registered
+    setup, registered = package.installation, package.registered
     if fine and setup is not None and registered and name not in registered:
         # ament_index finds a package by its marker. colcon adds one for the name in package.xml, but no file goes below
         # that name.
@@ -77,7 +77,7 @@ def build_installs(
 ) -> Outcome:
     """A build of the package installs its URDF, launch file or RViz file, below share/<package>.
 
-    setup.py is evaluated statically; what cannot be determined needs manual grading.
+    setup.py or CMakeLists.txt is evaluated statically; what cannot be determined needs manual grading.
 
     Args:
         kind: The kind of the file.
@@ -107,8 +107,9 @@ def installs_files(package: Package, *, files: list[str]) -> Outcome:
 
 
 def setup_imports(package: Package) -> Outcome:
-    """A build of the package succeeds: Python runs `setup.py` to its end, and colcon accepts what it says."""
-    return _build_error(package, _readable_setup(package)) or passed("setup.py builds")
+    """A build of the package succeeds: Python runs `setup.py`, or CMake `CMakeLists.txt`, without an error."""
+    setup = _readable_setup(package)
+    return _build_error(package, setup) or passed(f"{setup.file} builds")
 
 
 def _readable_manifest(package: Package) -> "Manifest":
@@ -126,7 +127,7 @@ def _readable_manifest(package: Package) -> "Manifest":
     return manifest
 
 
-def _build_error(package: Package, setup: "Setup") -> Outcome | None:
+def _build_error(package: Package, setup: "Installation") -> Outcome | None:
     """Return why a build of the package fails; None if it succeeds. Raises NotDecided."""
     if package.ignored_by:
         message = f"colcon does not build the package, because there is a file {package.ignored_by}"
@@ -143,8 +144,8 @@ def _build_error(package: Package, setup: "Setup") -> Outcome | None:
         message = "setup.py does not call setup()"
         return failed(message, setup.location(setup.called_at), problem=message)
     if setup.doubt is not None:
-        reason = f"{setup.doubt.reason} (line {setup.doubt.at.line} of setup.py)"
-        cause = "cannot determine statically whether setup.py builds"
+        reason = f"{setup.doubt.reason} (line {setup.doubt.at.line} of {setup.file})"
+        cause = f"cannot determine statically whether {setup.file} builds"
         raise NotDecided(f"{cause}: {reason}", cause)
     return None
 
@@ -165,22 +166,21 @@ def _files_of(package: Package, kind: _FileKind, name: str) -> Sequence[str]:
     return [path for path in paths if path not in parts] or paths
 
 
-def _readable_setup(package: Package) -> "Setup":
-    """Return the package's setup.py.
+def _readable_setup(package: Package) -> "Installation":
+    """Return what the package's setup.py or CMakeLists.txt installs.
 
-    Raises MissingElement if there is none, or if Python cannot read it; NotDecided if it needs manual grading.
+    Raises MissingElement if there is none, or if it cannot be parsed; NotDecided if it needs manual grading.
     """
-    setup = package.setup
-    if package.is_cmake:
-        raise NotDecided("the grader does not evaluate CMakeLists.txt, which lists what is installed")
+    setup = package.installation
     if setup is None:
-        message = "the package has no setup.py, so a build of an ament_python package installs nothing"
-        raise MissingElement("setup.py", package.folder, message=message, absent="setup.py")
+        build_type = package.manifest.build_type if package.manifest is not None else ""
+        name, kind = (CMAKE, "ament_cmake") if build_type == "ament_cmake" else (SETUP, "ament_python")
+        message = f"the package has no {name}, so a build of an {kind} package installs nothing"
+        raise MissingElement(SETUP, package.folder, message=message, absent=name)
     if setup.fault is not None and setup.fault.sure:
-        message = f"Python cannot read setup.py: {setup.fault.message}"
-        raise MissingElement("setup.py", package.folder, message=message, location=setup.fault.location)
+        raise MissingElement(SETUP, package.folder, message=setup.fault_text, location=setup.fault.location)
     if setup.fault is not None:
-        raise NotDecided(f"setup.py cannot be read ({setup.fault.message})", "setup.py cannot be read")
+        raise NotDecided(f"{setup.file} cannot be read ({setup.fault.message})", f"{setup.file} cannot be read")
     return setup
 
 
@@ -192,7 +192,7 @@ def _require_installed(
     if error is not None and not despite_errors:
         return error._replace(message=f"a build fails: {error.message}")
     if error is not None and _stops_at(package, setup, files, kind):
-        return passed(f"setup.py has an entry for {files[0]}")
+        return passed(f"{setup.file} has an entry for {files[0]}")
     copies = [copy for copy in setup.copies if copy.source in files]
     inside = [copy for copy in copies if copy.target.startswith(package.share)]
     twice = sorted({copy.target for copy in inside if posixpath.basename(copy.target) == posixpath.basename(files[0])})
@@ -204,9 +204,9 @@ def _require_installed(
     if inside:
         return passed(f"a build installs {inside[0].source} as {inside[0].target}")
     if setup.unknown:
-        reason = f"{setup.unknown[0].reason} (line {setup.unknown[0].at.line} of setup.py)"
+        reason = f"{setup.unknown[0].reason} (line {setup.unknown[0].at.line} of {setup.file})"
         message = f"cannot determine statically whether a build installs {files[0]}: {reason}"
-        raise NotDecided(message, "cannot determine statically what setup.py installs")
+        raise NotDecided(message, f"cannot determine statically what {setup.file} installs")
     if copies:
         message = f"a build installs {copies[0].source} as {copies[0].target}"
         message += f"; ROS 2 looks for the package's files below {package.share}"
@@ -215,7 +215,7 @@ def _require_installed(
     raise _why_not_installed(package, setup, files, kind)
 
 
-def _stops_at(package: Package, setup: "Setup", files: Sequence[str], kind: _FileKind | None) -> bool:
+def _stops_at(package: Package, setup: "Installation", files: Sequence[str], kind: _FileKind | None) -> bool:
     """Return whether a build stops at the entry for these files, so that it is there."""
     folders = {posixpath.dirname(path) for path in files}
     owners = ((_kind_of_file(stop.path, package), posixpath.dirname(stop.path)) for stop in setup.stops if stop.path)
@@ -223,15 +223,15 @@ def _stops_at(package: Package, setup: "Setup", files: Sequence[str], kind: _Fil
 
 
 def _why_not_installed(
-    package: Package, setup: "Setup", files: Sequence[str], kind: _FileKind | None
+    package: Package, setup: "Installation", files: Sequence[str], kind: _FileKind | None
 ) -> MissingElement:
     """Return why a build does not install files: no entry, or a pattern without a match."""
     what, message = f"installed {kind or files[0]}", f"a build does not install {files[0]}"
     empty = _pattern_for(setup.empty, files, kind)
     if empty is None:
-        message += ": no entry of data_files in setup.py names it"
+        message += f": {'no' if setup.is_cmake else 'no entry of'} {setup.entries} names it"
         return MissingElement(what, package.folder, message=message, location=setup.location(setup.called_at))
-    problem = f"the pattern {empty.pattern!r} in setup.py matches no file"
+    problem = f"the pattern {empty.pattern!r} in {setup.file} matches no file"
     # Late: a URDF on its own needs none of what reads a package.
     from grader.package.found_problems import why_no_match
 

@@ -278,8 +278,8 @@ def _programs(task: PackageTask, launch: Launch, source: Source) -> Iterator[Pro
 
 def _setup_paths(task: PackageTask) -> Iterator[Proposal]:
     """Yield edits of the paths and patterns in setup.py that name no file, or a folder."""
-    source, setup = task.source(SETUP), task.package.setup
-    if source is None or setup is None:
+    source, setup = task.source(SETUP), task.package.installation
+    if source is None or setup is None or setup.is_cmake:
         return
     wrong = [(it.path.rstrip("/"), it.at.line) for it in setup.stops] + [(it.pattern, it.at.line) for it in setup.empty]
     files = {path: posixpath.dirname(path) for path in islice(task.files, _MAX_FILES)}

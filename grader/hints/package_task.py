@@ -119,7 +119,7 @@ def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> It
 
 def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
     """Yield edits that give the package one name in all its files, for a package that has another or several."""
-    manifest, setup = task.package.manifest, task.package.setup
+    manifest, setup = task.package.manifest, task.package.installation
     if manifest is None or manifest.name is None:
         return
     shares = [path.split("/")[1] for path in task.package.installed if path.startswith("share/")]

@@ -5,10 +5,10 @@ from fnmatch import fnmatchcase
 
 from grader.names import did_you_mean
 from grader.package import package_problems as kinds
+from grader.package.installation import Installation
 from grader.package.launch.model import Launch
 from grader.package.launch.places import is_of_one_machine, one_machine_only
 from grader.package.package import MANIFEST, RESOURCE_INDEX, Package
-from grader.package.setup_py import Setup
 from grader.problems import Problem
 from grader.source import Location
 from grader.text import enumerated
@@ -22,8 +22,8 @@ def package_problems(package: Package) -> tuple[Problem, ...]:
     found: list[Problem] = []
     if package.manifest is not None:
         found += _sort(package.manifest.problems)
-    if package.setup is not None:
-        found += _sort(_setup_problems(package, package.setup))
+    if package.installation is not None:
+        found += _sort(_setup_problems(package, package.installation))
     for path in package.launch_files[:_MAX_FILES]:
         found += _sort(_launch_problems(package.launch(path)))
     for path in package.rviz_files[:_MAX_FILES]:
@@ -35,28 +35,29 @@ def _sort(problems: Iterable[Problem]) -> list[Problem]:
     return sorted(problems, key=lambda it: (it.location.line, it.location.column, it.code, it.message))
 
 
-def _setup_problems(package: Package, setup: Setup) -> Iterator[Problem]:
+def _setup_problems(package: Package, setup: Installation) -> Iterator[Problem]:
     if fault := setup.fault:
         kind = kinds.SETUP_SYNTAX if fault.sure else kinds.SETUP_UNKNOWN
-        what = "Python cannot read setup.py" if fault.sure else "setup.py is not read"
-        yield Problem(kind, f"{what}: {fault.message}", fault.location)
+        text = setup.fault_text if fault.sure else f"{setup.file} is not read: {fault.message}"
+        yield Problem(kind, text, fault.location)
         return
     for error in setup.faults:
         yield Problem(kinds.SETUP_NAME, error.message, setup.location(error.at))
     for stop in setup.stops:
         yield Problem(kinds.SETUP_STOPS, stop.message + stop.hint, setup.location(stop.at))
     for empty in setup.empty:
-        message = f"the pattern {empty.pattern!r} in setup.py matches no file{why_no_match(package, empty.pattern)}"
+        message = f"the pattern {empty.pattern!r} in {setup.file} matches no file{why_no_match(package, empty.pattern)}"
         yield Problem(kinds.EMPTY_GLOB, message, setup.location(empty.at))
     for argument in setup.ignored:
         yield Problem(kinds.IGNORED_ARGUMENT, argument.message, setup.location(setup.called_at))
     for unknown in setup.unknown:
         message = f"cannot be determined statically: {unknown.reason}"
         yield Problem(kinds.SETUP_UNKNOWN, message, setup.location(unknown.at))
-    yield from _naming_problems(package, setup)
+    if not setup.is_cmake:
+        yield from _naming_problems(package, setup)
 
 
-def _naming_problems(package: Package, setup: Setup) -> Iterator[Problem]:
+def _naming_problems(package: Package, setup: Installation) -> Iterator[Problem]:
     """Yield what is wrong with the package's name in setup.py, and with the entries that register the package."""
     start, targets = setup.location(setup.called_at), setup.installed()
     declared = package.manifest.name if package.manifest is not None else None

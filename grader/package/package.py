@@ -16,12 +16,12 @@ from grader.text import enumerated, was_not_committed
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
 if TYPE_CHECKING:
+    from grader.package.installation import Installation
     from grader.package.launch.model import Launch, NamedFile
     from grader.package.manifest import Manifest
     from grader.package.rviz import RvizFile
-    from grader.package.setup_py import Setup
 
-MANIFEST, SETUP = "package.xml", "setup.py"
+MANIFEST, SETUP, CMAKE = "package.xml", "setup.py", "CMakeLists.txt"
 RESOURCE_INDEX = "share/ament_index/resource_index/packages/"
 NO_PACKAGE = "the submission has no ROS 2 package: there is no package.xml"
 _RVIZ_LIMIT = 512 * 1024  # bytes
@@ -76,7 +76,7 @@ class Package:
         """The name that ROS 2 finds it by; without a package.xml, that of setup.py or of the folder."""
         if self.manifest is not None and self.manifest.name is not None:
             return self.manifest.name
-        return (self.setup and self.setup.name) or PurePosixPath(self.folder or self.tree.name).name
+        return (self.installation and self.installation.name) or PurePosixPath(self.folder or self.tree.name).name
 
     def find(self, name: str) -> "Package | None":
         """Return the package of the submission that ROS 2 finds by a name."""
@@ -105,33 +105,42 @@ class Package:
     def is_cmake(self) -> bool:
         """Return whether CMake, not setup.py, installs the package."""
         other_type = self.manifest is not None and self.manifest.build_type not in ("ament_python", "")
-        return "CMakeLists.txt" in self.tree.files and (SETUP not in self.tree.files or other_type)
+        return CMAKE in self.tree.files and (SETUP not in self.tree.files or other_type)
 
     @cached_property
-    def setup(self) -> "Setup | None":
-        """Return the files that its setup.py would install; None without a setup.py."""
-        file = self.tree.files.get(SETUP)
+    def installation(self) -> "Installation | None":
+        """Return what its setup.py or CMakeLists.txt installs; None without either."""
+        name = CMAKE if self.is_cmake else SETUP
+        file = self.tree.files.get(name)
         if file is None:
             return None
-        from grader.package.setup_py import Setup, read_setup
+        from grader.package.installation import Installation
         from grader.python.parse import SyntaxFault
 
-        own = self.path(SETUP)
+        own = self.path(name)
         try:
-            return read_setup(file.read(PYTHON_LIMIT), own, self.tree, self.budget)
+            data = file.read(PYTHON_LIMIT)
         except InputError as error:
             source = Source(own, "")
-            return Setup(source, SyntaxFault(source, str(error), Location(own, 1, 1), sure=False))
+            return Installation(source, SyntaxFault(source, str(error), Location(own, 1, 1), sure=False))
+        if self.is_cmake:
+            from grader.package.cmake.reader import read_cmake
+
+            declared = (self.manifest.name if self.manifest is not None else None) or ""
+            return read_cmake(data.decode("utf-8", "replace"), own, self.tree, declared, self.budget)
+        from grader.package.setup_py import read_setup
+
+        return read_setup(data, own, self.tree, self.budget)
 
     @cached_property
     def installed(self) -> dict[str, str]:
         """Each installed file's path in the package, by its path below the prefix."""
-        return self.setup.installed() if self.setup is not None else {}
+        return self.installation.installed() if self.installation is not None else {}
 
     @cached_property
     def shadows_ros(self) -> str:
         """The name of a Python package that a build installs and that ros2 launch imports in place of its own."""
-        packages = self.setup.packages if self.setup is not None and not self.setup.unknown else ()
+        packages = self.installation.packages if self.installation is not None and not self.installation.unknown else ()
         return next((name for name in packages if name in _OF_ROS_IN_PYTHON), "")
 
     @cached_property
@@ -165,7 +174,7 @@ class Package:
 
     def without_data_files(self, message: str) -> MissingElement:
         """Return the error for a setup.py that gives setup() no data_files, because of this mistake."""
-        setup = self.setup
+        setup = self.installation
         at = setup.location(setup.called_at) if setup is not None else None
         return MissingElement("data_files", self.folder, message=message, location=at, problem=message, costs_once=True)
 
@@ -253,9 +262,7 @@ class Package:
         owner = self.find(package)
         if owner is None:
             return not lacks_program(package, name)
-        if owner.is_cmake or owner.setup is None:
-            return None
-        return owner.setup.has_program(name, package)
+        return owner.installation.has_program(name, package) if owner.installation is not None else None
 
     def open_installed(self, path: str) -> tuple[bytes, str] | None:
         """Return what a build of any submitted package installs at a path below the prefix, with the file's path."""

@@ -13,13 +13,13 @@ from collections.abc import Callable, Iterator, Mapping
 from configparser import ConfigParser, Error
 from dataclasses import dataclass, field, replace
 from pathlib import PurePosixPath
-from typing import NamedTuple
 
 from grader.errors import InputError
 from grader.files.limits import ignored_part
 from grader.files.tree import Tree
 from grader.names import closest, did_you_mean
-from grader.package.file_search import ORDERS, EmptyGlob, PackageListing, file_functions
+from grader.package.file_search import ORDERS, PackageListing, file_functions
+from grader.package.installation import IgnoredArgument, Installation, InstalledFile, InstallError
 from grader.python.budget import Budget
 from grader.python.evaluation import Evaluation, PythonError
 from grader.python.interpreter import Interpreter
@@ -37,7 +37,6 @@ from grader.python.values import (
     iterate,
     unknown_in,
 )
-from grader.source import Location, Source
 from grader.text import enumerated
 
 _MAX_GUESSES = 10
@@ -88,97 +87,7 @@ _MAX_SETTINGS = 64 * 1024  # bytes
 _Finding = str | Unknown
 
 
-class _InstalledFile(NamedTuple):
-    """One installed file: its path in the package, its path below the prefix, and the position that installs it."""
-
-    source: str
-    target: str
-    at: Position
-
-
-class _InstallError(NamedTuple):
-    """Something in data_files that cannot be installed, so that the build stops."""
-
-    path: str
-    reason: str
-    at: Position
-    hint: str = ""  # what the path may mean instead
-
-    @property
-    def message(self) -> str:
-        """The error that stops the build, as part of a sentence."""
-        return f"data_files lists {self.path!r}, but {self.reason}" if self.path else self.reason
-
-
-class _IgnoredArgument(NamedTuple):
-    """An argument that setup() does not have: setuptools ignores it, with a warning."""
-
-    name: str
-    meant: str | None  # the argument with a similar name
-
-    @property
-    def message(self) -> str:
-        """What is wrong with it, as a sentence."""
-        return f"setup() has no argument {self.name}" + (f"; did you mean {self.meant}?" if self.meant else "")
-
-
-@dataclass(frozen=True, slots=True)
-class Setup:
-    """The result of a setup.py. `fault` is set where Python cannot read it: nothing else is known then.
-
-    What certainly raises an error is read as if it was fixed, and a misspelt data_files as what it means: `copies` are
-    the files that are installed then.
-    """
-
-    source: Source
-    fault: SyntaxFault | None = None
-    name: str | None = None
-    copies: tuple[_InstalledFile, ...] = ()
-    stops: tuple[_InstallError, ...] = ()
-    empty: tuple[EmptyGlob, ...] = ()
-    faults: tuple[PythonError, ...] = ()
-    unknown: tuple[Unknown, ...] = ()  # with any of these, a file that is not among the copies may be installed as well
-    doubt: Unknown | None = None  # the first that is not evaluated, so that the file may not get to its end
-    is_called: bool = True
-    called_at: Position = START
-    entry_points: Value = None  # what setup() is given
-    ignored: tuple[_IgnoredArgument, ...] = ()  # arguments that setup() does not have
-    scripts_folder: str = "bin"  # below the prefix, for console_scripts
-    packages: tuple[str, ...] = ()  # the Python packages, as far as they are known
-
-    def has_program(self, name: str, package: str) -> bool | None:
-        """Return whether a build installs a program where `ros2 run` looks for it; None where this is not known."""
-        if any(copy.target == f"lib/{package}/{name}" for copy in self.copies):
-            return True
-        points = self.entry_points if self.entry_points is not None else {}
-        scripts = points.get("console_scripts", []) if isinstance(points, dict) else None
-        if not isinstance(scripts, list) or not all(isinstance(script, str) for script in scripts) or self.unknown:
-            return None
-        is_listed = name in [script.partition("=")[0].strip() for script in scripts]
-        return is_listed and self.scripts_folder == f"lib/{package}"
-
-    def location(self, position: Position) -> Location:
-        """Return the location of a position in the file."""
-        return location_in(self.source, position)
-
-    @property
-    def misspelt(self) -> _IgnoredArgument | None:
-        """The argument that stands for data_files, so that a build installs none of its files."""
-        return next((argument for argument in self.ignored if argument.meant == "data_files"), None)
-
-    def installed(self) -> dict[str, str]:
-        """Return each installed file's source by its path below the prefix."""
-        return {copy.target: copy.source for copy in self.copies}
-
-
-def location_in(source: Source, position: Position) -> Location:
-    """Return the location of a position that Python gives: it counts columns in bytes, a location in characters."""
-    line = source.line(position.line)
-    column = len(line.encode("utf-8", "surrogateescape")[: position.column - 1].decode("utf-8", "ignore"))
-    return Location(source.path, position.line, column + 1)
-
-
-def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None) -> Setup:
+def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None) -> Installation:
     """Evaluate the setup.py of a package with these files; its work is charged to the budget. Never raises.
 
     The file system lists a folder in any order. If there are several files, other orders are evaluated as well. colcon
@@ -186,7 +95,7 @@ def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None)
     """
     code = parse(data, path)
     if isinstance(code, SyntaxFault):
-        return Setup(code.source, code)
+        return Installation(code.source, code)
     budget = budget or Budget()
     strings = [node for node in ast.walk(code.tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
     written = {str(node.value): position_of(node) for node in reversed(strings)}  # the first of several counts
@@ -207,7 +116,7 @@ def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None)
     return replace(setups[0], name=None, copies=(), stops=(), unknown=unknown, doubt=doubt)
 
 
-def _evaluate_setup(code: Code, listing: PackageListing, written: dict[str, Position], file: str) -> Setup:
+def _evaluate_setup(code: Code, listing: PackageListing, written: dict[str, Position], file: str) -> Installation:
     """Evaluate a file with folders listed in some order; `file` is what __file__ is."""
     data_files = _DataFiles(listing, _ROOT, written, is_first=file == "setup.py")
     calls: list[Call] = []
@@ -238,7 +147,7 @@ def _evaluate_setup(code: Code, listing: PackageListing, written: dict[str, Posi
     doubts = data_files.doubts
     if interpreter.doubt is not None:
         doubts = [interpreter.doubt, *doubts]
-    return Setup(
+    return Installation(
         source=code.source,
         name=name if isinstance(name, str) else None,
         copies=tuple(data_files.copies),
@@ -286,11 +195,11 @@ class _DataFiles:
     root: str  # the absolute path that stands for the package's folder
     written: Mapping[str, Position]  # where each text is written
     is_first: bool = True  # whether it is the run of setup.py in which colcon asks for data_files
-    copies: list[_InstalledFile] = field(default_factory=list)
-    stops: list[_InstallError] = field(default_factory=list)
+    copies: list[InstalledFile] = field(default_factory=list)
+    stops: list[InstallError] = field(default_factory=list)
     unknown: list[Unknown] = field(default_factory=list)  # what is installed as well, or elsewhere
     doubts: list[Unknown] = field(default_factory=list)  # with these, whether the build succeeds is not known either
-    ignored: list[_IgnoredArgument] = field(default_factory=list)
+    ignored: list[IgnoredArgument] = field(default_factory=list)
 
     def read(self, entries: Value, at: Position) -> None:
         """Add the files of the argument data_files."""
@@ -321,7 +230,7 @@ class _DataFiles:
 
     def stop(self, reason: str, at: Position, path: str = "") -> None:
         """Add an error that stops the build."""
-        self.stops.append(_InstallError(path, reason, self._origin(path, at)))
+        self.stops.append(InstallError(path, reason, self._origin(path, at)))
 
     def _entry(self, entry: Value, at: Position) -> None:
         """Add an entry, which colcon takes as a file, or as a tuple of a folder and a list of files."""
@@ -427,21 +336,21 @@ class _DataFiles:
             self._copy(path, folder, at)
         elif path is not None and not self._copy(path, folder, at):
             reason = f"it is a folder, and only files can be installed{self._narrower(path)}"
-            self.stops.append(_InstallError(text, reason, at))
+            self.stops.append(InstallError(text, reason, at))
         elif path is None and str(PurePosixPath(text)) in self.listing.files:
             self.stop("there is no such file: a path of a file does not end in /", at, text)
         elif path is None and ignored_part(posixpath.normpath(text)):
             self._give_up(None, f"{text} is an ignored file", at)
         elif path is None:
             guess = did_you_mean(text, self.listing.files) if len(self.stops) < _MAX_GUESSES else ""
-            self.stops.append(_InstallError(text, "there is no such file", at, guess))
+            self.stops.append(InstallError(text, "there is no such file", at, guess))
 
     def _copy(self, path: str | None, folder: str, at: Position) -> bool:
         """Install a file of the package; return whether it is one."""
         if path is None or path not in self.listing.files:
             return False
         target = posixpath.normpath(posixpath.join(folder, posixpath.basename(path)))
-        self.copies.append(_InstalledFile(path, target, at))
+        self.copies.append(InstalledFile(path, target, at))
         return True
 
     def _narrower(self, folder: str) -> str:
@@ -472,10 +381,10 @@ def _argument_findings(
         yield from _discovery_findings(listing)
 
 
-def _ignored_arguments(kwargs: Mapping[str, Value]) -> list[_IgnoredArgument]:
+def _ignored_arguments(kwargs: Mapping[str, Value]) -> list[IgnoredArgument]:
     """Return the arguments that setuptools does not know, each with the missing one that it may mean."""
     known = {*_USUAL, *_CHECKED, *_OTHERS}
-    return [_IgnoredArgument(name, closest(name, known - kwargs.keys())) for name in kwargs if name not in known]
+    return [IgnoredArgument(name, closest(name, known - kwargs.keys())) for name in kwargs if name not in known]
 
 
 def _is_list(value: Value) -> bool:

@@ -60,6 +60,13 @@ class SyntaxFault:
     sure: bool = True
 
 
+def location_in(source: Source, position: Position) -> Location:
+    """Return the location of a position that Python gives: it counts columns in bytes, a location in characters."""
+    line = source.line(position.line)
+    column = len(line.encode("utf-8", "surrogateescape")[: position.column - 1].decode("utf-8", "ignore"))
+    return Location(source.path, position.line, column + 1)
+
+
 def parse(data: bytes, path: str) -> Code | SyntaxFault:
     """Parse the bytes of a Python file. Never raises: what Python refuses, also for its depth, is a SyntaxFault."""
     resolved = resolve_conflicts(data)

@@ -159,9 +159,9 @@ class Surroundings(NamedTuple):
         for own in self.packages:
             if own.name == package:
                 similar = any(f"/{path}".endswith(f"/{inside}") for path in own.tree.files)
-                if own.is_cmake and similar and inside not in own.tree.files:
-                    raise Undetermined(f"whether CMakeLists.txt installs {inside} is not evaluated")
-                source = own.installed.get(f"share/{package}/{inside}")
+                source, setup = own.installed.get(f"share/{package}/{inside}"), own.installation
+                if source is None and similar and setup is not None and setup.is_cmake and setup.unknown:
+                    raise Undetermined(f"cannot determine statically whether CMakeLists.txt installs {inside}")
                 return own.path(source) if source is not None else None
         if self.packages:
             return None

@@ -9,8 +9,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from grader.files.folder import read_folder
+from grader.package.installation import Installation
 from grader.package.package import Package
-from grader.package.setup_py import Setup
 from grader.submission.packages import read_packages
 from grader.submission.submission import Lab
 from tests.differential.compared import Compared
@@ -35,11 +35,11 @@ def compare(numbers: range) -> Iterator[Compared]:
             yield Compared(seed, kind, difference(build, setup, ignored))
 
 
-def evaluated(folder: Path) -> tuple[Setup, str]:
+def evaluated(folder: Path) -> tuple[Installation, str]:
     """Return what the grader states of the package in a folder, and for which file colcon ignores it."""
     package = package_in(folder)
-    assert package.setup is not None
-    return package.setup, package.ignored_by
+    assert package.installation is not None
+    return package.installation, package.ignored_by
 
 
 def package_in(folder: Path) -> Package:
@@ -47,7 +47,7 @@ def package_in(folder: Path) -> Package:
     return read_packages(read_folder(folder), Lab("urdf/my_robot.urdf", "my_robot"))[0]
 
 
-def difference(build: Build, reported: Setup, ignored: str = "") -> str | None:
+def difference(build: Build, reported: Installation, ignored: str = "") -> str | None:
     """Return how what is stated differs from what colcon does; None if it does not."""
     foretold = [*filter(None, [ignored, reported.fault]), *reported.faults, *reported.stops]
     foretold += [] if reported.is_called else ["no call of setup()"]

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from grader.files.tree import Tree, make_tree
-from grader.package.cmake import installs
+from grader.package.cmake.reader import read_cmake
 from grader.package.launch.reader import read_launch
 from grader.package.manifest import read_manifest
 from grader.package.rviz import read_rviz
@@ -67,9 +67,12 @@ def launch(data: bytes, ending: str) -> None:
 
 
 def cmake(data: bytes) -> None:
-    """A CMakeLists.txt installs no file that the package does not have."""
-    tree = with_file("CMakeLists.txt", data)
-    assert not installs(tree, "my_robot", "meshes/hull.stl")
+    """A CMakeLists.txt installs only files that the package has; what is found has a place."""
+    tree, text = with_file("CMakeLists.txt", data), data.decode("utf-8", "replace")
+    found = read_cmake(text, "CMakeLists.txt", tree, "my_robot")
+    assert {copy.source for copy in found.copies} <= {*tree.files}
+    for at in (*(stop.at for stop in found.stops), *(unknown.at for unknown in found.unknown)):
+        check_location(found.location(at), {"CMakeLists.txt": text})
 
 
 def manifest(data: bytes) -> None:

@@ -1,96 +1,122 @@
-"""The files that the usual entry of a CMakeLists.txt installs."""
-
-import subprocess
-from pathlib import Path
-from shutil import which
+"""What a CMakeLists.txt installs, and what stops its build; `tests/oracles/test_cmake.py` compares both with CMake."""
 
 import pytest
 
-from grader.package.cmake import installs
+from grader.package.cmake.reader import read_cmake
+from grader.package.installation import Installation
 from tests.checks.submissions import Submitted
-from tests.command_line import HANG_TIMEOUT
+from tests.package.cmake_grammar import FILES
 from tests.work import limited_work
 
-FILES = ("CMakeLists.txt", "meshes/hull.stl", "meshes/fine/hull.stl", "urdf/arm.urdf", "launch/arm.launch.py")
-START = """\
-cmake_minimum_required(VERSION 3.8)  # install(FILES meshes/hull.stl DESTINATION share)
-project(arm)
-find_package(ament_cmake REQUIRED)
-if(BUILD_TESTING)
-  find_package(ament_lint_auto REQUIRED)
-  ament_lint_auto_find_test_dependencies()
-endif()
-"""
+START = "cmake_minimum_required(VERSION 3.8)\nproject(bot)\nfind_package(ament_cmake REQUIRED)\n"
+SHARE = "share/bot"
 
 
-def is_installed(text: str) -> bool:
-    """Return whether a package with this CMakeLists.txt certainly installs meshes/fine/hull.stl where it is."""
-    files = Submitted({**dict.fromkeys(FILES, ""), "CMakeLists.txt": text})
-    return installs(files.submission.whole_tree, "arm", "meshes/fine/hull.stl")
+def read(text: str, *, ending: str = "\nament_package()\n") -> Installation:
+    """Return what a file with these commands installs."""
+    tree = Submitted({**FILES}).submission.whole_tree
+    return read_cmake(f"{START}{text}{ending}", "CMakeLists.txt", tree, "bot")
+
+
+@pytest.mark.parametrize(
+    ("text", "installed"),
+    [
+        ("install(DIRECTORY urdf/parts DESTINATION s${MISSPELT})", {"s/parts/a.xacro"}),
+        ('INSTALL(DIRECTORY\n "urdf/parts/" # a comment\n DESTINATION [[share/bot]])', {f"{SHARE}/a.xacro"}),
+        ("foreach(it a b)\n install(FILES config/${it}.yaml DESTINATION c)\nendforeach()", {"c/a.yaml", "c/b.yaml"}),
+        ("set(all README.md)\nlist(APPEND all rviz/bot.rviz)\ninstall(FILES ${all} DESTINATION s)", {"s/README.md", "s/bot.rviz"}),
+        ("file(GLOB found config/[a].yaml)\ninstall(FILES ${found} DESTINATION c)", {"c/a.yaml"}),
+        ("if(NOT BUILD_TESTING AND EXISTS ${PROJECT_SOURCE_DIR}/urdf)\n install(FILES README.md DESTINATION s)\nendif()", {"s/README.md"}),
+        ('install(DIRECTORY urdf DESTINATION s FILES_MATCHING PATTERN "*.urdf")', {"s/urdf/bot.urdf"}),
+        ('install(DIRECTORY urdf/ DESTINATION s PATTERN "*.xacro" EXCLUDE)', {"s/bot.urdf"}),
+        ("function(put it)\n install(FILES ${it} DESTINATION ${ARGN})\nendfunction()\nput(README.md s)", {"s/README.md"}),
+        ("install(FILES README.md DESTINATION s RENAME LIESMICH.md)", {"s/LIESMICH.md"}),
+        ("add_executable(node src/node.cpp)\ninstall(TARGETS node DESTINATION lib/${PROJECT_NAME})", {"lib/bot/node"}),
+        ("add_executable(node src/node.cpp)\ninstall(TARGETS node)", {"bin/node"}),
+        ("install(PROGRAMS scripts/run.py DESTINATION lib/bot)", {"lib/bot/run.py"}),
+        ("rosidl_generate_interfaces(bot msg/Reading.msg DEPENDENCIES ${known})", {f"{SHARE}/msg/Reading.msg"}),
+        ("pluginlib_export_plugin_description_file(nav README.md)", {f"{SHARE}/README.md"}),
+    ],
+)  # fmt: skip
+def test_what_is_installed(text: str, installed: set[str]) -> None:
+    """Paths below the prefix, besides that of package.xml."""
+    found = read(text)
+    assert not (found.stops or found.unknown)
+    assert {*found.installed(), *found.programs} == {*installed, f"{SHARE}/package.xml"}
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("install(DIRECTORY lunch DESTINATION s)", "install() lists 'lunch', but there is no such folder"),
+        ("install(DIRECTORY README.md DESTINATION s)", "install() lists 'README.md', but it is a file: write install(FILES ...)"),
+        ("install(FILES urdf DESTINATION s)", "install() lists 'urdf', but it is a folder: write install(DIRECTORY ...)"),
+        ("install(FILES README.md)", "install() has no DESTINATION"),
+        ("install(TARGETS node DESTINATION s)", "install() names the target 'node', which is not defined"),
+        ("add_executable(node src/nodes.cpp)", "add_executable() lists 'src/nodes.cpp', but there is no such file"),
+        ("target_link_libraries(node rclcpp)", "target_link_libraries() names the target 'node', which is not defined"),
+        ("add_library(a src/node.cpp)\nament_target_dependencies(a rclcpp)",
+         "ament_target_dependencies() names the package 'rclcpp', without find_package(rclcpp)"),
+        ("ament_python_install_package(urdf)", "ament_python_install_package() needs the folder 'urdf', which has no __init__.py"),
+        ('message(FATAL_ERROR "no ${PROJECT_NAME}")', "CMakeLists.txt stops with the message 'no bot'"),
+        ("project(bots)", "project() names the package 'bots', package.xml names it 'bot'"),
+    ],
+)  # fmt: skip
+def test_what_stops_a_build(text: str, message: str) -> None:
+    """CMake stops at it, and it is named."""
+    assert [stop.message for stop in read(text).stops] == [message]
 
 
 @pytest.mark.parametrize(
     "text",
     [
-        "install(DIRECTORY meshes DESTINATION share/${PROJECT_NAME})",
-        "INSTALL(\n  DIRECTORY\n  meshes\n  DESTINATION share/${PROJECT_NAME}/\n)",
-        'install(DIRECTORY "meshes" DESTINATION "share/${PROJECT_NAME}")',
-        "install(DIRECTORY meshes/ DESTINATION share/${PROJECT_NAME}/meshes)",
-        "install(\n  DIRECTORY urdf meshes launch\n  DESTINATION share/${PROJECT_NAME}\n)",
+        "include(cmake/own.cmake)",
+        "some_command(urdf)",
+        "if(DEFINED ENV{HOME} AND ${CMAKE_VERSION} VERSION_LESS 9)\n install(FILES README.md DESTINATION s)\nendif()",
+        'install(CODE "message(x)")',
+        "install(FILES ${rclcpp_FILES} DESTINATION s)\nfind_package(rclcpp)\ninstall(FILES ${rclcpp_FILES} DESTINATION s)",
+        "while(A)\n install(FILES README.md DESTINATION s)\nendwhile()",
     ],
-)
-def test_the_usual_entry(text: str) -> None:
-    """The entry of a description package installs its folders."""
-    assert is_installed(f"{START}{text}\nament_package()\n")
+)  # fmt: skip
+def test_what_is_not_known(text: str) -> None:
+    """Nothing is said to be missing then."""
+    found = read(text)
+    assert found.unknown
+    assert not found.stops
 
 
 @pytest.mark.parametrize(
-    "text",
+    ("text", "message"),
     [
-        "",
-        "install(DIRECTORY urdf DESTINATION share/${PROJECT_NAME})",
-        "install(DIRECTORY meshes DESTINATION share)",
-        "install(DIRECTORY meshes/ DESTINATION share/${PROJECT_NAME})",
-        "#[[\ninstall(DIRECTORY meshes DESTINATION share/${PROJECT_NAME})\n]]",
-        "# install(DIRECTORY meshes DESTINATION share/${PROJECT_NAME})",
-        "if(WITH_MESHES)\n  install(DIRECTORY meshes DESTINATION share/${PROJECT_NAME})\nendif()",
-        "function(put)\n  install(DIRECTORY meshes DESTINATION share/${PROJECT_NAME})\nendfunction()",
-        'install(DIRECTORY meshes DESTINATION share/${PROJECT_NAME} PATTERN "*.stl" EXCLUDE)',
-        "return()\ninstall(DIRECTORY meshes DESTINATION share/${PROJECT_NAME})",
-        "install(CODE [[ install(DIRECTORY meshes DESTINATION share/${PROJECT_NAME}) ]])",
-        "install(DIRECTORY\n meshes DESTINATION share/${PROJECT_NAME}",
+        ("install(", "a parenthesis is not closed"),
+        ('set(a "b)\n', "a quote is not closed"),
+        ("if(A)\n", "if() has no endif()"),
+        ("endif()\n", "endif() has no beginning"),
+        ("= 1\n", "CMake expects a command such as install(...), not '='"),
     ],
 )
-def test_other_commands(text: str) -> None:
-    """Nothing is certain of what depends on a condition, a loop or another file."""
-    assert not is_installed(f"{START}{text}\n")
-    assert not is_installed("install(DIRECTORY meshes DESTINATION share/${PROJECT_NAME})")
+def test_what_cmake_cannot_read(text: str, message: str) -> None:
+    """A file that CMake cannot parse has a fault with its place."""
+    fault = read(text, ending="").fault
+    assert fault is not None
+    assert (fault.message, fault.location.line) == (message, 4)
+
+
+def test_a_package_without_its_end() -> None:
+    """ROS 2 finds a package by what ament_package() installs."""
+    assert "ament_package()" in read("", ending="").stops[0].message
 
 
 def test_a_long_text_takes_little_time() -> None:
-    """Comments and commands that do not end are read once; a file that is too large is not read."""
-    with limited_work(20_000):
-        for text in ("#[[\n" * 30_000, "#[[" * 30_000 + '"(' * 9_000, "install(DIRECTORY " * 7_000, "\n" * 120_000):
-            assert not is_installed(text)
-    assert not is_installed("#" * 200_000)
-
-
-@pytest.mark.skipif(which("cmake") is None, reason="CMake is not installed")
-def test_cmake_installs_the_same(tmp_path: Path) -> None:
-    """CMake itself is the oracle for the entry."""
-    text = (
-        "cmake_minimum_required(VERSION 3.8)\nproject(arm NONE)\n"
-        "install(DIRECTORY urdf meshes DESTINATION share/${PROJECT_NAME})\n"
-    )
-    source, prefix = tmp_path / "source", tmp_path / "prefix"
-    for path in FILES:
-        (source / path).parent.mkdir(parents=True, exist_ok=True)
-        (source / path).write_text(text if path == "CMakeLists.txt" else "", encoding="utf-8")
-    for command in (
-        ("cmake", "-S", source, "-B", tmp_path / "build", f"-DCMAKE_INSTALL_PREFIX={prefix}"),
-        ("cmake", "--install", tmp_path / "build"),
-    ):
-        subprocess.run(command, check=True, capture_output=True, timeout=HANG_TIMEOUT)
-    found = {path.relative_to(prefix).as_posix() for path in prefix.rglob("*") if path.is_file()}
-    assert "share/arm/meshes/fine/hull.stl" in found
-    assert is_installed(text)
+    """Comments and commands that do not end are read once; nothing grows without a bound."""
+    doubled = "set(a x)\n" + "set(a ${a}${a};${a})\n" * 60
+    with limited_work(3_000_000):
+        for text in (
+            "#[[\n" * 30_000,
+            "#[[" * 30_000 + '"(' * 9_000,
+            "a(" * 30_000,
+            "\n" * 90_000,
+            "if(A)\n" * 9_000,
+            doubled,
+        ):
+            read(text)

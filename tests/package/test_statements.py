@@ -8,7 +8,8 @@ from random import Random
 import pytest
 
 from grader.files.folder import read_folder
-from grader.package.setup_py import Setup, read_setup
+from grader.package.installation import Installation
+from grader.package.setup_py import read_setup
 from tests.oracles.python_setups import Ran, run_all
 from tests.package.my_robot import write_package
 
@@ -65,7 +66,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def wrong(setup: Setup, ran: Ran) -> str:
+def wrong(setup: Installation, ran: Ran) -> str:
     """Return how what is stated of a file differs from what Python does with it; nothing if it does not."""
     if setup.fault is not None or setup.faults or setup.stops or not setup.is_called:
         what = setup.fault or [*setup.faults, *setup.stops, "no call"][0]

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.files.tree import File, make_tree
-from grader.package.setup_py import Setup, read_setup
+from grader.package.installation import Installation
+from grader.package.setup_py import read_setup
 from grader.python.parse import Code, parse
 from tests.examples import examples, spread
 from tests.package.my_robot import FILES
@@ -23,13 +24,13 @@ def read_nothing(limit: int, *, first: bool = False) -> bytes:
 _TREE = make_tree("my_robot", [File(path, 0, read_nothing) for path in FILES], [])
 
 
-def evaluated(text: str | bytes) -> Setup:
+def evaluated(text: str | bytes) -> Installation:
     """Return the evaluation of a setup.py, which must take little work."""
     with limited_work(60_000_000):
         return read_setup(text.encode() if isinstance(text, str) else text, "setup.py", _TREE)
 
 
-def is_fully_known(setup: Setup) -> bool:
+def is_fully_known(setup: Installation) -> bool:
     """Return whether a file has no faults and no unknown values."""
     return not (setup.fault or setup.faults or setup.stops or setup.unknown)
 

@@ -27,11 +27,10 @@ from grader.package.launch.model import (
 )
 from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.launch.substitutions import resolve
-from grader.package.setup_py import location_in
 from grader.python.evaluation import Evaluation, record
 from grader.python.interpreter import Interpreter
 from grader.python.library import standard_functions
-from grader.python.parse import START, Code, Position, SyntaxFault, parse
+from grader.python.parse import START, Code, Position, SyntaxFault, location_in, parse
 from grader.python.values import (
     Call,
     EvaluationFails,
