@@ -41,6 +41,7 @@ def test_number_of_a_failure_leads_to_the_picture(page: Any) -> None:
     page.set_viewport_size({"width": 1280, "height": 900})
 
 
+@pytest.mark.usefixtures("shows_edits")
 def test_new_text_is_copied(open_page: Open, tmp_path: Path) -> None:
     """The button of a hint copies the new lines."""
     allowed = {"permissions": ["clipboard-read", "clipboard-write"]}

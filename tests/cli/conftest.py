@@ -8,7 +8,6 @@ from types import SimpleNamespace
 import pytest
 
 from tests.classroom.gradebooks import HOSTILE, batch, make_class
-from tests.command_line import ROOT
 
 
 @pytest.fixture(scope="session")
@@ -42,15 +41,3 @@ def unwatched(monkeypatch: pytest.MonkeyPatch) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("grader.commands.watch.time", SimpleNamespace(sleep=interrupt, monotonic=time.monotonic))
-
-
-@pytest.fixture
-def shows_edits(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Grade by a copy of lab6 whose hints may show edits, unless another rubric is named."""
-    folder = tmp_path_factory.mktemp("edits") / "lab6"
-    shutil.copytree(ROOT / "rubrics/lab6", folder)
-    file = folder / "rubric.toml"
-    text = file.read_text(encoding="utf-8")
-    assert 'hints = "cause"' in text
-    file.write_text(text.replace('hints = "cause"', 'hints = "edit"'), encoding="utf-8")
-    monkeypatch.setenv("GRADER_RUBRIC", str(file))
