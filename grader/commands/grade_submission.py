@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.commands.invocation import ExitCode, Saves, exit_code, read_arguments, read_threshold
 from grader.commands.rubrics import files_of, load
-from grader.commands.writing import CHECKOUTS, Warn, refuse_inputs, refuse_symlinks, save_all
+from grader.commands.writing import CHECKOUTS, Warn, missing_folder, refuse_inputs, refuse_symlinks, save_all
 from grader.errors import GraderError, InputError
 from grader.files.limits import ROBOT_ENDINGS
 from grader.grading.hint_levels import HintLevel
@@ -121,7 +121,7 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
 
 
 def check_saves(saves: Saves, rubric: Sequence[Path], *paths: str) -> None:
-    """Raise InputError if a report would overwrite an input, or lead through a symlink of a submission.
+    """Raise InputError if a report has no folder, would overwrite an input, or leads through a symlink of a submission.
 
     Inputs are the files of the rubric and the submissions that are files.
     """
@@ -130,6 +130,8 @@ def check_saves(saves: Saves, rubric: Sequence[Path], *paths: str) -> None:
     for _, file in saves:
         refuse_symlinks(file, paths)
         refuse_inputs("--save", file, inputs)
+        if not os.path.isdir(file.parent):  # noqa: PTH112
+            raise missing_folder(file)
 
 
 def save_reports(request: GradeRequest, run: GradeRun) -> None:
