@@ -16,7 +16,7 @@ STATES = {UNMARKED: "unmarked", "marked": "marked", OLDER: "marked before the su
 Place = tuple[str, str]  # a criterion and the key of an answer
 
 
-class _ReviewStudent(NamedTuple):
+class ReviewStudent(NamedTuple):
     """A student of an item."""
 
     student: Student
@@ -30,6 +30,11 @@ class _ReviewStudent(NamedTuple):
         return f"submission {self.number}" if self.number else named(self.student.key, self.student.name)
 
     @property
+    def order(self) -> tuple[int, str, str]:
+        """What students are sorted by: the number of an anonymous one, else the name and the key."""
+        return self.number, "" if self.number else self.label.casefold(), self.student.key
+
+    @property
     def state(self) -> str:
         """One of STATES."""
         if self.mark is None or self.mark.points is None:
@@ -40,12 +45,14 @@ class _ReviewStudent(NamedTuple):
 class ReviewItem(NamedTuple):
     """A criterion of the students whose answers are equal: one mark serves all. The first student's is shown.
 
-    `answer` is the key of the answer, empty without one.
+    `answer` is the key of the answer, empty without one. `also` are other criteria of these students that are open for
+    the same reason: a page shows them together.
     """
 
     criterion: Criterion
     answer: str
-    members: tuple[_ReviewStudent, ...]
+    members: tuple[ReviewStudent, ...]
+    also: "tuple[ReviewItem, ...]" = ()
 
     @property
     def place(self) -> Place:
@@ -56,7 +63,19 @@ class ReviewItem(NamedTuple):
     def view(self) -> str:
         """A text that tells whether the item is as a page shows it, without the names of its students."""
         shown = ((one.student.key, one.stored.digest, one.mark and one.mark._replace(place="")) for one in self.members)
-        return digest_of(self.criterion.id, [*shown])
+        return digest_of(self.criterion.id, [*shown], *(other.view for other in self.also))
+
+    @property
+    def all(self) -> "tuple[ReviewItem, ...]":
+        """The item, and those that are shown with it."""
+        return self, *self.also
+
+    @property
+    def reason(self) -> tuple[object, ...]:
+        """What items have in common that are shown together: why no check could decide them, and the students."""
+        _, status, why, _ = self.members[0].stored.results.get(self.criterion.id, (None, "pending", "", ""))
+        alone = "" if why and self.answer and status == "pending" else self.criterion.id
+        return alone, why, self.answer, *(one.student.key for one in self.members)
 
 
 class ReviewFilter(NamedTuple):
@@ -66,7 +85,7 @@ class ReviewFilter(NamedTuple):
     section: str = ""
     state: str = UNMARKED
 
-    def members(self, item: ReviewItem, kept: Collection[Key] = ()) -> tuple[_ReviewStudent, ...]:
+    def members(self, item: ReviewItem, kept: Collection[Key] = ()) -> tuple[ReviewStudent, ...]:
         """Return the students of an item that are shown; those in `kept` whatever their state is."""
         return tuple(
             one
@@ -83,7 +102,7 @@ def review_items(book: Gradebook, *, is_anonymous: bool = False, with_final: boo
     points. So are criteria that the rubric adjusts, and students with a final mark or an excuse, unless `with_final`.
     Students of one submission have the same answers. Numbers and order of anonymous students reveal no names.
     """
-    groups: defaultdict[Place, list[_ReviewStudent]] = defaultdict(list)
+    groups: defaultdict[Place, list[ReviewStudent]] = defaultdict(list)
     keys = sorted(book.keys, key=digest_of) if is_anonymous else book.keys
     order, counting = {key: at for at, key in enumerate(keys, 1)}, book.marks.counting
     stored = [one for one in book.results.all() if one.verdict != "unreadable" and one.student in book.run.totals]
@@ -95,7 +114,7 @@ def review_items(book: Gradebook, *, is_anonymous: bool = False, with_final: boo
         for name in one.results if with_final or (one.student, TOTAL) not in counting else ():
             mark = counting.get((one.student, name))
             if name in answers or mark is not None:
-                member = _ReviewStudent(student, one, mark or book.marks.comments.get((one.student, name)), number)
+                member = ReviewStudent(student, one, mark or book.marks.comments.get((one.student, name)), number)
                 groups[name, answers.get(name, one.digest)].append(member)
     rows = {row.id: row for row in book.rubric.criteria if row.adjustment is None}
     items = (ReviewItem(rows[name], answer, (*some,)) for (name, answer), some in groups.items() if name in rows)

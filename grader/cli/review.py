@@ -67,13 +67,15 @@ def review(
     answers: AnswersOption = None,
     sheet: Annotated[Path | None, typer.Option(metavar="FILE", help=_SHEET)] = None,
     port: Annotated[int, typer.Option(metavar="N", min=0, max=65535, show_default=False, help=_PORT)] = 0,
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="Only print the address.")] = False,
 ) -> str:
     """Grade what needs manual grading on a page in the browser.
 
-    The command prints the address of the page, which works on this machine only. An item is a criterion with the
-    student's answer, the model answer of --answers, and the pictures; students with the same answer are one item. Each
-    mark is saved immediately, in the file of --by in the folder marks/ of the gradebook. Marked items can be opened and
-    marked again. Ctrl-C ends the review.
+    The command prints the address of the page, which works on this machine only, and opens it. An item is a criterion
+    with the student's answer, the model answer of --answers, and the pictures, or with the robot and the lines of the
+    file; students with the same answer are one item, and so are criteria of a student that are open for one reason.
+    Each mark is saved immediately, in the file of --by in the folder marks/ of the gradebook. Marked items can be
+    opened and marked again. Ctrl-C ends the review.
 
     With --sheet, no page is served: fill in the points in a spreadsheet, and record them with `mark --import FILE`.
 
@@ -92,4 +94,6 @@ def review(
     if section is not None and not section.strip():
         raise InputError("--section is empty: name a section, or omit it to review all")
     session = ReviewSession(gradebook, ReviewFilter(criterion, section or ""), by, answers, is_anonymous=anonymous)
-    return write_sheet(session, sheet) if sheet is not None else review_in_browser(session, port, TERMINAL)
+    if sheet is not None:
+        return write_sheet(session, sheet)
+    return review_in_browser(session, port, TERMINAL, opens=not no_browser)

@@ -11,7 +11,7 @@ import re
 import secrets
 from bisect import bisect
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler
 from socket import SHUT_RD, socket
@@ -24,7 +24,9 @@ from grader.classroom.gradebook import Gradebook
 from grader.classroom.marks import is_open_in_libreoffice
 from grader.classroom.review_items import STATES, ReviewFilter
 from grader.commands.grade_class import write_grades
-from grader.commands.review_session import ReviewSession, open_item
+from grader.commands.open_browser import opened_in_browser
+from grader.commands.opened_item import open_item
+from grader.commands.review_session import ReviewSession
 from grader.commands.writing import Terminal
 from grader.documents.pictures import PDF, EmbeddedPicture
 from grader.errors import GraderError, InputError
@@ -36,6 +38,7 @@ MAX_BODY = 64 * 1024  # bytes; `http.server` limits the headers
 _PATIENCE = 15.0  # seconds in which a client must send a whole request, and receive a whole response
 _TEXT = "text/plain; charset=utf-8"
 _TOKEN_BYTES = 24
+_LINK = "open-review.html"  # in the gradebook, while the server runs
 _HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
@@ -197,10 +200,14 @@ class ReviewPage:
         match path:
             case ("end",):
                 given = sum(mark.points is not None for mark in session.own.values())
-                return _html(pages.end_page(given, session.left, self._place(at), printable_path(session.folder)))
+                folder = printable_path(session.folder)
+                return _html(pages.end_page(given, session.left, self._place(at), folder, session.lms))
+            case (_, "people") if at >= 0:
+                return _json(people=[(one.label, one.left, self.address(one.at)) for one in session.people(at)])
             case (_,) if is_item:
                 item = session.item_at(at)
-                return _html(pages.item_page(item, open_item(book, item), self._place(at)))
+                place = self._place(at) | {"so_far": session.so_far(item)}
+                return _html(pages.item_page(item, open_item(book, item), place))
             case (_, "picture", number) if is_item:
                 pictures = enumerate(open_item(book, session.item_at(at)).pictures, 1)
                 found = {str(which): one for which, one in pictures}.get(number)
@@ -222,10 +229,10 @@ class ReviewPage:
         with suppress(ValueError, RecursionError):
             sent = json.loads(body)
         match sent if at >= 0 else None:
-            case {"do": "mark", "points": str(points), "comment": str(comment), "shown": str(shown)} if at < len(
-                session.places
+            case {"do": "mark", "points": str(points), "comment": str(comment), "shown": str(shown), **more} if (
+                at < len(session.places)
             ):
-                return self._mark(at, points, comment.strip(), shown)
+                return self._mark(at, points, comment.strip(), shown, to=str(more.get("to")))
             case {"do": "filter", "criterion": str(criterion), "section": str(section), "state": str(state)} if (
                 state in STATES
             ):
@@ -238,12 +245,16 @@ class ReviewPage:
                 at = session.previous(at)
             case {"do": "next"}:
                 at = session.following(at)
+            case {"do": "question"}:
+                at = session.next_question(at)
+            case {"do": "go", "to": str(address)} if self._position(address) >= 0:
+                at = self._position(address)
             case _:
                 return _json(HTTPStatus.BAD_REQUEST, error="this request is not from the page")
         return _json(go=self.address(at))
 
-    def _mark(self, at: int, points: str, comment: str, shown: str) -> _Response:
-        """Save a mark, or return those of others that it would replace."""
+    def _mark(self, at: int, points: str, comment: str, shown: str, *, to: str) -> _Response:
+        """Save a mark, or return those of others that it would replace. `question` is the next one of the student."""
         session = self.session
         open_item(session.book, session.item_at(at))  # what has moved or changed cannot be marked
         replaced = session.mark(at, points, comment, shown)
@@ -252,7 +263,7 @@ class ReviewPage:
             return _json(newer=pages.mark_text(replaced[0]) + more)
         if replaced is None:
             return _json(error=_CHANGED, go=self.address(at))
-        return _json(go=self.address(session.following(at)))
+        return _json(go=self.address(session.next_question(at) if to == "question" else session.following(at)))
 
     def address(self, at: int) -> str:
         """Return the address of an item below that of the server."""
@@ -271,12 +282,15 @@ def _html(page: str, status: HTTPStatus = HTTPStatus.OK) -> _Response:
     return _Response(page.encode("utf-8", "backslashreplace"), "text/html; charset=utf-8", status, policy=_PAGE_POLICY)
 
 
-def _json(status: HTTPStatus = HTTPStatus.OK, **answer: str) -> _Response:
+def _json(status: HTTPStatus = HTTPStatus.OK, **answer: object) -> _Response:
     return _Response(json.dumps(answer).encode(), "application/json", status)
 
 
-def review_in_browser(session: ReviewSession, port: int, terminal: Terminal) -> str:
-    """Serve the review page until Ctrl-C, write the grades, and return a summary. Raises InputError."""
+def review_in_browser(session: ReviewSession, port: int, terminal: Terminal, *, opens: bool = True) -> str:
+    """Serve the review page until Ctrl-C, write the grades, and return a summary; it `opens` the page in the browser.
+
+    Raises InputError.
+    """
     if not session.places:
         return "nothing needs manual grading\n"
     page = ReviewPage(session)
@@ -284,9 +298,12 @@ def review_in_browser(session: ReviewSession, port: int, terminal: Terminal) -> 
         if is_open_in_libreoffice(session.file):
             shown = printable_path(session.file)
             terminal.warn(f"{shown} is open in LibreOffice: close it, because saving it there would remove new marks")
+        address = f"{server.url}{page.address(session.following())}"
         with suppress(KeyboardInterrupt):
-            terminal.print(f"{server.url}{page.address(session.following())}\n")
-            terminal.warn("open this address in a browser on this machine; Ctrl-C ends the review, all marks are kept")
-            server.serve_forever()
+            terminal.print(f"{address}\n")
+            with opened_in_browser(address, session.folder / _LINK) if opens else nullcontext(False) as is_open:
+                how = "the page opens in the browser" if is_open else "open this address in a browser on this machine"
+                terminal.warn(f"{how}; Ctrl-C ends the review, all marks are kept")
+                server.serve_forever()
     write_grades(Gradebook(session.folder))
     return f"{len(session.own)} marked, {session.left} left\n"

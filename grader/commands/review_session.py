@@ -5,29 +5,26 @@ page, a person can fill in a sheet of the open items, a CSV file, which `grader 
 """
 
 import os
-from functools import lru_cache
-from itertools import starmap
+from collections import defaultdict
+from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 from grader.classroom import gradebook_folder as names
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.gradebook_folder import CLASS_FILE
 from grader.classroom.marks import Key, Mark, append_marks, mark_file, mark_in
-from grader.classroom.review_items import Place, ReviewFilter, ReviewItem, review_items
+from grader.classroom.review_items import UNMARKED, Place, ReviewFilter, ReviewItem, ReviewStudent, review_items
 from grader.classroom.roster import plain
 from grader.classroom.tables import write_table
 from grader.classroom.typed_names import criterion_of
+from grader.commands.opened_item import open_item
 from grader.commands.writing import save
-from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import InputError
-from grader.grading.criterion_pictures import evidence_files, may_have_pictures, pictures_of
-from grader.grading.grade import grade
 from grader.grading.model_answers import load_with_answers
-from grader.grading.report import Report
-from grader.report.criteria import answer_lines, counts_lines
-from grader.report.pages.review_pages import NO_ANSWER, OpenedItem
-from grader.submission.submission import Submission
-from grader.text import counted, cut, enumerated, format_points, printable, printable_path, shell_quoted
+from grader.report.criteria import alike
+from grader.report.pages.review_pages import NO_ANSWER
+from grader.text import counted, counted_points, cut, enumerated, format_points, printable, printable_path, shell_quoted
 
 CONFIRMED = "!"  # ends what the page sends to replace marks that it was asked about
 _MAX_NAMED = 5
@@ -36,6 +33,14 @@ _READ = (names.RESULTS, CLASS_FILE, names.ROSTER, f"{names.RUBRIC}/**/*.toml", f
 _SHEET_COLUMNS = ("criterion", "answer", "points", "maximum", "comment", "text", "students")
 _PRIVATE = 0o600
 _MAX_TEXT = 30_000  # characters; a cell of Excel has at most 32,767
+
+
+class _Person(NamedTuple):
+    """A student in the list beside the items."""
+
+    label: str
+    left: int  # criteria that are unmarked
+    at: int  # the position of an item: of the question that is shown, else the first unmarked one
 
 
 class ReviewSession:
@@ -58,6 +63,7 @@ class ReviewSession:
         self.file = mark_file(folder / names.MARKS, by)
         self.own = dict[Key, Mark]()
         self._kept = set[Key]()  # marked since the filter was chosen: these stay in the list
+        self.filter = shown
         self.places: tuple[Place, ...] = ()
         self._stamps: object = None
         self.refresh()
@@ -74,6 +80,20 @@ class ReviewSession:
             self.items = review_items(self.book, is_anonymous=self.is_anonymous)
             self.places = tuple(dict.fromkeys((*self.places, *self.items)))
             self._stamps = stamps
+            self._arrange()
+
+    def _arrange(self) -> None:
+        """Find the items that are shown, and join those of the same students that are open for the same reason."""
+        found = ((at, self.items.get(place)) for at, place in enumerate(self.places))
+        some = ((at, item, self.filter.members(item, self._kept)) for at, item in found if item is not None)
+        self.shown = {at: item._replace(members=members) for at, item, members in some if members}
+        joined = [those for _, those in alike(self.shown, lambda at: self.shown[at].reason)]
+        self._joined = {
+            at: self.shown[those[0]]._replace(also=tuple(self.shown[other] for other in those[1:]))
+            for those in joined
+            for at in those
+        }
+        self.listed = [those[0] for those in joined]
 
     @property
     def sections(self) -> dict[str, str]:
@@ -87,19 +107,14 @@ class ReviewSession:
         unmarked = ReviewFilter(*self.filter[:2])
         return sum(len(unmarked.members(item)) for item in self.items.values())
 
-    @property
-    def listed(self) -> list[int]:
-        """The positions of the items that are shown."""
-        found = ((at, self.items.get(place)) for at, place in enumerate(self.places))
-        return [at for at, item in found if item is not None and self.filter.members(item, self._kept)]
-
     def item_at(self, at: int) -> ReviewItem:
         """Return an item with the students that are shown, with others if none is. Raises InputError if it is gone."""
+        if at in self._joined:
+            return self._joined[at]
         item = self.items.get(self.places[at])
         if item is None:
             raise InputError(_GONE)
-        of_section = ReviewFilter("", self.filter.section, "").members(item)
-        return item._replace(members=self.filter.members(item, self._kept) or of_section or item.members)
+        return item._replace(members=ReviewFilter("", self.filter.section, "").members(item) or item.members)
 
     def following(self, position: int = -1) -> int:
         """Return the position of the next item that is shown, beyond the last one at the end."""
@@ -108,6 +123,47 @@ class ReviewSession:
     def previous(self, position: int) -> int:
         """Return the position of the previous item that is shown, the same position if there is none."""
         return max((at for at in self.listed if at < position), default=position)
+
+    def next_question(self, position: int) -> int:
+        """Return the position of the student's next item, after the last one that of the next student's first.
+
+        An item of several students is that of the first one.
+        """
+        if position >= len(self.places):
+            return position
+        here = self.item_at(position).members[0].order, position
+        shown = ((self._joined[at].members[0], at) for at in self.listed)
+        later = [(one.order, at) for one, at in shown if (one.order, at) > here]
+        return min(later)[1] if later else len(self.places)
+
+    def people(self, position: int) -> list[_Person]:
+        """Return the students with items of the question and section that are shown, whatever their state is."""
+        question = self.places[position][0] if position < len(self.places) else ""
+        of_any_state = ReviewFilter(*self.filter[:2], "")
+        found = defaultdict[tuple[int, str, str], list[tuple[int, ReviewStudent]]](list)
+        for at, item in ((at, self.items[place]) for at, place in enumerate(self.places) if place in self.items):
+            for one in of_any_state.members(item):
+                found[one.order].append((at, one))
+        return [self._person(found[order], question) for order in sorted(found)]
+
+    def _person(self, items: Sequence[tuple[int, ReviewStudent]], question: str) -> _Person:
+        left = [at for at, one in items if one.state == UNMARKED]
+        same = [at for at, _ in items if self.places[at][0] == question]
+        return _Person(items[0][1].label, len(left), (same or left or [items[0][0]])[0])
+
+    def so_far(self, item: ReviewItem) -> str:
+        """Return the points of a student so far, and how many need manual grading; empty for several students."""
+        grade = self.book.grade(item.members[0].student.key)
+        if item.members[1:] or grade.total is None:
+            return ""
+        points = f"{format_points(grade.total)} of {counted_points(grade.report.max_score)} so far"
+        return f"{points}; {format_points(grade.pending)} left to grade" if grade.pending else points
+
+    @property
+    def lms(self) -> str:
+        """The LMS that the class came from, as its submissions or roster say; empty if they do not."""
+        students = (self.book.student(one.student, one) for one in self.book.results.all())
+        return next((name for one in students for name in ("canvas", "moodle") if getattr(one, name)), "")
 
     def show_only(self, wanted: ReviewFilter) -> None:
         """Show the items that a filter lets through. Raises InputError."""
@@ -119,10 +175,12 @@ class ReviewSession:
             raise InputError(f"no student has the section {wanted.section!r} in the roster; it has {known}")
         self.filter = wanted._replace(section=sections.get(plain(wanted.section), ""))
         self._kept.clear()
+        self._arrange()
 
     def mark(self, at: int, points: str, comment: str, shown: str) -> list[Mark] | None:
         """Append a mark for each student of an item; `-` as points withdraws marks.
 
+        Of criteria that are shown together, `points` has a word for each.
         `shown` is the item's view that the person saw: without effect, returns None if it is another one. Returns the
         marks of others that would be replaced; nothing is saved then, unless `shown` ends with CONFIRMED. Raises
         InputError.
@@ -131,15 +189,13 @@ class ReviewSession:
         self._check_rows()
         if shown.removesuffix(CONFIRMED) != item.view:
             return None
-        if not points.strip():
+        values = points.split() if item.also else [points.strip()]
+        if len(values) != len(item.all) or not all(values):
             raise InputError("points are missing")
-        cells = {"time": "", "by": self.by, "points": points.strip(), "comment": comment, "": ""}
-        new = dict[Key, Mark]()
-        for one in item.members:
-            key = one.student.key, item.criterion.id
-            mark = mark_in({**cells, "submission": one.stored.digest}, key, item.criterion.points, "")
-            new[key] = mark._replace(time=self.book.marks.next_time(key))
-        replaced = [one.mark for one in item.members if one.mark is not None and one.mark.points is not None]
+        new, replaced = dict[Key, Mark](), list[Mark]()
+        for one, value in zip(item.all, values, strict=True):
+            new |= self._marks_of(one, value, comment)
+            replaced += [it.mark for it in one.members if it.mark is not None and it.mark.points is not None]
         others = [mark for mark in replaced if mark.by != self.by]
         if others and not shown.endswith(CONFIRMED):
             return others
@@ -148,6 +204,16 @@ class ReviewSession:
         self._kept |= new.keys()
         self.refresh()
         return []
+
+    def _marks_of(self, item: ReviewItem, points: str, comment: str) -> dict[Key, Mark]:
+        """Return the new mark of each student of an item. Raises InputError."""
+        cells = {"time": "", "by": self.by, "points": points, "comment": comment, "": ""}
+        found = dict[Key, Mark]()
+        for one in item.members:
+            key = one.student.key, item.criterion.id
+            mark = mark_in({**cells, "submission": one.stored.digest}, key, item.criterion.points, "")
+            found[key] = mark._replace(time=self.book.marks.next_time(key))
+        return found
 
     def _check_rows(self) -> None:
         """Raise InputError, once, if rows that this review wrote are no longer in the file."""
@@ -163,54 +229,11 @@ class ReviewSession:
             raise InputError(f"Not saved: {why}: {enumerated(rows, _MAX_NAMED)}. Save again to go on without them.")
 
 
-@lru_cache(maxsize=1)  # a page asks for its pictures one by one
-def _graded_again(book: Gradebook, key: str) -> tuple[Submission, Report]:
-    """Return a student's submission as it was graded, and its report. Raises InputError."""
-    graded = book.results.of(key)
-    submission = book.reopened(graded) if graded is not None else None
-    if submission is None:
-        command = f"`grader batch NEWPATH --gradebook {shell_quoted(book.folder)}` with its class folder"
-        raise InputError(f"the submission has moved or changed since it was graded: run {command}")
-    return submission, grade(book.rubric, submission, book.settings.parts, is_one_of_class=True)
-
-
-def open_item(book: Gradebook, item: ReviewItem) -> OpenedItem:
-    """Return what a person looks at for an item. Raises InputError if its submission has moved or changed.
-
-    Of an anonymous student it has no names of files, because students choose them.
-    """
-    first = item.members[0]
-    if item.members[1:] and not item.answer:
-        return OpenedItem("")
-    submission, report = _graded_again(book, first.student.key)
-    result = next((one for one in report.results if one.criterion.id == item.criterion.id), None)
-    if result is None:
-        raise InputError("this criterion is no longer graded for this student")
-    pictures = pictures_of(result, submission) if may_have_pictures(result) else ()
-    outcome, location, places = result.outcome, result.outcome.location, [*evidence_files(result)]
-    if first.number:
-        question = str(item.criterion.arguments.get("question", ""))
-        message = question if outcome.status == "pending" else f"the check: {outcome.status}"
-        return OpenedItem(message, answer_lines(outcome), [*starmap(_anonymous, enumerate(pictures, 1))])
-    if location is not None:
-        places.append(f"{location.path}, line {location.line}" if counts_lines(location) else location.path)
-    root = book.settings.roots(book.folder)[first.stored.root]
-    submitted = ", ".join(str(root / path) for path in first.stored.paths)
-    paths = [f"{place} in {submitted}" for place in places] or [submitted]
-    return OpenedItem(outcome.message, answer_lines(outcome), pictures, paths)
-
-
-def _anonymous(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPicture | NotShown:
-    if isinstance(found, EmbeddedPicture):
-        return found._replace(where=f"picture {number}")
-    return NotShown(f"file {number}", found.reason.replace(found.where, f"file {number}"))
-
-
 def write_sheet(session: ReviewSession, file: Path) -> str:
     """Write the items that are shown into a new file, and return what to do with it. Raises InputError."""
     if os.path.lexists(file):
         raise InputError(f"{printable_path(file)} exists, perhaps with marks in it: name another file for --sheet")
-    items = [session.item_at(at) for at in session.listed]
+    items = [*session.shown.values()]
     by_student = sorted(items, key=lambda item: item.members[0].student.key)  # a submission is read once
     texts = {item.place: _sheet_text(session.book, item) for item in by_student}
     rows = [

@@ -107,7 +107,12 @@ class DocumentCollection:
     @property
     def read(self) -> tuple[str, ...]:
         """The paths of the documents that were read."""
-        return tuple(path for path, found in self._read_files.items() if isinstance(found, TextDocument))
+        return tuple(document.file.path for document in self.texts)
+
+    @property
+    def texts(self) -> tuple[TextDocument, ...]:
+        """The documents that were read."""
+        return tuple(found for found in self._read_files.values() if isinstance(found, TextDocument))
 
     def named(self, patterns: Sequence[str]) -> tuple[list[TextDocument], list[_Unread]]:
         """Return the documents whose names match one of the patterns, and what of them was not read, and why."""

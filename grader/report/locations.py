@@ -12,7 +12,7 @@ _MEANT = r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+""" 
 _ARCHIVE = r"(?is)(.*?\.(?:zip|tar|tgz|tar\.gz))/"
 SourceOf = Callable[[str], Source | None]
 # A line of a file: its number, its text up to the marked part, that part if it has one, and the rest.
-_SourceLine = tuple[int, str, str | None, str]
+SourceLine = tuple[int, str, str | None, str]
 _EXCERPT_WIDTH = 120
 _AROUND = 2  # lines of the source before and after the marked one
 _MAX_WIDTH = 160  # characters of a line on a page
@@ -64,10 +64,10 @@ def excerpt_lines(where: Location, source_of: SourceOf) -> Iterator[str]:
         yield f"{' ' * len(number)} | {' ' * len(before)}{'-' * max(1, len(meant))}"
 
 
-def source_lines(where: Location, source_of: SourceOf) -> list[_SourceLine]:
-    """Return the lines around a location, without their common indentation; none if its line is empty.
+def source_lines(where: Location, source_of: SourceOf, many: int = _AROUND) -> list[SourceLine]:
+    """Return the lines around a location, as `many` before as after it, without their common indentation.
 
-    Of a very long line it is the part around the marked text.
+    Of a very long line it is the part around the marked text; there are none if the line is empty.
     """
     source = source_of(where.path)
     line = source.line(where.line) if source is not None else ""
@@ -75,7 +75,7 @@ def source_lines(where: Location, source_of: SourceOf) -> list[_SourceLine]:
         return []
     if len(line) > _MAX_WIDTH:
         return [(where.line, *excerpt(source, where, _MAX_WIDTH))]
-    around = {number: source.line(number) for number in range(max(1, where.line - _AROUND), where.line + _AROUND + 1)}
+    around = {number: source.line(number) for number in range(max(1, where.line - many), where.line + many + 1)}
     last = max(number for number, text in around.items() if text.strip())
     indent = min(len(text) - len(text.lstrip()) for text in around.values() if text.strip())
     lines = [(number, printable(text[indent:][:_MAX_WIDTH]), None, "") for number, text in around.items()]

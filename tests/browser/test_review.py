@@ -11,7 +11,7 @@ import pytest
 
 from tests.browser.conftest import OpenPage
 from tests.checks.submissions import png
-from tests.classroom.gradebooks import batch, grader, lab_text, write_submission
+from tests.classroom.gradebooks import batch, grader, lab_text, urdf, write_submission
 from tests.review_server import Review, marks_in, rows_of, running
 
 if TYPE_CHECKING:
@@ -86,6 +86,11 @@ def press(page: "Page", keys: str, then: str = "") -> None:
     if then:
         page.wait_for_url(f"**/{then}")
         page.wait_for_selector("html")
+
+
+def rest(page: "Page") -> None:
+    """Wait until a page has the list of students, which it asks for after each item: then the server may end."""
+    page.wait_for_load_state("networkidle")
 
 
 def test_ten_items_by_keys_alone(review: Review, open_page: Open, book: Path) -> None:
@@ -208,6 +213,7 @@ def test_fast_typing_saves_every_mark_where_it_belongs(open_page: Open, tmp_path
         page = open_page(f"{review.url}1").page
         page.keyboard.type("".join(f"{points}\n" for points in wanted), delay=10)
         page.wait_for_url("**/end")
+        rest(page)
     assert [(key, float(points)) for key, _, points, _ in marks_in(book)] == [
         (f"s{number:03}", float(points)) for number, points in enumerate(wanted)
     ]
@@ -247,7 +253,86 @@ def test_deductions(open_page: Open, chosen: Path) -> None:
         press(page, "p 2")
         assert page.locator("[data-choice][aria-pressed=true]").all_inner_texts() == ["Alt+1 no reason (-2)"]
         press(page, "Enter", "2")
+        rest(page)
     assert marks_in(chosen) == [("ash", "essay", "2", "no reason; see me")]
+
+
+@pytest.fixture(scope="module")
+def open_class(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a class of two in which a size is open, so that two criteria are; in that of ash it is known."""
+    top = tmp_path_factory.mktemp("open")
+    for key in KEYS[:2]:
+        write_submission(top / "class" / key)
+    unknown = urdf("$(env SIDE) 1 1").replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
+    (top / "class" / "birch" / "robot.urdf").unlink()
+    (top / "class" / "birch" / "robot.urdf.xacro").write_text(unknown)
+    return graded_in(top, "id,name\nash,Ash Ek\nbirch,Änne Birch\n")
+
+
+@pytest.fixture
+def opened(open_class: Path, tmp_path: Path) -> Path:
+    """Return a copy of the gradebook of the class with an open size."""
+    return Path(shutil.copytree(open_class.parent, tmp_path / "copy"), "book")
+
+
+def test_points_for_all_are_shared(open_page: Open, opened: Path) -> None:
+    """In proportion, and the sum stays; points that are typed for one criterion change the sum."""
+    with running(opened) as review:
+        page = open_page(f"{review.url}1").page
+        fields = page.locator("[data-most]")
+        each = "[...document.querySelectorAll('[data-most]')].map(field => field.value)"
+        assert fields.evaluate_all("all => all.map(field => field.dataset.most)") == ["3", "2.5", "0.5"]
+        press(page, "f")
+        assert page.evaluate(each) == ["3", "2.5", "0.5"]
+        press(page, "Control+a '4'")
+        assert page.evaluate(each) == ["2", "1.67", "0.33"]
+        fields.nth(1).fill("2,5")
+        assert page.locator("#points").input_value() == "4.83"
+        press(page, "Shift+Enter")
+        page.wait_for_url("**/5")
+        assert page.locator("h1").inner_text() == "Änne Birch (birch)"
+        rest(page)
+    assert marks_in(opened) == [("birch", "box", "2.5", ""), ("birch", "loads", "2", ""), ("birch", "tall", "0.33", "")]
+
+
+def test_the_list_of_students(open_page: Open, opened: Path) -> None:
+    """It is searched without accents, opens an item, and shows what is left; on a small screen a button opens it."""
+    with running(opened) as review:
+        page = open_page(f"{review.url}1").page
+        rows = page.locator("#people-list button")
+        rows.nth(1).wait_for()
+        assert rows.all_inner_texts() == ["Ash Ek (ash)\n2 left", "Änne Birch (birch)\n5 left"]
+        press(page, "/ 'ash'")
+        assert rows.all_inner_texts() == ["Ash Ek (ash)\n2 left"]
+        press(page, "Enter", "4")
+        page.locator("#find").fill("anne")
+        assert rows.all_inner_texts() == ["Änne Birch (birch)\n5 left"]
+        page.locator("#find").fill("")
+        page.locator("#points").focus()
+        press(page, "f Enter", "5")
+        page.wait_for_function("() => document.getElementById('people-list').innerText.includes('1 left')")
+        small = open_page(f"{review.url}1", viewport={"width": 400, "height": 700}).page
+        assert not small.locator("#people").is_visible()
+        small.get_by_role("button", name="Students").click()
+        small.locator("#people-list button").first.click()
+        small.wait_for_url("**/6")
+        assert not small.locator("#people").is_visible()
+        rest(page)
+        rest(small)
+
+
+def test_a_server_that_has_ended_saves_nothing(open_pages: Open, opened: Path) -> None:
+    """The page says so, keeps what was typed, and says how to go on."""
+    with running(opened) as review:
+        page = open_pages(f"{review.url}1").page
+        page.wait_for_selector("#people-list button", state="attached")
+    press(page, "f c 'good' Enter")
+    page.wait_for_function("() => document.getElementById('error').textContent.includes('not saved')")
+    assert page.locator("#error").inner_text().startswith("The server has ended: run `grader review` again")
+    assert page.locator("#comment").input_value() == "good"
+    assert page.locator("#points").input_value() == "6"
+    page.close()
+    assert marks_in(opened) == []
 
 
 def test_filters(review: Review, open_page: Open) -> None:

@@ -5,28 +5,41 @@ from datetime import datetime
 from decimal import Decimal
 from typing import Any, NamedTuple
 
+from markupsafe import Markup
+
 from grader import __version__
 from grader.classroom.lateness import time_text
+from grader.classroom.lms.forms import FORMS
 from grader.classroom.marks import Mark
 from grader.classroom.review_items import OLDER, STATES, UNMARKED, ReviewFilter, ReviewItem
 from grader.documents.pictures import EmbeddedPicture, NotShown
-from grader.grading.criterion import Criterion
 from grader.report.criteria import model_lines
+from grader.report.locations import SourceLine
 from grader.report.pages.shell import Assets, render_page
+from grader.report.svg import STYLE
 from grader.text import counted, counted_points, format_points, printable, shell_quoted
 
-_ASSETS = Assets("review.css", "review.js", sources="img-src 'self'; frame-src 'self'; connect-src 'self'")
+_SOURCES = "img-src 'self'; frame-src 'self'; connect-src 'self'"
+_ASSETS = Assets("text.css robot.css review.css", "review.js", STYLE, _SOURCES)
 NO_ANSWER = "No answer"
 _DECIMALS = Decimal("0.0001")
 
 
 class OpenedItem(NamedTuple):
-    """What was found, the lines of the answer, the pictures with what is not shown, and the paths of the files."""
+    """What was found for an item, as a page or a sheet shows it.
+
+    `views` is an SVG element with the robot, empty without one, and `legend` says what is marked in it. `places` are
+    the lines of files around the places that decide, each with its location in words.
+    """
 
     message: str
     answer: Sequence[str] = ()
     pictures: Sequence[EmbeddedPicture | NotShown] = ()
-    paths: Sequence[str] = ()
+    paths: Sequence[str] = ()  # of the files, below the class folder
+    views: str = ""
+    legend: Sequence[str] = ()
+    places: Sequence[tuple[str, Sequence[SourceLine]]] = ()
+    title: str = "Answer"  # of the answer
 
 
 def filters(shown: ReviewFilter, questions: Sequence[str], sections: Sequence[str]) -> list[tuple[object, ...]]:
@@ -42,10 +55,8 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
     The addresses of the pictures are ADDRESS/picture/1 and so on.
     """
     criterion, first, members = item.criterion, item.members[0], [one.label for one in item.members]
-    mark, is_alone = first.mark, len(members) == 1
-    marked = mark_text(mark) if mark else ""
-    if first.state == OLDER:
-        marked += ", before the submission changed"
+    is_alone, marks = len(members) == 1, [one.members[0].mark for one in item.all]
+    maximum = sum((one.criterion.points for one in item.all), Decimal(0))
     who = members[0] if is_alone else f"{len(members)} students"
     values = {
         **place,
@@ -53,37 +64,65 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
         "who": who,
         "members": [] if is_alone else members,
         "item": item,
-        "maximum": format_points(criterion.points),
+        "maximum": format_points(maximum),
+        "each": [(one.criterion.title, one.criterion.id, format_points(one.criterion.points)) for one in item.all],
         "opened": opened,
+        "views": Markup(opened.views),  # noqa: S704  an element, whose text is escaped
         "model": model_lines(criterion),
         "pictures": [
             (f"{place['address']}/picture/{at}", one)
             for at, one in enumerate(opened.pictures, 1)
             if isinstance(one, EmbeddedPicture)
         ],
-        "marked": marked,
-        "buttons": _buttons(criterion),
+        "marked": _marked_text(marks, is_older=first.state == OLDER),
+        "buttons": _buttons(maximum),
         "choices": [f"{text} ({format_points(points)})" for text, points in criterion.choices.items()],
     }
     data = {
         "shown": item.view,
-        "points": mark.value if mark else "",
-        "comment": mark.comment if mark else "",
+        "points": _total(marks),
+        "each": [mark.value if mark else "" for mark in marks] if item.also else [],
+        "comment": marks[0].comment if marks[0] else "",
         "choices": [[text, float(points)] for text, points in criterion.choices.items()],
-        "maximum": float(criterion.points),
+        "maximum": float(maximum),
+        "people": members,
     }
     return _page("review.html", values, data)
 
 
-def end_page(marked: int, left: int, place: Mapping[str, Any], gradebook: str) -> str:
-    """Return the page after the last item: how many marks were given, how many are left, and the next command."""
+def _total(marks: Sequence[Mark | None]) -> str:
+    """Return the points of the marks of an item together; empty if one is missing."""
+    points = [mark.points for mark in marks if mark is not None and mark.points is not None]
+    if len(points) < len(marks) or len(marks) == 1:
+        return marks[0].value if marks[0] is not None and len(marks) == 1 else ""
+    return format_points(sum(points, Decimal(0)))
+
+
+def _marked_text(marks: Sequence[Mark | None], *, is_older: bool) -> str:
+    """Return what is marked of an item: the first mark, with the points of all; empty without one."""
+    given = [mark for mark in marks if mark is not None]
+    if not given:
+        return ""
+    text = mark_text(given[0]._replace(value=_total(marks) or given[0].value))
+    if len(given) < len(marks):
+        text = f"{len(given)} of {len(marks)} criteria, the first: {text}"
+    return f"{text}, before the submission changed" if is_older else text
+
+
+def end_page(marked: int, left: int, place: Mapping[str, Any], gradebook: str, lms: str) -> str:
+    """Return the page after the last item: how many marks were given, how many are left, and the next command.
+
+    It exports the grades to the LMS that the class came from, if that is known.
+    """
+    command = f"grader export {lms or 'csv'} --gradebook {shell_quoted(gradebook)}"
     values = {
         **place,
         "title": "Manual grading complete" if not left else f"{counted(left, 'mark')} left",
         "summary": f"{counted(marked, 'mark')} given in this review.",
         "left": left,
         "is_filtered": any(chosen not in ("", UNMARKED) for *_, chosen in place["filters"]),
-        "command": f"grader export csv --gradebook {shell_quoted(gradebook)}",
+        "how": f"fill the grade file that {FORMS[lms].lms} has exported" if lms else "export the grades",
+        "command": f"{command} --into EXPORTED.csv --output upload.csv" if lms else command,
     }
     return _page("review-end.html", values)
 
@@ -98,9 +137,9 @@ def _page(template: str, values: Mapping[str, object], data: Mapping[str, Any] =
     return render_page(template, {"version": __version__, **values}, data, _ASSETS)
 
 
-def _buttons(criterion: Criterion) -> list[tuple[str, str]]:
+def _buttons(maximum: Decimal) -> list[tuple[str, str]]:
     """Return the points that have a button, and the name of each."""
-    named = {Decimal(0): "none", criterion.points / 2: "half", criterion.points: "all"}
+    named = {Decimal(0): "none", maximum / 2: "half", maximum: "all"}
     return [(format_points(value), name) for value, name in named.items() if value == value.quantize(_DECIMALS)]
 
 

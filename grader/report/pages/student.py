@@ -110,6 +110,6 @@ def _render(
     """Return a page about the robot of a picture, if there is one."""
     drawn = drawing_element(picture, legend=False) if picture is not None else ""
     views = Markup(drawn)  # noqa: S704  an element, whose text is escaped
-    assets = Assets("robot.css student.css", script, STYLE if drawn else "", sources)
+    assets = Assets("text.css robot.css student.css", script, STYLE if drawn else "", sources)
     legend = callout_lines(picture) if picture is not None else []
     return render_page(template, {**values, "picture": picture, "views": views, "legend": legend}, {}, assets)

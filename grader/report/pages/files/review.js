@@ -1,17 +1,20 @@
 "use strict";
 {
   const find = (id) => document.getElementById(id);
-  let data, form, points, comment, error, newer, large, picture, help, pictures, buttons;  // of the page that is shown
+  let data, form, points, comment, error, newer, large, picture, help, pictures, buttons, each;  // of the page that is shown
   let shown, busy = false, leaving = "", current = 0;
   let typed = [];  // the keys that were pressed while no item was shown: they are for the next one
 
   const say = (text, isBusy = false) => { error.textContent = text; error.classList.toggle("busy", isBusy); };
-  const isChanged = () => form !== null && (points.value !== data.points || comment.value !== data.comment);
+  const written = () => [points.value, comment.value, ...each.map((field) => field.value)];
+  const fill = (values) => [points, comment, ...each].forEach((field, at) => { field.value = values[at] ?? ""; });
+  const isChanged = () => form !== null && String(written()) !== String([data.points, data.comment, ...data.each]);
+  const sentPoints = () => each.length ? each.map((field) => field.value.replace(/\s/g, "")).join(" ") : points?.value;
 
   async function send(action, more = {}) {
     if (busy) return;
     if (action === "mark" && !points.value.trim()) { refuse("Enter the points first."); return; }
-    const lost = form && JSON.stringify([action, more, points.value, comment.value]);  // each text has its own warning
+    const lost = form && JSON.stringify([action, more, written()]);  // each text has its own warning
     if (action !== "mark" && isChanged() && leaving !== lost) {
       leaving = lost;
       say("Not saved. Do the same again to leave without saving.");
@@ -22,21 +25,23 @@
     say("Saving ...", true);
     find("main").inert = true;
     try {
-      const mark = { points: points?.value, comment: comment?.value, shown };
-      const sent = { do: action, ...(action === "mark" ? mark : more) };
+      const mark = action === "mark" ? { points: sentPoints(), comment: comment.value, shown } : {};
+      const sent = { do: action, ...mark, ...more };
       const headers = { "Content-Type": "application/json" };
       const answer = await (await fetch(location.pathname, { method: "POST", headers, body: JSON.stringify(sent) })).json();
-      const written = answer.error && form ? [points.value, comment.value] : null;
+      const kept = answer.error && form ? written() : null;
       if (answer.go) show(answer.go, await (await fetch(answer.go)).text());
-      if (written && form) [points.value, comment.value] = written;
+      if (kept && form) fill(kept);
       busy = false;
       find("main").inert = false;
       if (answer.newer) askToKeep(answer);
       else if (answer.error) refuse(answer.error);
-    } catch {
+    } catch (problem) {
       busy = false;
       find("main").inert = false;
-      refuse("The review does not respond. Check that its command is still running, then try again.");
+      const hasEnded = problem instanceof TypeError;  // of fetch: there is no connection
+      const why = hasEnded ? "The server has ended: run `grader review` again, and open its new address." : "The review has failed on this. Try again.";
+      refuse(action === "mark" ? `${why} This mark is not saved.` : why);
     }
     const keys = typed.splice(0);
     for (const key of keys) {
@@ -63,6 +68,45 @@
     if (!location.pathname.endsWith(`/${address}`)) history.pushState(null, "", address);
     scrollTo(0, 0);
     start();
+    loadPeople();
+  }
+
+  // The list of students stays while items change.
+  let people = [];
+  const plain = (text) => text.toLowerCase().normalize("NFD").replace(/\p{M}/gu, "");
+
+  async function loadPeople() {
+    const here = location.pathname;
+    try {
+      const found = (await (await fetch(`${here}/people`)).json()).people;
+      if (here !== location.pathname) return;
+      people = found;
+      listPeople();
+    } catch { /* the next action says so */ }
+  }
+
+  function listPeople() {
+    const words = plain(find("find").value).split(/\s+/);
+    const found = people.filter(([name]) => words.every((word) => plain(name).includes(word)));
+    const left = people.filter(([, count]) => count).length;
+    find("found-people").textContent = found.length < people.length ? `${found.length} of ${people.length}` : `${people.length} students, ${left} with items left`;
+    find("people-list").replaceChildren(...found.slice(0, 300).map(([name, count, address]) => {
+      const row = document.createElement("li"), button = document.createElement("button"), state = document.createElement("span");
+      state.textContent = count ? `${count} left` : "✓ done";
+      button.append(name, " ", state);
+      button.classList.toggle("done", !count);
+      button.ariaCurrent = data.people?.includes(name) ? "true" : "false";
+      button.addEventListener("click", () => { find("people").hidePopover(); send("go", { to: address }); });
+      row.append(button);
+      return row;
+    }));
+    find("people-list").querySelector("[aria-current=true]")?.scrollIntoView({ block: "nearest" });
+  }
+
+  function searchPeople() {
+    if (!find("find").checkVisibility()) find("people").showPopover();
+    find("find").select();
+    find("find").focus();
   }
 
   /** Insert a key into the field that has the focus, as the browser does. */
@@ -72,6 +116,7 @@
     const [start, end] = [field.selectionStart, field.selectionEnd];
     if (key === "Backspace") field.setRangeText("", start === end ? Math.max(0, start - 1) : start, end, "end");
     else if ([...key].length === 1) field.setRangeText(key, start, end, "end");
+    field.dispatchEvent(new Event("input"));
   }
 
   function askToKeep(answer) {
@@ -84,12 +129,31 @@
 
   function keep() { discard(); send("next"); }
   function replace() { shown = `${data.shown}!`; newer.hidden = true; send("mark"); }
-  function discard() { points.value = data.points; comment.value = data.comment; }
+  function discard() { fill([data.points, data.comment, ...data.each]); }
 
   function setPoints(button) {
     if (!button) return;
     points.value = button.dataset.points;
+    share();
     points.focus();
+  }
+
+  /** Give each criterion its share of the points for all, rounded so that the sum stays; what is no share is refused. */
+  function share() {
+    const part = Number(points.value.replace(",", ".") || NaN) / data.maximum, units = /[.,]\d{3}/.test(points.value) ? 1e4 : 100;
+    let sum = 0;
+    for (const field of each) {
+      const most = Number(field.dataset.most), before = Math.round(sum * part * units);
+      sum += most;
+      const own = (Math.round(sum * part * units) - before) / units;
+      field.value = part === 1 ? most : part >= 0 && part < 1 ? Math.min(own, most) : points.value;
+    }
+  }
+
+  function addUp() {
+    const values = each.map((field) => Number(field.value.replace(",", ".") || NaN));
+    const sum = values.reduce((total, value) => total + value, 0);
+    points.value = Number.isNaN(sum) ? "" : Number(sum.toFixed(4));
   }
 
   const parts = () => comment.value.split(/(\s*[;\n]\s*)/);  // with what separates them
@@ -145,13 +209,14 @@
   }
 
   const keys = {
+    q: () => send("question"), "/": searchPeople,
     n: () => send("next"), s: () => send("next"), b: () => send("back"), z: zoom,
     f: () => setPoints(buttons.at(-1)), h: () => setPoints(buttons.find((button) => button.dataset.name === "half")),
     d: () => toggle(".document"),
     c: () => comment.focus(), p: () => points.select(), "?": () => help.showModal(),
     k: () => { if (!newer.hidden) keep(); }, r: () => { if (!newer.hidden) replace(); },
   };
-  const keysOfEnd = { b: keys.b };
+  const keysOfEnd = { b: keys.b, "/": searchPeople };
 
   function onKey(event) {
     if (event.ctrlKey || event.metaKey || event.isComposing || (event.altKey && !isChoice(event))) return;
@@ -179,13 +244,18 @@
       steps[key]?.();
       return key in steps;
     }
-    const isField = target === points || target === comment;
+    if (target === find("find")) {
+      if (key === "Enter") find("people-list").querySelector("button")?.click();
+      return key === "Enter";
+    }
+    const isField = target === points || target === comment || each?.includes(target);
     if (key === "Escape" && isField) { target.blur(); return true; }
-    if (key === "Enter" && form && !event.shiftKey && (isField || target === document.body)) {
-      if (!event.repeat) send("mark");
+    if (key === "Enter" && form && (isField || target === document.body) && !(event.shiftKey && target === comment)) {
+      if (!event.repeat) send("mark", event.shiftKey ? { to: "question" } : {});
       return true;
     }
     if (target === comment || target instanceof HTMLSelectElement) return false;
+    if (key === "/" && isField && target.value && target.selectionStart === target.selectionEnd) return false;  // 1/2
     const action = (form ? keys : keysOfEnd)[key];
     if (action) {
       if (!event.repeat) action();
@@ -195,7 +265,7 @@
       setPoints(buttons[0]);
       return true;
     }
-    return target === points && /^[a-z]$/.test(key);
+    return isField && /^[a-z]$/.test(key);
   }
 
   /** Prepare the page that is shown. */
@@ -205,14 +275,14 @@
     [large, picture, help] = ["large", "large-picture", "help"].map(find);
     pictures = [...document.querySelectorAll("[data-picture]")];
     buttons = [...document.querySelectorAll("[data-points]")];
+    each = [...document.querySelectorAll("[data-most]")];
     [shown, leaving, current] = [data.shown, "", 0];
     for (const button of document.querySelectorAll("[data-do]")) button.addEventListener("click", () => send(button.dataset.do));
     const filters = [...document.querySelectorAll("[data-filter]")];
     const wanted = () => Object.fromEntries([["criterion", ""], ["section", ""], ["state", ""], ...filters.map((list) => [list.dataset.filter, list.value])]);
     for (const list of filters) list.addEventListener("change", () => send("filter", wanted()));
     if (!form) return;
-    points.value = data.points;
-    comment.value = data.comment;
+    discard();
     form.addEventListener("submit", (event) => { event.preventDefault(); send("mark"); });
     for (const button of buttons) button.addEventListener("click", () => setPoints(button));
     for (const button of document.querySelectorAll("[data-choice]")) button.addEventListener("click", () => choose(button.dataset.choice));
@@ -220,6 +290,8 @@
       details.addEventListener("toggle", () => loadFrame(details));
       loadFrame(details);
     }
+    points.addEventListener("input", share);
+    for (const field of each) field.addEventListener("input", addUp);
     comment.addEventListener("input", showChosen);
     showChosen();
     pictures.forEach((button, number) => button.addEventListener("click", () => enlarge(number)));
@@ -233,5 +305,7 @@
 
   document.addEventListener("keydown", onKey);
   addEventListener("popstate", () => location.reload());
+  find("find").addEventListener("input", listPeople);
   start();
+  loadPeople();
 }
