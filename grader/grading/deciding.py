@@ -243,7 +243,7 @@ class _Grading:
 
 
 def _is_carried_from(criterion: Criterion, name: str) -> bool:
-    return any(name in carried.causes for carried in criterion.carried)
+    return bool(criterion.carried) and any(name in carried.causes for carried in criterion.carried)
 
 
 def _skip_outcome(cause: str) -> Outcome:

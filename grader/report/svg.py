@@ -5,6 +5,7 @@ frames, driving directions, outlines of the reference, and numbers. Every text i
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
 from html import escape
 from math import cos, hypot, sin, tau
 from textwrap import wrap
@@ -56,6 +57,7 @@ _BADGE = 2.0 * _RADIUS + 2.0, 2.0 * _RADIUS + 2.0  # the room of one
 _RINGS = (22.0, 30.0, 40.0, 52.0, 66.0, 84.0, 106.0, 132.0)  # pixels from what a number labels
 _AROUND = [(ring * cos(tau * n / 16), -ring * sin(tau * n / 16)) for ring in _RINGS for n in range(2, 18)]
 _MAX_NAME, _ROW = 60, 18.0
+_MAX_OUTLINES = 1024  # that are kept
 
 
 def drawing_element(picture: Picture, title: str = "", *, legend: bool = True, above: Sequence[str] = ()) -> str:
@@ -145,12 +147,12 @@ def _view(panel: Panel, picture: Picture) -> Iterator[str]:
     places = FreePlaces(panel)
     yield _text("faint", (panel.left + 14.0, panel.top + 14.0), panel.title)
     yield from _ground(panel, picture, places)
-    outlines = [(body, panel.outline(body)) for body in from_back_to_front(picture.scene.bodies, panel)]
+    outlines = [(body, _outline(panel, body)) for body in from_back_to_front(picture.scene.bodies, panel)]
     yield from (_shape(body, outline) for body, outline in outlines)
     if len(outlines) > 1:  # what a shape hides shows through
         yield _path("hidden", "".join(_polygon(outline) for _, outline in outlines))
     lines: dict[tuple[str, str], None] = {
-        ("reference", _polygon(panel.outline(body))): None for body in picture.outlines
+        ("reference", _polygon(_outline(panel, body))): None for body in picture.outlines
     }
     frames = [("", _AXIS, pose) for pose in frames_of(picture)]
     frames += [(" dashed", _LONG_AXIS, pose) for pose in picture.frames]
@@ -173,11 +175,16 @@ def _ground(panel: Panel, picture: Picture, places: FreePlaces) -> Iterator[str]
         yield _text("letter", (panel.left + 28.0, y + 12.0), "ground")
 
 
-def _shape(body: Body, outline: list[Place]) -> str:
-    fill = "".join(f"{round(255.0 * value):02x}" for value in body.rgba[:3])
-    points, name = " ".join(f"{_number(x)} {_number(y)}" for x, y in outline), _escaped(body.link[:_MAX_NAME])
+@lru_cache(_MAX_OUTLINES)  # in a class many robots have the same parts
+def _outline(panel: Panel, body: Body) -> tuple[str, ...]:
+    """Return the corners of the outline of a body as SVG has them."""
+    return tuple(f"{_number(x)} {_number(y)}" for x, y in panel.outline(body))
+
+
+def _shape(body: Body, outline: Sequence[str]) -> str:
+    fill, name = "".join(f"{round(255.0 * value):02x}" for value in body.rgba[:3]), _escaped(body.link[:_MAX_NAME])
     looks = f'class="edge" fill="#{fill}" fill-opacity="{body.rgba[3]:.2g}"'
-    return f'<polygon {looks} points="{points}"><title>{name}</title></polygon>'
+    return f'<polygon {looks} points="{" ".join(outline)}"><title>{name}</title></polygon>'
 
 
 def _axes(panel: Panel, look: str, length: float, pose: Transform) -> Iterator[tuple[str, str]]:
@@ -254,8 +261,8 @@ def _segment(start: Place, end: Place) -> str:
     return f"M{_number(start[0])} {_number(start[1])}L{_number(end[0])} {_number(end[1])}"
 
 
-def _polygon(corners: Sequence[Place]) -> str:
-    return f"M{'L'.join(f'{_number(x)} {_number(y)}' for x, y in corners)}Z"
+def _polygon(corners: Sequence[str]) -> str:
+    return f"M{'L'.join(corners)}Z"
 
 
 def _badge(centre: Place, count: int) -> str:

@@ -85,7 +85,7 @@ def _points_of(body: Body) -> _Points:
 
 def hull(points: _Points) -> list[Place]:
     """Return the convex hull of points on the sheet, to a tenth of a pixel (Andrew's monotone chain, 1979)."""
-    ordered = sorted({(round(float(x), 1), round(float(y), 1)) for x, y in points})
+    ordered = sorted({(x, y) for x, y in np.round(points, 1).tolist()})
     return [place for half in (ordered, ordered[::-1]) for place in _half_hull(half)] or ordered
 
 
