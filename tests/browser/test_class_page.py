@@ -129,6 +129,25 @@ def test_names_are_found_as_they_are_typed(open_page: Open, tmp_path: Path) -> N
     assert found == SEARCHES
 
 
+def test_names_come_first_in_a_search(open_page: Open, tmp_path: Path) -> None:
+    """A name finds its student, and not all who lost points in a criterion with that word; without a name it finds those."""
+    for key, size in (("box", "1 1 1"), ("ash", "1 1 2"), ("birch", "1 1 3")):
+        write_submission(tmp_path / "class" / key, size)
+    (tmp_path / "roster.csv").write_text("id,name\nbox,Bo Box\nash,Ada Ash\nbirch,Ben Birch\n")
+    (tmp_path / "small.toml").write_text(lab_text())
+    assert batch(tmp_path, "--reports", tmp_path / "pages", "--report-format", "html").returncode == 0
+    opened = open_page(tmp_path / "pages" / "index.html")
+    opened.page.locator("#find").fill("box")
+    assert names(opened) == ["Bo Box"]
+    assert opened.page.get_by_role("status").inner_text() == "1 of 3 students by name; 2 more elsewhere in the table"
+    opened.page.locator("#find").fill("tall")
+    assert sorted(names(opened)) == ["Ada Ash", "Ben Birch"]
+    chips = opened.page.locator(".chips button")
+    assert chips.all_inner_texts() == ["Graded 3", "Needs manual grading 3"]
+    boxes = [box for chip in chips.all() if (box := chip.bounding_box()) is not None]
+    assert boxes[1]["x"] - boxes[0]["x"] - boxes[0]["width"] > 5
+
+
 @pytest.mark.parametrize("width", [1366, 1000, 683, 400])
 def test_every_part_fits(open_page: Open, tmp_path: Path, width: int) -> None:
     """A long file name breaks, no code is cut off, and name and grade of a student are in view, below the headings."""

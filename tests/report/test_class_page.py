@@ -27,6 +27,24 @@ def test_a_share_is_not_rounded_to_all_or_none(share: float, words: str) -> None
     assert percent(share) == words
 
 
+@pytest.mark.parametrize(("others", "is_cut"), [(3, False), (4, True)])
+def test_one_bar_does_not_flatten_the_others(others: int, is_cut: bool, tmp_path: Path) -> None:
+    """A bar that is more than three times as high as the next one is cut, and the page says how high it would be."""
+    sizes = ["1 1 2", *["1 1 1"] * others]
+    for number, size in enumerate(sizes):
+        write_submission(tmp_path / "class" / f"s{number}", size)
+    (tmp_path / "roster.csv").write_text("id\n" + "".join(f"s{number}\n" for number in range(len(sizes))))
+    (tmp_path / "small.toml").write_text(lab_text())
+    assert batch(tmp_path).returncode == 0
+    write_class_page(Gradebook(tmp_path / "book"), tmp_path, {})
+    page = ClassPageReader(tmp_path / "index.html")
+    heights = [int(height) for height in page.root.xpath("//ol[@class='chart']//rect/@height") if height != "0"]
+    assert sorted(heights) == [67 if is_cut else 33, 100]
+    said = ["The bar of 5.5 to 6.6 is cut: it would be 2.7 times as high."] if is_cut else []
+    assert page.texts("//section[@id='grades']/p") == said
+    assert len(page.root.xpath("//*[@class='cut']")) == is_cut
+
+
 def test_text_of_students_stays_text(tmp_path: Path) -> None:
     """Names, ids, folders, robots, reasons and comments: no element, no address and no script comes from them."""
     pages = make_attacked_class(tmp_path, ATTACKS[:6]).pages

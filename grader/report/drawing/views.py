@@ -85,7 +85,8 @@ def _points_of(body: Body) -> _Points:
 
 def hull(points: _Points) -> list[Place]:
     """Return the convex hull of points on the sheet, to a tenth of a pixel (Andrew's monotone chain, 1979)."""
-    ordered = sorted({(x, y) for x, y in np.round(points, 1).tolist()})
+    rounded: Any = np.round(points, 1).tolist()
+    ordered = sorted({(float(x), float(y)) for x, y in rounded})
     return [place for half in (ordered, ordered[::-1]) for place in _half_hull(half)] or ordered
 
 

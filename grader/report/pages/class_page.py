@@ -15,6 +15,7 @@ from grader.text import counted, enumerated, format_points, printable
 
 _MAX_ATTENTION = 100  # students for one reason
 _MAX_LOST = 2  # criteria in a row
+_MAX_HEIGHT, _CUT_AT = 3, 1.5  # of a bar of the second highest: a higher one is cut
 _LETTERS = str.maketrans({"ł": "l", "ø": "o", "đ": "d", "æ": "ae", "œ": "oe", "ı": "i"})  # have no accents
 
 
@@ -46,7 +47,8 @@ def render_class_page(
     """Return the class's page; `links` are the addresses of students' pages by key, relative to this page."""
     rows = sorted((_row(grade, links) for grade in grades), key=_by_family_name)
     groups = {name: group for name, group in _groups(grades, found).items() if group.keys}
-    most, numbers = max(map(len, found.tenths)), {row.key: number for number, row in enumerate(rows)}
+    numbers = {row.key: number for number, row in enumerate(rows)}
+    bars, cut = _bars(found)
     shown = {
         name: [printable(label), word, [numbers[key] for key in keys]] for name, (label, keys, word) in groups.items()
     }
@@ -55,10 +57,8 @@ def render_class_page(
         "title": found.rubric.title,
         "rubric": found.rubric,
         "lines": [*words.head_lines(found)],
-        "bars": [
-            (f"grade-{tenth}", words.span(found, tenth), len(keys), round(100 * len(keys) / most))
-            for tenth, keys in enumerate(found.tenths if most else ())
-        ],
+        "bars": bars,
+        "cut": cut,
         "out_of": format_points(found.maximum),
         "criteria": _criteria(found),
         "criteria_note": words.SHARE_NOTE,
@@ -73,6 +73,23 @@ def render_class_page(
         "groups": groups,
     }
     return render_page("class.html", values, {"groups": shown}, Assets("class.css", "class.js"))
+
+
+def _bars(found: ClassStatistics) -> tuple[list[tuple[str, str, int, int, bool]], str]:
+    """Return the bars of the grades: the group, the grades, the students, the height in percent, and whether it is cut.
+
+    The highest one is cut, as the text that is returned with them says, where all others would be flat.
+    """
+    counts = [*map(len, found.tenths)]
+    second, most = sorted(counts)[-2:]
+    is_flat = 0 < _MAX_HEIGHT * second < most
+    scale = _CUT_AT * second if is_flat else max(most, 1)
+    bars = [
+        (f"grade-{at}", words.span(found, at), count, min(100, round(100 * count / scale)), is_flat and count == most)
+        for at, count in enumerate(counts if most else ())
+    ]
+    highest = words.span(found, counts.index(most))
+    return bars, f"The bar of {highest} is cut: it would be {most / scale:.1f} times as high." if is_flat else ""
 
 
 def _row(grade: StudentGrade, links: Mapping[str, str]) -> _StudentRow:
@@ -123,9 +140,9 @@ def _filters_of(grade: StudentGrade, *, has_sections: bool) -> Iterator[tuple[in
     if has_sections:
         yield 1, f"section {grade.student.section or '(none)'}"
     if grade.concerns:
-        yield 2, "need attention"
+        yield 2, "needs attention"
     if grade.pending:
-        yield 3, "need manual grading"
+        yield 3, "needs manual grading"
     if grade.late.days and not grade.has_final:
         yield 4, "late"
     if grade.final_points is not None:

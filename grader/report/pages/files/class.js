@@ -13,7 +13,7 @@
   // Müller is found as Muller and as Mueller.
   const spellings = (text) => [plain(text), plain(text.normalize("NFC").replace(/[äöüø]/gi, "$&e"))];
   const more = document.getElementById("more");
-  let words = null, state = new URLSearchParams(), most = 200; // rows: a browser needs 1 ms for ten
+  let words = null, names = null, state = new URLSearchParams(), most = 200; // rows: a browser needs 1 ms for ten
 
   function wordsOfRows() {
     const found = rows.map((row) => [...row.cells].map((cell) => cell.textContent));
@@ -23,6 +23,12 @@
     return found.map((texts) => spellings(texts.join(" ")).join(" "));
   }
 
+  function namesOfRows() {
+    const columns = [...document.getElementById("students").tHead.rows[0].cells].map((head) => head.dataset.column);
+    const own = columns.flatMap((column, at) => ["name", "key"].includes(column) ? [at] : []);
+    return rows.map((row) => spellings(own.map((at) => row.cells[at].textContent).join(" ")).join(" "));
+  }
+
   function group() {
     const name = state.get("show");
     return name !== null && Object.hasOwn(groups, name) ? groups[name] : null;
@@ -30,13 +36,16 @@
 
   function filter() {
     const wanted = (state.get("find") ?? "").split(/\s+/).filter(plain).map(spellings), chosen = group();
-    if (wanted.length) words ??= wordsOfRows();
+    if (wanted.length) [words, names] = [words ?? wordsOfRows(), names ?? namesOfRows()];
     const members = new Set(chosen ? chosen[2] : rows.keys());
-    const found = new Set(rows.filter((row, number) => members.has(number) && wanted.every((word) => word.some((spelling) => words[number].includes(spelling)))));
+    const holding = (texts) => rows.filter((row, number) => members.has(number) && wanted.every((word) => word.some((spelling) => texts[number].includes(spelling))));
+    // A name comes first: Link is also a part of criteria, which find others only where no name has the word.
+    const named = wanted.length ? holding(names) : [], others = wanted.length ? holding(words) : rows.filter((_, number) => members.has(number));
+    const found = new Set(named.length ? named : others), left = others.length - found.size;
     let count = 0;
     for (const row of body.rows) row.hidden = !found.has(row) || ++count > most;
     const all = `${rows.length} student${rows.length === 1 ? "" : "s"}`;
-    shown.textContent = found.size === rows.length ? all : `${found.size} of ${all}${chosen ? `: ${chosen[0]}` : ""}`;
+    shown.textContent = found.size === rows.length ? all : `${found.size} of ${all}${chosen ? `: ${chosen[0]}` : ""}${left ? ` by name; ${left} more elsewhere in the table` : ""}`;
     more.hidden = found.size <= most;
     for (const button of document.querySelectorAll("button.show")) {
       button.setAttribute("aria-pressed", String(button.dataset.shows === state.get("show")));
