@@ -16,9 +16,8 @@ _PRIVATE = 0o600
 def opened_in_browser(address: str, file: Path) -> Iterator[bool]:
     """Open an address while a block runs; yields whether there is a browser that a window shows.
 
-    The browser opens a file that leads to the address, and that no other user can read: the arguments of a process,
-    and so an address in them, are visible to all users of the machine. The file is not in the folder for temporary
-    files, which some browsers cannot see.
+    It opens a private file that leads to the address: all users of the machine see the arguments of a process. Some
+    browsers cannot see the folder for temporary files.
     """
     if not _has_window():
         yield False

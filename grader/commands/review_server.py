@@ -203,7 +203,7 @@ class ReviewPage:
                 folder = printable_path(session.folder)
                 return _html(pages.end_page(given, session.left, self._place(at), folder, session.lms))
             case (_, "people") if at >= 0:
-                return _json(people=[(one.label, one.left, self.address(one.at)) for one in session.people(at)])
+                return _json(people=[(label, left, self.address(to)) for label, left, to in session.people(at)])
             case (_,) if is_item:
                 item = session.item_at(at)
                 place = self._place(at) | {"so_far": session.so_far(item)}

@@ -6,9 +6,7 @@ page, a person can fill in a sheet of the open items, a CSV file, which `grader 
 
 import os
 from collections import defaultdict
-from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
 
 from grader.classroom import gradebook_folder as names
 from grader.classroom.gradebook import Gradebook
@@ -33,14 +31,6 @@ _READ = (names.RESULTS, CLASS_FILE, names.ROSTER, f"{names.RUBRIC}/**/*.toml", f
 _SHEET_COLUMNS = ("criterion", "answer", "points", "maximum", "comment", "text", "students")
 _PRIVATE = 0o600
 _MAX_TEXT = 30_000  # characters; a cell of Excel has at most 32,767
-
-
-class _Person(NamedTuple):
-    """A student in the list beside the items."""
-
-    label: str
-    left: int  # criteria that are unmarked
-    at: int  # the position of an item: of the question that is shown, else the first unmarked one
 
 
 class ReviewSession:
@@ -136,20 +126,24 @@ class ReviewSession:
         later = [(one.order, at) for one, at in shown if (one.order, at) > here]
         return min(later)[1] if later else len(self.places)
 
-    def people(self, position: int) -> list[_Person]:
-        """Return the students with items of the question and section that are shown, whatever their state is."""
+    def people(self, position: int) -> list[tuple[str, int, int]]:
+        """Return the students with items of the question and section that are shown, whatever their state is.
+
+        Each has a label, the number of unmarked criteria, and the position of an item: of the same question as that at
+        a position, else the first unmarked one.
+        """
         question = self.places[position][0] if position < len(self.places) else ""
         of_any_state = ReviewFilter(*self.filter[:2], "")
         found = defaultdict[tuple[int, str, str], list[tuple[int, ReviewStudent]]](list)
         for at, item in ((at, self.items[place]) for at, place in enumerate(self.places) if place in self.items):
             for one in of_any_state.members(item):
                 found[one.order].append((at, one))
-        return [self._person(found[order], question) for order in sorted(found)]
-
-    def _person(self, items: Sequence[tuple[int, ReviewStudent]], question: str) -> _Person:
-        left = [at for at, one in items if one.state == UNMARKED]
-        same = [at for at, _ in items if self.places[at][0] == question]
-        return _Person(items[0][1].label, len(left), (same or left or [items[0][0]])[0])
+        people = list[tuple[str, int, int]]()
+        for _, items in sorted(found.items()):
+            left = [at for at, one in items if one.state == UNMARKED]
+            same = [at for at, _ in items if self.places[at][0] == question]
+            people.append((items[0][1].label, len(left), [*same, *left, items[0][0]][0]))
+        return people
 
     def so_far(self, item: ReviewItem) -> str:
         """Return the points of a student so far, and how many need manual grading; empty for several students."""

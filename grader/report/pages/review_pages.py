@@ -57,6 +57,7 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
     criterion, first, members = item.criterion, item.members[0], [one.label for one in item.members]
     is_alone, marks = len(members) == 1, [one.members[0].mark for one in item.all]
     maximum = sum((one.criterion.points for one in item.all), Decimal(0))
+    choices = criterion.choices if not item.also else {}
     who = members[0] if is_alone else f"{len(members)} students"
     values = {
         **place,
@@ -76,14 +77,14 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
         ],
         "marked": _marked_text(marks, is_older=first.state == OLDER),
         "buttons": _buttons(maximum),
-        "choices": [f"{text} ({format_points(points)})" for text, points in criterion.choices.items()],
+        "choices": [f"{text} ({format_points(points)})" for text, points in choices.items()],
     }
     data = {
         "shown": item.view,
         "points": _total(marks),
         "each": [mark.value if mark else "" for mark in marks] if item.also else [],
         "comment": marks[0].comment if marks[0] else "",
-        "choices": [[text, float(points)] for text, points in criterion.choices.items()],
+        "choices": [[text, float(points)] for text, points in choices.items()],
         "maximum": float(maximum),
         "people": members,
     }
@@ -93,9 +94,7 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
 def _total(marks: Sequence[Mark | None]) -> str:
     """Return the points of the marks of an item together; empty if one is missing."""
     points = [mark.points for mark in marks if mark is not None and mark.points is not None]
-    if len(points) < len(marks) or len(marks) == 1:
-        return marks[0].value if marks[0] is not None and len(marks) == 1 else ""
-    return format_points(sum(points, Decimal(0)))
+    return format_points(sum(points, Decimal(0))) if len(points) == len(marks) else ""
 
 
 def _marked_text(marks: Sequence[Mark | None], *, is_older: bool) -> str:
