@@ -72,13 +72,16 @@ class _Grading:
         cause = self._blocking_cause(criterion)
         result = Result(criterion, _skip_outcome(cause), cause) if cause else self._decide_by_check(criterion)
         self.results[criterion.id] = self._carry_from_any(result)
-        for above in [it for it in self.results.values() if _is_carried_from(it.criterion, criterion.id)]:
-            self.results[above.criterion.id] = self._carry_from_any(above)
+        above = [it for it in self.results.values() if it.criterion.carried]
+        for other in [it for it in above if _is_carried_from(it.criterion, criterion.id)]:
+            self.results[other.criterion.id] = self._carry_from_any(other)
 
     def may_be_excused(self, name: str, undecided: Collection[str]) -> bool:
         """Return whether the mistake of a criterion that is not decided yet may be why this one is lost."""
         result = self.results[name]
-        return result.is_lost and any(_is_carried_from(result.criterion, other) for other in undecided)
+        if not result.criterion.carried or not result.is_lost:
+            return False
+        return any(_is_carried_from(result.criterion, other) for other in undecided)
 
     def _carry_from_any(self, result: Result) -> Result:
         for carried in result.criterion.carried:
@@ -243,7 +246,7 @@ class _Grading:
 
 
 def _is_carried_from(criterion: Criterion, name: str) -> bool:
-    return bool(criterion.carried) and any(name in carried.causes for carried in criterion.carried)
+    return any(name in carried.causes for carried in criterion.carried)
 
 
 def _skip_outcome(cause: str) -> Outcome:

@@ -47,6 +47,7 @@ class Trials:
         parts = {part.id for part in rubric.parts if part.needs != "files"}
         self.rubric, self.submission = rubric, submission
         self.results = {name: result for name, result in results.items() if result.criterion.part in parts}
+        self._edited = dict[tuple[Edits, bool], Submission | None]()
         self.left = _MAX_GRADINGS
         self.faults: list[str] = []  # the types of exceptions
         self.is_assumed = False  # whether the last one is read with words undone, and the submission is not
@@ -83,7 +84,13 @@ class Trials:
         return found
 
     def edited(self, edits: Edits, *, whole: bool = False) -> Submission | None:
-        """Return the submission with edits; None where they do not fit."""
+        """Return the submission with edits; None where they do not fit. What was tried is proven next: it is kept."""
+        key = edits, whole
+        if key not in self._edited:
+            self._edited[key] = self._newly_edited(edits, whole=whole)
+        return self._edited[key]
+
+    def _newly_edited(self, edits: Edits, *, whole: bool) -> Submission | None:
         files = edited_files(self.submission, edits)
         if files is None:
             return None
@@ -256,7 +263,8 @@ class HintSearch:
 
     def _try(self, stage: Stage, tried: list[_Tried]) -> None:
         """Grade the proposals of a stage, each once; add those with which a criterion passes."""
-        lost, before = self._lost, self.edits
+        before, has_package = self.edits, self.trials.submission.package is not None
+        lost = [name for name in self._lost if has_package or self._criteria[name].check.subject != "package"]
         seen: set[Edits] = set()
         for proposals in stage(self._situation, [self._criteria[name] for name in lost]):
             with self.trials.isolated():
