@@ -32,6 +32,7 @@ class Reason(StrEnum):
     OUTDATED = "graded with another rubric or version: run `grader batch` again"
     NOT_ON_ROSTER = "not on the roster"
     OLDER_MARKS = "marked before the submission changed"
+    EARLY_MARK = "marked before there was a submission"
     PENDING = "needs manual grading"
     EXCUSED = "excused"
 
@@ -126,6 +127,12 @@ class StudentGrade:
         return self.is_excused or self.final_points is not None
 
     @property
+    def is_marked_early(self) -> bool:
+        """Whether the whole grade was decided when there was no submission: the mark has a time, but no digest."""
+        mark = self.final if self.stored is not None and self.has_final else None
+        return mark is not None and bool(mark.time) and not mark.submission
+
+    @property
     def is_gone(self) -> bool:
         """Whether the newest run did not find the submission."""
         return Reason.GONE in self.known
@@ -192,8 +199,12 @@ class StudentGrade:
             found -= _OBSTACLES - {Reason.GONE}
         if self.older:
             found.add(Reason.OLDER_MARKS)
+        if self.is_marked_early:
+            found.add(Reason.EARLY_MARK)
         details = dict.fromkeys((Reason.FAILED, Reason.UNREADABLE, Reason.SEVERAL), reason)
         details[Reason.OLDER_MARKS] = ", ".join(self.older)
+        if self.final is not None:
+            details[Reason.EARLY_MARK] = f"{self.final.value} instead of {format_points(self.score)}"
         return {one: details.get(one, "") for one in Reason if one in found}
 
     @cached_property

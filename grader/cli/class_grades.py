@@ -14,7 +14,7 @@ from grader.report.formats import OutputFormat
 _TARGETS = ("csv", *FORMS, "json", "html")
 _INTO = "The gradebook or worksheet that the LMS exported."
 _OUTPUT = "The file to write (default: standard output); with html, the folder (default: the gradebook)."
-_STRICT = "Write nothing if a row or student is unmatched, a mark does not count, or the LMS would refuse a grade."
+_STRICT = "Write nothing if a row or student is unmatched, a mark or time is in doubt, or the LMS would refuse a grade."
 _PENDING = "Also export grades with points that need manual grading."
 _MAXIMUM = "Export points unchanged, even if the LMS has another maximum."
 _ONLY = "Omit the columns of other assignments."

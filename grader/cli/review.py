@@ -54,7 +54,7 @@ def mark(
         return import_marks(gradebook, file, by)
     row = {"student": student, "criterion": criterion, "points": points, "comment": comment, "by": by}
     if missing:  # in place of the student
-        return mark_missing(gradebook, {**row, "criterion": student, "points": criterion})
+        return mark_missing(gradebook, {**row, "criterion": student, "points": criterion}, warn)
     return give_mark(gradebook, row, warn)
 
 

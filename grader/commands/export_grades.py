@@ -22,6 +22,7 @@ from grader.files.reading import read_capped
 from grader.report.formats import Format
 from grader.text import counted, enumerated, format_points, printable_path
 
+_DOUBTS = (Reason.OLDER_MARKS, Reason.EARLY_MARK)  # about grades that are exported
 _BOM = b"\xef\xbb\xbf"  # by which Excel recognises UTF-8
 # The targets of each option that not all targets take.
 _TARGETS = {"--into": tuple(FORMS), "--feedback": ("moodle", "canvas"), "--excel": ("csv",)}
@@ -66,8 +67,12 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
             raise InputError(f"cannot write {printable_path(path)}: the gradebook is written by its own commands")
     warn_of_ignored(book, terminal.warn)
     exported = _exported(request, book, terminal)
-    if request.strict and (book.marks.ignored or not exported.is_complete):
-        why = "rows or students are unmatched, marks do not count, or the LMS would refuse a grade"
+    doubts = [(why, one.student.key, detail) for one in book for why, detail in one.concerns.items() if why in _DOUBTS]
+    for line in by_reason(doubts):
+        terminal.warn(line)
+    is_doubtful = any(why is not Reason.OLDER_MARKS for why, _, _ in doubts)
+    if request.strict and (book.marks.ignored or is_doubtful or not exported.is_complete):
+        why = "rows or students are unmatched, marks or times are in doubt, or the LMS would refuse a grade"
         terminal.warn(f"nothing was written, because of --strict: {why}")
         return b"", ExitCode.FAILED
     if request.feedback is not None:
@@ -93,8 +98,7 @@ def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Fi
     options = FillOptions(_maximum(book), lab, request.column, request.any_maximum, request.only, shown)
     grades = [_class_grade(book, one, request, has_comment="comment" in form.columns) for one in book]
     filled = fill(read_capped(request.into, SIZE_LIMIT, advice=""), grades, form, options)
-    older = ((Reason.OLDER_MARKS, one.student.key, ", ".join(one.older)) for one in book if one.older)
-    for line in [*filled.lines, *by_reason(older)]:
+    for line in filled.lines:
         terminal.warn(line)
     return filled
 

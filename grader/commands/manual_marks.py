@@ -1,6 +1,6 @@
 """Give and withdraw marks by command: of one student, of all who submitted nothing, and of a CSV file."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from decimal import Decimal
 from getpass import getuser
@@ -18,8 +18,9 @@ from grader.commands.writing import Warn
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import DEADLINE, TOTAL
-from grader.text import by_name, counted, counted_points, format_points, named, printable, printable_path
+from grader.text import by_name, counted, counted_points, format_points, named, people_text, printable, printable_path
 
+_MAX_NAMED = 12
 _EMPTY = dict.fromkeys((*COLUMNS, SURPLUS), "")
 
 
@@ -40,17 +41,29 @@ def give_mark(gradebook: Path, row: Cells, warn: Warn) -> str:
     return f"{printable(f'{named(mark.student, grade.student.name)}: {_grade_text(now, grade)}{late}')}\n"
 
 
-def mark_missing(gradebook: Path, row: Cells) -> str:
+def mark_missing(gradebook: Path, row: Cells, warn: Warn) -> str:
     """Give a final mark to all students who submitted nothing and have none; return how many. Raises InputError."""
     if row["criterion"] != TOTAL or row["points"] in ("", WITHDRAWN):
         raise InputError(f"write it as --missing {TOTAL} POINTS")
     book = Gradebook(gradebook)
     reader = _mark_import(book)
-    missing = [one.student.key for one in book if Reason.MISSING in one.concerns]
+    grades = list(book)
+    missing = [one.student.key for one in grades if Reason.MISSING in one.concerns]
     marks = [mark for key in missing for mark in reader.marks_in({**_EMPTY, **row, "student": key})]
     if marks:
         _append_marks(book, marks, row["by"])
+    for line in _unassigned(grades):
+        warn(printable(line))
     return f"final mark {row['points']} for {len(missing)} of {counted(len(book.keys), 'student')}\n"
+
+
+def _unassigned(grades: Sequence[StudentGrade]) -> Iterator[str]:
+    """Yield which submissions have no student for certain: one of them may be that of a student who has none."""
+    visitors = (one.stored for one in grades if Reason.NOT_ON_ROSTER in one.concerns and not one.is_gone)
+    if paths := [stored.paths[0] for stored in visitors if stored is not None and stored.paths]:
+        yield f"still unassigned: {people_text(paths, _MAX_NAMED)}: a student with this mark may have submitted it"
+    if unclear := [one.student.key for one in grades if Reason.UNCLEAR in one.concerns]:
+        yield f"no mark for {people_text(unclear, _MAX_NAMED)}: {Reason.UNCLEAR}"
 
 
 def import_marks(gradebook: Path, file: Path, by: str) -> str:
