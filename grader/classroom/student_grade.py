@@ -33,6 +33,7 @@ class Reason(StrEnum):
     NOT_ON_ROSTER = "not on the roster"
     OLDER_MARKS = "marked before the submission changed"
     EARLY_MARK = "marked before there was a submission"
+    UNKNOWN_TIME = "late, time unknown: give `submitted` or `late` in the roster"
     PENDING = "needs manual grading"
     EXCUSED = "excused"
 
@@ -201,6 +202,8 @@ class StudentGrade:
             found.add(Reason.OLDER_MARKS)
         if self.is_marked_early:
             found.add(Reason.EARLY_MARK)
+        if self.late.is_guess and self.late.points:
+            found.add(Reason.UNKNOWN_TIME)
         details = dict.fromkeys((Reason.FAILED, Reason.UNREADABLE, Reason.SEVERAL), reason)
         details[Reason.OLDER_MARKS] = ", ".join(self.older)
         if self.final is not None:

@@ -22,7 +22,7 @@ from grader.files.reading import read_capped
 from grader.report.formats import Format
 from grader.text import counted, enumerated, format_points, printable_path
 
-_DOUBTS = (Reason.OLDER_MARKS, Reason.EARLY_MARK)  # about grades that are exported
+_DOUBTS = (Reason.OLDER_MARKS, Reason.EARLY_MARK, Reason.UNKNOWN_TIME)  # about grades that are exported
 _BOM = b"\xef\xbb\xbf"  # by which Excel recognises UTF-8
 # The targets of each option that not all targets take.
 _TARGETS = {"--into": tuple(FORMS), "--feedback": ("moodle", "canvas"), "--excel": ("csv",)}
