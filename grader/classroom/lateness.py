@@ -3,6 +3,7 @@
 As in Canvas (app/models/late_policy.rb): a percentage of the maximum for each day begun, and never below the floor.
 """
 
+import re
 from contextlib import suppress
 from datetime import date, datetime, time, timedelta, tzinfo
 from decimal import Decimal
@@ -16,6 +17,8 @@ from grader.grading.rubric import Rubric
 from grader.text import counted
 
 _DAY = timedelta(days=1)
+_LAST = 999_999  # microsecond, of a deadline that is the end of a day or a minute
+_IN_MINUTES = re.compile(r"\S+[T ]\d\d(:?\d\d)?(Z|[+-].*)?")  # a time without seconds
 
 
 class Lateness(NamedTuple):
@@ -51,13 +54,18 @@ def lateness(
 
 
 def read_time(text: str, where: str = "") -> datetime:
-    """Return a deadline that is written as ISO 8601; a date alone means the end of that day. Raises InputError."""
+    """Return a deadline that is written as ISO 8601. Raises InputError.
+
+    A date alone means the end of that day, a time without seconds the end of that minute.
+    """
+    text = text.strip()
     with suppress(ValueError):
-        return datetime.combine(date.fromisoformat(text.strip()), time.max)
+        return datetime.combine(date.fromisoformat(text), time.max)
     try:
-        return datetime.fromisoformat(text.strip())
+        moment = datetime.fromisoformat(text)
     except ValueError:
         raise InputError(f"{where}{text!r} is not a date or time: write it as 2026-11-20T23:59+01:00") from None
+    return moment.replace(second=59, microsecond=_LAST) if _IN_MINUTES.fullmatch(text) else moment
 
 
 def time_text(when: datetime | str, zone: tzinfo | None = None) -> str:
@@ -71,7 +79,7 @@ def time_text(when: datetime | str, zone: tzinfo | None = None) -> str:
             moment = moment.astimezone(zone)
     plain = moment.replace(tzinfo=None)
     offset = moment.isoformat().removeprefix(plain.isoformat())
-    shown = plain.isoformat(" ", "seconds" if plain.second and plain.time() != time.max else "minutes")
+    shown = plain.isoformat(" ", "seconds" if plain.second and plain.microsecond != _LAST else "minutes")
     return f"{shown} (UTC{offset.replace('+00:00', '')})" if offset else shown
 
 

@@ -214,7 +214,10 @@ def _duplicates(students: Mapping[int, Student]) -> Iterator[tuple[int, str]]:
 
 
 def iso_time(text: str) -> str:
-    """Return a date or time as ISO 8601, to the second; empty if it is neither. A time without a zone gets none."""
+    """Return a date or time as ISO 8601, to the second if it has seconds; empty if it is neither.
+
+    A time without a zone gets none.
+    """
     zoned = re.sub(r"\s*(?:UTC|UCT|GMT|Z)\Z", "+00:00", text.strip()) if ":" in text else text
     try:
         time = datetime.fromisoformat(re.sub(r"\s+(?=[+-][0-9:]+\Z)", "", zoned))
@@ -222,7 +225,8 @@ def iso_time(text: str) -> str:
         return ""
     if ":" not in text:
         return time.date().isoformat() if len(text) == len("2026-09-01") else ""
-    return time.isoformat(timespec="seconds").replace("+00:00", "Z")
+    precision = "seconds" if re.search(":[0-9]+:", text) else "minutes"
+    return time.isoformat(timespec=precision).replace("+00:00", "Z")
 
 
 class _Match(NamedTuple):
