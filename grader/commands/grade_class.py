@@ -46,6 +46,7 @@ from grader.text import counted, enumerated, first_lines, format_points, printab
 _MAX_LINES, _MAX_NAMED = 10, 5
 _LEAST_SECONDS = 15.0  # in which hints are searched, and a few reports written
 _PRIVATE = 0o600
+_FORMAT = 2  # of results: those of another one are graded again
 
 
 @dataclass(frozen=True, slots=True)
@@ -289,7 +290,7 @@ def _context(inputs: _ClassInputs) -> str:
     copies = sorted(path for path in (folder / names.RUBRIC).rglob("*") if path.is_file())  # with the reference
     reference = sha256_of(repr([(path.relative_to(folder).as_posix(), path.read_bytes()) for path in copies]).encode())
     options = settings.parts, sorted(settings.arguments.items()), settings.max_size
-    return digest_of(inputs.rubric.sha256, reference, *options, __version__)
+    return digest_of(inputs.rubric.sha256, reference, *options, __version__, _FORMAT)
 
 
 def _batch(request: ClassRequest, inputs: _ClassInputs, batch: Batch, intake: Intake, terminal: Terminal) -> Progress:

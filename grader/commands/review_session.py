@@ -20,7 +20,7 @@ from grader.classroom.typed_names import criterion_of
 from grader.commands.writing import save
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import InputError
-from grader.grading.criterion_pictures import evidence_files, may_have_pictures, pictures_of
+from grader.grading.criterion_pictures import evidence_files, loose_lines, may_have_pictures, pictures_of
 from grader.grading.grade import grade
 from grader.grading.model_answers import load_with_answers
 from grader.grading.report import Report
@@ -189,15 +189,16 @@ def open_item(book: Gradebook, item: ReviewItem) -> OpenedItem:
     pictures = pictures_of(result, submission) if may_have_pictures(result) else ()
     outcome, location, places = result.outcome, result.outcome.location, [*evidence_files(result)]
     if first.number:
+        answer = loose_lines(result, submission, is_anonymous=True) or answer_lines(outcome)
         question = str(item.criterion.arguments.get("question", ""))
         message = question if outcome.status == "pending" else f"the check: {outcome.status}"
-        return OpenedItem(message, answer_lines(outcome), [*starmap(_anonymous, enumerate(pictures, 1))])
+        return OpenedItem(message, answer, [*starmap(_anonymous, enumerate(pictures, 1))])
     if location is not None:
         places.append(f"{location.path}, line {location.line}" if counts_lines(location) else location.path)
     root = book.settings.roots(book.folder)[first.stored.root]
     submitted = ", ".join(str(root / path) for path in first.stored.paths)
     paths = [f"{place} in {submitted}" for place in places] or [submitted]
-    return OpenedItem(outcome.message, answer_lines(outcome), pictures, paths)
+    return OpenedItem(outcome.message, loose_lines(result, submission) or answer_lines(outcome), pictures, paths)
 
 
 def _anonymous(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPicture | NotShown:

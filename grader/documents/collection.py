@@ -160,7 +160,7 @@ class DocumentCollection:
                 if file.path not in self.converted:
                     self.converted[file.path] = self._convert(file).decode("utf-8", "replace")
                 return self.converted[file.path]
-            case ".doc" | ".odt" | ".rtf" | ".pages" | ".ipynb":
+            case ".doc" | ".odt" | ".rtf" | ".pages" | ".ipynb" | ".pptx" | ".odp":
                 raise InputError(f"{file.path} has a format that is not supported: open it yourself")
             case _:
                 data = file.read(_TEXT_LIMIT)
