@@ -20,6 +20,7 @@ class Batch:
         self._results, self._writer, self._shared, self._context = results, writer, shared, context
         self._at_work: dict[str, tuple[ClassSubmission, StoredResult | None]] = {}  # with the result that is current
         self.progress = Progress(0)
+        self.written = results.unfinished  # the students whose results this run has written, or one that was stopped
 
     def grade(
         self,
@@ -71,7 +72,10 @@ class Batch:
             submitted=submission.submitted,
             person=person,  # what the names of the files say of the student
         )
-        return new._replace(run=self._results.next_run).line if new != current else b""
+        if new == current:
+            return b""
+        self.written.add(result.student)
+        return new._replace(run=self._results.next_run).line
 
 
 def _without_documents(task: Task, error: WorkerError) -> Task | None:

@@ -97,7 +97,7 @@ def _reasons(old: StoredResult | None, new: StoredResult | None, before: Run, af
         if old is not None:
             yield "no longer there"
         if new is not None:
-            yield "first submission"
+            yield "first submission" if new.student not in before.totals else "its older result was damaged"
         return
     if old.student in before.totals and old.student not in after.totals:
         yield "no longer there"

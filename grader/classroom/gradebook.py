@@ -58,13 +58,15 @@ class Gradebook:
         if roster.exists():
             self.roster = read_roster(read_capped(roster, SIZE_LIMIT, advice=""), printable_path(roster))
         self.results = Results(folder / names.RESULTS)
+        if run is None:
+            self.results.check_newest()
         if run is None and not self.results.runs:
             raise InputError(f"nothing is graded yet in {printable_path(folder)}: run `grader batch PATH`")
         self.run: Run = run or self.results.runs[-1]
         self.due = self.settings.deadline(folder)
         self._on_roster = {one.key: one for one in self.roster.students} if self.roster is not None else {}
-        others = (key for key in self.results.students if self.roster is None or key in self.run.totals)
-        self.keys = sorted({*self._on_roster, *others})  # a submission may have been assigned since
+        others = self.results.students if self.roster is None else ()
+        self.keys = sorted({*self._on_roster, *self.run.totals, *others})  # a submission may have been assigned since
         self.marks: Marks = read_marks(folder / names.MARKS, self.keys, self.rubric)
         self._marked = {student for student, _ in (*self.marks.counting, *self.marks.comments)}
         self._is_outdated = (self.run.rubric, self.run.version) != (self.rubric.sha256, __version__)
@@ -131,6 +133,8 @@ class Gradebook:
         if key in self.run.unclear:
             known.add(Reason.UNCLEAR)
         if stored is None:
+            if key in self.run.totals:
+                known.add(Reason.DAMAGED)
             nothing = Report(Submission(key, Absent(), is_single=False), self.rubric, self.settings.parts, ())
             return StudentGrade(student, None, nothing, final=final, known=frozenset(known))
         if key not in self.run.totals:
@@ -200,7 +204,7 @@ def _table_row(grade: StudentGrade, criteria: Sequence[str], is_exported: bool) 
     row: list[CellValue] = [student.key, student.name or None, student.email or None, student.section or None]
     points: dict[str, str | None] = dict.fromkeys(criteria)
     numbers: list[CellValue] = [None] * 5
-    if grade.status not in ("missing", "excused"):
+    if grade.stored is not None and not grade.is_excused:
         numbers = [grade.score, report.max_score, grade.pending, late.days, late.points]
         points |= {one.criterion.id: one.cell for one in grade.results}
     row += [grade.status, *numbers, grade.total, grade.why_open or None, *points.values()]

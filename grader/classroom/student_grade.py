@@ -25,6 +25,7 @@ class Reason(StrEnum):
 
     FAILED = "the grader failed"
     UNREADABLE = "could not be graded"
+    DAMAGED = "its result is damaged: run `grader batch` again"
     UNCLEAR = "it is unclear which submission counts"
     MISSING = "nothing was submitted"
     SEVERAL = "several robots fit: check that the correct one was graded"
@@ -39,7 +40,9 @@ class Reason(StrEnum):
 
 
 # They keep a grade from being published; of a final mark only GONE needs attention.
-_OBSTACLES = {Reason.FAILED, Reason.UNREADABLE, Reason.UNCLEAR, Reason.MISSING, Reason.GONE, Reason.OUTDATED}
+_OBSTACLES = {
+    *(Reason.FAILED, Reason.UNREADABLE, Reason.DAMAGED, Reason.UNCLEAR, Reason.MISSING, Reason.GONE, Reason.OUTDATED)
+}
 
 
 class SharedResult(Result):
@@ -110,7 +113,7 @@ class StudentGrade:
     late: Lateness = _ON_TIME
     final: Mark | None = None  # the mark, comment or excuse of the whole submission
     older: tuple[str, ...] = ()  # the criteria (or `total`) that were marked before the submission changed
-    known: frozenset[Reason] = frozenset()  # what the class says: NOT_ON_ROSTER, UNCLEAR, GONE, OUTDATED
+    known: frozenset[Reason] = frozenset()  # what the class says: NOT_ON_ROSTER, UNCLEAR, DAMAGED, GONE, OUTDATED
 
     @property
     def is_excused(self) -> bool:
@@ -143,6 +146,8 @@ class StudentGrade:
         """How the submission went: graded, unreadable, errored, missing or excused."""
         if self.is_excused:
             return "excused"
+        if Reason.DAMAGED in self.known:
+            return "errored"
         return self.stored.verdict if self.stored is not None else "missing"
 
     @property
@@ -194,7 +199,7 @@ class StudentGrade:
             found.add(Reason.UNREADABLE)
         if self.status == "graded" and reason:
             found.add(Reason.SEVERAL)
-        if self.stored is None and Reason.UNCLEAR not in found:
+        if self.stored is None and found.isdisjoint((Reason.UNCLEAR, Reason.DAMAGED)):
             found.add(Reason.MISSING)
         if self.has_final:
             found -= _OBSTACLES - {Reason.GONE}

@@ -17,7 +17,9 @@ _MAX_LINES = 20
 
 
 def warn_of_ignored(book: Gradebook, warn: Warn) -> None:
-    """Print the marks that do not count."""
+    """Print the marks that do not count, and the lines of results that are damaged."""
+    if book.results.damage:
+        warn(book.results.damage)
     for line in first_lines(book.marks.ignored, _MAX_LINES):
         warn(f"this mark does not count: {line}")
 

@@ -260,7 +260,8 @@ def _grade(
     context = _context(inputs)
     present = dict.fromkeys(one.student.key for one in intake.submissions)
     with ResultsWriter(folder / names.RESULTS, results.end) as writer:
-        done = _batch(request, inputs, Batch(results, writer, shared, context), intake, terminal)
+        batch = Batch(results, writer, shared, context)
+        done = _batch(request, inputs, batch, intake, terminal)
         time = datetime.now(UTC).isoformat(timespec="milliseconds")
         run = Run(results.next_run, time, __version__, rubric.sha256, context, present, sorted(intake.unclear))
         book, table = Gradebook(folder, run=run), ClassTable(rubric, verbose=request.verbose)
@@ -278,7 +279,7 @@ def _grade(
                 yield grade
 
         write_grades(book, passing())
-        writer.append(run._replace(totals=totals, others=others).line)
+        writer.append(run._replace(totals=totals, others=others, written=sorted(batch.written)).line)
         writer.sync()
     warn_of_ignored(book, terminal.warn)
     return table, done
