@@ -207,8 +207,8 @@ def _table_row(grade: StudentGrade, criteria: Sequence[str], is_exported: bool) 
     if grade.stored is not None and not grade.is_excused:
         numbers = [grade.score, report.max_score, grade.pending, late.days, late.points]
         points |= {one.criterion.id: one.cell for one in grade.results}
-    row += [grade.status, *numbers, grade.total, grade.why_open or None, *points.values()]
+    row += [grade.status, *numbers, grade.shown_total, grade.why_open or None, *points.values()]
     if is_exported:
-        points[TOTAL] = format_points(grade.total) if grade.total is not None else None
+        points[TOTAL] = grade.total_text
         row.append(" ".join(f"{name}={text or ''}" for name, text in points.items()))
     return [*row, grade.stored.digest if grade.stored is not None else None]

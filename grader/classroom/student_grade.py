@@ -171,10 +171,15 @@ class StudentGrade:
         return self.report.pending if not self.has_final else Decimal(0)
 
     @property
+    def shown_total(self) -> Decimal | None:
+        """The grade; None where there is none or nothing could be graded."""
+        is_ungraded = self.status in ("unreadable", "errored") and self.obstacle and not self.total
+        return None if is_ungraded else self.total
+
+    @property
     def total_text(self) -> str:
         """The grade; empty where there is none or nothing could be graded."""
-        is_ungraded = self.status in ("unreadable", "errored") and self.obstacle and not self.total
-        return "" if self.total is None or is_ungraded else format_points(self.total)
+        return "" if self.shown_total is None else format_points(self.shown_total)
 
     @cached_property
     def losses(self) -> list[tuple[Decimal, str]]:

@@ -96,7 +96,7 @@ _STUDENT = JsonObject(
         "max_score": _report_points("max_score"),
         "pending": (POINTS, "pending"),
         "late": JsonObject({"days": TOTAL, "points": {"type": "number", "maximum": 0}, "reason": TEXT}),
-        "total": nullable(POINTS),
+        "total": (nullable(POINTS), "shown_total"),
         "final_mark": (nullable(POINTS), "final_points"),
         "is_excused": FLAG,
         "not_final_because": (TEXT, "why_open"),
