@@ -26,7 +26,7 @@ from grader.grading.report import ManualComment, ManualMark, Report, without_gif
 from grader.grading.rubric import load_rubric
 from grader.submission.submission import Opening, Submission
 from grader.submission.urdf import Absent, Unreadable
-from grader.text import format_points, printable_path
+from grader.text import printable_path
 
 _NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
 _MAX_SHARED = 10_000  # results
@@ -48,6 +48,7 @@ class Gradebook:
         """`run` is one that is not in the file yet; `answers` is the file of the model answers, for those who grade."""
         names.check_gradebook(folder)
         self.folder, self.settings = folder, read_settings(folder)
+        names.check_roster(folder, self.settings)
         rubric, roster = folder / self.settings.rubric, folder / names.ROSTER
         self.rubric = load_rubric(rubric)
         if answers is not None:

@@ -120,6 +120,8 @@ def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
         raise InputError("name the PATH of the submissions, a folder or the zip of an LMS")
     if options.due is None and (due := settings.deadline(folder)) is not None:
         warn(f"deadline of the last run: {time_text(due, due.tzinfo)} (--due changes it)")
+    if options.roster is None:
+        names.check_roster(folder, settings)
     roster_file = options.roster or (folder / names.ROSTER)
     roster = None
     if options.roster or roster_file.exists():
@@ -325,6 +327,15 @@ def write_grades(book: Gradebook, grades: Iterable[StudentGrade] | None = None) 
     """Write the grades of a class, by default the current ones, into its gradebook. Raises InputError."""
     table = write_table(*grade_table(book, book if grades is None else grades))
     save(book.folder / names.GRADES, table, book.settings.roots(book.folder), _PRIVATE)
+
+
+def write_grades_with(marks: int, book: Gradebook) -> None:
+    """Write the grades after some marks were saved. Raises InputError, which says that they are."""
+    try:
+        write_grades(book)
+    except InputError as error:
+        saved = "the mark is saved" if marks == 1 else f"{marks} marks are saved"
+        raise InputError(f"{saved}, {names.GRADES} is not: {error}; the next command writes it") from None
 
 
 def _check_same_class(folder: Path, results: Results, intake: Intake) -> None:

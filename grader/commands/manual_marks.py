@@ -13,7 +13,7 @@ from grader.classroom.marks import COLUMNS, SURPLUS, WITHDRAWN, Cells, Mark, app
 from grader.classroom.review_items import review_items
 from grader.classroom.student_grade import Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT
-from grader.commands.grade_class import write_grades
+from grader.commands.grade_class import write_grades_with
 from grader.commands.writing import Warn
 from grader.errors import InputError
 from grader.files.reading import read_capped
@@ -90,7 +90,7 @@ def _append_marks(book: Gradebook, marks: Iterable[Mark], by: str) -> Gradebook:
     if new:
         append_marks(mark_file(book.folder / names.MARKS, by), new)
     now = Gradebook(book.folder)
-    write_grades(now)
+    write_grades_with(len(new), now)
     return now
 
 

@@ -9,9 +9,10 @@ import hmac
 import json
 import re
 import secrets
+import signal
 from bisect import bisect
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler
 from socket import SHUT_RD, socket
@@ -275,6 +276,20 @@ def _json(status: HTTPStatus = HTTPStatus.OK, **answer: str) -> _Response:
     return _Response(json.dumps(answer).encode(), "application/json", status)
 
 
+@contextmanager
+def _ended_as_by_ctrl_c() -> Iterator[None]:
+    """Let the end of a session or a terminal end the review as Ctrl-C does, unless that is ignored, as after nohup."""
+    numbers = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]  # Windows: no SIGHUP
+    ending = [number for number in numbers if signal.getsignal(number) is signal.SIG_DFL]
+    for number in ending:
+        signal.signal(number, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        for number in ending:
+            signal.signal(number, signal.SIG_DFL)
+
+
 def review_in_browser(session: ReviewSession, port: int, terminal: Terminal) -> str:
     """Serve the review page until Ctrl-C, write the grades, and return a summary. Raises InputError."""
     if not session.places:
@@ -284,7 +299,7 @@ def review_in_browser(session: ReviewSession, port: int, terminal: Terminal) -> 
         if is_open_in_libreoffice(session.file):
             shown = printable_path(session.file)
             terminal.warn(f"{shown} is open in LibreOffice: close it, because saving it there would remove new marks")
-        with suppress(KeyboardInterrupt):
+        with _ended_as_by_ctrl_c(), suppress(KeyboardInterrupt):
             terminal.print(f"{server.url}{page.address(session.following())}\n")
             terminal.warn("open this address in a browser on this machine; Ctrl-C ends the review, all marks are kept")
             server.serve_forever()

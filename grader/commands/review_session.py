@@ -17,6 +17,7 @@ from grader.classroom.review_items import Place, ReviewFilter, ReviewItem, revie
 from grader.classroom.roster import plain
 from grader.classroom.tables import write_table
 from grader.classroom.typed_names import criterion_of
+from grader.commands.grade_class import write_grades_with
 from grader.commands.writing import save
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import InputError
@@ -147,6 +148,7 @@ class ReviewSession:
         self.own |= new
         self._kept |= new.keys()
         self.refresh()
+        write_grades_with(len(new), self.book)
         return []
 
     def _check_rows(self) -> None:
