@@ -43,18 +43,16 @@ class _Snapshot(NamedTuple):
 
 def snapshot(folder: Path, number: int | None) -> _Snapshot:
     """Return a run of a gradebook, by default the newest one with the current grades. Raises InputError."""
-    book, people, totals, early = Gradebook(folder), dict[str, str](), dict[str, str | None](), set[str]()
-    for one in book:
-        key, total = one.student.key, one.published
-        people[key], totals[key] = one.student.name, None if total is None else str(total)
-        if one.is_marked_early:
-            early.add(key)
-    if number is None:
-        return _Snapshot(book.run._replace(totals=totals), book.results, people, frozenset(early))
-    results = Results(folder / names.RESULTS, number)
-    if not 0 < number <= book.run.run:
-        raise InputError(f"{printable_path(folder)} has no run {number}: it has 1 to {book.run.run}")
-    return _Snapshot(results.runs[-1], results, people, frozenset(early))
+    book = Gradebook(folder)
+    grades = {one.student.key: (one.student.name, one.published, one.is_marked_early) for one in book}
+    results, run = book.results, book.run_with({key: total for key, (_, total, _) in grades.items()})
+    if number is not None:
+        if not 0 < number <= run.run:
+            raise InputError(f"{printable_path(folder)} has no run {number}: it has 1 to {run.run}")
+        results = Results(folder / names.RESULTS, number)
+        run = results.runs[-1]
+    early = frozenset(key for key, (_, _, is_early) in grades.items() if is_early)
+    return _Snapshot(run, results, {key: name for key, (name, _, _) in grades.items()}, early)
 
 
 def changes(before: _Snapshot, after: _Snapshot) -> Iterator[Change]:

@@ -3,7 +3,8 @@
 Last, the grades as a table, one row a student: `grades.csv`, and `export csv`, which people may change.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from decimal import Decimal
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -26,7 +27,7 @@ from grader.grading.report import ManualComment, ManualMark, Report, without_gif
 from grader.grading.rubric import load_rubric
 from grader.submission.submission import Opening, Submission
 from grader.submission.urdf import Absent, Unreadable
-from grader.text import printable_path
+from grader.text import format_points, printable_path
 
 _NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
 _MAX_SHARED = 10_000  # results
@@ -70,7 +71,7 @@ class Gradebook:
         self.keys = sorted({*self._on_roster, *self.run.totals, *others})  # a submission may have been assigned since
         self.marks: Marks = read_marks(folder / names.MARKS, self.keys, self.rubric)
         self._marked = {student for student, _ in (*self.marks.counting, *self.marks.comments)}
-        self._is_outdated = (self.run.rubric, self.run.version) != (self.rubric.sha256, __version__)
+        self.is_outdated = (self.run.rubric, self.run.version) != (self.rubric.sha256, __version__)
         self._rows = {row.id: row for row in self.rubric.criteria}
         # Most results of a class are equal, and are shared: it is read in half the time.
         self._result = lru_cache(_MAX_SHARED)(self._new_result)
@@ -82,6 +83,17 @@ class Gradebook:
     def criteria(self) -> tuple[Criterion, ...]:
         """The criteria of the graded parts."""
         return tuple(row for row in self.rubric.criteria if row.part in (self.settings.parts or {row.part}))
+
+    @property
+    def maximum(self) -> Decimal:
+        """The most points that are no extra credit."""
+        return sum((row.maximum for row in self.criteria), Decimal(0))
+
+    def run_with(self, published: Mapping[str, Decimal | None]) -> Run:
+        """Return the newest run with these grades, as they are published."""
+        texts = {key: format_points(total) for key, total in published.items() if total is not None}
+        totals = {key: texts.pop(key, None) for key in self.run.totals}
+        return self.run._replace(totals=totals, others=texts, maximum=format_points(self.maximum))
 
     def grade(self, key: str) -> StudentGrade:
         """Return the grade of the student with a key."""
@@ -140,7 +152,7 @@ class Gradebook:
             return StudentGrade(student, None, nothing, final=final, known=frozenset(known))
         if key not in self.run.totals:
             known.add(Reason.GONE)
-        if self._is_outdated or stored.context != self.run.context:
+        if self.is_outdated or stored.context != self.run.context:
             known.add(Reason.OUTDATED)
         report, older = self.with_marks(self.report(stored), stored)
         if final is not None and _is_older(final, stored):

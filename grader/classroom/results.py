@@ -76,6 +76,7 @@ class Run(NamedTuple):
     unclear: Sequence[str] = ()  # students with possible submissions of which none was graded
     others: Mapping[str, str] = {}  # totals of the students without a submission
     written: Sequence[str] = ()  # the students whose results were written since the run before
+    maximum: str = ""  # of the grades
 
     @property
     def line(self) -> bytes:

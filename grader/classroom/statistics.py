@@ -66,7 +66,7 @@ def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatisti
     every = list(grades)
     enrolled = [one for one in every if one.student.is_on_roster and (one.has_final or not one.is_gone)]
     counted = [one for one in enrolled if one.is_counted]
-    most = sum((row.maximum for row in book.criteria), Decimal(0))
+    most = book.maximum
     sections, tenths = defaultdict[str, list[Decimal]](list), [list[str]() for _ in range(_TENTHS)]
     for one in counted:
         total = one.total or Decimal(0)

@@ -1,11 +1,12 @@
 """The statistics of a class on a terminal and as JSON, and what changed in its grades."""
 
+from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
 from grader.classroom.gradebook import Gradebook
-from grader.classroom.gradebook_folder import RESULTS, check_gradebook
-from grader.classroom.results import Results
+from grader.classroom.gradebook_folder import RESULTS, batch_lock, check_gradebook
+from grader.classroom.results import Results, ResultsWriter
 from grader.classroom.statistics import statistics
 from grader.commands.writing import Terminal, Warn
 from grader.errors import InputError
@@ -22,6 +23,31 @@ def warn_of_ignored(book: Gradebook, warn: Warn) -> None:
         warn(book.results.damage)
     for line in first_lines(book.marks.ignored, _MAX_LINES):
         warn(f"this mark does not count: {line}")
+
+
+def record_run(folder: Path, warn: Warn) -> None:
+    """Record the current grades as a run, unless the newest one has them, so that `diff` compares with them."""
+    try:
+        with batch_lock(folder):
+            append_run(Gradebook(folder))
+    except InputError as error:
+        warn(f"`grader diff` cannot compare with these grades: {error}")
+
+
+def append_run(book: Gradebook) -> Results | None:
+    """Append a run with the current grades, and return the results with it; None if there is no need, or no way."""
+    now = book.run_with({one.student.key: one.published for one in book})
+    if book.results.unfinished or book.is_outdated or (now.totals, now.others) == (book.run.totals, book.run.others):
+        return None
+    with ResultsWriter(book.folder / RESULTS, book.results.end) as writer:
+        writer.append(now._replace(run=book.results.next_run, time=now_text(), written=()).line)
+        writer.sync()
+    return Results(book.folder / RESULTS)
+
+
+def now_text() -> str:
+    """Return the time of a run."""
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
 
 
 def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *, verbose: bool) -> str:

@@ -14,7 +14,7 @@ from grader.classroom.lms.fill import Filled, FillOptions, PublishedGrade, by_re
 from grader.classroom.lms.forms import FORMS
 from grader.classroom.student_grade import Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT, write_table
-from grader.commands.class_figures import warn_of_ignored
+from grader.commands.class_figures import record_run, warn_of_ignored
 from grader.commands.invocation import ExitCode
 from grader.commands.writing import Terminal, is_same_file, is_stdout, refuse_symlinks, save_bytes
 from grader.errors import GraderError, InputError
@@ -75,6 +75,7 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
         why = "rows or students are unmatched, marks or times are in doubt, or the LMS would refuse a grade"
         terminal.warn(f"nothing was written, because of --strict: {why}")
         return b"", ExitCode.FAILED
+    record_run(book.folder, terminal.warn)
     if request.feedback is not None:
         save_bytes(request.feedback, _feedback(request, book, exported.numbers, terminal), roots)
     if request.output is None:
@@ -95,7 +96,7 @@ def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Fi
     if request.into is None:
         return Filled()
     form, lab, shown = FORMS[request.target], (book.rubric.title, book.rubric.id), printable_path(request.into)
-    options = FillOptions(_maximum(book), lab, request.column, request.any_maximum, request.only, shown)
+    options = FillOptions(book.maximum, lab, request.column, request.any_maximum, request.only, shown)
     grades = [_class_grade(book, one, request, has_comment="comment" in form.columns) for one in book]
     filled = fill(read_capped(request.into, SIZE_LIMIT, advice=""), grades, form, options)
     for line in filled.lines:
@@ -117,12 +118,8 @@ def _comment(book: Gradebook, grade: StudentGrade, total: Decimal) -> str:
     report = class_reports.report_of(book, grade, has_hints=False)
     lost = () if grade.has_final else lost_points(report.results)
     exported = format_points(total.quantize(Decimal("0.01"), ROUND_FLOOR))
-    opening = f"Grade: {exported} of {format_points(_maximum(book))} points."
+    opening = f"Grade: {exported} of {format_points(book.maximum)} points."
     return comment_html(opening, [*lost, *class_reports.notes_of(grade, report)])
-
-
-def _maximum(book: Gradebook) -> Decimal:
-    return sum((row.maximum for row in book.criteria), Decimal(0))
 
 
 def _feedback(request: ExportRequest, book: Gradebook, numbers: Mapping[str, str], terminal: Terminal) -> bytes:

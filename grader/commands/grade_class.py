@@ -7,9 +7,9 @@ import gc
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
+from decimal import Decimal
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -29,19 +29,19 @@ from grader.classroom.submissions import Intake, read_class
 from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.classroom.workers.pool import Processes, processors
 from grader.classroom.workers.queue import Progress
-from grader.commands.class_figures import warn_of_ignored
+from grader.commands.class_figures import append_run, now_text, warn_of_ignored
 from grader.commands.class_reports import ReportRun, refuse_report_folder, write_reports
 from grader.commands.invocation import read_arguments
 from grader.commands.rubrics import DEFAULT_RUBRIC, files_of
 from grader.commands.writing import Terminal, Warn, refuse_symlinks, save, save_bytes
-from grader.errors import InputError
+from grader.errors import GraderError, InputError
 from grader.files.reading import read_capped, sha256_of
 from grader.grading.rubric import Rubric, load_rubric
 from grader.report.class_terminal import ClassTable
 from grader.report.formats import Format, OutputFormat
 from grader.report.screen import draw
 from grader.submission.opening import open_submission
-from grader.text import counted, enumerated, first_lines, format_points, printable, printable_path
+from grader.text import counted, enumerated, first_lines, printable, printable_path
 
 _MAX_LINES, _MAX_NAMED = 10, 5
 _LEAST_SECONDS = 15.0  # in which hints are searched, and a few reports written
@@ -237,6 +237,9 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     with names.batch_lock(folder):
         results = Results(folder / names.RESULTS)
         _check_same_class(folder, results, intake)
+        if results.runs and results.runs[-1].rubric != rubric.sha256:
+            with suppress(GraderError):  # such as that of an old rubric that an edit broke: then it is not compared
+                results = append_run(Gradebook(folder)) or results
         inputs = _keep_inputs(inputs, request, warn)
         table, done = _grade(request, inputs, results, intake, terminal)
     formats = tuple(request.report_format or ())
@@ -264,24 +267,18 @@ def _grade(
     with ResultsWriter(folder / names.RESULTS, results.end) as writer:
         batch = Batch(results, writer, shared, context)
         done = _batch(request, inputs, batch, intake, terminal)
-        time = datetime.now(UTC).isoformat(timespec="milliseconds")
-        run = Run(results.next_run, time, __version__, rubric.sha256, context, present, sorted(intake.unclear))
+        run = Run(results.next_run, now_text(), __version__, rubric.sha256, context, present, sorted(intake.unclear))
         book, table = Gradebook(folder, run=run), ClassTable(rubric, verbose=request.verbose)
-        totals: dict[str, str | None] = {}
-        others: dict[str, str] = {}
+        published: dict[str, Decimal | None] = {}
 
         def passing() -> Iterator[StudentGrade]:
             for grade in book:
                 table.add(grade)
-                total = format_points(grade.published) if grade.published is not None else None
-                if grade.student.key in present:
-                    totals[grade.student.key] = total
-                elif total is not None:
-                    others[grade.student.key] = total
+                published[grade.student.key] = grade.published
                 yield grade
 
         write_grades(book, passing())
-        writer.append(run._replace(totals=totals, others=others, written=sorted(batch.written)).line)
+        writer.append(book.run_with(published)._replace(written=sorted(batch.written)).line)
         writer.sync()
     warn_of_ignored(book, terminal.warn)
     return table, done

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
-from decimal import Decimal
 from getpass import getuser
 from pathlib import Path
 
@@ -111,7 +110,7 @@ def _grade_text(book: Gradebook, grade: StudentGrade) -> str:
     """Return what counts: an excuse, a final mark, or the points of the criteria."""
     if grade.total is None:
         return "excused" if grade.is_excused else "no submission"
-    whole = sum((row.maximum for row in book.criteria), Decimal(0))
+    whole = book.maximum
     if not grade.has_final:  # also with marks of parts that are not graded
         whole = grade.report.max_score
     final = "final mark " if grade.has_final else ""

@@ -202,6 +202,8 @@ def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Co
     before, after = (f"run {run.run} of {time_text(run.time)}" for run in runs)
     page = Page(console, [])
     page.inset(printable(f"From {before} to {after}"), "dim", 0)
+    if runs[0].maximum != runs[1].maximum != "" != runs[0].maximum:
+        page.inset(f"the maximum changed from {runs[0].maximum} to {runs[1].maximum} points", indent=0)
     if not changes:
         page.inset("nothing changed", indent=0)
     for why, found in sorted(alike(changes, lambda change: change.why), key=lambda group: -len(group[1])):
