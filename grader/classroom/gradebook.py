@@ -3,7 +3,7 @@
 Last, the grades as a table, one row a student: `grades.csv`, and `export csv`, which people may change.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from decimal import Decimal
 from functools import lru_cache
 from pathlib import Path
@@ -15,6 +15,7 @@ from grader.classroom import gradebook_folder as names
 from grader.classroom.class_files import open_class_submission
 from grader.classroom.gradebook_folder import read_settings
 from grader.classroom.lateness import Lateness, lateness
+from grader.classroom.mark_import import exported_text
 from grader.classroom.marks import Mark, Marks, read_marks
 from grader.classroom.results import Results, Run, StoredResult, digest_of
 from grader.classroom.roster import Roster, Student, read_roster
@@ -31,11 +32,9 @@ from grader.text import format_points, printable_path
 
 _NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
 _MAX_SHARED = 10_000  # results
-# Columns before those of the criteria; the last one, `submission`, is the digest of what was graded.
-_HEADER = (
-    *("id", "name", "email", "section", "status", "score", "max_score", "pending"),
-    *("late_days", "late_points", "total", "not_final_because"),
-)
+# The columns before and after those of the criteria; `submission` is the digest of what was graded.
+_FIRST = ("id", "name", "section", "status", "total")
+_LAST = ("score", "max_score", "pending", "late_days", "late_points", "not_final_because", "email", "submission")
 
 
 class Gradebook:
@@ -202,26 +201,31 @@ def grade_table(
 ) -> tuple[list[str], Iterator[list[CellValue]]]:
     """Return the header, and the rows of grades; what is not decided is empty.
 
-    A table that `is_exported` has a column with the values that `mark --import` takes for marks, so that it knows which
-    of them a person changed.
+    A table that `is_exported` has a column by which `mark --import` knows which cells a person changed.
     """
-    criteria = [row.id for row in book.rubric.criteria]
-    header = [*_HEADER, *criteria]
+    header = [*_FIRST, *(row.id for row in book.rubric.criteria), *_LAST]
     if is_exported:
         header.append("exported")
-    return [*header, "submission"], (_table_row(one, criteria, is_exported) for one in grades)
+    return header, (_table_row(book, one, is_exported) for one in grades)
 
 
-def _table_row(grade: StudentGrade, criteria: Sequence[str], is_exported: bool) -> list[CellValue]:
-    student, report, late = grade.student, grade.report, grade.late
-    row: list[CellValue] = [student.key, student.name or None, student.email or None, student.section or None]
-    points: dict[str, str | None] = dict.fromkeys(criteria)
-    numbers: list[CellValue] = [None] * 5
+def points_of(book: Gradebook, grade: StudentGrade) -> dict[str, str]:
+    """Return the cells of a student that `mark --import` takes for marks, by criterion and for the total."""
+    points = dict.fromkeys((row.id for row in book.rubric.criteria), "")
     if grade.stored is not None and not grade.is_excused:
-        numbers = [grade.score, report.max_score, grade.pending, late.days, late.points]
         points |= {one.criterion.id: one.cell for one in grade.results}
-    row += [grade.status, *numbers, grade.shown_total, grade.why_open or None, *points.values()]
-    if is_exported:
-        points[TOTAL] = grade.total_text
-        row.append(" ".join(f"{name}={text or ''}" for name, text in points.items()))
-    return [*row, grade.stored.digest if grade.stored is not None else None]
+    return {**points, TOTAL: grade.total_text}
+
+
+def _table_row(book: Gradebook, grade: StudentGrade, is_exported: bool) -> list[CellValue]:
+    student, late, points = grade.student, grade.late, points_of(book, grade)
+    numbers: list[CellValue] = [None] * 5
+    digest = ""
+    if grade.stored is not None:
+        digest = grade.stored.digest
+        if not grade.is_excused:
+            numbers = [grade.score, grade.report.max_score, grade.pending, late.days, late.points]
+    row: list[CellValue] = [student.key, student.name, student.section, grade.status, points[TOTAL]]
+    row += [points[name.id] for name in book.rubric.criteria]
+    row += [*numbers, grade.why_open, student.email, digest]
+    return [*row, exported_text(points)] if is_exported else row

@@ -80,9 +80,9 @@ class SharedResult(Result):
         return self.outcome.message if is_mistake else ""
 
     @cached_property
-    def cell(self) -> str | None:
-        """The points in a table; None if they are not decided."""
-        return None if self.is_open or self.is_faulty else format_points(self.points)
+    def cell(self) -> str:
+        """The points in a table; empty if they are not decided."""
+        return "" if self.is_open or self.is_faulty else format_points(self.points)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from getpass import getuser
 from pathlib import Path
 
 from grader.classroom import gradebook_folder as names
-from grader.classroom.gradebook import Gradebook
+from grader.classroom.gradebook import Gradebook, points_of
 from grader.classroom.mark_import import MarkImport
 from grader.classroom.marks import COLUMNS, SURPLUS, WITHDRAWN, Cells, Mark, append_marks, mark_file
 from grader.classroom.review_items import review_items
@@ -69,7 +69,10 @@ def import_marks(gradebook: Path, file: Path, by: str) -> str:
     """Append the marks in a CSV file; return how many. Raises InputError, and records none, if a row is wrong."""
     book = Gradebook(gradebook)
     items = review_items(book, with_final=True).items()
-    reader = _mark_import(book)._replace(answers={at: [one.student.key for one in item.members] for at, item in items})
+    reader = _mark_import(book)._replace(
+        answers={at: [one.student.key for one in item.members] for at, item in items},
+        points={one.student.key: points_of(book, one) for one in book},
+    )
     new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file))
     _append_marks(book, new, by)
     return f"{printable_path(file)}: {len(new)} recorded, {same} the same as before\n"
