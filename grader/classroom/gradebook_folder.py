@@ -113,6 +113,7 @@ class ClassSettings:
     submissions: tuple[str, ...] = ()
     layout: str = "auto"
     assignment: str = ""  # of nbgrader
+    ignore: tuple[str, ...] = ()  # names of entries that are no student's
     due: str = ""  # the deadline in ISO 8601
     parts: tuple[str, ...] = ()  # the ids of those to grade; without any all
     max_size: int = URDF_LIMIT  # bytes

@@ -64,6 +64,7 @@ class ClassRequest:
     due: str | None  # the deadline
     layout: str | None
     assignment: str | None  # of nbgrader
+    ignore: Sequence[str] | None  # names of entries that are no student's
     part: Sequence[str] | None  # the ids of the parts to grade
     arg: Sequence[str] | None  # NAME=VALUE, of xacro
     ignore_file: Sequence[Path] | None  # starter files
@@ -142,6 +143,7 @@ def _updated(options: ClassRequest, settings: ClassSettings, folder: Path, rubri
         "due": read_time(options.due).isoformat() if options.due else None,
         "layout": options.layout,
         "assignment": options.assignment,
+        "ignore": tuple(options.ignore) if options.ignore else None,
         "parts": tuple(options.part) if options.part else None,
         "arguments": read_arguments(options.arg or ()) or None,
         "max_size": options.max_size,
@@ -225,9 +227,8 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
         warn(f"--due has no effect on grades, {no_late}")
     if request.reports is not None:
         refuse_report_folder(request.reports, inputs.roots)
-    intake = read_class(
-        inputs.near_roots, inputs.roster, settings.layout, settings.assignment, rubric.id, rubric.folders
-    )
+    layout, lab = (settings.layout, settings.assignment), (rubric.id, rubric.folders)
+    intake = read_class(inputs.near_roots, inputs.roster, *layout, *lab, settings.ignore)
     warn(f"{counted(len(intake.submissions), 'submission')}, layout {intake.layout}")
     for lines in (intake.notes, intake.unmatched, [f"ignored: {line}" for line in intake.ignored]):
         for line in first_lines(lines, _MAX_LINES):
