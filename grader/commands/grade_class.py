@@ -139,6 +139,9 @@ def _updated(options: ClassRequest, settings: ClassSettings, folder: Path, rubri
     """Return the settings with the options of the command."""
     for name in options.part or ():
         rubric.part(name)
+    paths = tuple(relative(path, folder) for path in options.paths or ())
+    if {*paths} <= {*settings.submissions}:
+        paths = ()  # a section alone: the others stay
     given: dict[str, Any] = {  # None where the option is not given
         "due": read_time(options.due).isoformat() if options.due else None,
         "layout": options.layout,
@@ -147,7 +150,7 @@ def _updated(options: ClassRequest, settings: ClassSettings, folder: Path, rubri
         "parts": tuple(options.part) if options.part else None,
         "arguments": read_arguments(options.arg or ()) or None,
         "max_size": options.max_size,
-        "submissions": tuple(relative(path, folder) for path in options.paths or ()) or None,
+        "submissions": paths or None,
     }
     settings = replace(settings, **{name: value for name, value in given.items() if value is not None})
     if options.ignore_file or not settings.handed_out:
