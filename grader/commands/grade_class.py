@@ -22,6 +22,7 @@ from grader.classroom.equal_work import hashes_of
 from grader.classroom.gradebook import Gradebook, grade_table
 from grader.classroom.gradebook_folder import CLASS_FILE, ClassSettings, read_settings, relative, settings_text
 from grader.classroom.lateness import read_time, time_text
+from grader.classroom.lms.forms import FORMS
 from grader.classroom.results import Results, ResultsWriter, Run, digest_of
 from grader.classroom.roster import Roster, read_roster
 from grader.classroom.student_grade import StudentGrade
@@ -41,7 +42,7 @@ from grader.report.class_terminal import ClassTable
 from grader.report.formats import Format, OutputFormat
 from grader.report.screen import draw
 from grader.submission.opening import open_submission
-from grader.text import counted, enumerated, first_lines, printable, printable_path
+from grader.text import counted, enumerated, first_lines, printable, printable_path, shell_quoted
 
 _MAX_LINES, _MAX_NAMED = 10, 5
 _LEAST_SECONDS = 15.0  # in which hints are searched, and a few reports written
@@ -232,7 +233,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
         refuse_report_folder(request.reports, inputs.roots)
     layout, lab = (settings.layout, settings.assignment), (rubric.id, rubric.folders)
     intake = read_class(inputs.near_roots, inputs.roster, *layout, *lab, settings.ignore)
-    warn(f"{counted(len(intake.submissions), 'submission')}, layout {intake.layout}")
+    warn(f"{counted(len({(one.root, one.paths) for one in intake.submissions}), 'submission')}, layout {intake.layout}")
     for lines in (intake.notes, intake.unmatched, [f"ignored: {line}" for line in intake.ignored]):
         for line in first_lines(lines, _MAX_LINES):
             warn(printable(line))
@@ -256,7 +257,18 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
         from grader.report.class_json import render_class_json
 
         return render_class_json(Gradebook(folder), done)
+    table.ending = _ending(folder, table, intake.layout)
     return draw(table.print, terminal.screen())
+
+
+def _ending(folder: Path, table: ClassTable, layout: str) -> str:
+    """Return where the grades are, how many students need attention, and the next command."""
+    is_only = [file.parent.resolve() for file in Path().glob(f"*/{CLASS_FILE}")] == [folder.resolve()]
+    lms = layout if layout in FORMS else "csv"
+    command = f"grader {'review' if table.open else f'export {lms}'}"
+    option = "" if is_only else f" --gradebook {shell_quoted(folder)}"
+    attention = f" · {table.attention} need{'s' * (table.attention == 1)} attention" if table.attention else ""
+    return f"grades: {printable_path(folder / names.GRADES)}{attention} · next: {command}{option}"
 
 
 def _grade(
