@@ -113,7 +113,7 @@ class Gradebook:
         if unread:
             why = f"{unread}; needs manual grading"
         entries = ((name, stored.results[name]) for name in self._rows if name in stored.results)
-        results = (self._result(name, status, words or why, by) for name, (_, status, words, by) in entries)
+        results = (self._result(name, status, words or why, *more) for name, (_, status, words, *more) in entries)
         urdf = Unreadable("", unread) if unread else Absent()
         submission = Submission(stored.student, urdf, is_single=False)
         return Report(submission, self.rubric, stored.parts, without_gifts(results, submission))
@@ -133,8 +133,10 @@ class Gradebook:
         except InputError:
             return None
 
-    def _new_result(self, name: str, status: Status, words: str, carried: str) -> SharedResult:
-        return SharedResult(self._rows[name], Outcome(status, words), carried=carried)
+    def _new_result(
+        self, name: str, status: Status, words: str, carried: str, off: float | None = None
+    ) -> SharedResult:
+        return SharedResult(self._rows[name], Outcome(status, words, off), carried=carried)
 
     def _grade(self, key: str, stored: StoredResult | None) -> StudentGrade:
         whole = (key, TOTAL)

@@ -25,8 +25,9 @@ from grader.files.reading import sha256_of
 from grader.text import enumerated, printable_path
 
 Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
-# What is kept of a criterion: points, status, the mistake in words, the criterion that carries it.
-StoredCriterion = tuple[float | None, Status, str, str]
+# What is kept of a criterion: points, status, the mistake in words, the criterion that carries it, and of a length that
+# was measured how far it is off, in metres.
+StoredCriterion = tuple[float | None, Status, str, str] | tuple[float | None, Status, str, str, float]
 _DIGITS = 16  # of a hash
 _MAX_NAMED = 10  # lines
 _RUN, _GRADED, _TEXTS = b'{"run":', b'{"student":', b'{"texts":'
