@@ -1,7 +1,7 @@
 """Options that several commands share."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -35,17 +35,8 @@ def only_gradebook(named: Path = _NOT_NAMED) -> Path:
     raise InputError("there is no gradebook here: name one with --gradebook; `grader batch PATH` makes it")
 
 
-GradebookOption = Annotated[
-    Path,
-    typer.Option(
-        "--gradebook",
-        metavar="FOLDER",
-        help=_GRADEBOOK,
-        default_factory=lambda: _NOT_NAMED,
-        callback=only_gradebook,
-        show_default=False,
-    ),
-]
+_ONLY: Any = {"default_factory": lambda: _NOT_NAMED, "callback": only_gradebook, "show_default": False}
+GradebookOption = Annotated[Path, typer.Option("--gradebook", metavar="FOLDER", help=_GRADEBOOK, **_ONLY)]
 MaxSizeOption = Annotated[int, typer.Option(metavar="BYTES", min=1, help="Maximum size of a URDF.")]
 AnswersOption = Annotated[
     Path | None, typer.Option("--answers", metavar="FILE", help="The .toml file with the model answers.")

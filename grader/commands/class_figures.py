@@ -1,12 +1,11 @@
 """The statistics of a class on a terminal and as JSON, and what changed in its grades."""
 
-from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.gradebook_folder import RESULTS, batch_lock, check_gradebook
-from grader.classroom.results import Results, ResultsWriter
+from grader.classroom.results import Results, ResultsWriter, time_of_run
 from grader.classroom.statistics import statistics
 from grader.commands.writing import Terminal, Warn
 from grader.errors import InputError
@@ -40,14 +39,9 @@ def append_run(book: Gradebook) -> Results | None:
     if book.results.unfinished or book.is_outdated or (now.totals, now.others) == (book.run.totals, book.run.others):
         return None
     with ResultsWriter(book.folder / RESULTS, book.results.end) as writer:
-        writer.append(now._replace(run=book.results.next_run, time=now_text(), written=()).line)
+        writer.append(now._replace(run=book.results.next_run, time=time_of_run(), written=()).line)
         writer.sync()
     return Results(book.folder / RESULTS)
-
-
-def now_text() -> str:
-    """Return the time of a run."""
-    return datetime.now(UTC).isoformat(timespec="milliseconds")
 
 
 def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *, verbose: bool) -> str:

@@ -23,14 +23,14 @@ from grader.classroom.gradebook import Gradebook, grade_table
 from grader.classroom.gradebook_folder import CLASS_FILE, ClassSettings, read_settings, relative, settings_text
 from grader.classroom.lateness import read_time, time_text
 from grader.classroom.lms.forms import FORMS
-from grader.classroom.results import Results, ResultsWriter, Run, digest_of
+from grader.classroom.results import Results, ResultsWriter, Run, digest_of, time_of_run
 from grader.classroom.roster import Roster, read_roster
 from grader.classroom.student_grade import StudentGrade
 from grader.classroom.submissions import Intake, read_class
 from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.classroom.workers.pool import Processes, processors
 from grader.classroom.workers.queue import Progress
-from grader.commands.class_figures import append_run, now_text, warn_of_ignored
+from grader.commands.class_figures import append_run, warn_of_ignored
 from grader.commands.class_reports import ReportRun, refuse_report_folder, write_reports
 from grader.commands.invocation import read_arguments
 from grader.commands.rubrics import DEFAULT_RUBRIC, files_of
@@ -283,7 +283,7 @@ def _grade(
     with ResultsWriter(folder / names.RESULTS, results.end) as writer:
         batch = Batch(results, writer, shared, context)
         done = _batch(request, inputs, batch, intake, terminal)
-        run = Run(results.next_run, now_text(), __version__, rubric.sha256, context, present, sorted(intake.unclear))
+        run = Run(results.next_run, time_of_run(), __version__, rubric.sha256, context, present, sorted(intake.unclear))
         book, table = Gradebook(folder, run=run), ClassTable(rubric, verbose=request.verbose)
         published: dict[str, Decimal | None] = {}
 

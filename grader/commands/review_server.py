@@ -11,8 +11,8 @@ import re
 import secrets
 import signal
 from bisect import bisect
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler
 from socket import SHUT_RD, socket
@@ -33,6 +33,7 @@ from grader.report.pages import review_pages as pages
 from grader.text import counted, printable, printable_path
 
 HOST = "127.0.0.1"
+_ENDINGS = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]  # end it as Ctrl-C does
 MAX_BODY = 64 * 1024  # bytes; `http.server` limits the headers
 _PATIENCE = 15.0  # seconds in which a client must send a whole request, and receive a whole response
 _TEXT = "text/plain; charset=utf-8"
@@ -276,20 +277,6 @@ def _json(status: HTTPStatus = HTTPStatus.OK, **answer: str) -> _Response:
     return _Response(json.dumps(answer).encode(), "application/json", status)
 
 
-@contextmanager
-def _ended_as_by_ctrl_c() -> Iterator[None]:
-    """Let the end of a session or a terminal end the review as Ctrl-C does, unless that is ignored, as after nohup."""
-    numbers = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]  # Windows: no SIGHUP
-    ending = [number for number in numbers if signal.getsignal(number) is signal.SIG_DFL]
-    for number in ending:
-        signal.signal(number, signal.default_int_handler)
-    try:
-        yield
-    finally:
-        for number in ending:
-            signal.signal(number, signal.SIG_DFL)
-
-
 def review_in_browser(session: ReviewSession, port: int, terminal: Terminal) -> str:
     """Serve the review page until Ctrl-C, write the grades, and return a summary. Raises InputError."""
     if not session.places:
@@ -299,7 +286,10 @@ def review_in_browser(session: ReviewSession, port: int, terminal: Terminal) -> 
         if is_open_in_libreoffice(session.file):
             shown = printable_path(session.file)
             terminal.warn(f"{shown} is open in LibreOffice: close it, because saving it there would remove new marks")
-        with _ended_as_by_ctrl_c(), suppress(KeyboardInterrupt):
+        for number in _ENDINGS:
+            if signal.getsignal(number) is signal.SIG_DFL:  # else it is ignored, as after nohup
+                signal.signal(number, signal.default_int_handler)
+        with suppress(KeyboardInterrupt):
             terminal.print(f"{server.url}{page.address(session.following())}\n")
             terminal.warn("open this address in a browser on this machine; Ctrl-C ends the review, all marks are kept")
             server.serve_forever()
