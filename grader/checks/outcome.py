@@ -174,6 +174,17 @@ def _off_along(axis: int, off: float, frame: str) -> str:
     return difference(off, *_DIRECTIONS[axis])
 
 
+def how_far_off(outcome: Outcome) -> float | None:
+    """Return by how many metres a length or a point is off that fails; None if it fails for another reason."""
+    if outcome.status != "failed" or outcome.unit != "m":
+        return None
+    actual, expected = (one if isinstance(one, tuple) else (one,) for one in (outcome.measured, outcome.expected))
+    pairs = [*zip(actual, expected, strict=False)]
+    numbers = [abs(a - b) for a, b in pairs if isinstance(a, float | int) and isinstance(b, float | int)]
+    is_off = isfinite(sum(numbers)) and max(numbers, default=0) > (outcome.tolerance or 0)
+    return max(numbers) if is_off else None
+
+
 def other_unit(actual: Sequence[float], expected: Sequence[float]) -> str:
     """Return that lengths seem to be in millimetres or centimetres; empty unless all are too large by that factor."""
     pairs = [(a, b) for a, b in zip(actual, expected, strict=True) if abs(a) > SLACK or abs(b) > SLACK]

@@ -20,6 +20,8 @@ class Batch:
         self._results, self._writer, self._shared, self._context = results, writer, shared, context
         self._at_work: dict[str, tuple[ClassSubmission, StoredResult | None]] = {}  # with the result that is current
         self.progress = Progress(0)
+        self._counted = set[tuple[int, tuple[str, ...]]]()
+        self.written = results.unfinished  # the students whose results this run has written, or one that was stopped
 
     def grade(
         self,
@@ -34,15 +36,13 @@ class Batch:
 
         One whose grading is lost is graded without its documents; if that is lost as well, it is `errored`.
         """
-        self.progress = Progress(len(submissions))
+        self.progress = Progress(len({(one.root, one.paths) for one in submissions}))
         show(self.progress)  # before the first result
         submissions.reverse()
         tasks = (self._task(submissions.pop(), force=force) for _ in range(len(submissions)))
         queue = Queue(executor, workers, partial(grade_all, self._shared), _without_documents, self._errored)
         for results in queue.results(tasks):
             self._writer.append(*map(self._line, results))
-            for result in results:
-                self.progress = self.progress.with_result(result.verdict)
             show(self.progress)
         return self.progress
 
@@ -60,6 +60,9 @@ class Batch:
     def _line(self, result: StoredResult) -> bytes:
         """Return the line of a result, empty if the file has it."""
         submission, current = self._at_work.pop(result.student)
+        if (place := (submission.root, submission.paths)) not in self._counted:  # that of a team counts once
+            self._counted.add(place)
+            self.progress = self.progress.with_result(result.verdict)
         found = current if result.verdict == "unchanged" and current is not None else result
         person = {name: value for name in _OF_PERSON if (value := getattr(submission.student, name))}
         new = found._replace(
@@ -71,7 +74,10 @@ class Batch:
             submitted=submission.submitted,
             person=person,  # what the names of the files say of the student
         )
-        return new._replace(run=self._results.next_run).line if new != current else b""
+        if new == current:
+            return b""
+        self.written.add(result.student)
+        return new._replace(run=self._results.next_run).line
 
 
 def _without_documents(task: Task, error: WorkerError) -> Task | None:

@@ -6,7 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.checks.outcome import Status
+from grader.checks.outcome import Status, how_far_off
 from grader.classroom.class_files import digest_of_unread, open_class_submission
 from grader.classroom.equal_work import forms_of, hashes_of
 from grader.classroom.results import StoredCriterion, StoredResult, Verdict, digest_of
@@ -93,7 +93,9 @@ def _stored_criterion(result: Result) -> StoredCriterion:
     words = outcome.mistake or (outcome.message if outcome.status in ("failed", "errored") else "")
     points = result.points
     number = int(points) if points == int(points) else float(points)
-    return None if is_open else number, outcome.status, cut(words, _MAX_CAUSE), result.carried
+    stored = None if is_open else number, outcome.status, cut(words, _MAX_CAUSE), result.carried
+    off = how_far_off(outcome)
+    return stored if off is None else (*stored, off)
 
 
 def _answers_of(report: Report, digest: str) -> dict[str, str]:

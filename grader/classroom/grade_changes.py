@@ -8,6 +8,7 @@ from typing import NamedTuple
 from grader.classroom import gradebook_folder as names
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.results import Results, Run, StoredResult
+from grader.classroom.student_grade import Reason
 from grader.errors import InputError
 from grader.text import printable_path
 
@@ -32,26 +33,26 @@ class Change(NamedTuple):
 
 
 class _Snapshot(NamedTuple):
-    """A run of a gradebook: its totals, the newest results until then, and the names of students."""
+    """A run of a gradebook: its totals and the newest results until then; the names of students are those of now."""
 
     run: Run
     results: Results
     names: Mapping[str, str]
+    early: frozenset[str]  # the students with a final mark from before there was a submission
 
 
 def snapshot(folder: Path, number: int | None) -> _Snapshot:
     """Return a run of a gradebook, by default the newest one with the current grades. Raises InputError."""
     book = Gradebook(folder)
-    if number is None:
-        grades = {one.student.key: (one.student.name, one.published) for one in book}
-        totals = {key: None if total is None else str(total) for key, (_, total) in grades.items()}
-        return _Snapshot(
-            book.run._replace(totals=totals), book.results, {key: name for key, (name, _) in grades.items()}
-        )
-    results = Results(folder / names.RESULTS, number)
-    if not 0 < number <= book.run.run:
-        raise InputError(f"{printable_path(folder)} has no run {number}: it has 1 to {book.run.run}")
-    return _Snapshot(results.runs[-1], results, {one.student.key: one.student.name for one in book})
+    grades = {one.student.key: (one.student.name, one.published, one.is_marked_early) for one in book}
+    results, run = book.results, book.run_with({key: total for key, (_, total, _) in grades.items()})
+    if number is not None:
+        if not 0 < number <= run.run:
+            raise InputError(f"{printable_path(folder)} has no run {number}: it has 1 to {run.run}")
+        results = Results(folder / names.RESULTS, number)
+        run = results.runs[-1]
+    early = frozenset(key for key, (_, _, is_early) in grades.items() if is_early)
+    return _Snapshot(run, results, {key: name for key, (name, _, _) in grades.items()}, early)
 
 
 def changes(before: _Snapshot, after: _Snapshot) -> Iterator[Change]:
@@ -61,10 +62,15 @@ def changes(before: _Snapshot, after: _Snapshot) -> Iterator[Change]:
     for key, old, new in zip(keys, before.results.each(keys), after.results.each(keys), strict=True):
         first, last = (_points(one.run.total(key)) for one in (before, after))
         criteria = [*_points_changes(old, new)] if old is not None and new is not None else []
-        if criteria or first != last or (old is None) != (new is None):
-            why = tuple(_reasons(old, new, before.run, after.run))
-            others = "it was graded again" if criteria else "marks, the roster or the deadline changed"
-            yield Change(key, after.names.get(key, ""), first, last, criteria, why or (others,))
+        why = [*_reasons(old, new, before.run, after.run)]
+        if not (criteria or first != last or (old is None) != (new is None)):
+            why.clear()
+        elif not why:
+            why.append("it was graded again" if criteria else "marks, the roster or the deadline changed")
+        if key in after.early:
+            why.append(Reason.EARLY_MARK)
+        if why:
+            yield Change(key, after.names.get(key, ""), first, last, criteria, tuple(why))
 
 
 def _points(value: float | str | None) -> Decimal | None:
@@ -89,7 +95,7 @@ def _reasons(old: StoredResult | None, new: StoredResult | None, before: Run, af
         if old is not None:
             yield "no longer there"
         if new is not None:
-            yield "first submission"
+            yield "first submission" if new.student not in before.totals else "its older result was damaged"
         return
     if old.student in before.totals and old.student not in after.totals:
         yield "no longer there"

@@ -3,7 +3,8 @@
 Last, the grades as a table, one row a student: `grades.csv`, and `export csv`, which people may change.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping
+from decimal import Decimal
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from grader.classroom import gradebook_folder as names
 from grader.classroom.class_files import open_class_submission
 from grader.classroom.gradebook_folder import read_settings
 from grader.classroom.lateness import Lateness, lateness
+from grader.classroom.mark_import import exported_text
 from grader.classroom.marks import Mark, Marks, read_marks
 from grader.classroom.results import Results, Run, StoredResult, digest_of
 from grader.classroom.roster import Roster, Student, read_roster
@@ -30,11 +32,9 @@ from grader.text import format_points, printable_path
 
 _NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
 _MAX_SHARED = 10_000  # results
-# Columns before those of the criteria; the last one, `submission`, is the digest of what was graded.
-_HEADER = (
-    *("id", "name", "email", "section", "status", "score", "max_score", "pending"),
-    *("late_days", "late_points", "total", "not_final_because"),
-)
+# The columns before and after those of the criteria; `submission` is the digest of what was graded.
+_FIRST = ("id", "name", "section", "status", "total")
+_LAST = ("score", "max_score", "pending", "late_days", "late_points", "not_final_because", "email", "submission")
 
 
 class Gradebook:
@@ -48,6 +48,7 @@ class Gradebook:
         """`run` is one that is not in the file yet; `answers` is the file of the model answers, for those who grade."""
         names.check_gradebook(folder)
         self.folder, self.settings = folder, read_settings(folder)
+        names.check_roster(folder, self.settings)
         rubric, roster = folder / self.settings.rubric, folder / names.ROSTER
         self.rubric = load_rubric(rubric)
         if answers is not None:
@@ -58,16 +59,18 @@ class Gradebook:
         if roster.exists():
             self.roster = read_roster(read_capped(roster, SIZE_LIMIT, advice=""), printable_path(roster))
         self.results = Results(folder / names.RESULTS)
+        if run is None:
+            self.results.check_newest()
         if run is None and not self.results.runs:
             raise InputError(f"nothing is graded yet in {printable_path(folder)}: run `grader batch PATH`")
         self.run: Run = run or self.results.runs[-1]
         self.due = self.settings.deadline(folder)
         self._on_roster = {one.key: one for one in self.roster.students} if self.roster is not None else {}
-        others = (key for key in self.results.students if self.roster is None or key in self.run.totals)
-        self.keys = sorted({*self._on_roster, *others})  # a submission may have been assigned since
+        others = self.results.students if self.roster is None else ()
+        self.keys = sorted({*self._on_roster, *self.run.totals, *others})  # a submission may have been assigned since
         self.marks: Marks = read_marks(folder / names.MARKS, self.keys, self.rubric)
         self._marked = {student for student, _ in (*self.marks.counting, *self.marks.comments)}
-        self._is_outdated = (self.run.rubric, self.run.version) != (self.rubric.sha256, __version__)
+        self.is_outdated = (self.run.rubric, self.run.version) != (self.rubric.sha256, __version__)
         self._rows = {row.id: row for row in self.rubric.criteria}
         # Most results of a class are equal, and are shared: it is read in half the time.
         self._result = lru_cache(_MAX_SHARED)(self._new_result)
@@ -79,6 +82,17 @@ class Gradebook:
     def criteria(self) -> tuple[Criterion, ...]:
         """The criteria of the graded parts."""
         return tuple(row for row in self.rubric.criteria if row.part in (self.settings.parts or {row.part}))
+
+    @property
+    def maximum(self) -> Decimal:
+        """The most points that are no extra credit."""
+        return sum((row.maximum for row in self.criteria), Decimal(0))
+
+    def run_with(self, published: Mapping[str, Decimal | None]) -> Run:
+        """Return the newest run with these grades, as they are published."""
+        texts = {key: format_points(total) for key, total in published.items() if total is not None}
+        totals = {key: texts.pop(key, None) for key in self.run.totals}
+        return self.run._replace(totals=totals, others=texts, maximum=format_points(self.maximum))
 
     def grade(self, key: str) -> StudentGrade:
         """Return the grade of the student with a key."""
@@ -99,7 +113,7 @@ class Gradebook:
         if unread:
             why = f"{unread}; needs manual grading"
         entries = ((name, stored.results[name]) for name in self._rows if name in stored.results)
-        results = (self._result(name, status, words or why, by) for name, (_, status, words, by) in entries)
+        results = (self._result(name, status, words or why, *more) for name, (_, status, words, *more) in entries)
         urdf = Unreadable("", unread) if unread else Absent()
         submission = Submission(stored.student, urdf, is_single=False)
         return Report(submission, self.rubric, stored.parts, without_gifts(results, submission))
@@ -119,8 +133,10 @@ class Gradebook:
         except InputError:
             return None
 
-    def _new_result(self, name: str, status: Status, words: str, carried: str) -> SharedResult:
-        return SharedResult(self._rows[name], Outcome(status, words), carried=carried)
+    def _new_result(
+        self, name: str, status: Status, words: str, carried: str, off: float | None = None
+    ) -> SharedResult:
+        return SharedResult(self._rows[name], Outcome(status, words, off), carried=carried)
 
     def _grade(self, key: str, stored: StoredResult | None) -> StudentGrade:
         whole = (key, TOTAL)
@@ -131,11 +147,13 @@ class Gradebook:
         if key in self.run.unclear:
             known.add(Reason.UNCLEAR)
         if stored is None:
+            if key in self.run.totals:
+                known.add(Reason.DAMAGED)
             nothing = Report(Submission(key, Absent(), is_single=False), self.rubric, self.settings.parts, ())
             return StudentGrade(student, None, nothing, final=final, known=frozenset(known))
         if key not in self.run.totals:
             known.add(Reason.GONE)
-        if self._is_outdated or stored.context != self.run.context:
+        if self.is_outdated or stored.context != self.run.context:
             known.add(Reason.OUTDATED)
         report, older = self.with_marks(self.report(stored), stored)
         if final is not None and _is_older(final, stored):
@@ -185,26 +203,31 @@ def grade_table(
 ) -> tuple[list[str], Iterator[list[CellValue]]]:
     """Return the header, and the rows of grades; what is not decided is empty.
 
-    A table that `is_exported` has a column with the values that `mark --import` takes for marks, so that it knows which
-    of them a person changed.
+    A table that `is_exported` has a column by which `mark --import` knows which cells a person changed.
     """
-    criteria = [row.id for row in book.rubric.criteria]
-    header = [*_HEADER, *criteria]
+    header = [*_FIRST, *(row.id for row in book.rubric.criteria), *_LAST]
     if is_exported:
         header.append("exported")
-    return [*header, "submission"], (_table_row(one, criteria, is_exported) for one in grades)
+    return header, (_table_row(book, one, is_exported) for one in grades)
 
 
-def _table_row(grade: StudentGrade, criteria: Sequence[str], is_exported: bool) -> list[CellValue]:
-    student, report, late = grade.student, grade.report, grade.late
-    row: list[CellValue] = [student.key, student.name or None, student.email or None, student.section or None]
-    points: dict[str, str | None] = dict.fromkeys(criteria)
-    numbers: list[CellValue] = [None] * 5
-    if grade.status not in ("missing", "excused"):
-        numbers = [grade.score, report.max_score, grade.pending, late.days, late.points]
+def points_of(book: Gradebook, grade: StudentGrade) -> dict[str, str]:
+    """Return the cells of a student that `mark --import` takes for marks, by criterion and for the total."""
+    points = dict.fromkeys((row.id for row in book.rubric.criteria), "")
+    if grade.stored is not None and not grade.is_excused:
         points |= {one.criterion.id: one.cell for one in grade.results}
-    row += [grade.status, *numbers, grade.total, grade.why_open or None, *points.values()]
-    if is_exported:
-        points[TOTAL] = format_points(grade.total) if grade.total is not None else None
-        row.append(" ".join(f"{name}={text or ''}" for name, text in points.items()))
-    return [*row, grade.stored.digest if grade.stored is not None else None]
+    return {**points, TOTAL: grade.total_text}
+
+
+def _table_row(book: Gradebook, grade: StudentGrade, is_exported: bool) -> list[CellValue]:
+    student, late, points = grade.student, grade.late, points_of(book, grade)
+    numbers: list[CellValue] = [None] * 5
+    digest = ""
+    if grade.stored is not None:
+        digest = grade.stored.digest
+        if not grade.is_excused:
+            numbers = [grade.score, grade.report.max_score, grade.pending, late.days, late.points]
+    row: list[CellValue] = [student.key, student.name, student.section, grade.status, points[TOTAL]]
+    row += [points[name.id] for name in book.rubric.criteria]
+    row += [*numbers, grade.why_open, student.email, digest]
+    return [*row, exported_text(points)] if is_exported else row

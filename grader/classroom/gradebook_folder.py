@@ -57,6 +57,14 @@ def check_free(folder: Path) -> None:
         check_gradebook(folder)
 
 
+def check_roster(folder: Path, settings: "ClassSettings") -> None:
+    """Raise InputError if the copy of the roster is no longer there: without it nobody would be missing."""
+    file = folder / ROSTER
+    if settings.roster_hash and not file.exists():
+        command = f"`grader batch --roster CSV --gradebook {shell_quoted(folder)}`"
+        raise InputError(f"{printable_path(file)} is gone: restore it, or name the roster again with {command}")
+
+
 def make_gradebook(folder: Path) -> None:
     """Make the folders of a gradebook, unless they exist; only its owner can read them. Raises InputError."""
     check_free(folder)
@@ -105,6 +113,7 @@ class ClassSettings:
     submissions: tuple[str, ...] = ()
     layout: str = "auto"
     assignment: str = ""  # of nbgrader
+    ignore: tuple[str, ...] = ()  # names of entries that are no student's
     due: str = ""  # the deadline in ISO 8601
     parts: tuple[str, ...] = ()  # the ids of those to grade; without any all
     max_size: int = URDF_LIMIT  # bytes

@@ -11,6 +11,7 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
+from datetime import datetime
 from typing import NamedTuple
 
 from grader.classroom.class_files import ClassListing
@@ -48,7 +49,6 @@ _MAX_GROWTH = 1000
 _NAME_IN_CANVAS = re.compile(r"[^\x00-,./:-@[-^`{-\x7f\s]*")
 _MAX_NAMED = 10
 _MAX_TIME = 100  # bytes
-_LOCAL_TIME = len("2026-09-01T10:00:00")
 
 
 class NamedPath(NamedTuple):
@@ -217,7 +217,7 @@ def _time_of(folder: ClassFolder, path: str) -> str:
     except InputError:
         return ""
     time = iso_time(data.decode("utf-8", "replace"))
-    return f"{time}Z" if len(time) == _LOCAL_TIME else time
+    return f"{time}Z" if time and datetime.fromisoformat(time).tzinfo is None else time
 
 
 def teams(folder: ClassFolder) -> Iterator[NamedPath]:

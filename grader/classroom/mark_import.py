@@ -1,19 +1,24 @@
 """Marks of many students in one CSV file: rows of a file of marks, a review sheet, or the grades as they were exported.
 
 A row of a sheet names an answer: it is a mark of the students with that answer, of those among them whom the column
-`students` names. An export becomes marks where a person changed a cell: the column `exported` has what the cells were,
-and `submission` the digest of what was graded.
+`students` names. An export becomes marks where a person changed a cell: the column `exported` has hashes of what the
+cells were, and `submission` the digest of what was graded.
 """
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from grader.classroom.marks import COLUMNS, WITHDRAWN, Cells, Key, Mark, Marks, collect, mark_in, maxima, read_rows
+from grader.classroom.results import digest_of
 from grader.classroom.typed_names import as_number, criterion_of, find_typed, known, number_in
 from grader.errors import InputError
 from grader.grading.criterion import DEADLINE, TOTAL
 from grader.grading.rubric import Rubric
-from grader.text import by_name, enumerated, quoted
+from grader.text import enumerated, quoted
+
+_EXPORTED = re.compile("(d[0-9a-f]{16})(d[0-9a-f]{16})")
+_MAX_DIGITS = 9  # of a number that is compared
 
 
 class MarkImport(NamedTuple):
@@ -24,6 +29,7 @@ class MarkImport(NamedTuple):
     marks: Marks
     digests: Mapping[str, str]  # of the submissions, by the key of the student
     answers: Mapping[tuple[str, str], Sequence[str]] = {}  # students by criterion and the key of the answer
+    points: Mapping[str, Mapping[str, str]] = {}  # the cells of each student in an export, the total last
 
     def read(self, data: bytes, shown: str) -> tuple[list[Mark], int]:
         """Return the new marks in a CSV file, without times, and how many count already; raises as `read_marks`."""
@@ -70,21 +76,38 @@ class MarkImport(NamedTuple):
 
     def _changed(self, row: Cells) -> Iterator[Cells]:
         """Yield the cells of an export that a person changed, as a row for each; a comment stays."""
-        if "=" not in row["exported"]:
+        exported = _EXPORTED.fullmatch(row["exported"])
+        if exported is None:
             raise InputError(f"{quoted(row['exported'])} in the column `exported` is not what was exported")
         student = known("student", row["id"], {one.key: one for one in self.students})
-        for word in row["exported"].split():
-            criterion, _, old = word.rpartition("=")
-            new, now = row.get(criterion, old), self.marks.counting.get((student, criterion))
-            if _are_equal(new, old):
+        now = self.points[student]
+        *criteria, total = now
+        given = {name: row.get(name, text) for name, text in now.items()}
+        for names, hashed in ((criteria, exported[1]), ([total], exported[2])):
+            changed = [name for name in names if _plain(given[name]) != _plain(now[name])]
+            if not changed or _hash_of(given, names) == hashed:
                 continue
-            if not new:
-                raise InputError(f"{criterion} was {old} and is empty: write `-` to withdraw a mark")
-            if now is not None and not (_are_equal(now.value, old) or _are_equal(now.value, new)):
-                raise InputError(f"{criterion} was {old} when it was exported, and is {now.value}{by_name(now.by)} now")
-            comment = now.comment if now is not None else ""
-            yield {**row, "student": student, "criterion": criterion, "points": new, "comment": comment}
+            if _hash_of(now, names) != hashed:
+                raise InputError(f"{student} has other points now than when they were exported: export them again")
+            for name in changed:
+                if not given[name]:
+                    raise InputError(f"{name} was {now[name]} and is empty: write `-` to withdraw a mark")
+                mark = self.marks.counting.get((student, name))
+                comment = mark.comment if mark is not None else ""
+                yield {**row, "student": student, "criterion": name, "points": given[name], "comment": comment}
 
 
-def _are_equal(text: str, other: str) -> bool:
-    return text == other or (number_in(text) is not None and number_in(text) == number_in(other))
+def exported_text(points: Mapping[str, str]) -> str:
+    """Return the hashes of the points in a row of an export: that of all criteria, and that of the total."""
+    *criteria, total = points
+    return _hash_of(points, criteria) + _hash_of(points, [total])
+
+
+def _hash_of(points: Mapping[str, str], names: Sequence[str]) -> str:
+    return digest_of(*(_plain(points[name]) for name in names))
+
+
+def _plain(text: str) -> str:
+    """Return a number as it is written in one way only, another text unchanged."""
+    number = number_in(text)
+    return text if number is None or abs(number.adjusted()) > _MAX_DIGITS else str(number.normalize())

@@ -4,27 +4,35 @@ A line of a submission comes before that of its run, and the newest of a student
 files, which are slow to read, are on lines of their own. The file can be computed again from the submissions: without
 it only the comparison of runs and some seconds are lost. A last line that was not written to its end is ignored, and
 cut before the next one is appended.
+
+Each line ends with its checksum, and that of a run names the students whose lines it wrote: what is damaged or lost
+counts for nobody.
 """
 
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from itertools import chain
 from json.decoder import scanstring  # type: ignore[attr-defined,unused-ignore]
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, Self
+from zlib import crc32
 
 from grader.checks.outcome import Status
 from grader.errors import InputError
 from grader.files.reading import sha256_of
-from grader.text import printable_path
+from grader.text import enumerated, printable_path
 
 Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
-# What is kept of a criterion: points, status, the mistake in words, the criterion that carries it.
-StoredCriterion = tuple[float | None, Status, str, str]
+# What is kept of a criterion: points, status, the mistake in words, the criterion that carries it, and of a length that
+# was measured how far it is off, in metres.
+StoredCriterion = tuple[float | None, Status, str, str] | tuple[float | None, Status, str, str, float]
 _DIGITS = 16  # of a hash
+_MAX_NAMED = 10  # lines
 _RUN, _GRADED, _TEXTS = b'{"run":', b'{"student":', b'{"texts":'
+_CHECKSUM = b',"crc32":'  # of all bytes before it
 
 
 class StoredResult(NamedTuple):
@@ -69,6 +77,8 @@ class Run(NamedTuple):
     totals: Mapping[str, str | None]  # of the students who submitted, None while it is open
     unclear: Sequence[str] = ()  # students with possible submissions of which none was graded
     others: Mapping[str, str] = {}  # totals of the students without a submission
+    written: Sequence[str] = ()  # the students whose results were written since the run before
+    maximum: str = ""  # of the grades
 
     @property
     def line(self) -> bytes:
@@ -86,17 +96,34 @@ class Run(NamedTuple):
 
 
 def _json_line(values: Mapping[str, Any]) -> bytes:
-    return f"{json.dumps(values, separators=(',', ':'))}\n".encode()
+    line = json.dumps(values, separators=(",", ":")).encode()[:-1]
+    return line + _checksum(line)
+
+
+def _checksum(line: bytes) -> bytes:
+    return b"%s%d}\n" % (_CHECKSUM, crc32(line))
+
+
+def _is_whole(line: bytes) -> bool:
+    """Return whether a line is as it was written."""
+    values, _, _ = line.rpartition(_CHECKSUM)
+    return line == values + _checksum(values)
 
 
 def _values_in(line: bytes) -> dict[str, Any]:
-    """Return the values in a line, lists as tuples."""
-    return {key: tuple(value) if isinstance(value, list) else value for key, value in json.loads(line).items()}
+    """Return the values in a whole line, lists as tuples."""
+    values = json.loads(line.rpartition(_CHECKSUM)[0] + b"}")
+    return {key: tuple(value) if isinstance(value, list) else value for key, value in values.items()}
 
 
 def digest_of(*parts: object) -> str:
     """Return the hash of some values: it begins with a letter, so that no spreadsheet takes it for a number."""
     return f"d{sha256_of(repr(parts).encode())[:_DIGITS]}"
+
+
+def time_of_run() -> str:
+    """Return the time now, as runs have it."""
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
 
 
 class Results:
@@ -106,6 +133,9 @@ class Results:
         self._file = file
         self.end = 0  # where the last whole line ends
         self.runs: list[Run] = []
+        self.damaged: list[int] = []  # the numbers of lines, from 1
+        self.unfinished = set[str]()  # the students whose results were written since the newest run
+        self._is_torn = False  # whether a line since the newest run is damaged, which may be that of a run
         # A hundred thousand students fit into memory, but not all of their results.
         self._places, self._texts = dict[str, int](), dict[str, int]()
         with self._refuse_damage():
@@ -113,21 +143,52 @@ class Results:
 
     def _find(self, until: int | None) -> None:
         """Find the place of each line, up to the end of a run."""
-        for line in self._whole_lines():
-            for start, places in ((_GRADED, self._places), (_TEXTS, self._texts)):
-                if line.startswith(start):
-                    places[scanstring(line.decode(), len(start) + 1, True)[0]] = self.end
+        for number, line in enumerate(self._whole_lines(), 1):
+            if not _is_whole(line):
+                self.damaged.append(number)
+                self._is_torn = True
+            elif line.startswith(_RUN):
+                self._end_run(Run(**_values_in(line)))
+            else:
+                self._place(line)
             self.end += len(line)
-            if line.startswith(_RUN):
-                # Only the newest are compared.
-                self.runs[-1:] = [run._replace(totals={}, others={}) for run in self.runs[-1:]]
-                self.runs.append(Run(**_values_in(line)))
-                if self.runs[-1].run == until:
-                    break
+            if until is not None and self.runs and self.runs[-1].run == until:
+                break
+
+    def _place(self, line: bytes) -> None:
+        """Keep the place of a line of a student."""
+        for start, places in ((_GRADED, self._places), (_TEXTS, self._texts)):
+            if line.startswith(start):
+                key = scanstring(line.decode(), len(start) + 1, True)[0]
+                places[key] = self.end
+                if start == _GRADED:
+                    self.unfinished.add(key)
+
+    def _end_run(self, run: Run) -> None:
+        """Keep a run; a student whose line of it is lost has no result: an older one is that of other work."""
+        for key in {*run.written} - self.unfinished:
+            self._places.pop(key, None)
+        self.unfinished.clear()
+        self._is_torn = False
+        # Only the newest are compared.
+        self.runs[-1:] = [older._replace(totals={}, others={}, written=()) for older in self.runs[-1:]]
+        self.runs.append(run)
+
+    @property
+    def damage(self) -> str:
+        """Which lines are damaged; empty without any."""
+        lines = enumerated([*map(str, self.damaged)], _MAX_NAMED)
+        noun, verb = ("line", "does") if len(self.damaged) == 1 else ("lines", "do")
+        return f"{noun} {lines} of {printable_path(self._file)} cannot be read, and {verb} not count" if lines else ""
+
+    def check_newest(self) -> None:
+        """Raise InputError if the newest run may be lost."""
+        if self._is_torn:
+            raise InputError(f"{self.damage}: run `grader batch` again")
 
     @contextmanager
     def _refuse_damage(self) -> Iterator[None]:
-        """Read lines; raises InputError if one is not as it was written."""
+        """Read whole lines; raises InputError if one is not of this version."""
         try:
             yield
         except (ValueError, TypeError, KeyError, AttributeError):
@@ -141,7 +202,7 @@ class Results:
         try:
             with self._file.open("rb") as file:
                 for line in file:
-                    if not line.endswith(b"\n") or b"\0" in line:  # a power failure leaves holes
+                    if not line.endswith(b"\n"):
                         return
                     yield line
         except OSError as error:
@@ -186,9 +247,7 @@ class Results:
             for key in keys:
                 if key in places:
                     file.seek(places[key])
-                with self._refuse_damage():
-                    values = _values_in(file.readline()) if key in places else {}
-                yield values
+                yield _values_in(file.readline()) if key in places else {}
 
 
 class ResultsWriter:

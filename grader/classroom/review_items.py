@@ -73,7 +73,7 @@ class ReviewItem(NamedTuple):
     @property
     def reason(self) -> tuple[object, ...]:
         """What items have in common that are shown together: why no check could decide them, and the students."""
-        _, status, why, _ = self.members[0].stored.results.get(self.criterion.id, (None, "pending", "", ""))
+        _, status, why, *_ = self.members[0].stored.results.get(self.criterion.id, (None, "pending", "", ""))
         alone = "" if why and self.answer and status == "pending" else self.criterion.id
         return alone, why, self.answer, *(one.student.key for one in self.members)
 

@@ -90,6 +90,7 @@ class Student(NamedTuple):
     extension_days: float = 0.0
     is_late: bool | None = None
     days_late: float | None = None
+    measured_by: str = ""  # the LMS that measured the days, from the deadline that it knows
     submission: str = ""  # the path that a person has assigned, relative to its class folder
     is_on_roster: bool = True  # False beside a roster that lacks the student
 
@@ -170,14 +171,15 @@ def _student(row: dict[str, str]) -> Student:
     name = row["name"] or f"{row['first']} {row['last']}".strip()
     extension, days_late = _days(row["extension"]), _days(row["late"])
     due, days = row["due"] or (row["extension"] if extension is None else ""), extension or 0.0
-    is_late = days_late > 0 if days_late is not None else _LATE.get(row["late"].casefold())
+    is_late, measured_by = days_late > 0 if days_late is not None else _LATE.get(row["late"].casefold()), ""
     if moodle and not (row["late"] or row["submitted"]) and (status := _days_of(row["status"])) != 0:
-        is_late = status is None or bool(due) or status > days  # Moodle knows neither this extension nor the deadline
-        days_late = None if status is None or due else max(0.0, status - days)
+        is_late = status is None or status > days  # Moodle does not know this extension
+        if status is not None:
+            days_late, measured_by = max(0.0, status - days), "Moodle"
     return Student(
         printable_path(own or row["sis"] or login or row["email"] or name or canvas or moodle), name, row["email"],
         login, sis, canvas, moodle, aliases, row["group"], row["section"], due,
-         row["submitted"], days, is_late, days_late, row["submission"].strip("/"),
+        row["submitted"], days, is_late, days_late, measured_by, row["submission"].strip("/"),
     )  # fmt: skip
 
 
@@ -212,7 +214,10 @@ def _duplicates(students: Mapping[int, Student]) -> Iterator[tuple[int, str]]:
 
 
 def iso_time(text: str) -> str:
-    """Return a date or time as ISO 8601, to the second; empty if it is neither. A time without a zone gets none."""
+    """Return a date or time as ISO 8601, to the second if it has seconds; empty if it is neither.
+
+    A time without a zone gets none.
+    """
     zoned = re.sub(r"\s*(?:UTC|UCT|GMT|Z)\Z", "+00:00", text.strip()) if ":" in text else text
     try:
         time = datetime.fromisoformat(re.sub(r"\s+(?=[+-][0-9:]+\Z)", "", zoned))
@@ -220,7 +225,8 @@ def iso_time(text: str) -> str:
         return ""
     if ":" not in text:
         return time.date().isoformat() if len(text) == len("2026-09-01") else ""
-    return time.isoformat(timespec="seconds").replace("+00:00", "Z")
+    precision = "seconds" if re.search(":[0-9]+:", text) else "minutes"
+    return time.isoformat(timespec=precision).replace("+00:00", "Z")
 
 
 class _Match(NamedTuple):

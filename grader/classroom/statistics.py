@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from typing import NamedTuple
 
+from grader.checks.outcome import in_millimetres
 from grader.classroom.equal_work import EqualWork, equal_work
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.student_grade import Reason, StudentGrade
@@ -32,7 +33,7 @@ class CriterionFigures(NamedTuple):
 
 
 class _CommonMistake(NamedTuple):
-    """A mistake that several students made in a criterion."""
+    """A mistake that several students made in a criterion; of one that is measured, how far it is off."""
 
     criterion: str
     message: str
@@ -66,7 +67,7 @@ def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatisti
     every = list(grades)
     enrolled = [one for one in every if one.student.is_on_roster and (one.has_final or not one.is_gone)]
     counted = [one for one in enrolled if one.is_counted]
-    most = sum((row.maximum for row in book.criteria), Decimal(0))
+    most = book.maximum
     sections, tenths = defaultdict[str, list[Decimal]](list), [list[str]() for _ in range(_TENTHS)]
     for one in counted:
         total = one.total or Decimal(0)
@@ -105,7 +106,7 @@ def _criteria_figures(
 ) -> tuple[list[CriterionFigures], list[_CommonMistake]]:
     """Return the figures of the criteria, and the most common mistakes."""
     counts, earned = defaultdict[str, Counter[str]](Counter), defaultdict[str, Decimal](Decimal)
-    mistakes = defaultdict[tuple[str, str], list[str]](list)
+    mistakes = defaultdict[tuple[str, str], list[tuple[str, str, float]]](list)
     for grade in grades:
         for result in grade.results:
             name = result.criterion.id
@@ -113,10 +114,22 @@ def _criteria_figures(
                 counts[name][kind] += 1
             earned[name] += result.points
             if result.mistake:
-                mistakes[name, result.mistake].append(grade.student.key)
+                off = result.outcome.measured
+                if isinstance(off, float | int):
+                    mistakes[name, ""].append((grade.student.key, result.mistake, off))
+                else:
+                    mistakes[name, result.mistake].append((grade.student.key, result.mistake, 0))
     common = sorted(mistakes.items(), key=lambda item: (-len(item[1]), item[0]))[:_MAX_MISTAKES]
     rows = [CriterionFigures(row, counts[row.id], _share(row, counts[row.id], earned[row.id])) for row in book.criteria]
-    return rows, [_CommonMistake(*where, sorted(keys)) for where, keys in common]
+    return rows, [_CommonMistake(name, _words(those), sorted(key for key, *_ in those)) for (name, _), those in common]
+
+
+def _words(those: Sequence[tuple[str, str, float]]) -> str:
+    """Return what students did wrong: in the same words, or how far they are off."""
+    if len({words for _, words, _ in those}) == 1:
+        return those[0][1]
+    least, most = (in_millimetres(pick(off for *_, off in those)) for pick in (min, max))
+    return f"{most} off" if least == most else f"{least.removesuffix(' mm')} to {most} off"
 
 
 def _share(row: Criterion, found: Counter[str], earned: Decimal) -> float | None:

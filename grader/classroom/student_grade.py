@@ -25,6 +25,7 @@ class Reason(StrEnum):
 
     FAILED = "the grader failed"
     UNREADABLE = "could not be graded"
+    DAMAGED = "its result is damaged: run `grader batch` again"
     UNCLEAR = "it is unclear which submission counts"
     MISSING = "nothing was submitted"
     SEVERAL = "several robots fit: check that the correct one was graded"
@@ -32,12 +33,16 @@ class Reason(StrEnum):
     OUTDATED = "graded with another rubric or version: run `grader batch` again"
     NOT_ON_ROSTER = "not on the roster"
     OLDER_MARKS = "marked before the submission changed"
+    EARLY_MARK = "marked before there was a submission"
+    UNKNOWN_TIME = "late, time unknown: give `submitted` or `late` in the roster"
     PENDING = "needs manual grading"
     EXCUSED = "excused"
 
 
 # They keep a grade from being published; of a final mark only GONE needs attention.
-_OBSTACLES = {Reason.FAILED, Reason.UNREADABLE, Reason.UNCLEAR, Reason.MISSING, Reason.GONE, Reason.OUTDATED}
+_OBSTACLES = {
+    *(Reason.FAILED, Reason.UNREADABLE, Reason.DAMAGED, Reason.UNCLEAR, Reason.MISSING, Reason.GONE, Reason.OUTDATED)
+}
 
 
 class SharedResult(Result):
@@ -75,9 +80,9 @@ class SharedResult(Result):
         return self.outcome.message if is_mistake else ""
 
     @cached_property
-    def cell(self) -> str | None:
-        """The points in a table; None if they are not decided."""
-        return None if self.is_open or self.is_faulty else format_points(self.points)
+    def cell(self) -> str:
+        """The points in a table; empty if they are not decided."""
+        return "" if self.is_open or self.is_faulty else format_points(self.points)
 
 
 @dataclass(frozen=True)
@@ -108,7 +113,7 @@ class StudentGrade:
     late: Lateness = _ON_TIME
     final: Mark | None = None  # the mark, comment or excuse of the whole submission
     older: tuple[str, ...] = ()  # the criteria (or `total`) that were marked before the submission changed
-    known: frozenset[Reason] = frozenset()  # what the class says: NOT_ON_ROSTER, UNCLEAR, GONE, OUTDATED
+    known: frozenset[Reason] = frozenset()  # what the class says: NOT_ON_ROSTER, UNCLEAR, DAMAGED, GONE, OUTDATED
 
     @property
     def is_excused(self) -> bool:
@@ -126,6 +131,12 @@ class StudentGrade:
         return self.is_excused or self.final_points is not None
 
     @property
+    def is_marked_early(self) -> bool:
+        """Whether the whole grade was decided when there was no submission: the mark has a time, but no digest."""
+        mark = self.final if self.stored is not None and self.has_final else None
+        return mark is not None and bool(mark.time) and not mark.submission
+
+    @property
     def is_gone(self) -> bool:
         """Whether the newest run did not find the submission."""
         return Reason.GONE in self.known
@@ -135,6 +146,8 @@ class StudentGrade:
         """How the submission went: graded, unreadable, errored, missing or excused."""
         if self.is_excused:
             return "excused"
+        if Reason.DAMAGED in self.known:
+            return "errored"
         return self.stored.verdict if self.stored is not None else "missing"
 
     @property
@@ -158,10 +171,15 @@ class StudentGrade:
         return self.report.pending if not self.has_final else Decimal(0)
 
     @property
+    def shown_total(self) -> Decimal | None:
+        """The grade; None where there is none or nothing could be graded."""
+        is_ungraded = self.status in ("unreadable", "errored") and self.obstacle and not self.total
+        return None if is_ungraded else self.total
+
+    @property
     def total_text(self) -> str:
         """The grade; empty where there is none or nothing could be graded."""
-        is_ungraded = self.status in ("unreadable", "errored") and self.obstacle and not self.total
-        return "" if self.total is None or is_ungraded else format_points(self.total)
+        return "" if self.shown_total is None else format_points(self.shown_total)
 
     @cached_property
     def losses(self) -> list[tuple[Decimal, str]]:
@@ -186,14 +204,20 @@ class StudentGrade:
             found.add(Reason.UNREADABLE)
         if self.status == "graded" and reason:
             found.add(Reason.SEVERAL)
-        if self.stored is None and Reason.UNCLEAR not in found:
+        if self.stored is None and found.isdisjoint((Reason.UNCLEAR, Reason.DAMAGED)):
             found.add(Reason.MISSING)
         if self.has_final:
             found -= _OBSTACLES - {Reason.GONE}
         if self.older:
             found.add(Reason.OLDER_MARKS)
+        if self.is_marked_early:
+            found.add(Reason.EARLY_MARK)
+        if self.late.is_guess and self.late.points:
+            found.add(Reason.UNKNOWN_TIME)
         details = dict.fromkeys((Reason.FAILED, Reason.UNREADABLE, Reason.SEVERAL), reason)
         details[Reason.OLDER_MARKS] = ", ".join(self.older)
+        if self.final is not None:
+            details[Reason.EARLY_MARK] = f"{self.final.value} instead of {format_points(self.score)}"
         return {one: details.get(one, "") for one in Reason if one in found}
 
     @cached_property

@@ -71,11 +71,12 @@ def read_class(
     assignment: str = "",
     rubric_id: str = "",
     folders: tuple[str, ...] = (),
+    ignore: Sequence[str] = (),
 ) -> Intake:
     """Return the submissions in class folders or zips, the sections of one class; raises InputError if there are none.
 
     `assignment` is the one to grade in nbgrader; `rubric_id` is the name of the lab in names of folders, and `folders`
-    are the names of its own (default: its id).
+    are the names of its own (default: its id). `ignore` names entries that are no student's, such as a template.
     """
     if layout not in ("auto", *_LAYOUTS):
         raise InputError(f"there is no layout {layout!r}; the layouts are: auto, {', '.join(_LAYOUTS)}")
@@ -96,7 +97,7 @@ def read_class(
         if chosen == "teams" and not is_explicit and "package.xml" in folder.children.files:
             what = f"{printable_path(path)} is one submission and not a class: it contains a package.xml"
             raise InputError(f"{what} (grade it with `grader grade {shell_quoted(path)}`)")
-        some = list(_submissions_in(folder, _paths_in(folder, chosen), root))
+        some = list(_submissions_in(folder, _without_ignored(folder, _paths_in(folder, chosen), ignore), root))
         if not some:
             example = f": {min(owners.ignored)}" if owners.ignored else ""
             raise InputError(f"there is no submission in {printable_path(path)}{example}")
@@ -121,6 +122,16 @@ def _paths_in(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
     if layout == "teams":
         return teams(folder)
     return nbgrader(folder) if layout == "nbgrader" else entries_of(folder, layout)
+
+
+def _without_ignored(folder: ClassFolder, entries: Iterable[NamedPath], ignore: Sequence[str]) -> Iterator[NamedPath]:
+    """Yield the entries without those of which a folder or the student has a name to be ignored."""
+    names = {*map(plain, ignore)}
+    for one in entries:
+        if names.isdisjoint(map(plain, (*one.path.split("/"), one.student.login, one.student.name))):
+            yield one
+        else:
+            folder.ignore([one.path], "has a name to be ignored")
 
 
 def _without_gradebooks(folder: ClassFolder) -> ClassFolder:

@@ -41,7 +41,9 @@ def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
             f"{name!r} is ambiguous: it may be {enumerated(shown, _MAX_LISTED, 'or')}; use one of these ids"
         )
     changed = enumerated([*map(repr, as_number(name, tuple(one.key for one in students)))], _MAX_LISTED, "or")
-    some = {word for one in students for word in (one.key, one.login, one.name)}
+    digits = re.sub(r"\D", "", name)  # with another digit, it is the id of another student
+    words = (word for one in students for word in (one.key, one.login, one.name))
+    some = {word for word in words if re.sub(r"\D", "", word) == digits}
     guess = f"; did you mean {changed}?" if changed else did_you_mean(name, some) or advice
     raise InputError(f"there is no student {name!r} in the gradebook{guess}")
 

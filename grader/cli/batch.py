@@ -18,7 +18,8 @@ Layout = Literal["auto", "folders", "canvas", "moodle", "teams", "nbgrader"]
 _PATH = "A folder with an entry for each student, or the zip of an LMS; name those of all sections."
 _GRADEBOOK = "The gradebook, a folder; default: ID-grades, with the rubric's id."
 _RUBRIC = "The rubric: an id or a .toml file; default: that of the last run, else GRADER_RUBRIC, else lab6."
-_IGNORE = "A starter file, excluded from equal work; repeatable."
+_IGNORE = "An entry of PATH that is no student's, such as template; repeatable."
+_IGNORE_FILE = "A starter file, excluded from equal work; repeatable."
 _REPORTS = "The folder of the reports; default: reports in the gradebook."
 _TIMEOUT = "Time limit for each submission."
 
@@ -51,7 +52,8 @@ def batch(
     force: Annotated[bool, typer.Option("--force", help="Grade unchanged submissions again.")] = False,
     cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="A Dask cluster, as tcp://host:8786.")] = None,
     max_size: Annotated[int | None, typer.Option(metavar="BYTES", min=1, help="Maximum size of a URDF.")] = None,
-    ignore_file: Annotated[list[Path] | None, typer.Option(metavar="PATH", help=_IGNORE)] = None,
+    ignore: Annotated[list[str] | None, typer.Option(metavar="NAME", help=_IGNORE)] = None,
+    ignore_file: Annotated[list[Path] | None, typer.Option(metavar="PATH", help=_IGNORE_FILE)] = None,
     verbose: Annotated[bool, typer.Option("--verbose", help="List all students.")] = False,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> str:
@@ -98,6 +100,7 @@ def batch(
         due=due,
         layout=layout,
         assignment=assignment,
+        ignore=ignore,
         part=part,
         arg=arg,
         ignore_file=ignore_file,

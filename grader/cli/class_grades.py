@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 import typer
 
 from grader.classroom.lms.forms import FORMS
-from grader.cli.options import FormatOption, GradebookOption
+from grader.cli.options import FormatOption, GradebookOption, only_gradebook
 from grader.cli.streams import TERMINAL, screen
 from grader.commands.writing import write_stdout
 from grader.report.formats import OutputFormat
@@ -14,7 +14,7 @@ from grader.report.formats import OutputFormat
 _TARGETS = ("csv", *FORMS, "json", "html")
 _INTO = "The gradebook or worksheet that the LMS exported."
 _OUTPUT = "The file to write (default: standard output); with html, the folder (default: the gradebook)."
-_STRICT = "Write nothing if a row or student is unmatched, a mark does not count, or the LMS would refuse a grade."
+_STRICT = "Write nothing if a row or student is unmatched, a mark or time is in doubt, or the LMS would refuse a grade."
 _PENDING = "Also export grades with points that need manual grading."
 _MAXIMUM = "Export points unchanged, even if the LMS has another maximum."
 _ONLY = "Omit the columns of other assignments."
@@ -57,11 +57,11 @@ def export(
 
     Examples:
 
-      grader export csv --gradebook lab6-grades --excel --output grades.csv
+      grader export csv --excel --output grades.csv
 
-      grader export canvas --gradebook lab6-grades --into lms.csv > upload.csv
+      grader export canvas --into lms.csv > upload.csv
 
-      grader export moodle --gradebook lab6-grades --feedback feedback.zip
+      grader export moodle --feedback feedback.zip
 
     Recipes:
 
@@ -109,9 +109,9 @@ def stats(
 
     Examples:
 
-      grader stats --gradebook lab6-grades
+      grader stats
 
-      grader stats --gradebook lab6-grades --format json
+      grader stats --format json
 
     Recipes:
 
@@ -141,9 +141,9 @@ def diff(
 
     Examples:
 
-      grader diff lab6-grades
+      grader diff
 
-      grader diff --gradebook lab6-grades --before 3 --after 5
+      grader diff --before 3 --after 5
 
       grader diff lab6-monday lab6-grades --format json
 
@@ -155,5 +155,5 @@ def diff(
     """
     from grader.commands.class_figures import compare
 
-    books = [gradebook, *(gradebooks or ())] if gradebook is not None else gradebooks or []
+    books = [gradebook, *(gradebooks or ())] if gradebook is not None else gradebooks or [only_gradebook()]
     return compare(tuple(books), before, after, output_format, screen())

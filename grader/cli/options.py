@@ -1,11 +1,13 @@
 """Options that several commands share."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from grader.errors import InputError
 from grader.report.formats import OutputFormat
+from grader.text import enumerated, printable_path
 
 PartOption = Annotated[
     list[str] | None,
@@ -15,7 +17,26 @@ RUBRIC_VARIABLE = "GRADER_RUBRIC"
 RubricOption = Annotated[
     str, typer.Option(metavar="ID|FILE", envvar=RUBRIC_VARIABLE, help="The rubric: an id or a .toml file.")
 ]
-GradebookOption = Annotated[Path, typer.Option("--gradebook", metavar="FOLDER", help="The gradebook, a folder.")]
+_GRADEBOOK = "The gradebook; default: the only one in the current folder."
+_NOT_NAMED = Path("*")  # no folder is searched for --help
+
+
+def only_gradebook(named: Path = _NOT_NAMED) -> Path:
+    """Return the gradebook that is named, else the only one in the current folder. Raises InputError."""
+    if named != _NOT_NAMED:
+        return named
+    from grader.classroom.gradebook_folder import CLASS_FILE
+
+    found = sorted(file.parent for file in Path().glob(f"*/{CLASS_FILE}"))
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise InputError(f"name one with --gradebook: {enumerated([*map(printable_path, found)], 10, 'or')}")
+    raise InputError("there is no gradebook here: name one with --gradebook; `grader batch PATH` makes it")
+
+
+_ONLY: Any = {"default_factory": lambda: _NOT_NAMED, "callback": only_gradebook, "show_default": False}
+GradebookOption = Annotated[Path, typer.Option("--gradebook", metavar="FOLDER", help=_GRADEBOOK, **_ONLY)]
 MaxSizeOption = Annotated[int, typer.Option(metavar="BYTES", min=1, help="Maximum size of a URDF.")]
 AnswersOption = Annotated[
     Path | None, typer.Option("--answers", metavar="FILE", help="The .toml file with the model answers.")

@@ -34,17 +34,17 @@ def mark(
 
     Examples:
 
-      grader mark alice answer-floating-link 3.5 --gradebook lab6-grades
+      grader mark alice answer-floating-link 3.5
 
-      grader mark alice lidar-frame - --gradebook lab6-grades
+      grader mark alice lidar-frame -
 
-      grader mark carol total excused --gradebook lab6-grades --comment "ill"
+      grader mark carol total excused --comment "ill"
 
-      grader mark alice deadline 2026-11-25 --gradebook lab6-grades
+      grader mark alice deadline 2026-11-25
 
-      grader mark --missing total 0 --gradebook lab6-grades
+      grader mark --missing total 0
 
-      grader mark --import marks.csv --gradebook lab6-grades
+      grader mark --import marks.csv
     """
     from grader.commands.manual_marks import give_mark, import_marks, mark_missing
 
@@ -54,7 +54,7 @@ def mark(
         return import_marks(gradebook, file, by)
     row = {"student": student, "criterion": criterion, "points": points, "comment": comment, "by": by}
     if missing:  # in place of the student
-        return mark_missing(gradebook, {**row, "criterion": student, "points": criterion})
+        return mark_missing(gradebook, {**row, "criterion": student, "points": criterion}, warn)
     return give_mark(gradebook, row, warn)
 
 
@@ -81,11 +81,11 @@ def review(
 
     Examples:
 
-      grader review --gradebook lab6-grades --by Kim
+      grader review --by Kim
 
-      grader review --gradebook lab6-grades --section A --anonymous
+      grader review --section A --anonymous
 
-      grader review --gradebook lab6-grades --sheet sheet.csv
+      grader review --sheet sheet.csv
     """
     from grader.classroom.review_items import ReviewFilter
     from grader.commands.review_server import review_in_browser

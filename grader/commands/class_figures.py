@@ -4,8 +4,8 @@ from functools import partial
 from pathlib import Path
 
 from grader.classroom.gradebook import Gradebook
-from grader.classroom.gradebook_folder import RESULTS, check_gradebook
-from grader.classroom.results import Results
+from grader.classroom.gradebook_folder import RESULTS, batch_lock, check_gradebook
+from grader.classroom.results import Results, ResultsWriter, time_of_run
 from grader.classroom.statistics import statistics
 from grader.commands.writing import Terminal, Warn
 from grader.errors import InputError
@@ -17,9 +17,31 @@ _MAX_LINES = 20
 
 
 def warn_of_ignored(book: Gradebook, warn: Warn) -> None:
-    """Print the marks that do not count."""
+    """Print the marks that do not count, and the lines of results that are damaged."""
+    if book.results.damage:
+        warn(book.results.damage)
     for line in first_lines(book.marks.ignored, _MAX_LINES):
         warn(f"this mark does not count: {line}")
+
+
+def record_run(folder: Path, warn: Warn) -> None:
+    """Record the current grades as a run, unless the newest one has them, so that `diff` compares with them."""
+    try:
+        with batch_lock(folder):
+            append_run(Gradebook(folder))
+    except InputError as error:
+        warn(f"`grader diff` cannot compare with these grades: {error}")
+
+
+def append_run(book: Gradebook) -> Results | None:
+    """Append a run with the current grades, and return the results with it; None if there is no need, or no way."""
+    now = book.run_with({one.student.key: one.published for one in book})
+    if book.results.unfinished or book.is_outdated or (now.totals, now.others) == (book.run.totals, book.run.others):
+        return None
+    with ResultsWriter(book.folder / RESULTS, book.results.end) as writer:
+        writer.append(now._replace(run=book.results.next_run, time=time_of_run(), written=()).line)
+        writer.sync()
+    return Results(book.folder / RESULTS)
 
 
 def class_statistics(gradebook: Path, kind: OutputFormat, terminal: Terminal, *, verbose: bool) -> str:
@@ -39,7 +61,7 @@ def compare(books: tuple[Path, ...], before: int | None, after: int | None, kind
     """Return what changed between two runs of a gradebook, or two gradebooks. Raises InputError."""
     from grader.classroom.grade_changes import changes, snapshot
 
-    if len(books) not in (1, 2):
+    if len(books) > 2:
         raise InputError("name one gradebook, or two")
     if len(books) == 1 and before is None:
         check_gradebook(books[0])

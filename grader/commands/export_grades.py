@@ -14,7 +14,7 @@ from grader.classroom.lms.fill import Filled, FillOptions, PublishedGrade, by_re
 from grader.classroom.lms.forms import FORMS
 from grader.classroom.student_grade import Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT, write_table
-from grader.commands.class_figures import warn_of_ignored
+from grader.commands.class_figures import record_run, warn_of_ignored
 from grader.commands.invocation import ExitCode
 from grader.commands.writing import Terminal, is_same_file, is_stdout, refuse_symlinks, save_bytes
 from grader.errors import GraderError, InputError
@@ -22,6 +22,7 @@ from grader.files.reading import read_capped
 from grader.report.formats import Format
 from grader.text import counted, enumerated, format_points, printable_path
 
+_DOUBTS = (Reason.OLDER_MARKS, Reason.EARLY_MARK, Reason.UNKNOWN_TIME)  # about grades that are exported
 _BOM = b"\xef\xbb\xbf"  # by which Excel recognises UTF-8
 # The targets of each option that not all targets take.
 _TARGETS = {"--into": tuple(FORMS), "--feedback": ("moodle", "canvas"), "--excel": ("csv",)}
@@ -66,10 +67,15 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
             raise InputError(f"cannot write {printable_path(path)}: the gradebook is written by its own commands")
     warn_of_ignored(book, terminal.warn)
     exported = _exported(request, book, terminal)
-    if request.strict and (book.marks.ignored or not exported.is_complete):
-        why = "rows or students are unmatched, marks do not count, or the LMS would refuse a grade"
+    doubts = [(why, one.student.key, detail) for one in book for why, detail in one.concerns.items() if why in _DOUBTS]
+    for line in by_reason(doubts):
+        terminal.warn(line)
+    is_doubtful = any(why is not Reason.OLDER_MARKS for why, _, _ in doubts)
+    if request.strict and (book.marks.ignored or is_doubtful or not exported.is_complete):
+        why = "rows or students are unmatched, marks or times are in doubt, or the LMS would refuse a grade"
         terminal.warn(f"nothing was written, because of --strict: {why}")
         return b"", ExitCode.FAILED
+    record_run(book.folder, terminal.warn)
     if request.feedback is not None:
         save_bytes(request.feedback, _feedback(request, book, exported.numbers, terminal), roots)
     if request.output is None:
@@ -90,11 +96,10 @@ def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Fi
     if request.into is None:
         return Filled()
     form, lab, shown = FORMS[request.target], (book.rubric.title, book.rubric.id), printable_path(request.into)
-    options = FillOptions(_maximum(book), lab, request.column, request.any_maximum, request.only, shown)
+    options = FillOptions(book.maximum, lab, request.column, request.any_maximum, request.only, shown)
     grades = [_class_grade(book, one, request, has_comment="comment" in form.columns) for one in book]
     filled = fill(read_capped(request.into, SIZE_LIMIT, advice=""), grades, form, options)
-    older = ((Reason.OLDER_MARKS, one.student.key, ", ".join(one.older)) for one in book if one.older)
-    for line in [*filled.lines, *by_reason(older)]:
+    for line in filled.lines:
         terminal.warn(line)
     return filled
 
@@ -113,12 +118,8 @@ def _comment(book: Gradebook, grade: StudentGrade, total: Decimal) -> str:
     report = class_reports.report_of(book, grade, has_hints=False)
     lost = () if grade.has_final else lost_points(report.results)
     exported = format_points(total.quantize(Decimal("0.01"), ROUND_FLOOR))
-    opening = f"Grade: {exported} of {format_points(_maximum(book))} points."
+    opening = f"Grade: {exported} of {format_points(book.maximum)} points."
     return comment_html(opening, [*lost, *class_reports.notes_of(grade, report)])
-
-
-def _maximum(book: Gradebook) -> Decimal:
-    return sum((row.maximum for row in book.criteria), Decimal(0))
 
 
 def _feedback(request: ExportRequest, book: Gradebook, numbers: Mapping[str, str], terminal: Terminal) -> bytes:

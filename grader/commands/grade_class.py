@@ -7,9 +7,9 @@ import gc
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
+from decimal import Decimal
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -22,30 +22,32 @@ from grader.classroom.equal_work import hashes_of
 from grader.classroom.gradebook import Gradebook, grade_table
 from grader.classroom.gradebook_folder import CLASS_FILE, ClassSettings, read_settings, relative, settings_text
 from grader.classroom.lateness import read_time, time_text
-from grader.classroom.results import Results, ResultsWriter, Run, digest_of
+from grader.classroom.lms.forms import FORMS
+from grader.classroom.results import Results, ResultsWriter, Run, digest_of, time_of_run
 from grader.classroom.roster import Roster, read_roster
 from grader.classroom.student_grade import StudentGrade
 from grader.classroom.submissions import Intake, read_class
 from grader.classroom.tables import SIZE_LIMIT, write_table
 from grader.classroom.workers.pool import Processes, processors
 from grader.classroom.workers.queue import Progress
-from grader.commands.class_figures import warn_of_ignored
+from grader.commands.class_figures import append_run, warn_of_ignored
 from grader.commands.class_reports import ReportRun, refuse_report_folder, write_reports
 from grader.commands.invocation import read_arguments
 from grader.commands.rubrics import DEFAULT_RUBRIC, files_of
 from grader.commands.writing import Terminal, Warn, refuse_symlinks, save, save_bytes
-from grader.errors import InputError
+from grader.errors import GraderError, InputError
 from grader.files.reading import read_capped, sha256_of
 from grader.grading.rubric import Rubric, load_rubric
 from grader.report.class_terminal import ClassTable
 from grader.report.formats import Format, OutputFormat
 from grader.report.screen import draw
 from grader.submission.opening import open_submission
-from grader.text import counted, enumerated, first_lines, format_points, printable, printable_path
+from grader.text import counted, enumerated, first_lines, printable, printable_path, shell_quoted
 
 _MAX_LINES, _MAX_NAMED = 10, 5
 _LEAST_SECONDS = 15.0  # in which hints are searched, and a few reports written
 _PRIVATE = 0o600
+_FORMAT = 2  # of results: those of another one are graded again
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +65,7 @@ class ClassRequest:
     due: str | None  # the deadline
     layout: str | None
     assignment: str | None  # of nbgrader
+    ignore: Sequence[str] | None  # names of entries that are no student's
     part: Sequence[str] | None  # the ids of the parts to grade
     arg: Sequence[str] | None  # NAME=VALUE, of xacro
     ignore_file: Sequence[Path] | None  # starter files
@@ -119,6 +122,8 @@ def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
         raise InputError("name the PATH of the submissions, a folder or the zip of an LMS")
     if options.due is None and (due := settings.deadline(folder)) is not None:
         warn(f"deadline of the last run: {time_text(due, due.tzinfo)} (--due changes it)")
+    if options.roster is None:
+        names.check_roster(folder, settings)
     roster_file = options.roster or (folder / names.ROSTER)
     roster = None
     if options.roster or roster_file.exists():
@@ -135,14 +140,18 @@ def _updated(options: ClassRequest, settings: ClassSettings, folder: Path, rubri
     """Return the settings with the options of the command."""
     for name in options.part or ():
         rubric.part(name)
+    paths = tuple(relative(path, folder) for path in options.paths or ())
+    if {*paths} <= {*settings.submissions}:
+        paths = ()  # a section alone: the others stay
     given: dict[str, Any] = {  # None where the option is not given
         "due": read_time(options.due).isoformat() if options.due else None,
         "layout": options.layout,
         "assignment": options.assignment,
+        "ignore": tuple(options.ignore) if options.ignore else None,
         "parts": tuple(options.part) if options.part else None,
         "arguments": read_arguments(options.arg or ()) or None,
         "max_size": options.max_size,
-        "submissions": tuple(relative(path, folder) for path in options.paths or ()) or None,
+        "submissions": paths or None,
     }
     settings = replace(settings, **{name: value for name, value in given.items() if value is not None})
     if options.ignore_file or not settings.handed_out:
@@ -222,10 +231,9 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
         warn(f"--due has no effect on grades, {no_late}")
     if request.reports is not None:
         refuse_report_folder(request.reports, inputs.roots)
-    intake = read_class(
-        inputs.near_roots, inputs.roster, settings.layout, settings.assignment, rubric.id, rubric.folders
-    )
-    warn(f"{counted(len(intake.submissions), 'submission')}, layout {intake.layout}")
+    layout, lab = (settings.layout, settings.assignment), (rubric.id, rubric.folders)
+    intake = read_class(inputs.near_roots, inputs.roster, *layout, *lab, settings.ignore)
+    warn(f"{counted(len({(one.root, one.paths) for one in intake.submissions}), 'submission')}, layout {intake.layout}")
     for lines in (intake.notes, intake.unmatched, [f"ignored: {line}" for line in intake.ignored]):
         for line in first_lines(lines, _MAX_LINES):
             warn(printable(line))
@@ -234,6 +242,9 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     with names.batch_lock(folder):
         results = Results(folder / names.RESULTS)
         _check_same_class(folder, results, intake)
+        if results.runs and results.runs[-1].rubric != rubric.sha256:
+            with suppress(GraderError):  # such as that of an old rubric that an edit broke: then it is not compared
+                results = append_run(Gradebook(folder)) or results
         inputs = _keep_inputs(inputs, request, warn)
         table, done = _grade(request, inputs, results, intake, terminal)
     formats = tuple(request.report_format or ())
@@ -246,7 +257,18 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
         from grader.report.class_json import render_class_json
 
         return render_class_json(Gradebook(folder), done)
+    table.ending = _ending(folder, table, intake.layout)
     return draw(table.print, terminal.screen())
+
+
+def _ending(folder: Path, table: ClassTable, layout: str) -> str:
+    """Return where the grades are, how many students need attention, and the next command."""
+    is_only = [file.parent.resolve() for file in Path().glob(f"*/{CLASS_FILE}")] == [folder.resolve()]
+    lms = layout if layout in FORMS else "csv"
+    command = f"grader {'review' if table.open else f'export {lms}'}"
+    option = "" if is_only else f" --gradebook {shell_quoted(folder)}"
+    attention = f" · {table.attention} need{'s' * (table.attention == 1)} attention" if table.attention else ""
+    return f"grades: {printable_path(folder / names.GRADES)}{attention} · next: {command}{option}"
 
 
 def _grade(
@@ -259,25 +281,20 @@ def _grade(
     context = _context(inputs)
     present = dict.fromkeys(one.student.key for one in intake.submissions)
     with ResultsWriter(folder / names.RESULTS, results.end) as writer:
-        done = _batch(request, inputs, Batch(results, writer, shared, context), intake, terminal)
-        time = datetime.now(UTC).isoformat(timespec="milliseconds")
-        run = Run(results.next_run, time, __version__, rubric.sha256, context, present, sorted(intake.unclear))
+        batch = Batch(results, writer, shared, context)
+        done = _batch(request, inputs, batch, intake, terminal)
+        run = Run(results.next_run, time_of_run(), __version__, rubric.sha256, context, present, sorted(intake.unclear))
         book, table = Gradebook(folder, run=run), ClassTable(rubric, verbose=request.verbose)
-        totals: dict[str, str | None] = {}
-        others: dict[str, str] = {}
+        published: dict[str, Decimal | None] = {}
 
         def passing() -> Iterator[StudentGrade]:
             for grade in book:
                 table.add(grade)
-                total = format_points(grade.published) if grade.published is not None else None
-                if grade.student.key in present:
-                    totals[grade.student.key] = total
-                elif total is not None:
-                    others[grade.student.key] = total
+                published[grade.student.key] = grade.published
                 yield grade
 
         write_grades(book, passing())
-        writer.append(run._replace(totals=totals, others=others).line)
+        writer.append(book.run_with(published)._replace(written=sorted(batch.written)).line)
         writer.sync()
     warn_of_ignored(book, terminal.warn)
     return table, done
@@ -289,7 +306,7 @@ def _context(inputs: _ClassInputs) -> str:
     copies = sorted(path for path in (folder / names.RUBRIC).rglob("*") if path.is_file())  # with the reference
     reference = sha256_of(repr([(path.relative_to(folder).as_posix(), path.read_bytes()) for path in copies]).encode())
     options = settings.parts, sorted(settings.arguments.items()), settings.max_size
-    return digest_of(inputs.rubric.sha256, reference, *options, __version__)
+    return digest_of(inputs.rubric.sha256, reference, *options, __version__, _FORMAT)
 
 
 def _batch(request: ClassRequest, inputs: _ClassInputs, batch: Batch, intake: Intake, terminal: Terminal) -> Progress:
@@ -323,6 +340,15 @@ def write_grades(book: Gradebook, grades: Iterable[StudentGrade] | None = None) 
     """Write the grades of a class, by default the current ones, into its gradebook. Raises InputError."""
     table = write_table(*grade_table(book, book if grades is None else grades))
     save(book.folder / names.GRADES, table, book.settings.roots(book.folder), _PRIVATE)
+
+
+def write_grades_with(marks: int, book: Gradebook) -> None:
+    """Write the grades after some marks were saved. Raises InputError, which says that they are."""
+    try:
+        write_grades(book)
+    except InputError as error:
+        saved = "the mark is saved" if marks == 1 else f"{marks} marks are saved"
+        raise InputError(f"{saved}, {names.GRADES} is not: {error}; the next command writes it") from None
 
 
 def _check_same_class(folder: Path, results: Results, intake: Intake) -> None:

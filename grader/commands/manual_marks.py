@@ -1,25 +1,25 @@
 """Give and withdraw marks by command: of one student, of all who submitted nothing, and of a CSV file."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
-from decimal import Decimal
 from getpass import getuser
 from pathlib import Path
 
 from grader.classroom import gradebook_folder as names
-from grader.classroom.gradebook import Gradebook
+from grader.classroom.gradebook import Gradebook, points_of
 from grader.classroom.mark_import import MarkImport
 from grader.classroom.marks import COLUMNS, SURPLUS, WITHDRAWN, Cells, Mark, append_marks, mark_file
 from grader.classroom.review_items import review_items
 from grader.classroom.student_grade import Reason, StudentGrade
 from grader.classroom.tables import SIZE_LIMIT
-from grader.commands.grade_class import write_grades
+from grader.commands.grade_class import write_grades_with
 from grader.commands.writing import Warn
 from grader.errors import InputError
 from grader.files.reading import read_capped
 from grader.grading.criterion import DEADLINE, TOTAL
-from grader.text import by_name, counted, counted_points, format_points, named, printable, printable_path
+from grader.text import by_name, counted, counted_points, format_points, named, people_text, printable, printable_path
 
+_MAX_NAMED = 12
 _EMPTY = dict.fromkeys((*COLUMNS, SURPLUS), "")
 
 
@@ -40,24 +40,39 @@ def give_mark(gradebook: Path, row: Cells, warn: Warn) -> str:
     return f"{printable(f'{named(mark.student, grade.student.name)}: {_grade_text(now, grade)}{late}')}\n"
 
 
-def mark_missing(gradebook: Path, row: Cells) -> str:
+def mark_missing(gradebook: Path, row: Cells, warn: Warn) -> str:
     """Give a final mark to all students who submitted nothing and have none; return how many. Raises InputError."""
     if row["criterion"] != TOTAL or row["points"] in ("", WITHDRAWN):
         raise InputError(f"write it as --missing {TOTAL} POINTS")
     book = Gradebook(gradebook)
     reader = _mark_import(book)
-    missing = [one.student.key for one in book if Reason.MISSING in one.concerns]
+    grades = list(book)
+    missing = [one.student.key for one in grades if Reason.MISSING in one.concerns]
     marks = [mark for key in missing for mark in reader.marks_in({**_EMPTY, **row, "student": key})]
     if marks:
         _append_marks(book, marks, row["by"])
+    for line in _unassigned(grades):
+        warn(printable(line))
     return f"final mark {row['points']} for {len(missing)} of {counted(len(book.keys), 'student')}\n"
+
+
+def _unassigned(grades: Sequence[StudentGrade]) -> Iterator[str]:
+    """Yield which submissions have no student for certain: one of them may be that of a student who has none."""
+    visitors = (one.stored for one in grades if Reason.NOT_ON_ROSTER in one.concerns and not one.is_gone)
+    if paths := [stored.paths[0] for stored in visitors if stored is not None and stored.paths]:
+        yield f"still unassigned: {people_text(paths, _MAX_NAMED)}: a student with this mark may have submitted it"
+    if unclear := [one.student.key for one in grades if Reason.UNCLEAR in one.concerns]:
+        yield f"no mark for {people_text(unclear, _MAX_NAMED)}: {Reason.UNCLEAR}"
 
 
 def import_marks(gradebook: Path, file: Path, by: str) -> str:
     """Append the marks in a CSV file; return how many. Raises InputError, and records none, if a row is wrong."""
     book = Gradebook(gradebook)
     items = review_items(book, with_final=True).items()
-    reader = _mark_import(book)._replace(answers={at: [one.student.key for one in item.members] for at, item in items})
+    reader = _mark_import(book)._replace(
+        answers={at: [one.student.key for one in item.members] for at, item in items},
+        points={one.student.key: points_of(book, one) for one in book},
+    )
     new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file))
     _append_marks(book, new, by)
     return f"{printable_path(file)}: {len(new)} recorded, {same} the same as before\n"
@@ -77,7 +92,7 @@ def _append_marks(book: Gradebook, marks: Iterable[Mark], by: str) -> Gradebook:
     if new:
         append_marks(mark_file(book.folder / names.MARKS, by), new)
     now = Gradebook(book.folder)
-    write_grades(now)
+    write_grades_with(len(new), now)
     return now
 
 
@@ -98,7 +113,7 @@ def _grade_text(book: Gradebook, grade: StudentGrade) -> str:
     """Return what counts: an excuse, a final mark, or the points of the criteria."""
     if grade.total is None:
         return "excused" if grade.is_excused else "no submission"
-    whole = sum((row.maximum for row in book.criteria), Decimal(0))
+    whole = book.maximum
     if not grade.has_final:  # also with marks of parts that are not graded
         whole = grade.report.max_score
     final = "final mark " if grade.has_final else ""

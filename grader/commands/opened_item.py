@@ -10,14 +10,13 @@ from functools import lru_cache
 from itertools import islice, starmap
 from pathlib import PurePosixPath
 
-from grader.checks.manual import NO_ANSWER, answered
 from grader.checks.outcome import location_of
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.review_items import ReviewItem
 from grader.documents.pictures import EmbeddedPicture, NotShown
 from grader.errors import InputError
 from grader.grading.criterion import Criterion
-from grader.grading.criterion_pictures import evidence_files, may_have_pictures, pictures_of
+from grader.grading.criterion_pictures import evidence_files, loose_lines, may_have_pictures, pictures_of
 from grader.grading.grade import grade
 from grader.grading.report import Report, Result
 from grader.package.package import SETUP
@@ -67,8 +66,9 @@ def open_item(book: Gradebook, item: ReviewItem) -> OpenedItem:
         pictures_of(result, submission) if may_have_pictures(result) else (),
         [*_paths(book, item, result)],
     )
-    if item.criterion.check.function is answered and outcome.problem in NO_ANSWER:
-        opened = _with_documents(opened, submission, is_anonymous=bool(first.number))
+    documents = loose_lines(result, submission, is_anonymous=bool(first.number))
+    if documents:
+        opened = opened._replace(answer=documents, title="Documents")
     if not is_manual(result):
         opened = _with_robot(opened, report, results, is_anonymous=bool(first.number))
     return _anonymous(opened, item, result) if first.number else opened
@@ -101,18 +101,6 @@ def _without_name(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPic
     if isinstance(found, EmbeddedPicture):
         return found._replace(where=f"picture {number}")
     return NotShown(f"file {number}", found.reason.replace(found.where, f"file {number}"))
-
-
-def _with_documents(opened: OpenedItem, submission: Submission, *, is_anonymous: bool) -> OpenedItem:
-    """Return an item without an answer with the text of all documents, in which it may be."""
-    documents = submission.readable_documents
-    found = documents.texts if documents is not None else ()
-    lines = [
-        line
-        for number, one in enumerate(found, 1)
-        for line in (f"[{f'document {number}' if is_anonymous else one.file.path}]", *one.lines)
-    ]
-    return opened._replace(answer=lines, title="Documents") if lines else opened
 
 
 def _with_robot(opened: OpenedItem, report: Report, results: Sequence[Result], *, is_anonymous: bool) -> OpenedItem:

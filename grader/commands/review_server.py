@@ -9,6 +9,7 @@ import hmac
 import json
 import re
 import secrets
+import signal
 from bisect import bisect
 from collections.abc import Callable
 from contextlib import nullcontext, suppress
@@ -34,6 +35,7 @@ from grader.report.pages import review_pages as pages
 from grader.text import counted, printable, printable_path
 
 HOST = "127.0.0.1"
+_ENDINGS = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]  # end it as Ctrl-C does
 MAX_BODY = 64 * 1024  # bytes; `http.server` limits the headers
 _PATIENCE = 15.0  # seconds in which a client must send a whole request, and receive a whole response
 _TEXT = "text/plain; charset=utf-8"
@@ -299,6 +301,9 @@ def review_in_browser(session: ReviewSession, port: int, terminal: Terminal, *, 
             shown = printable_path(session.file)
             terminal.warn(f"{shown} is open in LibreOffice: close it, because saving it there would remove new marks")
         address = f"{server.url}{page.address(session.following())}"
+        for number in _ENDINGS:
+            if signal.getsignal(number) is signal.SIG_DFL:  # else it is ignored, as after nohup
+                signal.signal(number, signal.default_int_handler)
         with suppress(KeyboardInterrupt):
             terminal.print(f"{address}\n")
             with opened_in_browser(address, session.folder / _LINK) if opens else nullcontext(False) as is_open:

@@ -16,6 +16,7 @@ from grader.classroom.review_items import UNMARKED, Place, ReviewFilter, ReviewI
 from grader.classroom.roster import plain
 from grader.classroom.tables import write_table
 from grader.classroom.typed_names import criterion_of
+from grader.commands.grade_class import write_grades_with
 from grader.commands.opened_item import open_item
 from grader.commands.writing import save
 from grader.errors import InputError
@@ -197,6 +198,7 @@ class ReviewSession:
         self.own |= new
         self._kept |= new.keys()
         self.refresh()
+        write_grades_with(len(new), self.book)
         return []
 
     def _marks_of(self, item: ReviewItem, points: str, comment: str) -> dict[Key, Mark]:

@@ -1,6 +1,7 @@
 """Load, list, copy, check and bundle rubrics."""
 
 import os
+import re
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -70,7 +71,7 @@ def copy(name: str, folder: Path) -> str:
     """Copy the files of a shipped rubric; return what was written, and the next step. Raises GraderError."""
     from shutil import copyfile, copytree, ignore_patterns
 
-    from grader.grading.rubric import shipped_rubrics
+    from grader.grading.rubric import load_rubric, shipped_rubrics
 
     file = shipped_rubrics().get(name)
     if file is None:
@@ -84,6 +85,9 @@ def copy(name: str, folder: Path) -> str:
             copytree(source, target, ignore=ignore_patterns("__pycache__"))  # pip compiles the files of a package
         else:
             copyfile(source, target)
+    if not (file.parent / load_rubric(name).answers).exists():  # students have the package, without the answers
+        text = copies[file].read_text(encoding="utf-8")
+        copies[file].write_text(re.sub(r"(?m)^answers = .*\n", "", text), encoding="utf-8")
     lines = [*map(str, copies.values()), f"next: change it, then `grader rubric check {shell_quoted(copies[file])}`"]
     return "".join(f"{printable(line)}\n" for line in lines)
 

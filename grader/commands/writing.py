@@ -5,10 +5,12 @@ No file is written through a symlink of a submission, and none over the gradeboo
 
 import errno
 import os
+import re
 import stat
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -25,6 +27,7 @@ Warn = Callable[[str], None]
 # Shows the progress of a pass over a class, whose work is named.
 _ShowClass = Callable[[str], AbstractContextManager[Callable[["Progress"], None]]]
 CHECKOUTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")  # the repository that GitHub Actions and GitLab CI checked out
+_TEMPORARY = re.compile(r"\.[0-9a-f]{16}(?:-([0-9]+))?\.tmp")  # with the number of the process that writes it
 _MAX_SYMLINKS = 40  # in one path, as in Linux
 
 
@@ -118,8 +121,9 @@ def make_folder(folder: Path) -> None:
 
 def _write_beside(target: Path, data: bytes, mode: int | None) -> Path:
     """Write a file that is to replace another one beside it, with its permissions, and return its path."""
+    _remove_strays(target.parent)
     # An unpredictable name, created exclusively: no student can prepare a file or symlink there.
-    temporary = target.with_name(f".{os.urandom(8).hex()}.tmp")
+    temporary = target.with_name(f".{os.urandom(8).hex()}-{os.getpid()}.tmp")
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
     try:
         with os.fdopen(os.open(temporary, flags, 0o666), "wb") as file:
@@ -135,6 +139,28 @@ def _write_beside(target: Path, data: bytes, mode: int | None) -> Path:
             temporary.unlink(missing_ok=True)
         raise
     return temporary
+
+
+@cache  # a folder of reports is not listed for each of them
+def _remove_strays(folder: Path) -> None:
+    """Remove the files that writers which were killed have left in a folder."""
+    for path in folder.glob(".*.tmp"):
+        if (found := _TEMPORARY.fullmatch(path.name)) and not _is_running(int(found[1] or 0)):
+            with suppress(OSError):
+                path.unlink()
+
+
+def _is_running(process: int) -> bool:
+    """Return whether a process with a number may be running."""
+    if sys.platform == "win32":  # there os.kill ends it
+        return True
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except OSError:  # it is somebody else's
+        pass
+    return process > 0
 
 
 def _sync(handle: int) -> None:

@@ -107,12 +107,7 @@ class DocumentCollection:
     @property
     def read(self) -> tuple[str, ...]:
         """The paths of the documents that were read."""
-        return tuple(document.file.path for document in self.texts)
-
-    @property
-    def texts(self) -> tuple[TextDocument, ...]:
-        """The documents that were read."""
-        return tuple(found for found in self._read_files.values() if isinstance(found, TextDocument))
+        return tuple(path for path, found in self._read_files.items() if isinstance(found, TextDocument))
 
     def named(self, patterns: Sequence[str]) -> tuple[list[TextDocument], list[_Unread]]:
         """Return the documents whose names match one of the patterns, and what of them was not read, and why."""
@@ -165,7 +160,7 @@ class DocumentCollection:
                 if file.path not in self.converted:
                     self.converted[file.path] = self._convert(file).decode("utf-8", "replace")
                 return self.converted[file.path]
-            case ".doc" | ".odt" | ".rtf" | ".pages" | ".ipynb":
+            case ".doc" | ".odt" | ".rtf" | ".pages" | ".ipynb" | ".pptx" | ".odp":
                 raise InputError(f"{file.path} has a format that is not supported: open it yourself")
             case _:
                 data = file.read(_TEXT_LIMIT)

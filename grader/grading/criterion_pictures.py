@@ -1,58 +1,103 @@
-"""The pictures and PDF files for manual grading of a criterion: those of its evidence and of a written answer."""
+"""What a person reads for a criterion: the pictures and PDF files of its evidence, and of a written answer.
 
-from collections.abc import Iterable, Iterator
+Also the documents that may hold an answer for which no heading was found.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
 
 from grader.checks.manual import NO_ANSWER, answered, evidence_shown
 from grader.documents.collection import CONVERTED, DocumentCollection, TextDocument
+from grader.documents.converter import PICTURE
 from grader.documents.evidence import EvidenceFile, headed
 from grader.documents.pictures import EmbeddedPicture, NotShown, pictures_in_word, read_picture
 from grader.files.tree import File
 from grader.grading.report import Report, Result
 from grader.submission.submission import Submission
+from grader.text import first_lines
 
 _PICTURE = "[picture]"  # in a written answer: there is one
-_MAX_PICTURES, _MAX_BYTES = 40, 96 * 1024 * 1024  # of one criterion
+_MAX_PICTURES, _MAX_BYTES, _MAX_LINES = 40, 96 * 1024 * 1024, 2000  # of one criterion
+# The names of documents that may hold an answer without its heading.
+_DOCUMENTS = (
+    *("*.md", "*.markdown", "*.txt", "*.rst", "*.adoc", "*.org", "*.tex", "*.html", "*.htm", "readme", "answers"),
+    *("*.docx", "*.doc", "*.odt", "*.rtf", "*.pages", "*.ipynb", "*.pptx", "*.odp"),
+)
 
 
 def pictures_of(result: Result, submission: Submission) -> tuple[EmbeddedPicture | NotShown, ...]:
     """Return the pictures and PDF files of a criterion that needs manual grading, and the files that are not shown.
 
     Of a Word file these are all of its pictures; a PDF opens on the page of the evidence or the answer. If no file is
-    named for the evidence, all files of evidence are searched; if no answer was found, all PDF files.
+    named for the evidence, all files of evidence are searched; if no answer was found, all PDF files, and Word files.
     """
     paths = _shown_files(result) or tuple(
         labelled.file.path
         for labelled in submission.labelled_files
         if _is_evidence(result) or (_is_question(result) and labelled.file.suffix == ".pdf")
     )
+    loose, _ = _loose_documents(result, submission)
+    paths += tuple(one.file.path for one in loose if one.file.suffix == ".docx" and one.has_picture())
     return tuple(_limit_pictures(found for path in paths for found in _read_pictures(path, result, submission)))
 
 
 def may_have_pictures(result: Result) -> bool:
     """Return whether pictures of the submission may belong to a criterion."""
-    without_file = _is_question(result) and result.outcome.location is None
+    without_file = _is_question(result) and (result.outcome.location is None or _has_no_answer(result))
     return bool(_shown_files(result)) or _is_evidence(result) or without_file
 
 
 def is_empty(result: Result, report: Report) -> bool:
-    """Return whether there is nothing to read for a criterion: no answer, no PDF and no picture that may be one.
+    """Return whether there is nothing to read for a criterion: no answer, no document and no picture that may be one.
 
     Of evidence: no file that may be it.
     """
     if not (_is_evidence(result) or _is_question(result)) or result.outcome.problem not in NO_ANSWER:
         return False
     if _is_question(result):
-        return not _loose_files(report)
+        return not (_loose_files(report) or any(_loose_documents(result, report.submission)))
     return not any((report.other_pictures, *(files for one in report.evidence for files in (one.files, one.possible))))
 
 
 def content_of(result: Result, report: Report) -> str:
-    """Return the written answer without empty lines, if it is all that there is to read; else an empty text."""
+    """Return the written answer without empty lines, if it is all that there is to read; else an empty text.
+
+    Without an answer it is the text of the documents that may hold one.
+    """
     found, is_certain = result.outcome.measured, not result.outcome.problem
+    if _has_no_answer(result):
+        documents, unread = _loose_documents(result, report.submission)
+        found, is_certain = "\n".join(line for one in documents for line in _lines_of(one)), not unread
     if not (_is_question(result) and isinstance(found, str) and is_certain) or _loose_files(report):
         return ""
     is_whole = not any(sign in found for sign in (_PICTURE, "![", "]("))
     return "\n".join(filter(None, map(str.rstrip, found.splitlines()))) if is_whole else ""
+
+
+def loose_lines(result: Result, submission: Submission, *, is_anonymous: bool = False) -> list[str]:
+    """Return the lines of the documents that may hold an answer for which no heading was found, each below its path."""
+    documents, unread = _loose_documents(result, submission)
+    lines = list[str]()
+    for number, one in enumerate(documents, 1):
+        name = f"document {number}" if is_anonymous else one.file.path
+        lines += [f"[{name}: without a heading of this question]", *_lines_of(one), ""]
+    lines += ["[a document that is not shown]" if is_anonymous else f"[{one}]" for one in unread]
+    return first_lines(lines, _MAX_LINES)
+
+
+def _loose_documents(result: Result, submission: Submission) -> tuple[list[TextDocument], Sequence[object]]:
+    """Return the documents that may hold an answer for which no heading was found, and those that were not read."""
+    if not _has_no_answer(result):
+        return [], ()
+    read, unread = submission.documents.named(_DOCUMENTS)
+    return [one for one in read if any(map(str.strip, one.lines))], unread
+
+
+def _lines_of(document: TextDocument) -> list[str]:
+    return [_PICTURE if line == PICTURE else line.rstrip() for line in document.lines]
+
+
+def _has_no_answer(result: Result) -> bool:
+    return _is_question(result) and result.outcome.problem in NO_ANSWER
 
 
 def _loose_files(report: Report) -> tuple[EvidenceFile, ...]:
@@ -88,7 +133,7 @@ def _shown_files(result: Result) -> tuple[str, ...]:
     if files := evidence_files(result):
         return files
     place = result.outcome.location
-    if place is None or not _is_question(result):
+    if place is None or not _is_question(result) or _has_no_answer(result):
         return ()
     shown = CONVERTED if _PICTURE in str(result.outcome.measured) else (".pdf",)
     return (place.path,) if place.path.lower().endswith(shown) else ()

@@ -1,6 +1,7 @@
 """A class as JSON, schema grader/class/v1, and the changes between two runs, schema grader/diff/v1."""
 
 from collections.abc import Sequence
+from decimal import Decimal
 from functools import partial
 from operator import itemgetter
 from types import SimpleNamespace
@@ -47,6 +48,7 @@ _RUN = JsonObject(
         "time": TEXT,
         "grader": (GRADER, lambda run: {"version": run.version}),
         "rubric": (object_schema({"sha256": HASH}), lambda run: {"sha256": run.rubric}),
+        "max_score": (nullable(POINTS), lambda run: exact(Decimal(run.maximum)) if run.maximum else None),
     }
 )
 _SPAN = each(nullable(POINTS), "before after")
@@ -96,7 +98,7 @@ _STUDENT = JsonObject(
         "max_score": _report_points("max_score"),
         "pending": (POINTS, "pending"),
         "late": JsonObject({"days": TOTAL, "points": {"type": "number", "maximum": 0}, "reason": TEXT}),
-        "total": nullable(POINTS),
+        "total": (nullable(POINTS), "shown_total"),
         "final_mark": (nullable(POINTS), "final_points"),
         "is_excused": FLAG,
         "not_final_because": (TEXT, "why_open"),

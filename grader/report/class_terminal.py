@@ -5,6 +5,7 @@ The class's page has the same words.
 Text of submissions is never interpreted as markup or control codes.
 """
 
+import unicodedata
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
@@ -24,6 +25,7 @@ from grader.report.terminal import INDENT, Page
 from grader.text import (
     counted,
     counted_points,
+    cut,
     first_lines,
     format_points,
     named,
@@ -32,6 +34,8 @@ from grader.text import (
     signed_points,
 )
 
+_LETTERS = str.maketrans({"ł": "l", "ø": "o", "đ": "d", "æ": "ae", "œ": "oe", "ı": "i"})  # have no accents
+_LOST, _OTHER_COLUMNS = 3, 42  # the column of lost points, and the characters of the others
 _MAX_ROWS = 40
 _MAX_COSTS = 3  # criteria named in a row
 _BAR_WIDTH = 40
@@ -46,42 +50,60 @@ SHARE_NOTE = "Share: the mean share of the points that students earned."
 
 
 class ClassTable:
-    """One row a student, then the mean and what needs attention.
+    """One row a student, first of those who need attention, then by family name; the mean, and what needs attention.
 
     `add` takes the grades one by one, so that a large class is never held whole.
     """
 
     def __init__(self, rubric: Rubric, *, verbose: bool = False) -> None:
         self.rubric, self.verbose = rubric, verbose
-        self.rows: list[Sequence[str]] = []
-        self.count = 0
+        self.rows: list[tuple[bool, tuple[str, ...], Sequence[str]]] = []  # in the order of the first two
+        self.count = self.attention = self.open = 0  # students; of them those who need attention, or manual grading
+        self.ending = ""  # the last line
         self._totals = Counter[Decimal]()
         self._concerns: defaultdict[Reason, list[tuple[str, str]]] = defaultdict(list)
 
     def add(self, grade: StudentGrade) -> None:
         """Add the next student."""
         self.count += 1
+        self.attention += bool(grade.concerns)
+        self.open += bool(grade.pending)
         name = grade.student.name or grade.student.key
-        if self.verbose or len(self.rows) < _MAX_ROWS:
-            pending = counted_points(grade.pending) if grade.obstacle is Reason.PENDING else ""
-            self.rows.append((name, grade.total_text or "–", _costs(grade), pending or grade.obstacle or ""))
+        why_open = grade.obstacle.name.lower() if grade.obstacle is not None else ""
+        if grade.obstacle is Reason.PENDING:
+            why_open = counted_points(grade.pending)
+        row = (name, grade.total_text or "–", late_text(grade), _costs(grade), why_open)
+        self.rows.append((not grade.concerns, family_name_order(name, grade.student.key), row))
+        if not self.verbose and len(self.rows) > 2 * _MAX_ROWS:
+            self._keep_first()
         if grade.total is not None and grade.is_counted:
             self._totals[grade.total] += 1
         for reason, detail in grade.concerns.items():
             self._concerns[reason].append((name, detail))
 
+    def _keep_first(self) -> None:
+        self.rows.sort()
+        if not self.verbose:
+            del self.rows[_MAX_ROWS:]
+
+    def _table(self, width: int) -> Table:
+        """Return the rows without empty columns, lost points in so many characters."""
+        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
+        titles = ("student", f"of {format_points(self.rubric.points)}", "late", "lost", "open")
+        rows = [row for *_, row in self.rows]
+        filled = [at for at in range(len(titles)) if any(row[at] for row in rows)]
+        for at in filled:
+            table.add_column(titles[at], overflow="fold", justify="right" if at == 1 else "left")
+        for row in rows:
+            table.add_row(*(Text(printable(cut(row[at], width) if at == _LOST else row[at])) for at in filled))
+        return table
+
     def print(self, console: Console) -> None:
         """Print the table."""
+        self._keep_first()
         page = Page(console, [])
         page.inset(printable(self.rubric.title), "bold", 0)
-        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
-        table.add_column("student", overflow="fold")
-        table.add_column(f"of {format_points(self.rubric.points)}", justify="right", no_wrap=True)
-        table.add_column("lost", overflow="fold", ratio=1)
-        table.add_column("open", overflow="fold")
-        for row in self.rows:
-            table.add_row(*(Text(printable(cell)) for cell in row))
-        page.table(table)
+        page.table(self._table(console.width - _OTHER_COLUMNS))
         if rest := self.count - len(self.rows):
             page.inset(f"... and {counted(rest, 'more student')} (--verbose lists all)", "dim", 0)
         page.leave_row()
@@ -91,16 +113,35 @@ class ClassTable:
             page.inset(f"{words} ({counted(found.students, 'student')})", indent=0)
         for reason in filter(self._concerns.get, Reason):
             page.inset(printable(_attention_line(reason, self._concerns[reason], verbose=self.verbose)))
+        if self.ending:
+            page.leave_row()
+            page.inset(printable(self.ending), indent=0)
         page.print()
 
 
+def family_name_order(name: str, key: str) -> tuple[str, str, str]:
+    """Return the family name, which is before a comma or the last word, then the name and the key."""
+    family = name.partition(",")[0] if "," in name else (name.split() or [""])[-1]
+    return _letters(family), _letters(name), key
+
+
+def _letters(name: str) -> str:
+    """Return a name without accents, so that Öz is not after Zed."""
+    apart = unicodedata.normalize("NFKD", name.casefold().translate(_LETTERS))
+    return "".join(letter for letter in apart if not unicodedata.combining(letter))
+
+
+def late_text(grade: StudentGrade) -> str:
+    """Return the days late and the penalty; empty where they do not count."""
+    penalty = f", {format_points(grade.late.points)}" if grade.late.points else ""
+    return f"{counted(grade.late.days, 'day')}{penalty}" if grade.late.days and not grade.has_final else ""
+
+
 def _costs(grade: StudentGrade) -> str:
-    """Return the criteria that cost most, with their points, and the late penalty."""
+    """Return the criteria that cost most, with their points."""
     costs = [*grade.losses[:_MAX_COSTS]]
     if rest := grade.losses[_MAX_COSTS:]:
         costs.append((sum((points for points, _ in rest), Decimal(0)), f"{len(rest)} more"))
-    if grade.late.points:
-        costs.append((-grade.late.points, "late"))
     return ", ".join(f"{name} {format_points(-points)}" for points, name in costs)
 
 
@@ -202,6 +243,8 @@ def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Co
     before, after = (f"run {run.run} of {time_text(run.time)}" for run in runs)
     page = Page(console, [])
     page.inset(printable(f"From {before} to {after}"), "dim", 0)
+    if runs[0].maximum != runs[1].maximum != "" != runs[0].maximum:
+        page.inset(f"the maximum changed from {runs[0].maximum} to {runs[1].maximum} points", indent=0)
     if not changes:
         page.inset("nothing changed", indent=0)
     for why, found in sorted(alike(changes, lambda change: change.why), key=lambda group: -len(group[1])):

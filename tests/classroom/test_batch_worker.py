@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from grader.checks.outcome import Outcome, failed, how_far_off, judged, measured, measured_point
 from grader.classroom.batch_worker import ClassContext, Task, grade_all
 from grader.classroom.results import StoredResult
 from tests.classroom.class_runs import report_in_process
@@ -144,3 +145,21 @@ def test_a_submission_without_its_documents(tmp_path: Path) -> None:
         name: entry[0] for name, entry in whole.results.items() if name != "evidence-webcam"
     }
     assert without.results["answer-launch-nodes"][:2] == (None, "pending")
+
+
+@pytest.mark.parametrize(
+    ("outcome", "off"),
+    [
+        (measured("it is", 0.2, 0.1, 0.002), 0.1),
+        (measured("it is", 0.1, 0.1, 0.002), None),
+        (measured("it is", float("nan"), 0.1, 0.002), None),
+        (measured_point("it is", (0.0, 0.1, 0.0), (0.3, 0.0, 0.0), 0.002, "base"), 0.3),
+        (judged(False, "it is", 0.2, 0.2, 0.002, "m"), None),
+        (judged(False, "it is", "red", "green", None, "m"), None),
+        (judged(False, "it is", 2.0, 1.0, 0.1, "kg"), None),
+        (failed("it is not there"), None),
+    ],
+)
+def test_how_far_a_length_is_off(outcome: Outcome, off: float | None) -> None:
+    """Only of a length or a point that is measured in metres and out of its tolerance; the largest difference counts."""
+    assert how_far_off(outcome) == (off if off is None else pytest.approx(off))

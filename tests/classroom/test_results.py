@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.results import Results, ResultsWriter, Run, StoredCriterion, StoredResult
+from grader.errors import InputError
 from tests.examples import examples
 
 TEXT = st.text(st.characters(codec="utf-8"), max_size=8)
@@ -68,6 +69,40 @@ def test_a_torn_last_line_is_ignored_and_cut(tmp_path: Path) -> None:
         with ResultsWriter(file, found.end) as writer:
             writer.append(StoredResult("cid", 1, "graded").line)
         assert Results(file).students == [*["ann", "ben"][: min(kept, 2)], "cid"]
+
+
+@given(st.integers(0, 4), st.sampled_from(["lost", "cut", "hole", "changed"]), st.integers(1, 2000), st.booleans())
+@examples(60)
+def test_no_damage_brings_back_an_older_result(
+    tmp_path_factory: pytest.TempPathFactory, number: int, damage: str, place: int, is_stopped: bool
+) -> None:
+    """Whatever line is damaged or lost, each student has the newest result or none, and a run that may be lost is refused."""
+    first, second = StoredResult("ann", 1, "graded", "d1"), StoredResult("ben", 1, "graded", "d2")
+    run = RUN._replace(written=["ann", "ben"])
+    newest = {"ann": StoredResult("ann", 2, "graded", "d3"), "ben": second}
+    after = [] if is_stopped else [RUN._replace(run=2, written=["ann"]).line]
+    lines = [first.line, second.line, run.line, newest["ann"].line, *after]
+    file = tmp_path_factory.mktemp("damaged") / "results.jsonl"
+    number %= len(lines)
+    line, at = lines[number], place % (len(lines[number]) - 1)
+    changed = b"#" if line[at : at + 1] != b"#" else b"+"
+    lines[number] = {
+        "lost": b"",
+        "cut": line[:at] + b"\n",
+        "hole": line[:at] + b"\0\0" + line[at + 2 :],
+        "changed": line[:at] + changed + line[at + 1 :],
+    }[damage]
+    file.write_bytes(b"".join(lines))
+    found = Results(file)
+    assert bool(found.damage) == (damage != "lost")
+    if number == 2 or number == len(lines) - 1:  # a run, or what may be one
+        if damage != "lost" and number == len(lines) - 1:
+            with pytest.raises(InputError, match=f"line {number + 1} of .* cannot be read"):
+                found.check_newest()
+        return
+    found.check_newest()
+    for key, one in newest.items():
+        assert found.of(key) == (None if number == {"ann": 3, "ben": 1}[key] else one)
 
 
 def test_an_earlier_run_can_be_read(tmp_path: Path) -> None:

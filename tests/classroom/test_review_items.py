@@ -159,7 +159,7 @@ def contents(tmp_path: Path) -> Callable[..., dict[str, list[str]]]:
 
 
 def test_what_may_hold_an_answer_is_not_empty(contents: Callable[..., dict[str, list[str]]]) -> None:
-    """An unread document, a PDF without text, a photo, a Word file: each is an item of its own."""
+    """An unread document, a PDF without text, a photo, a Word file, a template: each is an item of its own."""
     template = b"# Step 1\n\nWhy?\n"
     found = contents(
         ash={"answers.md": template, "mine.pdf": b"%PDF-1.4 damaged"},
@@ -169,8 +169,8 @@ def test_what_may_hold_an_answer_is_not_empty(contents: Callable[..., dict[str, 
         elm={"answers.md": template},
         fir={},
     )
-    assert found["essay"] == ["ash", "birch", "cedar"]
-    assert found["no essay"] == ["dogwood elm fir"]
+    assert found["essay"] == ["ash", "birch", "cedar", "dogwood", "elm"]
+    assert found["no essay"] == ["fir"]
     assert found["picture"] == ["ash", "birch", "cedar", "dogwood"]
     assert found["no picture"] == ["elm fir"]
 

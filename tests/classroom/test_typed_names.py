@@ -46,6 +46,10 @@ def test_the_only_student_who_fits(student: Student, names: str) -> None:
             "there is no student 'Jorg Birch-Muller' in the gradebook; did you mean 'Jörg Birch-Müller'?",
         ),
         ("Cedr", "there is no student 'Cedr' in the gradebook; did you mean 'cedar'?"),
+        ("102", "there is no student '102' in the gradebook; advice"),
+        ("s5", "there is no student 's5' in the gradebook; advice"),
+        ("MULLER-s5", "there is no student 'MULLER-s5' in the gradebook; advice"),
+        ("MULLER-s4", "there is no student 'MULLER-s4' in the gradebook; did you mean 'MÜLLER-s4'?"),
         ("Zelkova", "there is no student 'Zelkova' in the gradebook; advice"),
         ("", "there is no student '' in the gradebook; advice"),
         (",", "there is no student ',' in the gradebook; advice"),
@@ -53,7 +57,7 @@ def test_the_only_student_who_fits(student: Student, names: str) -> None:
     ],
 )
 def test_who_is_not_found(name: str, why: str) -> None:
-    """Several who fit are listed; without accents nobody fits, but a name that is close is suggested."""
+    """Several who fit are listed; a name that is close is suggested, but none with other digits."""
     with pytest.raises(InputError) as caught:
         find_typed(CLASS, name, ADVICE)
     assert str(caught.value) == why

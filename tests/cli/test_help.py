@@ -35,6 +35,8 @@ def parse(line: str) -> None:
     for _, command in walk(grader):
         if not hasattr(command, "commands"):
             command.callback = lambda **_: None
+            for option in [one for one in command.params if one.name == "gradebook"]:
+                option.callback = None  # it searches the current folder
     grader.main(words[1:], prog_name="grader", standalone_mode=False)
 
 

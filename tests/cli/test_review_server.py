@@ -283,8 +283,9 @@ def test_a_request_without_end_is_disconnected(book: Path, monkeypatch: pytest.M
         pytest.fail("the connection is still open")
 
 
-def test_the_command(book: Path) -> None:
-    """It prints the address, marks, and ends with Ctrl-C: it writes the grades and says what is left; a port is free."""
+@pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_the_command(book: Path, ending: signal.Signals) -> None:
+    """It prints the address, marks, writes the grades after each mark, and ends with a signal: it says what is left; a port is free."""
     (book / "marks" / ".~lock.kim.csv#").touch()
     options = ("--gradebook", str(book), "--criterion", "picture", "--by", "Kim")
     command = [sys.executable, "-m", "grader", "review", *options]
@@ -299,7 +300,9 @@ def test_the_command(book: Path) -> None:
         Review(url, int(port), token).mark("4", "0.5")
         refused = refusal(grader("review", "--gradebook", book, "--port", port))
         assert refused.startswith(f"cannot listen on port {port} of 127.0.0.1")
-        process.send_signal(signal.SIGINT)
+        assert "0.5" in (book / "grades.csv").read_text().splitlines()[1].split(",")
+        (book / "grades.csv").unlink()
+        process.send_signal(ending)
         out, err = process.communicate(timeout=HANG_TIMEOUT)
     assert (process.returncode, out) == (0, "1 marked, 2 left\n")
     assert f"grader: {book}/marks/kim.csv is open in LibreOffice: close it" in err

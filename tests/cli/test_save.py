@@ -3,13 +3,15 @@
 import errno
 import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from grader.commands.writing import save
 from grader.report.formats import Format
-from tests.command_line import run
+from tests.command_line import HANG_TIMEOUT, run
 from tests.report.reports import CLASSROOM50
 
 MISTAKEN = "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
@@ -39,6 +41,18 @@ def test_a_file_is_replaced_atomically(tmp_path: Path) -> None:
         assert old.read() == "old"
     assert link.is_symlink()
     assert (file.read_text(), file.stat().st_mode & 0o777) == ("new", 0o640)
+
+
+def test_what_a_killed_writer_left_is_removed(tmp_path: Path) -> None:
+    """The next writer removes the temporary files of processes that have ended, and no other file."""
+    ended = subprocess.Popen([sys.executable, "-c", ""])
+    ended.wait(HANG_TIMEOUT)
+    stray = [f".{'0f' * 8}.tmp", f".{'1f' * 8}-{ended.pid}.tmp", f".{'2f' * 8}-{10**30}.tmp"]
+    others = [f".{'3f' * 8}-{os.getpid()}.tmp", f".{'4f' * 8}-1.tmp", ".notes.tmp", f"{'5f' * 8}.tmp"]
+    for name in (*stray, *others):
+        (tmp_path / name).touch()
+    save(tmp_path / "plain.md", "text")
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(("plain.md", *others))
 
 
 def test_temporary_names_are_unpredictable(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

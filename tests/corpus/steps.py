@@ -1,5 +1,6 @@
-"""What a case does with its files before a command, as a person between two runs: `cp FROM TO`, `rm PATH`."""
+"""What a case does with its files before a command, as a person between two runs: `cp FROM TO`, `rm PATH`, `edit PATH OLD NEW`."""
 
+import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -22,4 +23,11 @@ def remove(here: Path, path: str) -> None:
         (here / path).unlink()
 
 
-STEPS: dict[str, Callable[..., None]] = {"cp": copy, "rm": remove}
+def edit(here: Path, path: str, old: str, new: str) -> None:
+    """Replace what a regular expression finds in a file, at least once."""
+    text, count = re.subn(old, new, (here / path).read_text(encoding="utf-8"))
+    assert count
+    (here / path).write_text(text, encoding="utf-8")
+
+
+STEPS: dict[str, Callable[..., None]] = {"cp": copy, "rm": remove, "edit": edit}

@@ -145,7 +145,9 @@ def by_reason(notes: Iterable[_Note]) -> list[str]:
     groups = (
         (*key, f"{len(who)} ({people_text(who, _MAX_NAMED)})" if who[1:] else who[0]) for key, who in names.items()
     )
-    return first_lines([printable(f"{kind}: {who}: {why}") for kind, why, who in groups], _MAX_REASONS)
+    return first_lines(
+        [printable(": ".join(filter(None, (kind, who, why)))) for kind, why, who in groups], _MAX_REASONS
+    )
 
 
 def _grade_text(grade: PublishedGrade, file: _GradeFile) -> str:

@@ -1,6 +1,5 @@
 """The class's page: statistics, and a table of students with links, which shows those behind each figure."""
 
-import unicodedata
 from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -11,12 +10,11 @@ from grader.classroom.statistics import ClassStatistics
 from grader.classroom.student_grade import StudentGrade
 from grader.report import class_terminal as words
 from grader.report.pages.shell import Assets, render_page
-from grader.text import counted, enumerated, format_points, printable
+from grader.text import enumerated, format_points, printable
 
 _MAX_ATTENTION = 100  # students for one reason
 _MAX_LOST = 2  # criteria in a row
 _MAX_HEIGHT, _CUT_AT = 3, 1.5  # of a bar of the second highest: a higher one is cut
-_LETTERS = str.maketrans({"ł": "l", "ø": "o", "đ": "d", "æ": "ae", "œ": "oe", "ı": "i"})  # have no accents
 
 
 class _StudentRow(NamedTuple):
@@ -45,7 +43,7 @@ def render_class_page(
     book: Gradebook, grades: Sequence[StudentGrade], found: ClassStatistics, links: Mapping[str, str]
 ) -> str:
     """Return the class's page; `links` are the addresses of students' pages by key, relative to this page."""
-    rows = sorted((_row(grade, links) for grade in grades), key=_by_family_name)
+    rows = sorted((_row(grade, links) for grade in grades), key=lambda row: words.family_name_order(row.name, row.key))
     groups = {name: group for name, group in _groups(grades, found).items() if group.keys}
     numbers = {row.key: number for number, row in enumerate(rows)}
     bars, cut = _bars(found)
@@ -93,8 +91,7 @@ def _bars(found: ClassStatistics) -> tuple[list[tuple[str, str, int, int, bool]]
 
 
 def _row(grade: StudentGrade, links: Mapping[str, str]) -> _StudentRow:
-    student, late, lost = grade.student, grade.late, [name for _, name in grade.losses]
-    penalty = f", {format_points(late.points)}" if late.points else ""
+    student, lost = grade.student, [name for _, name in grade.losses]
     return _StudentRow(
         student.key,
         student.name or student.key,
@@ -103,21 +100,9 @@ def _row(grade: StudentGrade, links: Mapping[str, str]) -> _StudentRow:
         f"{grade.status}, final mark" if grade.final_points is not None else grade.status,
         grade.total_text,
         format_points(grade.pending) if grade.pending else "",
-        f"{counted(late.days, 'day')}{penalty}" if late.days and not grade.has_final else "",
+        words.late_text(grade),
         enumerated(lost, _MAX_LOST) if lost else "",
     )
-
-
-def _by_family_name(row: _StudentRow) -> tuple[str, str, str]:
-    """Return the family name, which is before a comma or the last word, then the name and the key."""
-    family = row.name.partition(",")[0] if "," in row.name else (row.name.split() or [""])[-1]
-    return _letters(family), _letters(row.name), row.key
-
-
-def _letters(name: str) -> str:
-    """Return a name without accents, so that Öz is not after Zed."""
-    apart = unicodedata.normalize("NFKD", name.casefold().translate(_LETTERS))
-    return "".join(letter for letter in apart if not unicodedata.combining(letter))
 
 
 def _columns(rows: Sequence[_StudentRow], found: ClassStatistics) -> list[tuple[str, str, str]]:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.mark_import import MarkImport
+from grader.classroom.mark_import import MarkImport, exported_text
 from grader.classroom.marks import Mark, Marks, append_marks
 from grader.classroom.roster import Student
 from grader.classroom.tables import write_table
@@ -27,11 +27,18 @@ GIVEN = {
     "own.csv": "student,criterion,points\n-x,total,4\n",
 }
 CRITERIA = tuple(row.id for row in LAB.criteria)
+NONE = {**dict.fromkeys(CRITERIA, ""), "total": ""}
+POINTS = {
+    "anna": {**NONE, "essay": "3", "picture": "1", "total": "6.5"},
+    "ben": {**NONE, "box": "2"},
+    "0012": NONE,
+    "-x": {**NONE, "total": "4"},
+}
 
 
-def importing(marks: Marks) -> MarkImport:
+def importing(marks: Marks, points: Mapping[str, Mapping[str, str]] = POINTS) -> MarkImport:
     """Return an import into the class."""
-    return MarkImport(CLASS, LAB, marks, DIGESTS, ANSWERS)
+    return MarkImport(CLASS, LAB, marks, DIGESTS, ANSWERS, points)
 
 
 def timed(marks: Marks, new: list[Mark]) -> list[Mark]:
@@ -42,17 +49,22 @@ def timed(marks: Marks, new: list[Mark]) -> list[Mark]:
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case["about"])
 def test_what_a_file_becomes(case: dict[str, Any], tmp_path: Path) -> None:
     """As the table says; once the marks are appended, the same file has no new ones."""
-    folder = folder_of(tmp_path, GIVEN)
+    folder, text = folder_of(tmp_path, GIVEN), case["file"]
+    for key, points in POINTS.items():
+        text = text.replace(f"{{{key}}}", exported_text(points))
     if "error" in case:
         with pytest.raises(InputError) as caught:
-            timed(read(folder), importing(read(folder)).read(case["file"].encode(), "marks.csv")[0])
+            timed(read(folder), importing(read(folder)).read(text.encode(), "marks.csv")[0])
         assert str(caught.value).splitlines() == case["error"].splitlines()
         return
-    marks, same = importing(read(folder)).read(case["file"].encode(), "marks.csv")
+    marks, same = importing(read(folder)).read(text.encode(), "marks.csv")
     said_of = [f"{one.student} {one.criterion} {said(one)} {one.submission}" for one in marks]
     assert (said_of, same) == (case["marks"], case.get("same", 0))
     append_marks(folder / "lee.csv", timed(read(folder), marks))
-    assert importing(read(folder)).read(case["file"].encode(), "marks.csv") == ([], len(marks) + same)
+    after = {key: dict(points) for key, points in POINTS.items()}
+    for one in marks:
+        after[one.student] |= {one.criterion: one.value or after[one.student].get(one.criterion, "")}
+    assert importing(read(folder), after).read(text.encode(), "marks.csv")[0] == []
 
 
 VALUES = st.dictionaries(st.sampled_from(CRITERIA), st.sampled_from(("", "0", "0.25", "0.5")))
@@ -62,7 +74,10 @@ VALUES = st.dictionaries(st.sampled_from(CRITERIA), st.sampled_from(("", "0", "0
 def test_only_changed_cells_of_an_export_are_marks(
     values: Mapping[str, Mapping[str, str]], data: st.DataObject
 ) -> None:
-    """None without a change; else the changed ones, whatever a spreadsheet does to decimals."""
+    """None without a change; else the changed ones, whatever a spreadsheet does to decimals; or they are refused."""
+    points = {student: {**NONE, **row} for student, row in values.items()}
+    has_other_points = data.draw(st.booleans())
+    now = {student: {**row, "loads": "0.75"} if has_other_points else row for student, row in points.items()}
     cells = {(student, name): text for student, row in values.items() for name, text in row.items()}
     changed = {key: "0.4" for key in cells if data.draw(st.booleans())}
     rows = []
@@ -71,9 +86,13 @@ def test_only_changed_cells_of_an_export_are_marks(
             changed.get((student, name), row.get(name, "")).replace(".", data.draw(st.sampled_from(",.")))
             for name in CRITERIA
         ]
-        rows.append([student, *texts, " ".join(f"{name}={row.get(name, '')}" for name in CRITERIA), "d0"])
+        rows.append([student, *texts, exported_text(points[student]), "d0"])
     text = write_table(["id", *CRITERIA, "exported", "submission"], rows)
-    found, _ = importing(Marks({}, {}, {}, [])).read(text.encode(), "grades.csv")
+    if has_other_points and changed:
+        with pytest.raises(InputError, match="has other points now than when they were exported"):
+            importing(Marks({}, {}, {}, []), now).read(text.encode(), "grades.csv")
+        return
+    found, _ = importing(Marks({}, {}, {}, []), now).read(text.encode(), "grades.csv")
     assert {(one.student, one.criterion): one.value for one in found} == changed
 
 
