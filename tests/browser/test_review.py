@@ -12,6 +12,7 @@ import pytest
 from tests.browser.conftest import OpenPage
 from tests.checks.submissions import png
 from tests.classroom.gradebooks import batch, grader, lab_text, urdf, write_submission
+from tests.command_line import HANG_TIMEOUT
 from tests.review_server import Review, marks_in, rows_of, running
 
 if TYPE_CHECKING:
@@ -212,7 +213,7 @@ def test_fast_typing_saves_every_mark_where_it_belongs(open_page: Open, tmp_path
     with running(book, "essay") as review:
         page = open_page(f"{review.url}1").page
         page.keyboard.type("".join(f"{points}\n" for points in wanted), delay=10)
-        page.wait_for_url("**/end")
+        page.wait_for_url("**/end", timeout=HANG_TIMEOUT * 1000)  # the grades are written after each mark
         rest(page)
     assert [(key, float(points)) for key, _, points, _ in marks_in(book)] == [
         (f"s{number:03}", float(points)) for number, points in enumerate(wanted)

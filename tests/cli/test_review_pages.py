@@ -173,7 +173,9 @@ def test_documents_are_shown_where_no_answer_was_found(review: Review) -> None:
         review.get(at).text for (name, question), at in found.items() if name == "Zebulon" and "answer" in question
     )
     assert "<h2>Documents</h2>" in page
-    assert "<p>[answers.txt: without a heading of this question]</p>" in page and "<p>The link lidar vanishes.</p>" in page
+    assert (
+        "<p>[answers.txt: without a heading of this question]</p>" in page and "<p>The link lidar vanishes.</p>" in page
+    )
 
 
 def test_the_list_of_students(review: Review, book: Path) -> None:
